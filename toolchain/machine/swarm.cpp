@@ -18,10 +18,36 @@ constexpr Duration first_work_within = 60s;
 constexpr Duration longest_pause = 4s; // between two faults
 constexpr Duration again = 50ms;       // a part that does not start yet is asked again
 constexpr Duration heard_every = 50ms; // by who browses
+constexpr std::size_t told_actions = 12; // of a finding, before it
 constexpr Duration at_rest = 500ms;    // after a stop
 
 std::string own_directory() {
     return (std::filesystem::temp_directory_path() / ("tappet-swarm-" + std::to_string(::getpid()))).string();
+}
+
+// Users who are let in with less than an engineer may do.
+constexpr std::uint32_t machine_operator = 61001, observer = 61002;
+
+/// Of a machine that has none of its own: it works as long as it runs.
+class NoRules final : public SwarmRules {
+public:
+    std::string_view broken(Time) override { return {}; }
+    bool works() override { return true; }
+};
+
+const AcceptedMachine& on_board(AcceptedMachine& machine, const Board& board) {
+    machine.board = &board;
+    return machine;
+}
+
+std::string socket_in(const std::string& directory, std::string_view machine) {
+    return directory + "/" + std::string{machine} + std::string{browsing::socket_suffix};
+}
+
+Board with_visitors(Board board) {
+    board.browsing.mode = 0666;
+    static_cast<void>(board.browsing.roles.push({false, machine_operator, Role::machine_operator}));
+    return board;
 }
 
 bool is_driver(const ComponentRow& row) {
@@ -40,14 +66,19 @@ std::vector<Duration> analysed_responses(const AcceptedMachine& machine) {
 
 SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
     : of_{of},
+      anything_goes_{!of.rules},
+      board_{with_visitors(*of.machine.board)},
       tell_{std::move(tell)},
       random_{seed},
       directory_{own_directory()},
       plant_{of.plant(seed)},
-      run_{of.machine, *plant_, seed},
+      run_{on_board(of_.machine, board_), *plant_, seed},
       struck_{of.machine.table.components.size()},
+      wires_{of_.machine, run_.devices(), struck_},
       files_{std::make_unique<PropertyFiles>(directory_)},
-      browser_{directory_ + "/" + std::string{of.machine.table.name} + std::string{browsing::socket_suffix}} {
+      browser_{socket_in(directory_, of.machine.table.name)},
+      visitors_{SwarmBrowser{socket_in(directory_, of.machine.table.name), machine_operator},
+                SwarmBrowser{socket_in(directory_, of.machine.table.name), observer}} {
     std::filesystem::remove_all(directory_); // of who had this number before
     std::filesystem::create_directories(directory_);
     run_.keep_properties_in(directory_);
@@ -103,7 +134,9 @@ bool SwarmRun::start(bool is_again) {
         verdict_.broken = Sentence{"it did not start: ", started.error()};
         return false;
     }
-    rules_ = of_.rules(run_.instance(), *plant_, struck_);
+    if (!is_again) wires_.listen();
+    wires_.begin(run_.instance());
+    rules_ = of_.rules ? of_.rules(run_.instance(), *plant_, struck_) : std::make_unique<NoRules>();
     is_gone_ = false;
     lost_ = 0;
     set_values_.clear();
@@ -115,9 +148,10 @@ bool SwarmRun::start(bool is_again) {
 
 void SwarmRun::judge(Time now) {
     if (!verdict_.broken.empty() || rules_ == nullptr || is_gone_) return;
-    std::string_view broken = rules_->broken(now);
+    Sentence broken{rules_->broken(now)};
+    if (broken.empty()) broken = wires_.broken(now);
     if (broken.empty()) return;
-    verdict_.broken = Sentence{broken};
+    verdict_.broken = broken;
     verdict_.at = now;
 }
 
@@ -232,7 +266,7 @@ void SwarmRun::note_responses() {
 void SwarmRun::stop() {
     note_responses();
     run_.stop();
-    browser_.leave();
+    leave();
     if (const Sentence fault = run_.instance().save_properties(run_.instance().standing()); !fault.empty())
         deny(Sentence{"the properties cannot be saved at halt: ", fault});
     judge_saved(true);
@@ -259,7 +293,7 @@ void SwarmRun::restart(bool orderly) {
         stop();
     } else {
         note_responses();
-        browser_.leave();
+        leave();
         // As the kernel does with the descriptors of a process.
         if (service_ != nowhere)
             run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->finalise();
@@ -278,8 +312,17 @@ void SwarmRun::restart(bool orderly) {
     if (verdict_.broken.empty()) static_cast<void>(start(true));
 }
 
+void SwarmRun::leave() {
+    browser_.leave();
+    for (SwarmBrowser& each : visitors_) each.leave();
+}
+
 void SwarmRun::say(std::string_view text) {
     if (tell_) tell_(run_.now(), text);
+    if (!verdict_.broken.empty()) return;
+    auto& last = verdict_.before;
+    if (last.size() == told_actions) last.erase(last.begin());
+    last.push_back(std::to_string(to_ns(run_.now()) / 1000) + " us: " + std::string{text});
 }
 
 void SwarmRun::begin(std::string_view kind, Sentence text, Duration lasts,

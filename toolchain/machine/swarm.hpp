@@ -7,16 +7,21 @@
 #include "toolchain/machine/host.hpp"
 #include "toolchain/machine/swarm_browser.hpp"
 #include "toolchain/machine/swarm_rules.hpp"
+#include "toolchain/machine/swarm_wires.hpp"
 
+#include <array>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tappet {
 
-/// Who the swarm is about.
+/// Who the swarm is about. Without rules of its own those are judged that hold of every machine, and people
+/// may do anything; with them, what its rules allow.
 struct SwarmOf {
     AcceptedMachine machine;
     std::function<std::unique_ptr<Plant>(std::uint64_t seed)> plant;
@@ -27,6 +32,7 @@ struct SwarmOf {
 struct SwarmVerdict {
     Sentence broken{}; ///< the first rule that was broken, at `at`; empty: none
     Time at{};
+    std::vector<std::string> before{}; ///< what happened last before that
     Duration time{};          ///< that passed in the machine
     Duration back{};          ///< from the last fault until it worked again
     std::string waited_for{}; ///< it did not work again before its restart, and said this
@@ -84,6 +90,7 @@ private:
     void note_responses();
     void stop();
     void restart(bool orderly);
+    void leave();
     void rest(Duration time);
     bool mend(Duration limit);
     void judge(Time now);
@@ -119,24 +126,40 @@ private:
     void ask_to_save();
     void judge_saved(bool with_values);
     void judge_forces();
+    // swarm_anyone.cpp
+    void strike_as_anyone(Duration lasts);
+    void ask_anything(std::size_t component, Duration lasts);
+    void stop_a_part(std::size_t component, Duration lasts);
+    void flood();
+    void anyone_asks(SwarmBrowser& by, std::string request);
+    [[nodiscard]] std::string name_of(End end) const;
+    [[nodiscard]] End any_of(std::initializer_list<FacetKind> kinds, std::size_t component);
+    [[nodiscard]] std::optional<std::string> any_arguments(const Facet& facet, std::string_view between);
+    [[nodiscard]] std::string any_call(End end);
+    [[nodiscard]] std::string any_line(std::size_t component);
+    [[nodiscard]] std::string any_script(const BehaviourRow& row);
     [[nodiscard]] std::vector<std::size_t> components_on(std::string_view device) const;
     [[nodiscard]] std::vector<std::size_t> components_of(std::size_t activity) const;
     [[nodiscard]] bool chance(unsigned percent) { return random_.below(100) < percent; }
 
-    const SwarmOf& of_;
+    SwarmOf of_;
+    bool anything_goes_; ///< people may do anything: the machine has no rules that would allow less
+    Board board_;        ///< the machine's, which knows visitors
     Tell tell_;
     Random random_;
     std::string directory_; ///< of its own: properties files, and the socket
     std::unique_ptr<Plant> plant_;
     VirtualRun run_;
     Struck struck_;
+    SwarmWires wires_;
     std::unique_ptr<SwarmRules> rules_;
     std::vector<Fault> faults_{};
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
     bool is_calm_ = false;
     std::uint64_t lost_ = 0; ///< emissions, so far
     std::unique_ptr<PropertyFiles> files_;
-    SwarmBrowser browser_;
+    SwarmBrowser browser_;                 ///< an engineer's
+    std::array<SwarmBrowser, 2> visitors_; ///< an operator's, and an observer's
     std::size_t service_ = nowhere;            ///< the component that answers browsers
     std::vector<End> commands_{}, readable_{}; ///< that operators may send and call; that anybody may read
     std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
@@ -159,6 +182,6 @@ private:
 [[nodiscard]] std::vector<Duration> analysed_responses(const AcceptedMachine& machine);
 
 /// The program of a machine's swarm. The exit code: 0 no rule was broken, 1 one was, 2 a wrong command line.
-[[nodiscard]] int run_swarm(const SwarmOf& of, int count, char** words);
+[[nodiscard]] int run_swarm(SwarmOf of, int count, char** words);
 
 } // namespace tappet
