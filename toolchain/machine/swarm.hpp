@@ -26,6 +26,7 @@ struct SwarmOf {
     AcceptedMachine machine;
     std::function<std::unique_ptr<Plant>(std::uint64_t seed)> plant;
     std::function<std::unique_ptr<SwarmRules>(MachineInstance&, Plant&, const Struck&)> rules;
+    const AllLeftBehind* left = nullptr; ///< as SwarmRun::learn() saw it; null: nobody has looked
 };
 
 /// What one seed came to.
@@ -57,6 +58,8 @@ public:
     /// Before go(): nothing fails.
     void be_calm() { is_calm_ = true; }
     [[nodiscard]] SwarmVerdict go();
+    /// In its place: what components leave on the wires when they are stopped and nothing else happens.
+    [[nodiscard]] AllLeftBehind learn();
 
 private:
     /// What is wrong for a while.

@@ -39,7 +39,8 @@ End SwarmRun::any_of(Kinds kinds, std::size_t component) {
 std::optional<std::string> SwarmRun::any_arguments(const Facet& facet, std::string_view between) {
     std::string all;
     for (const TypeId each : (facet.command != nullptr ? *facet.command->arguments : *facet.type).elements) {
-        const std::string value = draw(*each, {});
+        const bool is_real = each->kind == ValueKind::real;
+        const std::string value = is_real && between == " " && random_.one_in(12) ? "nan" : draw(*each, {});
         if (value.empty()) return {};
         all += (all.empty() ? "" : std::string{between}) + value;
     }

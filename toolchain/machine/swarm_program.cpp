@@ -9,6 +9,7 @@
 #include <array>
 #include <string>
 
+#include <csignal>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -53,6 +54,8 @@ constexpr std::array options{
 enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
 constexpr std::uint64_t most_broken = 10; // then the rest would say the same again
 
+constexpr unsigned longest_seed = 300; // s of real time
+
 Sentence replay; // of the seed that runs
 int standard_output = 1;
 
@@ -71,6 +74,19 @@ Sentence in_s(Duration time) { return Sentence{time / 1s, ".", (time / 100ms) % 
 void tell_contract(const ContractViolation& breach) noexcept TAPPET_REALTIME {
     TAPPET_ESCAPE("the swarm is over", print(Sentence{describe(breach), "\n", replay}.view());
                   ::_exit(one_broken));
+}
+
+// A machine that crashes, or does not come to an end, is a finding as well.
+void die_telling() {
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) {
+        struct sigaction action {};
+        action.sa_handler = [](int which) {
+            print(which == SIGALRM ? "the machine hangs; " : "the machine crashed; ");
+            print(replay.view());
+            ::_exit(one_broken);
+        };
+        ::sigaction(signal, &action, nullptr);
+    }
 }
 
 struct Totals {
@@ -152,12 +168,18 @@ int run_swarm(SwarmOf of, int count, char** words) {
     const Duration wanted = given->has("--minutes") ? given->number("--minutes", 0) * Duration{1min}
                                                     : given->number("--hours", 1) * Duration{1h};
     std::uint64_t seed = given->number(given->has("--seed") ? "--seed" : "--from", 1);
+    AllLeftBehind left;
+    if (!of.rules) {
+        left = SwarmRun{of, 0}.learn();
+        of.left = &left;
+    }
     const Duration began = os::processor_time_of_this_thread();
     Totals totals;
     totals.usual.resize(of.machine.table.activities.size());
     totals.responses = totals.usual;
     if (given->has("--anyone")) of.rules = {};
     const bool timed = given->has("--bit-rate");
+    die_telling();
     do {
         replay = Sentence{"replay it: ", words[0], " --seed ", seed};
         for (const char* rate : {"--bit-rate", "--data-bit-rate"})
@@ -165,6 +187,7 @@ int run_swarm(SwarmOf of, int count, char** words) {
         for (const char* word : {"--calm", "--anyone"})
             if (given->has(word)) replay.add(" ").add(word);
         replay.add("\n");
+        ::alarm(longest_seed);
         SwarmRun run{of, seed, tell};
         if (timed)
             run.take_times(seed, {static_cast<std::int64_t>(given->number("--bit-rate", 0)),
@@ -180,6 +203,7 @@ int run_swarm(SwarmOf of, int count, char** words) {
             for (const std::string& each : verdict.before) print("    " + each + "\n");
         seed += given->number("--step", 1);
     } while (!given->has("--seed") && totals.time < wanted && totals.broken < most_broken);
+    ::alarm(0);
     if (timed) totals.print_responses(of.machine);
     totals.print_all(name, os::processor_time_of_this_thread() - began);
     return totals.broken == 0 ? none_broken : one_broken;

@@ -25,8 +25,9 @@ bool is_in(const can::Identifiers& map, const can::FrameRow& row, const can::Sig
 
 } // namespace
 
-SwarmWires::SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices, const Struck& struck)
-    : machine_{machine}, devices_{devices}, struck_{struck} {}
+SwarmWires::SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices, const Struck& struck,
+                       const AllLeftBehind* left)
+    : machine_{machine}, devices_{devices}, struck_{struck}, left_{left} {}
 
 void SwarmWires::listen() {
     const auto rows = machine_.table.components;
@@ -207,7 +208,8 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
     }
     if (output.since == never) output.since = now;
     if (is_forced(output)) output.excused = std::max(output.excused, now + output.settles);
-    if (now < output.excused || struck_.whole_for(output.driver, now) < output.settles) {
+    const bool is_driven = instance_->life().state_of(output.driver) == ComponentState::running;
+    if (now < output.excused || !is_driven || struck_.whole_for(output.driver, now) < output.settles) {
         output.before = output.left = {};
         output.since = now;
         return {};
@@ -216,8 +218,15 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
     const bool is_safe = output.safe && *value == *output.safe;
     if (!output.left) {
         output.left = value;
-        if (!is_safe && output.is_switch && output.before && *output.before != *value)
-            return told(output, *value).add(", though nothing that drives it runs: it was switched by what is stopped");
+        const auto known = left_ == nullptr ? AllLeftBehind::const_iterator{} : left_->find(output.name);
+        if (left_ != nullptr && known != left_->end() && !known->second.holds) {
+            if (!is_safe && std::ranges::find(known->second.values, *value) == known->second.values.end())
+                return told(output, *value)
+                    .add(", though nothing that drives it runs, and that is not what its stop leaves there");
+        } else if (!is_safe && output.is_switch && output.before && *output.before != *value) {
+            return told(output, *value)
+                .add(", though nothing that drives it runs: it was switched by what is stopped");
+        }
     } else if (*output.left != *value) {
         if (!is_safe)
             return told(output, *value)
@@ -250,6 +259,31 @@ Sentence SwarmWires::broken_at_rest(bool orderly) const {
                                                   : ", though its guardian has left it safe");
     }
     return {};
+}
+
+std::vector<std::vector<std::size_t>> SwarmWires::all_writers() const {
+    std::vector<std::vector<std::size_t>> all;
+    for (const Output& each : outputs_)
+        if (!each.writers.empty() && std::ranges::find(all, each.writers) == all.end()) all.push_back(each.writers);
+    return all;
+}
+
+Duration SwarmWires::settles(const std::vector<std::size_t>& writers) const {
+    Duration longest{};
+    for (const Output& each : outputs_)
+        if (each.writers == writers) longest = std::max(longest, each.settles);
+    return longest;
+}
+
+void SwarmWires::note_left(const std::vector<std::size_t>& writers, AllLeftBehind& left) const {
+    for (const Output& each : outputs_) {
+        const auto value = each.read();
+        if (each.writers != writers || !value || drives(each) || !each.left) continue;
+        LeftBehind& known = left[each.name];
+        if (each.safe && *value == *each.safe) continue;
+        known.holds |= !each.safe || (each.before && *each.before == *value);
+        known.values.push_back(*value);
+    }
 }
 
 } // namespace tappet

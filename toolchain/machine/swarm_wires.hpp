@@ -8,16 +8,26 @@
 #include "toolchain/machine/swarm_rules.hpp"
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tappet {
 
+/// What is on an output's wire when all that writes to it was stopped while nothing else went on.
+struct LeftBehind {
+    bool holds = false;                  ///< whatever it was before
+    std::vector<std::uint64_t> values{}; ///< beside what is safe
+};
+using AllLeftBehind = std::map<std::string, LeftBehind>; ///< by the names of outputs
+
 /// Not real-time. Lives as long as the run.
 class SwarmWires {
 public:
-    SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices, const Struck& struck);
+    /// `left`: null: nobody has looked.
+    SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices, const Struck& struck,
+               const AllLeftBehind* left = nullptr);
 
     /// After the devices were opened: looks at what goes over them.
     void listen();
@@ -29,6 +39,15 @@ public:
     [[nodiscard]] Sentence broken(Time now);
     /// All of it is over: in order, or by the guardian.
     [[nodiscard]] Sentence broken_at_rest(bool orderly) const;
+
+    // ---- to see what is left behind
+
+    /// The components that write to one output, for each output, each set once.
+    [[nodiscard]] std::vector<std::vector<std::size_t>> all_writers() const;
+    /// As long as anything takes from there to a wire.
+    [[nodiscard]] Duration settles(const std::vector<std::size_t>& writers) const;
+    /// They stand since so long, and nothing else went on.
+    void note_left(const std::vector<std::size_t>& writers, AllLeftBehind& left) const;
 
 private:
     /// One output at the wires.
@@ -68,6 +87,7 @@ private:
     const AcceptedMachine& machine_;
     SimulatedDevices& devices_;
     const Struck& struck_;
+    const AllLeftBehind* left_;
     MachineInstance* instance_ = nullptr;
     std::vector<Output> outputs_{};
     std::vector<Sent> sent_{};
