@@ -1,5 +1,5 @@
-// Components that write to their outputs in every way in which one can: from a method, an operation, a command,
-// a property's change, a step; and one whose preparations take long.
+// Components that write to their outputs in every way in which one can: from a method, an operation, a
+// command, a property's change, a step; and one whose preparations take long.
 #pragma once
 
 #include "tests/adversary/maps.hpp"
@@ -23,12 +23,14 @@ struct Valve {
         return true;
     }
     static constexpr auto interface() {
-        return facets(output<&Valve::on>("on", "", "it is open"),
-                      property<&Valve::held_open>("held_open", "", "whatever is called"),
-                      property<&Valve::opened>("opened", "", "so often", range(0, 1'000'000)),
-                      method<&Valve::open>("open", "lets through", for_people(Role::machine_operator), any_thread),
-                      method<&Valve::close>("close", "lets nothing through", for_people(Role::machine_operator), any_thread),
-                      method<&Valve::turn>("turn", "open or not", any_thread));
+        return facets(
+            output<&Valve::on>("on", "", "it is open"),
+            property<&Valve::held_open>("held_open", "", "whatever is called"),
+            property<&Valve::opened>("opened", "", "so often", range(0, 1'000'000)),
+            method<&Valve::open>("open", "lets through", for_people(Role::machine_operator), any_thread),
+            method<&Valve::close>("close", "lets nothing through", for_people(Role::machine_operator),
+                                  any_thread),
+            method<&Valve::turn>("turn", "open or not", any_thread));
     }
 };
 
@@ -49,8 +51,10 @@ struct Pump {
     void nudge() noexcept TAPPET_REALTIME { write(speed.last() + 1); }
 
     static constexpr auto interface() {
-        return facets(output<&Pump::speed>("speed", "rpm", "wanted"), output<&Pump::torque>("torque", "Nm", "at most"),
-                      output<&Pump::on>("on", "", "its power"), output<&Pump::spare>("spare", "", "no bit is left over"),
+        return facets(output<&Pump::speed>("speed", "rpm", "wanted"),
+                      output<&Pump::torque>("torque", "Nm", "at most"),
+                      output<&Pump::on>("on", "", "its power"),
+                      output<&Pump::spare>("spare", "", "no bit is left over"),
                       property<&Pump::most_torque>("most_torque", "Nm", "while it turns", range(0, 100)),
                       command<&Pump::run>("run", "as fast as that", for_people(Role::machine_operator)),
                       operation<&Pump::nudge>("nudge", "a bit faster"));
@@ -93,7 +97,8 @@ struct Oven {
 
     static constexpr auto interface() {
         return facets(input<&Oven::temperature>("temperature", "degC", "inside", optional),
-                      output<&Oven::power>("power", "%", "of its coils"), output<&Oven::fan>("fan", "rpm", "of its air"),
+                      output<&Oven::power>("power", "%", "of its coils"),
+                      output<&Oven::fan>("fan", "rpm", "of its air"),
                       output<&Oven::burner>("burner", "", "1: it is lit"),
                       property<&Oven::wanted>("wanted", "%", "of its power", range(0, 100)),
                       operation<&Oven::light>("light", "the burner", for_people(Role::machine_operator)));
@@ -125,8 +130,8 @@ struct Doser {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { lamp.write(false); }
     static constexpr auto interface() {
         return facets(input<&Doser::height>("height", "mm", "of what is dosed"),
-                      output<&Doser::lamp>("lamp", "", "it doses"),
-                      calls<&Doser::open>("open", "the valve"), calls<&Doser::close>("close", "the valve"));
+                      output<&Doser::lamp>("lamp", "", "it doses"), calls<&Doser::open>("open", "the valve"),
+                      calls<&Doser::close>("close", "the valve"));
     }
 };
 

@@ -1,4 +1,5 @@
-// What stands at the other end of the test bench's wires: a level that rises and falls, whatever the machine does.
+// What stands at the other end of the test bench's wires: a level that rises and falls, whatever the machine
+// does.
 #pragma once
 
 #include "drivers/can/far_end.hpp"

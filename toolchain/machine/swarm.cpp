@@ -15,12 +15,13 @@ namespace tappet {
 namespace {
 
 constexpr Duration first_work_within = 60s;
-constexpr Duration longest_pause = 4s; // between two faults
-constexpr Duration again = 50ms;       // a part that does not start yet is asked again
-constexpr Duration heard_every = 50ms; // by who browses
-constexpr std::size_t told_actions = 12; // of a finding, before it
+constexpr Duration longest_pause = 4s;                     // between two faults
+constexpr Duration again = 50ms;                           // a part that does not start yet is asked again
+constexpr Duration heard_every = 50ms;                     // by who browses
+constexpr std::size_t told_actions = 12;                   // of a finding, before it
 constexpr Duration learnt_after = 5s, learnt_between = 1s; // until it works, and again
-constexpr Duration at_rest = 500ms;    // after a stop
+constexpr Duration stopped_within = 25ms;                  // a stop in order, to the last line
+constexpr Duration at_rest = 500ms;                        // after a stop
 
 std::string own_directory() {
     return (std::filesystem::temp_directory_path() / ("tappet-swarm-" + std::to_string(::getpid()))).string();
@@ -159,6 +160,7 @@ bool SwarmRun::start(bool is_again) {
     set_values_.clear();
     if (service_ != nowhere)
         run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->log.set(false);
+    judge_kept();
     hear();
     return true;
 }
@@ -288,7 +290,10 @@ void SwarmRun::stop() {
     if (const Sentence fault = run_.instance().save_properties(run_.instance().standing()); !fault.empty())
         deny(Sentence{"the properties cannot be saved at halt: ", fault});
     judge_saved(true);
-    rest(at_rest);
+    kept_ = kept_values();
+    rest(stopped_within);
+    if (const Sentence unsafe = wires_.broken_at_rest(true); !unsafe.empty()) deny(unsafe);
+    rest(at_rest - stopped_within);
     ++verdict_.restarts;
 }
 
@@ -316,6 +321,7 @@ void SwarmRun::restart(bool orderly) {
         if (service_ != nowhere)
             run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->finalise();
         is_gone_ = true; // what it promised is its guardian's
+        kept_.clear();
         rest(Duration{random_.between(0, 10'000'000)});
         run_.devices().write_safe_lines();
         rest(Duration{random_.between(0, 10'000'000)});
@@ -323,6 +329,8 @@ void SwarmRun::restart(bool orderly) {
         rest(5ms);
         run_.devices().attend(run_.now());
         run_.devices().write_safe_registers();
+        rest(25ms);
+        if (const Sentence unsafe = wires_.broken_at_rest(false); !unsafe.empty()) deny(unsafe);
         rest(Duration{random_.between(100'000'000, 3'000'000'000)});
         ++verdict_.restarts;
     }

@@ -34,9 +34,9 @@ struct SwarmVerdict {
     Sentence broken{}; ///< the first rule that was broken, at `at`; empty: none
     Time at{};
     std::vector<std::string> before{}; ///< what happened last before that
-    Duration time{};          ///< that passed in the machine
-    Duration back{};          ///< from the last fault until it worked again
-    std::string waited_for{}; ///< it did not work again before its restart, and said this
+    Duration time{};                   ///< that passed in the machine
+    Duration back{};                   ///< from the last fault until it worked again
+    std::string waited_for{};          ///< it did not work again before its restart, and said this
     std::map<std::string, std::uint64_t> faults{}; ///< by their kinds
     std::uint64_t restarts = 0;
     std::vector<Duration> responses{}; ///< of each activity the longest, where cycles take time
@@ -103,6 +103,8 @@ private:
     void begin(std::string_view kind, Sentence text, Duration lasts, std::vector<std::size_t> components,
                std::function<bool()> end);
     void strike_bus(std::size_t component, Duration lasts);
+    void garble_bus(std::string_view device, const can::Identifiers& map);
+    void garble_server(std::string_view device, modbus::Twin& server, const modbus::SafeWrites& map);
     void strike_chip(std::size_t component, Duration lasts);
     void strike_server(std::size_t component, Duration lasts);
     void strike_component(Duration lasts);
@@ -128,6 +130,8 @@ private:
     void ask_to_read();
     void ask_to_save();
     void judge_saved(bool with_values);
+    [[nodiscard]] std::map<std::string, std::string> kept_values();
+    void judge_kept();
     void judge_forces();
     // swarm_anyone.cpp
     void strike_as_anyone(Duration lasts);
@@ -135,6 +139,7 @@ private:
     void stop_a_part(std::size_t component, Duration lasts);
     void flood();
     void anyone_asks(SwarmBrowser& by, std::string request);
+    void judge_shown(const std::string& name, std::string_view answer);
     [[nodiscard]] std::string name_of(End end) const;
     [[nodiscard]] End any_of(std::initializer_list<FacetKind> kinds, std::size_t component);
     [[nodiscard]] std::optional<std::string> any_arguments(const Facet& facet, std::string_view between);
@@ -161,8 +166,8 @@ private:
     bool is_calm_ = false;
     std::uint64_t lost_ = 0; ///< emissions, so far
     std::unique_ptr<PropertyFiles> files_;
-    SwarmBrowser browser_;                 ///< an engineer's
-    std::array<SwarmBrowser, 2> visitors_; ///< an operator's, and an observer's
+    SwarmBrowser browser_;                     ///< an engineer's
+    std::array<SwarmBrowser, 2> visitors_;     ///< an operator's, and an observer's
     std::size_t service_ = nowhere;            ///< the component that answers browsers
     std::vector<End> commands_{}, readable_{}; ///< that operators may send and call; that anybody may read
     std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
@@ -174,6 +179,8 @@ private:
         std::string value{};
     };
     std::map<std::string, SetValue> set_values_{};
+    std::map<std::string, std::string>
+        kept_{}; ///< of properties in files, at the halt in order before this start
     std::uint64_t sets_ = 0, sets_open_ = 0; ///< asked for; of these not answered yet
     bool sends_script_ = false;
     bool is_gone_ = false; ///< the machine's process

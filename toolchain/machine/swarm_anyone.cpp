@@ -10,7 +10,8 @@ namespace tappet {
 
 namespace {
 
-constexpr Duration longest_line = 3s; // from its request to its last statement, and to the wire
+constexpr Duration longest_line = 3s;    // from its request to its last statement, and to the wire
+constexpr Duration told_late = 100ms;    // an answer that was made, to who asked
 constexpr std::size_t most_at_once = 24; // requests of somebody who floods the service
 using Kinds = std::initializer_list<FacetKind>;
 
@@ -49,8 +50,8 @@ std::optional<std::string> SwarmRun::any_arguments(const Facet& facet, std::stri
 
 /// "component.name(arguments)", as a statement calls it.
 std::string SwarmRun::any_call(End end) {
-    const auto arguments = end.component == nowhere ? std::nullopt
-                                                    : any_arguments(facet_at(of_.machine.table, end), ", ");
+    const auto arguments =
+        end.component == nowhere ? std::nullopt : any_arguments(facet_at(of_.machine.table, end), ", ");
     return arguments ? name_of(end) + "(" + *arguments + ")" : std::string{};
 }
 
@@ -66,7 +67,8 @@ std::string SwarmRun::any_line(std::size_t component) {
     case 2: {
         const End end = any_of({FacetKind::property}, component);
         if (end.component == nowhere) return {};
-        const std::string value = draw(*facet_at(of_.machine.table, end).type, facet_at(of_.machine.table, end).range);
+        const std::string value =
+            draw(*facet_at(of_.machine.table, end).type, facet_at(of_.machine.table, end).range);
         return value.empty() ? value : "wait(200 ms); set " + name_of(end) + " = " + value + ";";
     }
     case 3: return "wait(" + std::to_string(random_.below(1500)) + " ms); do " + first + ";";
@@ -101,7 +103,25 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
     for (const std::size_t c : drivers_)
         if (request.contains(std::string{of_.machine.table.components[c].name}))
             wires_.excuse(c, run_.now() + BrowserService::patience + longest_line);
-    by.ask(std::move(request), run_.now(), [](std::string_view) {});
+    const bool reads = request.starts_with("get ");
+    const std::string name = reads ? request.substr(4) : std::string{};
+    by.ask(std::move(request), run_.now(), [this, name](std::string_view answer) {
+        if (!name.empty() && is_good(answer)) judge_shown(name, answer);
+    });
+}
+
+/// A value that is shown as good was written within the age that its row allows.
+void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
+    if (field_of(answer, "flow") != "fresh" || field_of(answer, "forced") == "true") return;
+    const MachineView& table = of_.machine.table;
+    Duration oldest{};
+    for (std::size_t x = 0; x < table.connections.size(); ++x)
+        if (name_of(of_.machine.index.connections[x].to) == name)
+            oldest = std::max(oldest, table.connections[x].max_age);
+    const Time stamp{Duration{std::strtoll(field_of(answer, "time_ns").c_str(), nullptr, 10)}};
+    if (oldest > Duration{} && run_.now() - stamp > oldest + told_late)
+        deny(Sentence{"input \"", name, "\" is shown as fresh, and was written ", (run_.now() - stamp) / 1ms,
+                      " ms ago"});
 }
 
 /// One request about a component, or about another one.
@@ -177,8 +197,10 @@ void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
             return anyone_asks(browser_, random_.one_in(2) ? "why " + std::string{row.component} + "." + state
                                                            : "behave request " + behaviour + " " + state);
         }
-        constexpr std::array<std::string_view, 6> actions{"start", "stop", "pause", "step", "reset", "reactive"};
-        return anyone_asks(browser_, "behave " + std::string{actions[random_.below(actions.size())]} + " " + behaviour);
+        constexpr std::array<std::string_view, 6> actions{"start", "stop",  "pause",
+                                                          "step",  "reset", "reactive"};
+        return anyone_asks(browser_,
+                           "behave " + std::string{actions[random_.below(actions.size())]} + " " + behaviour);
     }
     constexpr std::array<std::string_view, 5> all{"hello", "forced", "counters", "behaviours", "save"};
     ++verdict_.faults["read"];
@@ -195,7 +217,8 @@ void SwarmRun::stop_a_part(std::size_t c, Duration lasts) {
     const std::string part = whole ? "activity:" + std::string{of_.machine.table.activities[a].name}
                                    : std::string{of_.machine.table.components[c].name};
     anyone_asks(browser_, (restarts ? "restart " : "stop ") + part);
-    const std::string kind = std::string{whole ? "activity " : "component "} + (restarts ? "restarted" : "stopped");
+    const std::string kind =
+        std::string{whole ? "activity " : "component "} + (restarts ? "restarted" : "stopped");
     begin(kind, Sentence{part, restarts ? " restarts" : " stops"}, std::max(lasts, Duration{300ms}),
           whole ? components_of(a) : std::vector{c}, [this, c, a, whole] {
               const bool runs = whole ? run_.instance().engines()[a].is_active()

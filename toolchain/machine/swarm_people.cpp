@@ -173,7 +173,8 @@ std::string SwarmRun::draw(const TypeTag& type, Range range) {
     case ValueKind::duration: value.put(std::int64_t{1000} * std::llround(number * 1e6)); break;
     case ValueKind::text: {
         const auto rows = of_.machine.table.components;
-        return anything_goes_ ? "\"" + std::string{rows[random_.below(rows.size())].name} + "\"" : std::string{};
+        return anything_goes_ ? "\"" + std::string{rows[random_.below(rows.size())].name} + "\""
+                              : std::string{};
     }
     default: return {};
     }
@@ -332,6 +333,26 @@ void SwarmRun::judge_saved(bool with_values) {
                                      set.value});
         }
     }
+}
+
+std::map<std::string, std::string> SwarmRun::kept_values() {
+    std::map<std::string, std::string> kept;
+    const auto rows = of_.machine.table.components;
+    for (std::size_t c = 0; c < rows.size(); ++c)
+        for (std::size_t f = 0; rows[c].has_properties_file && f < rows[c].type->facets.size(); ++f)
+            if (const Facet& facet = rows[c].type->facets[f]; facet.kind == FacetKind::property)
+                kept[name_of({c, f})] =
+                    text_of(*facet.type, static_cast<std::byte*>(run_.instance().facet({c, f})));
+    return kept;
+}
+
+/// What was kept at the halt is there again.
+void SwarmRun::judge_kept() {
+    const auto now = kept_values();
+    for (const auto& [name, value] : kept_)
+        if (const auto found = now.find(name); found == now.end() || found->second != value)
+            deny(Sentence{"property \"", name, "\" was kept as ", value, " at the halt, and is ",
+                          found == now.end() ? "gone" : found->second, " after the start"});
 }
 
 /// When everybody has taken away what they laid.

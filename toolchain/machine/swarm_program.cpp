@@ -26,6 +26,16 @@ constexpr std::array options{
            .most = 1'000'000},
     Option{
         .name = "--minutes", .value = "N", .help = "so many minutes instead", .is_number = true, .least = 1},
+    Option{.name = "--working",
+           .value = "N",
+           .help = "so many seconds of this processor instead",
+           .is_number = true,
+           .least = 1},
+    Option{.name = "--findings",
+           .value = "N",
+           .help = "ends after so many broken seeds (default 10)",
+           .is_number = true,
+           .least = 1},
     Option{.name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true},
     Option{.name = "--step",
            .value = "N",
@@ -44,7 +54,9 @@ constexpr std::array options{
            .is_number = true,
            .least = 1,
            .most = 10'000'000},
-    Option{"--anyone", "", "people may do anything, and only what holds of every machine is judged; so it is of a machine without a SWARM"},
+    Option{"--anyone", "",
+           "people may do anything, and only what holds of every machine is judged; so it is of a machine "
+           "without a SWARM"},
     Option{"--calm", "", "nothing fails: for the responses of a machine that works"},
     Option{.name = "--seed",
            .value = "SEED",
@@ -52,7 +64,7 @@ constexpr std::array options{
            .is_number = true},
     Option{"--help", "", "this text"}};
 enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
-constexpr std::uint64_t most_broken = 10; // then the rest would say the same again
+constexpr std::uint64_t usual_findings = 10; // then the rest would say the same again
 
 constexpr unsigned longest_seed = 300; // s of real time
 
@@ -79,7 +91,7 @@ void tell_contract(const ContractViolation& breach) noexcept TAPPET_REALTIME {
 // A machine that crashes, or does not come to an end, is a finding as well.
 void die_telling() {
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) {
-        struct sigaction action {};
+        struct sigaction action{};
         action.sa_handler = [](int which) {
             print(which == SIGALRM ? "the machine hangs; " : "the machine crashed; ");
             print(replay.view());
@@ -116,30 +128,29 @@ struct Totals {
         for (std::size_t a = 0; a < analysed.size(); ++a) {
             if (analysed[a] == Duration{}) continue;
             print(Sentence{"activity ", machine.table.activities[a].name, ": longest response ",
-                               usual[a] / 1us, " us of ", analysed[a] / 1us, " us analysed, ",
-                               100 * usual[a] / analysed[a], " %; ", responses[a] / 1us,
-                               " us where some came more often than their rows say\n"}
-                          .view());
+                           usual[a] / 1us, " us of ", analysed[a] / 1us, " us analysed, ",
+                           100 * usual[a] / analysed[a], " %; ", responses[a] / 1us,
+                           " us where some came more often than their rows say\n"}
+                      .view());
         }
     }
     void print_all(std::string_view name, Duration took) {
-        print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_s(took),
-                           ", ", time / std::max(took, Duration{1ms}), " times as fast; ", broken,
-                           " broken\n"}
-                      .view());
+        print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_s(took), ", ",
+                       time / std::max(took, Duration{1ms}), " times as fast; ", broken, " broken\n"}
+                  .view());
         print("struck:");
         for (const auto& [kind, number] : faults) print(Sentence{" ", kind, " ", number, ","}.view());
         print(Sentence{" and ", restarts, " stops\n"}.view());
         if (!back.empty()) {
             std::ranges::sort(back);
             print(Sentence{"worked again ", in_s(back[back.size() / 2]),
-                               " after the last fault in half of them, ", in_s(back.back()), " at most\n"}
-                          .view());
+                           " after the last fault in half of them, ", in_s(back.back()), " at most\n"}
+                      .view());
         }
         for (const auto& [what, by] : waited_for)
             print(Sentence{"worked again after a restart only, ", by.size(), " times, as with seed ",
-                               by.front(), ": waited for ", what, "\n"}
-                          .view());
+                           by.front(), ": waited for ", what, "\n"}
+                      .view());
     }
 };
 
@@ -178,6 +189,12 @@ int run_swarm(SwarmOf of, int count, char** words) {
     totals.usual.resize(of.machine.table.activities.size());
     totals.responses = totals.usual;
     if (given->has("--anyone")) of.rules = {};
+    const Duration working = given->number("--working", 0) * Duration{1s};
+    const std::uint64_t most_broken = given->number("--findings", usual_findings);
+    const auto is_enough = [&] {
+        return working > Duration{} ? os::processor_time_of_this_thread() - began >= working
+                                    : totals.time >= wanted;
+    };
     const bool timed = given->has("--bit-rate");
     die_telling();
     do {
@@ -196,13 +213,13 @@ int run_swarm(SwarmOf of, int count, char** words) {
         const SwarmVerdict verdict = run.go();
         totals.add(seed, verdict);
         if (!verdict.broken.empty())
-            print(Sentence{name, ": seed ", seed, " at ", to_ns(verdict.at) / 1000,
-                               " us: ", verdict.broken, "; ", replay}
-                          .view());
+            print(Sentence{name, ": seed ", seed, " at ", to_ns(verdict.at) / 1000, " us: ", verdict.broken,
+                           "; ", replay}
+                      .view());
         if (!verdict.broken.empty() && !tell)
             for (const std::string& each : verdict.before) print("    " + each + "\n");
         seed += given->number("--step", 1);
-    } while (!given->has("--seed") && totals.time < wanted && totals.broken < most_broken);
+    } while (!given->has("--seed") && !is_enough() && totals.broken < most_broken);
     ::alarm(0);
     if (timed) totals.print_responses(of.machine);
     totals.print_all(name, os::processor_time_of_this_thread() - began);

@@ -36,7 +36,8 @@ void SwarmWires::listen() {
         if (tappet::drives(rows[c], "can")) add_signals(c);
         if (tappet::drives(rows[c], "modbus")) add_registers(c);
     }
-    devices_.look_at_frames([this](std::string_view device, const can::Frame& frame) { hear(device, frame); });
+    devices_.look_at_frames(
+        [this](std::string_view device, const can::Frame& frame) { hear(device, frame); });
 }
 
 void SwarmWires::begin(MachineInstance& instance) {
@@ -82,7 +83,8 @@ void SwarmWires::add_signals(std::size_t c) {
             if (signal.says_safe) output.safe = can::to_raw(signal, signal.safe_value).bits;
             output.read = [this, at = sent_.size() - 1, &signal]() -> std::optional<std::uint64_t> {
                 const Sent& sent = sent_[at];
-                if (!sent.last || !is_in(*sent.map, sent.map->frames[sent.row], signal, *sent.last)) return {};
+                if (!sent.last || !is_in(*sent.map, sent.map->frames[sent.row], signal, *sent.last))
+                    return {};
                 return can::extract(sent.last->data, signal);
             };
             output.name = std::string{frame.name} + "." + std::string{signal.name};
@@ -105,9 +107,8 @@ void SwarmWires::add_registers(std::size_t c) {
             };
             Output output{.driver = c, .is_switch = one.kind == modbus::Kind::bit, .settles = request.every};
             if (one.says_safe)
-                output.safe = whole([words = modbus::to_words(one, one.safe_value)](unsigned w) {
-                    return words.words[w];
-                });
+                output.safe = whole(
+                    [words = modbus::to_words(one, one.safe_value)](unsigned w) { return words.words[w]; });
             output.read = [whole, &server, table = request.run.table, at = request.run.address + one.at] {
                 return std::optional<std::uint64_t>{
                     whole([&](unsigned w) { return server.get(table, at + w); })};
@@ -126,9 +127,12 @@ void SwarmWires::add(Output output, std::string_view facet, std::string_view oth
     for (std::size_t f = 0; f < facets.size(); ++f)
         if (facets[f].name == facet || (!other_facet.empty() && facets[f].name == other_facet))
             output.facets.push_back({output.driver, f});
-    const auto is_meant = [&](End end) { return std::ranges::find(output.facets, end) != output.facets.end(); };
+    const auto is_meant = [&](End end) {
+        return std::ranges::find(output.facets, end) != output.facets.end();
+    };
     const auto write = [&](std::size_t component) {
-        if (component != output.driver && std::ranges::find(output.writers, component) == output.writers.end())
+        if (component != output.driver &&
+            std::ranges::find(output.writers, component) == output.writers.end())
             output.writers.push_back(component);
     };
     Duration oldest{};
@@ -164,10 +168,18 @@ void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
             const bool named = can::is_integer(signal) && signal.has_name(can::to_integer(signal, raw));
             const bool is_safe = signal.says_safe && raw == can::to_raw(signal, signal.safe_value).bits;
             if (!std::isfinite(value))
-                heard_ = Sentence{"\"", device, "\": ", row.name, ".", signal.name, " goes out and is no number"};
+                heard_ =
+                    Sentence{"\"", device, "\": ", row.name, ".", signal.name, " goes out and is no number"};
             else if (signal.has_range && !named && !is_safe &&
                      (value < signal.least - rounding || value > signal.most + rounding))
-                heard_ = Sentence{"\"", device, "\": ", row.name, ".", signal.name, " goes out as ", std::int64_t{std::llround(value)},
+                heard_ = Sentence{"\"",
+                                  device,
+                                  "\": ",
+                                  row.name,
+                                  ".",
+                                  signal.name,
+                                  " goes out as ",
+                                  std::int64_t{std::llround(value)},
                                   ", outside of its range"};
         }
     }
@@ -253,10 +265,11 @@ Sentence SwarmWires::broken(Time now) {
 
 Sentence SwarmWires::broken_at_rest(bool orderly) const {
     for (const Output& each : outputs_) {
-        if (!each.safe || (orderly && !each.is_line) || struck_.whole_for(each.driver, never) < Duration{}) continue;
+        if (!each.safe || (orderly && !each.is_line) || struck_.whole_for(each.driver, never) < Duration{})
+            continue;
         if (const auto value = each.read(); value && *value != *each.safe)
-            return told(each, *value).add(orderly ? ", though the machine has stopped"
-                                                  : ", though its guardian has left it safe");
+            return told(each, *value)
+                .add(orderly ? ", though the machine has stopped" : ", though its guardian has left it safe");
     }
     return {};
 }
@@ -264,7 +277,8 @@ Sentence SwarmWires::broken_at_rest(bool orderly) const {
 std::vector<std::vector<std::size_t>> SwarmWires::all_writers() const {
     std::vector<std::vector<std::size_t>> all;
     for (const Output& each : outputs_)
-        if (!each.writers.empty() && std::ranges::find(all, each.writers) == all.end()) all.push_back(each.writers);
+        if (!each.writers.empty() && std::ranges::find(all, each.writers) == all.end())
+            all.push_back(each.writers);
     return all;
 }
 

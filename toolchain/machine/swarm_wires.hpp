@@ -1,5 +1,5 @@
-// What a machine puts on its wires, judged by rules that hold of every machine: which part drives which output
-// is read from its table, what is safe and what is in range from its maps.
+// What a machine puts on its wires, judged by rules that hold of every machine: which part drives which
+// output is read from its table, what is safe and what is in range from its maps.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
