@@ -77,6 +77,7 @@ SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
       run_{on_board(of_.machine, board_), *plant_, seed},
       struck_{of.machine.table.components.size()},
       wires_{of_.machine, run_.devices(), struck_, of.left},
+      only_people_{seed % 3 == 0},
       files_{std::make_unique<PropertyFiles>(directory_)},
       browser_{socket_in(directory_, of.machine.table.name)},
       visitors_{SwarmBrowser{socket_in(directory_, of.machine.table.name), machine_operator},

@@ -136,6 +136,7 @@ private:
     // swarm_anyone.cpp
     void strike_as_anyone(Duration lasts);
     void ask_anything(std::size_t component, Duration lasts);
+    void call_anything(std::size_t component);
     void stop_a_part(std::size_t component, Duration lasts);
     void flood();
     void anyone_asks(SwarmBrowser& by, std::string request);
@@ -164,6 +165,9 @@ private:
     std::vector<Fault> faults_{};
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
     bool is_calm_ = false;
+    bool only_people_;          ///< all else is well: what they do goes further
+    std::size_t busy_with_ = 0; ///< a component that somebody calls again and again
+    Time busy_until_{};
     std::uint64_t lost_ = 0; ///< emissions, so far
     std::unique_ptr<PropertyFiles> files_;
     SwarmBrowser browser_;                     ///< an engineer's

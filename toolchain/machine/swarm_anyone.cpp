@@ -124,21 +124,23 @@ void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
                       " ms ago"});
 }
 
+void SwarmRun::call_anything(std::size_t component) {
+    const End end = any_of({FacetKind::method, FacetKind::operation, FacetKind::command}, component);
+    if (end.component == nowhere) return;
+    const Facet& facet = facet_at(of_.machine.table, end);
+    const auto arguments = any_arguments(facet, " ");
+    if (!arguments) return;
+    ++verdict_.faults["called"];
+    anyone_asks(browser_, (facet.command != nullptr ? "send " : "call ") + name_of(end) +
+                              (arguments->empty() ? "" : " ") + *arguments);
+}
+
 /// One request about a component, or about another one.
 void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
     const MachineView& table = of_.machine.table;
     const std::string name{table.components[component].name};
     const std::uint64_t what = random_.below(100);
-    if (what < 22) {
-        const End end = any_of({FacetKind::method, FacetKind::operation, FacetKind::command}, component);
-        if (end.component == nowhere) return;
-        const Facet& facet = facet_at(table, end);
-        const auto arguments = any_arguments(facet, " ");
-        if (!arguments) return;
-        ++verdict_.faults["called"];
-        return anyone_asks(browser_, (facet.command != nullptr ? "send " : "call ") + name_of(end) +
-                                         (arguments->empty() ? "" : " ") + *arguments);
-    }
+    if (what < 22) return call_anything(component);
     if (what < 34) {
         const End end = any_of({FacetKind::property}, component);
         if (end.component == nowhere) return;
@@ -237,7 +239,12 @@ void SwarmRun::stop_a_part(std::size_t c, Duration lasts) {
 void SwarmRun::strike_as_anyone(Duration lasts) {
     const std::size_t components = of_.machine.table.components.size();
     std::size_t focus = random_.below(components);
+    if (run_.now() < busy_until_) return call_anything(busy_with_);
     if (random_.one_in(8)) return flood();
+    if (random_.one_in(6)) { // somebody works with it for a while, and stops nothing
+        busy_with_ = focus;
+        busy_until_ = run_.now() + Duration{random_.between(1'000'000'000, 10'000'000'000)};
+    }
     for (std::int64_t n = random_.between(1, 4); n > 0; --n) {
         ask_anything(focus, lasts);
         if (random_.one_in(6)) focus = random_.below(components);

@@ -17,6 +17,8 @@ constexpr Duration longest_fault = 5s; // of those that end by themselves
 void SwarmRun::strike() {
     const Duration lasts{std::min<std::int64_t>(
         random_.between(1, std::int64_t{1} << random_.between(17, 33)), longest_fault.count())};
+    if (anything_goes_ && service_ != nowhere && (only_people_ || random_.one_in(3)))
+        return strike_people(lasts);
     const std::uint64_t what = random_.below(100);
     if (what < 16) {
         if (const Sentence trouble = rules_->trouble(random_, lasts); !trouble.empty()) {

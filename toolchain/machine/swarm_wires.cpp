@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace tappet {
 
@@ -36,17 +37,99 @@ void SwarmWires::listen() {
         if (tappet::drives(rows[c], "can")) add_signals(c);
         if (tappet::drives(rows[c], "modbus")) add_registers(c);
     }
+    add_axes();
     devices_.look_at_frames(
         [this](std::string_view device, const can::Frame& frame) { hear(device, frame); });
 }
 
 void SwarmWires::begin(MachineInstance& instance) {
     instance_ = &instance;
+    for (Axis& each : axes_) each.rests_at = {}, each.rests_since = never;
     for (Output& each : outputs_) {
         each.before = each.left = {};
         each.since = never;
         each.excused = {};
     }
+}
+
+/// What has an axis' facets is one: its place and its drive's word come from signals of a bus.
+void SwarmWires::add_axes() {
+    const MachineView& table = machine_.table;
+    const auto has = [](const ComponentType& type, std::string_view name, FacetKind kind) {
+        for (std::size_t f = 0; f < type.facets.size(); ++f)
+            if (type.facets[f].name == name && type.facets[f].kind == kind) return f;
+        return nowhere;
+    };
+    for (std::size_t c = 0; c < table.components.size(); ++c) {
+        const ComponentType& type = *table.components[c].type;
+        const std::size_t place = has(type, "position", FacetKind::input),
+                          word = has(type, "statusword", FacetKind::input),
+                          state = has(type, "state", FacetKind::output),
+                          standing = has(type, "standing", FacetKind::property);
+        if (place == nowhere || word == nowhere || state == nowhere || standing == nowhere ||
+            has(type, "move_to", FacetKind::command) == nowhere)
+            continue;
+        Axis axis;
+        axis.name = table.components[c].name;
+        axis.state = {c, state};
+        axis.standing = {c, standing};
+        for (std::size_t x = 0; x < table.connections.size(); ++x) {
+            const Link& link = machine_.index.connections[x];
+            const bool is_place = link.to == End{c, place};
+            const ComponentRow& from = table.components[link.from.component];
+            if ((!is_place && link.to != End{c, word}) || !tappet::drives(from, "can")) continue;
+            const auto& map = *static_cast<const can::Identifiers*>(from.type->device_map);
+            axis.device = from.device;
+            for (const can::FrameRow& row : map.frames)
+                for (const can::Signal& signal : map.signals.subspan(row.first, row.signals)) {
+                    if (facet_at(table, link.from).name !=
+                        std::string{row.name} + "." + std::string{signal.name})
+                        continue;
+                    (is_place ? axis.place : axis.word) = &signal;
+                    (is_place ? axis.frame : axis.word_frame) = row.identifier;
+                }
+        }
+        if (axis.place != nullptr && axis.word != nullptr) axes_.push_back(axis);
+    }
+}
+
+std::string_view SwarmWires::state_of(const Axis& axis) const {
+    const Facet& facet = facet_at(machine_.table, axis.state);
+    const std::byte* value =
+        static_cast<const std::byte*>(facet.port->places(instance_->place_of(axis.state), false).value);
+    std::size_t number = 0;
+    std::memcpy(&number, value, facet.type->size);
+    return number < facet.type->names.size() ? std::string_view{facet.type->names[number]}
+                                             : std::string_view{};
+}
+
+/// An enabled drive whose axis is in no motion stays where it is.
+void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame& frame) {
+    constexpr std::uint64_t enabled_bits = 0x6F, enabled = 0x27; // of CiA 402's word
+    constexpr Duration comes_to_rest = 300ms;
+    constexpr unsigned longest_lie = 5; // of a wire that says anything, in frames
+    if (device != axis.device || instance_ == nullptr) return;
+    const can::Identifier identifier{frame.id, frame.extended};
+    if (identifier == axis.word_frame)
+        axis.is_enabled = (can::extract(frame.data, *axis.word) & enabled_bits) == enabled;
+    if (identifier != axis.frame) return;
+    const std::string_view state = state_of(axis);
+    if (state != "disabled" && state != "standstill")
+        axis.rests_since = never;
+    else if (axis.rests_since == never)
+        axis.rests_since = frame.stamp;
+    if (!axis.is_enabled || axis.rests_since == never || frame.stamp - axis.rests_since < comes_to_rest) {
+        axis.rests_at = {};
+        return;
+    }
+    const double place = can::to_physical(*axis.place, can::extract(frame.data, *axis.place));
+    if (!axis.rests_at) axis.rests_at = place;
+    const double standing = *static_cast<const double*>(instance_->facet(axis.standing));
+    const bool is_there = std::abs(place - *axis.rests_at) <= standing + 3 * std::abs(axis.place->factor);
+    axis.elsewhere = is_there ? 0 : axis.elsewhere + 1;
+    if (axis.elsewhere > longest_lie)
+        heard_ = Sentence{"axis \"", axis.name, "\" moves unasked: it is in \"", state,
+                          "\", and its drive is enabled"};
 }
 
 void SwarmWires::excuse(std::size_t driver, Time until) {
@@ -156,6 +239,7 @@ void SwarmWires::add(Output output, std::string_view facet, std::string_view oth
 
 /// What the machine sends: numbers, within what the map allows.
 void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
+    for (Axis& axis : axes_) hear_axis(axis, device, frame);
     for (Sent& sent : sent_) {
         const can::FrameRow& row = sent.map->frames[sent.row];
         if (sent.device != device || row.identifier != can::Identifier{frame.id, frame.extended}) continue;

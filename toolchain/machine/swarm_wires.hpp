@@ -74,6 +74,21 @@ private:
         std::optional<can::Frame> last{};
     };
 
+    /// An axis of the library, as its facets say, and what its drive tells at the wire.
+    struct Axis {
+        std::string_view name{}, device{};
+        can::Identifier frame{}, word_frame{};
+        const can::Signal *place = nullptr, *word = nullptr;
+        End state{}, standing{};
+        bool is_enabled = false;  ///< the drive says so
+        Time rests_since = never; ///< by its state, which names no motion
+        std::optional<double> rests_at{};
+        unsigned elsewhere = 0; ///< frames that say so, one after the other
+    };
+
+    void add_axes();
+    void hear_axis(Axis& axis, std::string_view device, const can::Frame& frame);
+    [[nodiscard]] std::string_view state_of(const Axis& axis) const;
     void add_lines(std::size_t component);
     void add_signals(std::size_t component);
     void add_registers(std::size_t component);
@@ -91,6 +106,7 @@ private:
     MachineInstance* instance_ = nullptr;
     std::vector<Output> outputs_{};
     std::vector<Sent> sent_{};
+    std::vector<Axis> axes_{};
     Sentence heard_{}; ///< what was wrong with a frame
 };
 
