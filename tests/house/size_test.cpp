@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         616},
     {"kernel/services",       5718},
     {"kernel/system",         2064},
-    {"drivers",               17382},
+    {"drivers",               17384},
     {"board",                 3977},
     {"apps/carpet_loom",      6325},
     {"apps/bearing_press",    763},

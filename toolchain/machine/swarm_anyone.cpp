@@ -10,6 +10,7 @@ namespace tappet {
 
 namespace {
 
+constexpr Duration longest_force = 12s;  // from its request to what follows from its release
 constexpr Duration longest_line = 3s;    // from its request to its last statement, and to the wire
 constexpr Duration told_late = 100ms;    // an answer that was made, to who asked
 constexpr std::size_t most_at_once = 24; // requests of somebody who floods the service
@@ -103,6 +104,7 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
     for (const std::size_t c : drivers_)
         if (request.contains(std::string{of_.machine.table.components[c].name}))
             wires_.excuse(c, run_.now() + BrowserService::patience + longest_line);
+    if (request.starts_with("force ")) wires_.excuse_axes(run_.now() + longest_force);
     const bool reads = request.starts_with("get ");
     const std::string name = reads ? request.substr(4) : std::string{};
     by.ask(std::move(request), run_.now(), [this, name](std::string_view answer) {

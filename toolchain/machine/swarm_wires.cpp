@@ -44,7 +44,12 @@ void SwarmWires::listen() {
 
 void SwarmWires::begin(MachineInstance& instance) {
     instance_ = &instance;
-    for (Axis& each : axes_) each.rests_at = {}, each.rests_since = never;
+    for (Axis& each : axes_) {
+        each.rests_at = {};
+        each.rests_since = never;
+        if (each.stands_below < 0.0)
+            each.stands_below = *static_cast<const double*>(instance.facet(each.standing));
+    }
     for (Output& each : outputs_) {
         each.before = each.left = {};
         each.since = never;
@@ -114,18 +119,19 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
         axis.is_enabled = (can::extract(frame.data, *axis.word) & enabled_bits) == enabled;
     if (identifier != axis.frame) return;
     const std::string_view state = state_of(axis);
-    if (state != "disabled" && state != "standstill")
+    if (state != "Disabled" && state != "Standstill")
         axis.rests_since = never;
     else if (axis.rests_since == never)
         axis.rests_since = frame.stamp;
-    if (!axis.is_enabled || axis.rests_since == never || frame.stamp - axis.rests_since < comes_to_rest) {
+    if (!axis.is_enabled || frame.stamp < axis.excused || axis.rests_since == never ||
+        frame.stamp - axis.rests_since < comes_to_rest) {
         axis.rests_at = {};
         return;
     }
     const double place = can::to_physical(*axis.place, can::extract(frame.data, *axis.place));
     if (!axis.rests_at) axis.rests_at = place;
-    const double standing = *static_cast<const double*>(instance_->facet(axis.standing));
-    const bool is_there = std::abs(place - *axis.rests_at) <= standing + 3 * std::abs(axis.place->factor);
+    const bool is_there =
+        std::abs(place - *axis.rests_at) <= axis.stands_below + 3 * std::abs(axis.place->factor);
     axis.elsewhere = is_there ? 0 : axis.elsewhere + 1;
     if (axis.elsewhere > longest_lie)
         heard_ = Sentence{"axis \"", axis.name, "\" moves unasked: it is in \"", state,
@@ -135,6 +141,10 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
 void SwarmWires::excuse(std::size_t driver, Time until) {
     for (Output& each : outputs_)
         if (each.driver == driver) each.excused = std::max(each.excused, until);
+}
+
+void SwarmWires::excuse_axes(Time until) {
+    for (Axis& each : axes_) each.excused = std::max(each.excused, until);
 }
 
 void SwarmWires::add_lines(std::size_t c) {

@@ -35,6 +35,8 @@ public:
     void begin(MachineInstance& instance);
     /// Somebody asks for something of the driver itself: until then its outputs follow who asked.
     void excuse(std::size_t driver, Time until);
+    /// Somebody forces a port: an axis may be told anything.
+    void excuse_axes(Time until);
     /// The first rule that is broken at this moment; empty: none.
     [[nodiscard]] Sentence broken(Time now);
     /// All of it is over: in order, or by the guardian.
@@ -83,6 +85,8 @@ private:
         bool is_enabled = false;  ///< the drive says so
         Time rests_since = never; ///< by its state, which names no motion
         std::optional<double> rests_at{};
+        double stands_below = -1.0; ///< its property as the table has it
+        Time excused{};
         unsigned elsewhere = 0; ///< frames that say so, one after the other
     };
 

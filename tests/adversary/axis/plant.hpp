@@ -20,7 +20,7 @@ public:
         const canopen::DriveOrder told = [this](auto order) {
             order.controlword = static_cast<std::uint16_t>(can.integer("control.word"));
             order.mode = can.integer("control.mode");
-            order.position = can.get("target.position") - turned_;
+            order.position = can.get("target.position");
             const double profile = can.get("profile.velocity");
             if constexpr (requires { order.profile_velocity; }) {
                 order.profile_velocity = profile;
@@ -35,10 +35,10 @@ public:
         servo_.step(to_seconds(step()));
         const std::uint16_t word = servo_.statusword();
         if ((word & 0x6Fu) != 0x27u && (word & 0x6Fu) != 0x07u && random_.one_in(200))
-            turned_ += 20.0 * (random_.unit() - 0.5);
+            servo_.turn_shaft(20.0 * (random_.unit() - 0.5));
         can.set_integer("status.word", word);
         can.set_integer("status.mode", static_cast<std::uint64_t>(servo_.mode()));
-        can.set("actual.position", servo_.position() + turned_);
+        can.set("actual.position", servo_.position());
         can.set("actual.velocity", servo_.velocity());
         return now + 2ms;
     }
@@ -48,7 +48,6 @@ public:
 private:
     Random random_;
     canopen::SimulatedServo servo_{};
-    double turned_ = 0.0; ///< by hand, which the motor's own count does not know
 };
 
 } // namespace adversary_axis
