@@ -140,7 +140,10 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
 
 void SwarmWires::excuse(std::size_t driver, Time until) {
     for (Output& each : outputs_)
-        if (each.driver == driver) each.excused = std::max(each.excused, until);
+        if (each.driver == driver) {
+            each.excused = std::max(each.excused, until);
+            each.is_meddled = true;
+        }
 }
 
 void SwarmWires::excuse_axes(Time until) {
@@ -176,8 +179,11 @@ void SwarmWires::add_signals(std::size_t c) {
             if (signal.says_safe) output.safe = can::to_raw(signal, signal.safe_value).bits;
             output.read = [this, at = sent_.size() - 1, &signal]() -> std::optional<std::uint64_t> {
                 const Sent& sent = sent_[at];
+                const bool is_cyclic = sent.map->frames[sent.row].every > Duration{};
                 if (!sent.last || !is_in(*sent.map, sent.map->frames[sent.row], signal, *sent.last))
                     return {};
+                // A wire that is silent is for its receiver to notice.
+                if (is_cyclic && now_ - sent.last->stamp > usual_settling) return {};
                 return can::extract(sent.last->data, signal);
             };
             output.name = std::string{frame.name} + "." + std::string{signal.name};
@@ -306,6 +312,7 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
     if (output.writers.empty()) return {};
     const auto value = output.read();
     if (!value) return {};
+    if (now >= output.excused && output.safe && *value == *output.safe) output.is_meddled = false;
     if (drives(output)) {
         output.before = value;
         output.left = {};
@@ -321,6 +328,7 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
         return {};
     }
     if (now - output.since < output.settles) return {};
+    if (output.is_meddled && !output.left) output.left = value; // as somebody left it who asked the driver
     const bool is_safe = output.safe && *value == *output.safe;
     if (!output.left) {
         output.left = value;
@@ -347,6 +355,7 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
 Sentence SwarmWires::broken(Time now) {
     if (!heard_.empty()) return heard_;
     if (instance_ == nullptr) return {};
+    now_ = now;
     for (Output& each : outputs_)
         if (Sentence why = broken(each, now); !why.empty()) {
             why.add(" (");

@@ -67,6 +67,7 @@ private:
         std::optional<std::uint64_t> before{}, left{}; ///< while a writer ran; when all had stopped
         Time since = never;                            ///< no writer runs
         Time excused{};
+        bool is_meddled = false; ///< somebody asked its driver, and it was not safe since
     };
     /// A frame that the machine sends, as it was on the wire last.
     struct Sent {
@@ -108,6 +109,7 @@ private:
     const Struck& struck_;
     const AllLeftBehind* left_;
     MachineInstance* instance_ = nullptr;
+    Time now_{};
     std::vector<Output> outputs_{};
     std::vector<Sent> sent_{};
     std::vector<Axis> axes_{};
