@@ -57,12 +57,15 @@ struct JointSensor {
     /// Joint `axis` (1 to 6) is at `angle` now.
     void calibrate(int axis, double angle) noexcept TAPPET_REALTIME {
         const int i = axis - 1;
+        if (i < 0 || i >= 6 || angle - angle != 0.0) return; // no joint, or no number
         const double moved = angle - seen_[i];
         zero_[i] += moved;
         seen_[i] += moved; // which is no motion
         known_ |= 1U << i;
     }
-    bool is_calibrated(int axis) noexcept TAPPET_REALTIME { return (known_ >> (axis - 1) & 1U) != 0; }
+    bool is_calibrated(int axis) noexcept TAPPET_REALTIME {
+        return axis >= 1 && axis <= 6 && (known_ >> (axis - 1) & 1U) != 0;
+    }
 
     // clang-format off
     static constexpr auto interface() {

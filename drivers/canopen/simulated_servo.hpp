@@ -39,6 +39,8 @@ public:
     /// The relay of its power opens; or a quick stop of its own.
     void lose_power() noexcept TAPPET_REALTIME { drive_.control(controlword::disable_voltage); }
     void stop_quickly() noexcept TAPPET_REALTIME { drive_.control(controlword::quick_stop); }
+    /// By hand, or by what hangs on it.
+    void turn_shaft(double by) noexcept TAPPET_REALTIME { position_ += by; }
     /// Where its home switch is.
     void set_home(double position) noexcept TAPPET_REALTIME { home_ = position; }
 

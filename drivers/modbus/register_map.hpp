@@ -101,6 +101,8 @@ struct SafeWrite {
 struct SafeWrites {
     std::span<const SafeWrite> requests{};
     std::span<const std::uint16_t> words{};
+    std::span<const Row> rows{}; ///< of the map, for tools
+    std::span<const Register> registers{};
 };
 
 template <std::size_t R, std::size_t V> struct RegisterMap {
@@ -114,7 +116,7 @@ template <std::size_t R, std::size_t V> struct RegisterMap {
 
     /// What is sent when the machine's process is no more.
     [[nodiscard]] constexpr SafeWrites safe_writes() const noexcept {
-        return {std::span{safe}.first(safe_count), safe_words};
+        return {std::span{safe}.first(safe_count), safe_words, rows, registers};
     }
 
     [[nodiscard]] constexpr std::size_t row(std::string_view name) const noexcept {

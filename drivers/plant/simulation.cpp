@@ -119,10 +119,20 @@ CanReplay::Counts SimulatedDevices::replayed(std::string_view bus) {
     return replay ? replay->counts() : CanReplay::Counts{};
 }
 
-void SimulatedDevices::Bus::drain_tap(Time now) {
+void SimulatedDevices::look_at_frames(Look look) {
+    look_ = std::move(look);
+    for (const auto& bus : buses_) {
+        if (bus->tap) continue;
+        bus->tap = std::make_unique<can::TwinBus::Tap>();
+        bus->bus.set_tap(bus->tap.get());
+    }
+}
+
+void SimulatedDevices::Bus::drain_tap(Time now, const Look& look) {
     if (!tap) return;
     if (recorder) recorder->begin(now);
     for (can::Frame frame; tap->pop(frame);) {
+        if (look) look(name, frame);
         if (recorder) recorder->record(frame);
         if (replay) replay->heard(frame);
     }
@@ -208,14 +218,14 @@ void SimulatedDevices::advance(Time now) {
     for (const auto& chip : chips_) chip->seen = chip->twin.outputs();
     for (const auto& bus : buses_) {
         bus->bus.deliver_until(now);
-        bus->drain_tap(now);
+        bus->drain_tap(now, look_);
         if (can::faulted(bus->plant.state())) static_cast<void>(bus->plant.restart());
     }
     next_ = std::max(plant_.advance(now), now + 1ns); // a plant that wants the past would stop the time
     for (const auto& bus : buses_) {
         if (bus->replay) bus->replay->play(bus->bus, now);
         bus->bus.deliver_until(now);
-        bus->drain_tap(now);
+        bus->drain_tap(now, look_);
     }
     next_ = std::min(next_, next_on_buses());
     for (const auto& chip : chips_) chip->twin.deliver_until(now);

@@ -40,6 +40,9 @@ public:
     }
     /// Each log that is replayed is at its end; without any, the plant says it.
     [[nodiscard]] bool is_done() const;
+    /// After open(): told each frame that was on a CAN bus. For who judges what a machine sends.
+    using Look = std::function<void(std::string_view bus, const can::Frame& frame)>;
+    void look_at_frames(Look look);
     /// At the end, once: what became of each log. False: one of them could not be written, or read.
     [[nodiscard]] bool close_logs(const std::function<void(const Sentence& what, bool good)>& tell);
     [[nodiscard]] CanReplay::Counts replayed(std::string_view bus);
@@ -81,7 +84,7 @@ private:
         std::unique_ptr<can::TwinBus::Tap> tap{};
         std::unique_ptr<CanRecorder> recorder{};
         std::unique_ptr<CanReplay> replay{};
-        void drain_tap(Time now);
+        void drain_tap(Time now, const Look& look);
         Bus(std::string_view of, std::uint64_t seed) : name{of}, bus{seed} {}
     };
     struct Replay {
@@ -116,6 +119,7 @@ private:
     can::BitRates bit_rates_{};
     std::string recorded_in_{};
     std::vector<Replay> replays_{};
+    Look look_{};
     Time next_{};
     // What a twin is given stays where it is.
     std::vector<std::unique_ptr<Bus>> buses_{};

@@ -95,6 +95,7 @@ constexpr std::array own_folders{
     std::string_view{"tests/bench"},        // what needs a booted kernel
     std::string_view{"tests/stack"},        // how deep a firmware may use its stacks
     std::string_view{"tests/waitfree"},     // the object code of what crosses between activities
+    std::string_view{"tests/adversary"},    // a machine with every way to an output, for the swarm
     std::string_view{"tests/fuzz"},         // any bytes against what reads them, and the corpus of it
     std::string_view{"tests/models"},       // the algorithms as Promela, and their labels in the source
     std::string_view{"tests/differential"}, // scripts, compiled and loaded, against a second reading of them

@@ -15,13 +15,41 @@ namespace tappet {
 namespace {
 
 constexpr Duration first_work_within = 60s;
-constexpr Duration longest_pause = 4s; // between two faults
-constexpr Duration again = 50ms;       // a part that does not start yet is asked again
-constexpr Duration heard_every = 50ms; // by who browses
-constexpr Duration at_rest = 500ms;    // after a stop
+constexpr Duration longest_pause = 4s;                     // between two faults
+constexpr Duration again = 50ms;                           // a part that does not start yet is asked again
+constexpr Duration heard_every = 50ms;                     // by who browses
+constexpr std::size_t told_actions = 12;                   // of a finding, before it
+constexpr Duration learnt_after = 5s, learnt_between = 1s; // until it works, and again
+constexpr Duration stopped_within = 25ms;                  // a stop in order, to the last line
+constexpr Duration at_rest = 500ms;                        // after a stop
 
 std::string own_directory() {
     return (std::filesystem::temp_directory_path() / ("tappet-swarm-" + std::to_string(::getpid()))).string();
+}
+
+// Users who are let in with less than an engineer may do.
+constexpr std::uint32_t machine_operator = 61001, observer = 61002;
+
+/// Of a machine that has none of its own: it works as long as it runs.
+class NoRules final : public SwarmRules {
+public:
+    std::string_view broken(Time) override { return {}; }
+    bool works() override { return true; }
+};
+
+const AcceptedMachine& on_board(AcceptedMachine& machine, const Board& board) {
+    machine.board = &board;
+    return machine;
+}
+
+std::string socket_in(const std::string& directory, std::string_view machine) {
+    return directory + "/" + std::string{machine} + std::string{browsing::socket_suffix};
+}
+
+Board with_visitors(Board board) {
+    board.browsing.mode = 0666;
+    static_cast<void>(board.browsing.roles.push({false, machine_operator, Role::machine_operator}));
+    return board;
 }
 
 bool is_driver(const ComponentRow& row) {
@@ -40,14 +68,20 @@ std::vector<Duration> analysed_responses(const AcceptedMachine& machine) {
 
 SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
     : of_{of},
+      anything_goes_{!of.rules},
+      board_{with_visitors(*of.machine.board)},
       tell_{std::move(tell)},
       random_{seed},
       directory_{own_directory()},
       plant_{of.plant(seed)},
-      run_{of.machine, *plant_, seed},
+      run_{on_board(of_.machine, board_), *plant_, seed},
       struck_{of.machine.table.components.size()},
+      wires_{of_.machine, run_.devices(), struck_, of.left},
+      only_people_{seed % 3 == 0},
       files_{std::make_unique<PropertyFiles>(directory_)},
-      browser_{directory_ + "/" + std::string{of.machine.table.name} + std::string{browsing::socket_suffix}} {
+      browser_{socket_in(directory_, of.machine.table.name)},
+      visitors_{SwarmBrowser{socket_in(directory_, of.machine.table.name), machine_operator},
+                SwarmBrowser{socket_in(directory_, of.machine.table.name), observer}} {
     std::filesystem::remove_all(directory_); // of who had this number before
     std::filesystem::create_directories(directory_);
     run_.keep_properties_in(directory_);
@@ -97,27 +131,47 @@ SwarmVerdict SwarmRun::go() {
     return std::move(verdict_);
 }
 
+AllLeftBehind SwarmRun::learn() {
+    AllLeftBehind left;
+    if (!start(false)) return left;
+    MachineLife& life = run_.instance().life();
+    run_until(run_.now() + learnt_after);
+    for (const auto& writers : wires_.all_writers()) {
+        for (const std::size_t c : writers) static_cast<void>(life.ask_component(c, LifeChange::stop));
+        run_until(run_.now() + wires_.settles(writers) + again);
+        wires_.note_left(writers, left);
+        for (const std::size_t c : writers) static_cast<void>(life.ask_component(c, LifeChange::start));
+        run_until(run_.now() + learnt_between);
+    }
+    stop();
+    return left;
+}
+
 bool SwarmRun::start(bool is_again) {
     auto started = is_again ? run_.start_again() : run_.start();
     if (!started) {
         verdict_.broken = Sentence{"it did not start: ", started.error()};
         return false;
     }
-    rules_ = of_.rules(run_.instance(), *plant_, struck_);
+    if (!is_again) wires_.listen();
+    wires_.begin(run_.instance());
+    rules_ = of_.rules ? of_.rules(run_.instance(), *plant_, struck_) : std::make_unique<NoRules>();
     is_gone_ = false;
     lost_ = 0;
     set_values_.clear();
     if (service_ != nowhere)
         run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->log.set(false);
+    judge_kept();
     hear();
     return true;
 }
 
 void SwarmRun::judge(Time now) {
     if (!verdict_.broken.empty() || rules_ == nullptr || is_gone_) return;
-    std::string_view broken = rules_->broken(now);
+    Sentence broken{rules_->broken(now)};
+    if (broken.empty()) broken = wires_.broken(now);
     if (broken.empty()) return;
-    verdict_.broken = Sentence{broken};
+    verdict_.broken = broken;
     verdict_.at = now;
 }
 
@@ -129,6 +183,7 @@ void SwarmRun::deny(const Sentence& why) {
 
 /// Who hangs or stands does not take what it is told, and that is counted; nobody else may lose anything.
 void SwarmRun::judge_emissions() {
+    if (anything_goes_) return; // people may ask for more than the rows have room for
     const std::uint64_t lost = run_.instance().observation().lost_emissions();
     const bool all_ran = std::ranges::none_of(faults_, &Fault::of_activity);
     if (lost != lost_ && all_ran && verdict_.broken.empty())
@@ -232,11 +287,14 @@ void SwarmRun::note_responses() {
 void SwarmRun::stop() {
     note_responses();
     run_.stop();
-    browser_.leave();
+    leave();
     if (const Sentence fault = run_.instance().save_properties(run_.instance().standing()); !fault.empty())
         deny(Sentence{"the properties cannot be saved at halt: ", fault});
     judge_saved(true);
-    rest(at_rest);
+    kept_ = kept_values();
+    rest(stopped_within);
+    if (const Sentence unsafe = wires_.broken_at_rest(true); !unsafe.empty()) deny(unsafe);
+    rest(at_rest - stopped_within);
     ++verdict_.restarts;
 }
 
@@ -259,11 +317,12 @@ void SwarmRun::restart(bool orderly) {
         stop();
     } else {
         note_responses();
-        browser_.leave();
+        leave();
         // As the kernel does with the descriptors of a process.
         if (service_ != nowhere)
             run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->finalise();
         is_gone_ = true; // what it promised is its guardian's
+        kept_.clear();
         rest(Duration{random_.between(0, 10'000'000)});
         run_.devices().write_safe_lines();
         rest(Duration{random_.between(0, 10'000'000)});
@@ -271,6 +330,8 @@ void SwarmRun::restart(bool orderly) {
         rest(5ms);
         run_.devices().attend(run_.now());
         run_.devices().write_safe_registers();
+        rest(25ms);
+        if (const Sentence unsafe = wires_.broken_at_rest(false); !unsafe.empty()) deny(unsafe);
         rest(Duration{random_.between(100'000'000, 3'000'000'000)});
         ++verdict_.restarts;
     }
@@ -278,8 +339,17 @@ void SwarmRun::restart(bool orderly) {
     if (verdict_.broken.empty()) static_cast<void>(start(true));
 }
 
+void SwarmRun::leave() {
+    browser_.leave();
+    for (SwarmBrowser& each : visitors_) each.leave();
+}
+
 void SwarmRun::say(std::string_view text) {
     if (tell_) tell_(run_.now(), text);
+    if (!verdict_.broken.empty()) return;
+    auto& last = verdict_.before;
+    if (last.size() == told_actions) last.erase(last.begin());
+    last.push_back(std::to_string(to_ns(run_.now()) / 1000) + " us: " + std::string{text});
 }
 
 void SwarmRun::begin(std::string_view kind, Sentence text, Duration lasts,

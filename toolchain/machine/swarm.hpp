@@ -7,29 +7,36 @@
 #include "toolchain/machine/host.hpp"
 #include "toolchain/machine/swarm_browser.hpp"
 #include "toolchain/machine/swarm_rules.hpp"
+#include "toolchain/machine/swarm_wires.hpp"
 
+#include <array>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tappet {
 
-/// Who the swarm is about.
+/// Who the swarm is about. Without rules of its own those are judged that hold of every machine, and people
+/// may do anything; with them, what its rules allow.
 struct SwarmOf {
     AcceptedMachine machine;
     std::function<std::unique_ptr<Plant>(std::uint64_t seed)> plant;
     std::function<std::unique_ptr<SwarmRules>(MachineInstance&, Plant&, const Struck&)> rules;
+    const AllLeftBehind* left = nullptr; ///< as SwarmRun::learn() saw it; null: nobody has looked
 };
 
 /// What one seed came to.
 struct SwarmVerdict {
     Sentence broken{}; ///< the first rule that was broken, at `at`; empty: none
     Time at{};
-    Duration time{};          ///< that passed in the machine
-    Duration back{};          ///< from the last fault until it worked again
-    std::string waited_for{}; ///< it did not work again before its restart, and said this
+    std::vector<std::string> before{}; ///< what happened last before that
+    Duration time{};                   ///< that passed in the machine
+    Duration back{};                   ///< from the last fault until it worked again
+    std::string waited_for{};          ///< it did not work again before its restart, and said this
     std::map<std::string, std::uint64_t> faults{}; ///< by their kinds
     std::uint64_t restarts = 0;
     std::vector<Duration> responses{}; ///< of each activity the longest, where cycles take time
@@ -51,6 +58,8 @@ public:
     /// Before go(): nothing fails.
     void be_calm() { is_calm_ = true; }
     [[nodiscard]] SwarmVerdict go();
+    /// In its place: what components leave on the wires when they are stopped and nothing else happens.
+    [[nodiscard]] AllLeftBehind learn();
 
 private:
     /// What is wrong for a while.
@@ -84,6 +93,7 @@ private:
     void note_responses();
     void stop();
     void restart(bool orderly);
+    void leave();
     void rest(Duration time);
     bool mend(Duration limit);
     void judge(Time now);
@@ -93,6 +103,8 @@ private:
     void begin(std::string_view kind, Sentence text, Duration lasts, std::vector<std::size_t> components,
                std::function<bool()> end);
     void strike_bus(std::size_t component, Duration lasts);
+    void garble_bus(std::string_view device, const can::Identifiers& map);
+    void garble_server(std::string_view device, modbus::Twin& server, const modbus::SafeWrites& map);
     void strike_chip(std::size_t component, Duration lasts);
     void strike_server(std::size_t component, Duration lasts);
     void strike_component(Duration lasts);
@@ -118,25 +130,48 @@ private:
     void ask_to_read();
     void ask_to_save();
     void judge_saved(bool with_values);
+    [[nodiscard]] std::map<std::string, std::string> kept_values();
+    void judge_kept();
     void judge_forces();
+    // swarm_anyone.cpp
+    void strike_as_anyone(Duration lasts);
+    void ask_anything(std::size_t component, Duration lasts);
+    void call_anything(std::size_t component);
+    void stop_a_part(std::size_t component, Duration lasts);
+    void flood();
+    void anyone_asks(SwarmBrowser& by, std::string request);
+    void judge_shown(const std::string& name, std::string_view answer);
+    [[nodiscard]] std::string name_of(End end) const;
+    [[nodiscard]] End any_of(std::initializer_list<FacetKind> kinds, std::size_t component);
+    [[nodiscard]] std::optional<std::string> any_arguments(const Facet& facet, std::string_view between);
+    [[nodiscard]] std::string any_call(End end);
+    [[nodiscard]] std::string any_line(std::size_t component);
+    [[nodiscard]] std::string any_script(const BehaviourRow& row);
     [[nodiscard]] std::vector<std::size_t> components_on(std::string_view device) const;
     [[nodiscard]] std::vector<std::size_t> components_of(std::size_t activity) const;
     [[nodiscard]] bool chance(unsigned percent) { return random_.below(100) < percent; }
 
-    const SwarmOf& of_;
+    SwarmOf of_;
+    bool anything_goes_; ///< people may do anything: the machine has no rules that would allow less
+    Board board_;        ///< the machine's, which knows visitors
     Tell tell_;
     Random random_;
     std::string directory_; ///< of its own: properties files, and the socket
     std::unique_ptr<Plant> plant_;
     VirtualRun run_;
     Struck struck_;
+    SwarmWires wires_;
     std::unique_ptr<SwarmRules> rules_;
     std::vector<Fault> faults_{};
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
     bool is_calm_ = false;
+    bool only_people_;          ///< all else is well: what they do goes further
+    std::size_t busy_with_ = 0; ///< a component that somebody calls again and again
+    Time busy_until_{};
     std::uint64_t lost_ = 0; ///< emissions, so far
     std::unique_ptr<PropertyFiles> files_;
-    SwarmBrowser browser_;
+    SwarmBrowser browser_;                     ///< an engineer's
+    std::array<SwarmBrowser, 2> visitors_;     ///< an operator's, and an observer's
     std::size_t service_ = nowhere;            ///< the component that answers browsers
     std::vector<End> commands_{}, readable_{}; ///< that operators may send and call; that anybody may read
     std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
@@ -148,6 +183,8 @@ private:
         std::string value{};
     };
     std::map<std::string, SetValue> set_values_{};
+    std::map<std::string, std::string>
+        kept_{}; ///< of properties in files, at the halt in order before this start
     std::uint64_t sets_ = 0, sets_open_ = 0; ///< asked for; of these not answered yet
     bool sends_script_ = false;
     bool is_gone_ = false; ///< the machine's process
@@ -159,6 +196,6 @@ private:
 [[nodiscard]] std::vector<Duration> analysed_responses(const AcceptedMachine& machine);
 
 /// The program of a machine's swarm. The exit code: 0 no rule was broken, 1 one was, 2 a wrong command line.
-[[nodiscard]] int run_swarm(const SwarmOf& of, int count, char** words);
+[[nodiscard]] int run_swarm(SwarmOf of, int count, char** words);
 
 } // namespace tappet

@@ -7,6 +7,9 @@
 #include <charconv>
 #include <utility>
 
+#include <sys/syscall.h>
+#include <unistd.h>
+
 namespace tappet {
 
 std::string field_of(std::string_view packet, std::string_view name) {
@@ -35,7 +38,11 @@ void SwarmBrowser::ask(std::string request, Time now, Then then) {
 
 bool SwarmBrowser::hear() {
     if (!connection_.open()) {
+        // The machine sees who this thread is when it connects.
+        const std::uint32_t own = os::own_user();
+        const bool becomes = user_ != own && ::syscall(SYS_setresuid, -1, user_, -1) == 0;
         auto connected = os::LocalConnection::connect(socket_.c_str());
+        if (becomes) static_cast<void>(::syscall(SYS_setresuid, -1, own, -1));
         if (!connected) return false;
         connection_ = std::move(*connected);
         ++connections_;

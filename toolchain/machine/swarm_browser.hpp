@@ -25,8 +25,10 @@ public:
         Then then;
     };
 
-    /// `socket`: the machine's, be it there yet or not.
-    explicit SwarmBrowser(std::string socket) : socket_{std::move(socket)} {}
+    /// `socket`: the machine's, be it there yet or not. `user`: who asks, where this process may become him;
+    /// otherwise it is the machine's own user.
+    explicit SwarmBrowser(std::string socket, std::uint32_t user = os::own_user())
+        : socket_{std::move(socket)}, user_{user} {}
 
     void ask(std::string request, Time now, Then then);
     /// Connects when it is not connected, and takes what has come. False: there is no connection.
@@ -43,6 +45,7 @@ private:
     void take(std::string_view packet);
 
     std::string socket_;
+    std::uint32_t user_;
     os::LocalConnection connection_{};
     std::uint64_t connections_ = 0;
     std::uint32_t number_ = 0;

@@ -1,21 +1,25 @@
-// main of every machine's swarm: one table with its plant and its rules, as tappet_machine() of CMake named
-// them.
+// main of every machine's swarm: one table with its plant, and its own rules if it has some, as
+// tappet_machine() of CMake named them.
 #include TAPPET_PLANT_HEADER
+#ifdef TAPPET_SWARM_HEADER
 #include TAPPET_SWARM_HEADER
+#endif
 
 #include "toolchain/machine/on_host.hpp"
 #include "toolchain/machine/swarm.hpp"
 
 int main(int count, char** words) {
     namespace machine = TAPPET_NAMESPACE;
-    return tappet::run_swarm({machine::on_host(),
-                              [](std::uint64_t seed) -> std::unique_ptr<tappet::Plant> {
-                                  return std::make_unique<machine::Plant>(seed);
-                              },
-                              [](tappet::MachineInstance& instance, tappet::Plant& plant,
-                                 const tappet::Struck& struck) -> std::unique_ptr<tappet::SwarmRules> {
-                                  return std::make_unique<machine::Swarm>(
-                                      instance, static_cast<machine::Plant&>(plant), struck);
-                              }},
-                             count, words);
+    tappet::SwarmOf of{machine::on_host(),
+                       [](std::uint64_t seed) -> std::unique_ptr<tappet::Plant> {
+                           return std::make_unique<machine::Plant>(seed);
+                       },
+                       {}};
+#ifdef TAPPET_SWARM_HEADER
+    of.rules = [](tappet::MachineInstance& instance, tappet::Plant& plant,
+                  const tappet::Struck& struck) -> std::unique_ptr<tappet::SwarmRules> {
+        return std::make_unique<machine::Swarm>(instance, static_cast<machine::Plant&>(plant), struck);
+    };
+#endif
+    return tappet::run_swarm(of, count, words);
 }

@@ -65,6 +65,8 @@ void SwarmRun::hear() {
     if (service_ == nowhere) return;
     const std::uint64_t connections = browser_.connections();
     const bool connected = browser_.hear();
+    if (anything_goes_)
+        for (SwarmBrowser& each : visitors_) static_cast<void>(each.hear());
     if (!connected || connections != browser_.connections()) watched_ = {};
     if (!connected) return;
     if (connections != browser_.connections()) watch();
@@ -169,6 +171,11 @@ std::string SwarmRun::draw(const TypeTag& type, Range range) {
         type.size == sizeof(float) ? value.put(static_cast<float>(number)) : value.put(number);
         break;
     case ValueKind::duration: value.put(std::int64_t{1000} * std::llround(number * 1e6)); break;
+    case ValueKind::text: {
+        const auto rows = of_.machine.table.components;
+        return anything_goes_ ? "\"" + std::string{rows[random_.below(rows.size())].name} + "\""
+                              : std::string{};
+    }
     default: return {};
     }
     return text_of(type, value.bytes.data());
@@ -177,6 +184,7 @@ std::string SwarmRun::draw(const TypeTag& type, Range range) {
 void SwarmRun::strike_people(Duration lasts) {
     const std::uint64_t what = random_.below(100);
     lasts = std::max(lasts, Duration{std::int64_t{1} << random_.between(24, 32)}); // as long as answers take
+    if (anything_goes_) return strike_as_anyone(lasts);
     if (what < 25) return strike_property(lasts);
     if (what < 45) return strike_port(lasts);
     if (what < 60) return strike_slot();
@@ -327,9 +335,29 @@ void SwarmRun::judge_saved(bool with_values) {
     }
 }
 
+std::map<std::string, std::string> SwarmRun::kept_values() {
+    std::map<std::string, std::string> kept;
+    const auto rows = of_.machine.table.components;
+    for (std::size_t c = 0; c < rows.size(); ++c)
+        for (std::size_t f = 0; rows[c].has_properties_file && f < rows[c].type->facets.size(); ++f)
+            if (const Facet& facet = rows[c].type->facets[f]; facet.kind == FacetKind::property)
+                kept[name_of({c, f})] =
+                    text_of(*facet.type, static_cast<std::byte*>(run_.instance().facet({c, f})));
+    return kept;
+}
+
+/// What was kept at the halt is there again.
+void SwarmRun::judge_kept() {
+    const auto now = kept_values();
+    for (const auto& [name, value] : kept_)
+        if (const auto found = now.find(name); found == now.end() || found->second != value)
+            deny(Sentence{"property \"", name, "\" was kept as ", value, " at the halt, and is ",
+                          found == now.end() ? "gone" : found->second, " after the start"});
+}
+
 /// When everybody has taken away what they laid.
 void SwarmRun::judge_forces() {
-    if (service_ == nowhere) return;
+    if (service_ == nowhere || anything_goes_) return;
     if (const auto forced = run_.instance().observation().forced_ports().load(); forced != 0)
         deny(Sentence{forced, " ports are still forced, though all were released"});
 }

@@ -9,6 +9,8 @@
 #include <array>
 #include <string>
 
+#include <csignal>
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace tappet {
@@ -24,6 +26,16 @@ constexpr std::array options{
            .most = 1'000'000},
     Option{
         .name = "--minutes", .value = "N", .help = "so many minutes instead", .is_number = true, .least = 1},
+    Option{.name = "--working",
+           .value = "N",
+           .help = "so many seconds of this processor instead",
+           .is_number = true,
+           .least = 1},
+    Option{.name = "--findings",
+           .value = "N",
+           .help = "ends after so many broken seeds (default 10)",
+           .is_number = true,
+           .least = 1},
     Option{.name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true},
     Option{.name = "--step",
            .value = "N",
@@ -42,6 +54,9 @@ constexpr std::array options{
            .is_number = true,
            .least = 1,
            .most = 10'000'000},
+    Option{"--anyone", "",
+           "people may do anything, and only what holds of every machine is judged; so it is of a machine "
+           "without a SWARM"},
     Option{"--calm", "", "nothing fails: for the responses of a machine that works"},
     Option{.name = "--seed",
            .value = "SEED",
@@ -49,15 +64,41 @@ constexpr std::array options{
            .is_number = true},
     Option{"--help", "", "this text"}};
 enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
-constexpr std::uint64_t most_broken = 10; // then the rest would say the same again
+constexpr std::uint64_t usual_findings = 10; // then the rest would say the same again
+
+constexpr unsigned longest_seed = 300; // s of real time
 
 Sentence replay; // of the seed that runs
+int standard_output = 1;
+
+// What the machine itself prints is nobody's: it would hide what the swarm says.
+void silence_machine() {
+    standard_output = ::dup(1);
+    if (const int nothing = ::open("/dev/null", O_WRONLY); nothing >= 0) {
+        ::dup2(nothing, 1);
+        ::close(nothing);
+    }
+}
+void print(std::string_view text) { static_cast<void>(os::write_all(standard_output, text)); }
 
 Sentence in_s(Duration time) { return Sentence{time / 1s, ".", (time / 100ms) % 10, " s"}; }
 
 void tell_contract(const ContractViolation& breach) noexcept TAPPET_REALTIME {
-    TAPPET_ESCAPE("the swarm is over", os::print(Sentence{describe(breach), "\n", replay}.view());
+    TAPPET_ESCAPE("the swarm is over", print(Sentence{describe(breach), "\n", replay}.view());
                   ::_exit(one_broken));
+}
+
+// A machine that crashes, or does not come to an end, is a finding as well.
+void die_telling() {
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) {
+        struct sigaction action{};
+        action.sa_handler = [](int which) {
+            print(which == SIGALRM ? "the machine hangs; " : "the machine crashed; ");
+            print(replay.view());
+            ::_exit(one_broken);
+        };
+        ::sigaction(signal, &action, nullptr);
+    }
 }
 
 struct Totals {
@@ -86,37 +127,36 @@ struct Totals {
         const std::vector<Duration> analysed = analysed_responses(machine);
         for (std::size_t a = 0; a < analysed.size(); ++a) {
             if (analysed[a] == Duration{}) continue;
-            os::print(Sentence{"activity ", machine.table.activities[a].name, ": longest response ",
-                               usual[a] / 1us, " us of ", analysed[a] / 1us, " us analysed, ",
-                               100 * usual[a] / analysed[a], " %; ", responses[a] / 1us,
-                               " us where some came more often than their rows say\n"}
-                          .view());
+            print(Sentence{"activity ", machine.table.activities[a].name, ": longest response ",
+                           usual[a] / 1us, " us of ", analysed[a] / 1us, " us analysed, ",
+                           100 * usual[a] / analysed[a], " %; ", responses[a] / 1us,
+                           " us where some came more often than their rows say\n"}
+                      .view());
         }
     }
-    void print(std::string_view name, Duration took) {
-        os::print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_s(took),
-                           ", ", time / std::max(took, Duration{1ms}), " times as fast; ", broken,
-                           " broken\n"}
-                      .view());
-        os::print("struck:");
-        for (const auto& [kind, number] : faults) os::print(Sentence{" ", kind, " ", number, ","}.view());
-        os::print(Sentence{" and ", restarts, " stops\n"}.view());
+    void print_all(std::string_view name, Duration took) {
+        print(Sentence{name, ": ", seeds, " seeds, ", time / 1s, " s of the machine in ", in_s(took), ", ",
+                       time / std::max(took, Duration{1ms}), " times as fast; ", broken, " broken\n"}
+                  .view());
+        print("struck:");
+        for (const auto& [kind, number] : faults) print(Sentence{" ", kind, " ", number, ","}.view());
+        print(Sentence{" and ", restarts, " stops\n"}.view());
         if (!back.empty()) {
             std::ranges::sort(back);
-            os::print(Sentence{"worked again ", in_s(back[back.size() / 2]),
-                               " after the last fault in half of them, ", in_s(back.back()), " at most\n"}
-                          .view());
+            print(Sentence{"worked again ", in_s(back[back.size() / 2]),
+                           " after the last fault in half of them, ", in_s(back.back()), " at most\n"}
+                      .view());
         }
         for (const auto& [what, by] : waited_for)
-            os::print(Sentence{"worked again after a restart only, ", by.size(), " times, as with seed ",
-                               by.front(), ": waited for ", what, "\n"}
-                          .view());
+            print(Sentence{"worked again after a restart only, ", by.size(), " times, as with seed ",
+                           by.front(), ": waited for ", what, "\n"}
+                      .view());
     }
 };
 
 } // namespace
 
-int run_swarm(const SwarmOf& of, int count, char** words) {
+int run_swarm(SwarmOf of, int count, char** words) {
     const std::string_view name = of.machine.table.name;
     const std::vector<std::string_view> all(words + 1, words + count);
     const auto given = read_command_line(options, all, Others::refused);
@@ -129,26 +169,42 @@ int run_swarm(const SwarmOf& of, int count, char** words) {
         os::print(usage_of(options));
         return none_broken;
     }
+    silence_machine();
     install_contract_handler(tell_contract);
     SwarmRun::Tell tell;
     if (given->has("--seed"))
         tell = [](Time now, std::string_view text) {
-            os::print(Sentence{to_ns(now) / 1000, " us: ", text, "\n"}.view());
+            print(Sentence{to_ns(now) / 1000, " us: ", text, "\n"}.view());
         };
     const Duration wanted = given->has("--minutes") ? given->number("--minutes", 0) * Duration{1min}
                                                     : given->number("--hours", 1) * Duration{1h};
     std::uint64_t seed = given->number(given->has("--seed") ? "--seed" : "--from", 1);
+    AllLeftBehind left;
+    if (!of.rules) {
+        left = SwarmRun{of, 0}.learn();
+        of.left = &left;
+    }
     const Duration began = os::processor_time_of_this_thread();
     Totals totals;
     totals.usual.resize(of.machine.table.activities.size());
     totals.responses = totals.usual;
+    if (given->has("--anyone")) of.rules = {};
+    const Duration working = given->number("--working", 0) * Duration{1s};
+    const std::uint64_t most_broken = given->number("--findings", usual_findings);
+    const auto is_enough = [&] {
+        return working > Duration{} ? os::processor_time_of_this_thread() - began >= working
+                                    : totals.time >= wanted;
+    };
     const bool timed = given->has("--bit-rate");
+    die_telling();
     do {
         replay = Sentence{"replay it: ", words[0], " --seed ", seed};
         for (const char* rate : {"--bit-rate", "--data-bit-rate"})
             if (given->has(rate)) replay.add(" ").add(rate).add(" ").add(given->text(rate));
-        if (given->has("--calm")) replay.add(" --calm");
+        for (const char* word : {"--calm", "--anyone"})
+            if (given->has(word)) replay.add(" ").add(word);
         replay.add("\n");
+        ::alarm(longest_seed);
         SwarmRun run{of, seed, tell};
         if (timed)
             run.take_times(seed, {static_cast<std::int64_t>(given->number("--bit-rate", 0)),
@@ -157,13 +213,16 @@ int run_swarm(const SwarmOf& of, int count, char** words) {
         const SwarmVerdict verdict = run.go();
         totals.add(seed, verdict);
         if (!verdict.broken.empty())
-            os::print(Sentence{name, ": seed ", seed, " at ", to_ns(verdict.at) / 1000,
-                               " us: ", verdict.broken, "; ", replay}
-                          .view());
+            print(Sentence{name, ": seed ", seed, " at ", to_ns(verdict.at) / 1000, " us: ", verdict.broken,
+                           "; ", replay}
+                      .view());
+        if (!verdict.broken.empty() && !tell)
+            for (const std::string& each : verdict.before) print("    " + each + "\n");
         seed += given->number("--step", 1);
-    } while (!given->has("--seed") && totals.time < wanted && totals.broken < most_broken);
+    } while (!given->has("--seed") && !is_enough() && totals.broken < most_broken);
+    ::alarm(0);
     if (timed) totals.print_responses(of.machine);
-    totals.print(name, os::processor_time_of_this_thread() - began);
+    totals.print_all(name, os::processor_time_of_this_thread() - began);
     return totals.broken == 0 ? none_broken : one_broken;
 }
 

@@ -1,6 +1,7 @@
 // What strikes a machine of the swarm from without and within: its devices, its components, its activities.
 #include "drivers/can/signal_map.hpp"
 #include "drivers/gpio/line_map.hpp"
+#include "drivers/modbus/register_map.hpp"
 #include "toolchain/machine/swarm.hpp"
 
 #include <algorithm>
@@ -16,6 +17,8 @@ constexpr Duration longest_fault = 5s; // of those that end by themselves
 void SwarmRun::strike() {
     const Duration lasts{std::min<std::int64_t>(
         random_.between(1, std::int64_t{1} << random_.between(17, 33)), longest_fault.count())};
+    if (anything_goes_ && service_ != nowhere && (only_people_ || random_.one_in(3)))
+        return strike_people(lasts);
     const std::uint64_t what = random_.below(100);
     if (what < 16) {
         if (const Sentence trouble = rules_->trouble(random_, lasts); !trouble.empty()) {
@@ -57,6 +60,7 @@ void SwarmRun::strike_bus(std::size_t c, Duration lasts) {
     const ComponentRow& row = of_.machine.table.components[c];
     can::TwinBus& bus = run_.devices().bus(row.device);
     const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
+    if (anything_goes_ && random_.one_in(3)) return garble_bus(row.device, map);
     Sentence text{"bus \"", row.device, "\" "};
     const std::uint64_t what = random_.below(7);
     if (what == 4) {
@@ -91,6 +95,52 @@ void SwarmRun::strike_bus(std::size_t c, Duration lasts) {
         text.add(" of identifier ").add(bus.faults.only->id);
     }
     begin(names[what], text, lasts, components_on(row.device), [chance] { return chance->one_in = 0, true; });
+}
+
+/// What the machine receives, with values that no node of it would send: no numbers, ends of ranges,
+/// anything.
+void SwarmRun::garble_bus(std::string_view device, const can::Identifiers& map) {
+    const auto is_received = [](const can::FrameRow& row) {
+        return row.direction == can::Direction::receive;
+    };
+    std::vector<const can::FrameRow*> rows;
+    for (const can::FrameRow& row : map.frames)
+        if (is_received(row)) rows.push_back(&row);
+    if (rows.empty()) return;
+    const can::FrameRow& row = *rows[random_.below(rows.size())];
+    can::Frame frame;
+    frame.id = row.identifier.id;
+    frame.extended = row.identifier.extended;
+    frame.length = row.length;
+    can::set_format(frame, row.format);
+    const std::uint64_t how = random_.below(4);
+    constexpr std::array<unsigned, 3> patterns{0xFF, 0x00, 0x7F};
+    for (std::size_t i = 0; i < row.length; ++i)
+        frame.data[i] = static_cast<std::uint8_t>(how < 3 ? patterns[how] : random_.below(256));
+    ++verdict_.faults["bus says anything"];
+    say(Sentence{"bus \"", device, "\" says ",
+                 how == 3   ? "anything"
+                 : how == 0 ? "ones"
+                 : how == 1 ? "zeros"
+                            : "0x7F",
+                 " in ", row.name}
+            .view());
+    for (std::int64_t n = random_.between(1, 3); n > 0; --n)
+        run_.devices().bus(device).put(frame, run_.now());
+}
+
+/// What the machine reads, until the plant says it again.
+void SwarmRun::garble_server(std::string_view device, modbus::Twin& server, const modbus::SafeWrites& map) {
+    ++verdict_.faults["server says anything"];
+    for (const modbus::Row& row : map.rows) {
+        if (row.write) continue;
+        const bool is_bit = modbus::holds_bits(row.run.table);
+        const std::uint16_t word = static_cast<std::uint16_t>(is_bit              ? random_.below(2)
+                                                              : random_.one_in(2) ? 0x7FFF + random_.below(3)
+                                                                                  : random_.below(65536));
+        for (std::size_t i = 0; i < row.run.count; ++i) server.set(row.run.table, row.run.address + i, word);
+        say(Sentence{"server \"", device, "\" says ", std::uint64_t{word}, " in ", row.name}.view());
+    }
 }
 
 void SwarmRun::strike_chip(std::size_t c, Duration lasts) {
@@ -138,6 +188,9 @@ void SwarmRun::strike_chip(std::size_t c, Duration lasts) {
 void SwarmRun::strike_server(std::size_t c, Duration lasts) {
     const ComponentRow& row = of_.machine.table.components[c];
     modbus::Twin& server = run_.devices().server(row.device);
+    if (anything_goes_ && random_.one_in(3))
+        return garble_server(row.device, server,
+                             *static_cast<const modbus::SafeWrites*>(row.type->device_map));
     constexpr std::array<std::string_view, 6> names{
         "is silent", "is slow", "answers exceptions", "answers wrong ones", "answers garbage", "is down"};
     const std::size_t what = random_.below(names.size());

@@ -1,0 +1,101 @@
+// What holds of every machine is seen to be broken, and what a seed does is the same again. How each fault
+// that is kept in tests/planted is found says ci/planted.
+#include "tests/adversary/machine.hpp"
+#include "tests/adversary/plant.hpp"
+#include "toolchain/machine/swarm.hpp"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+namespace adversary {
+
+AcceptedMachine on_host();
+
+namespace {
+
+using testing::HasSubstr;
+
+std::unique_ptr<tappet::Plant> make_plant(std::uint64_t seed) { return std::make_unique<Plant>(seed); }
+
+/// Does to the machine what a fault of the framework would, and denies nothing itself.
+class Meddles final : public SwarmRules {
+public:
+    using Meddle = std::function<void(MachineInstance&, Time)>;
+    Meddles(MachineInstance& machine, Meddle meddle) : machine_{machine}, meddle_{std::move(meddle)} {}
+    std::string_view broken(Time now) override {
+        meddle_(machine_, now);
+        return {};
+    }
+    bool works() override { return true; }
+
+private:
+    MachineInstance& machine_;
+    Meddle meddle_;
+};
+
+/// What the first of some seeds that breaks a rule says.
+Sentence found(const Meddles::Meddle& meddle) {
+    const SwarmOf of{
+        on_host(), &make_plant,
+        [&](MachineInstance& machine, tappet::Plant&, const Struck&) -> std::unique_ptr<SwarmRules> {
+            return std::make_unique<Meddles>(machine, meddle);
+        }};
+    Sentence broken;
+    for (std::uint64_t seed = 1; broken.empty() && seed < 60; ++seed) broken = SwarmRun{of, seed}.go().broken;
+    return broken;
+}
+
+ComponentState state(MachineInstance& machine, std::string_view component) {
+    return machine.life().state_of(find_component(machine.machine().table, component));
+}
+
+TEST(Adversary, finds_an_output_that_moves_while_its_component_stands) {
+    constexpr std::size_t gate = bed_lines.index("gate");
+    const Sentence why = found([](MachineInstance& machine, Time) {
+        if (state(machine, "gate") == ComponentState::stopped &&
+            state(machine, "io") == ComponentState::running)
+            machine.find<gpio::LinePort<bed_lines>>("io")->set<gate>();
+    });
+    EXPECT_THAT(
+        std::string{why.view()},
+        HasSubstr("output \"io.gate\" is 1 at the wire (safe: 0), though nothing that drives it runs"));
+}
+
+TEST(Adversary, finds_a_line_that_a_stop_leaves_unsafe) {
+    constexpr std::size_t gate = bed_lines.index("gate");
+    const Sentence why = found([](MachineInstance& machine, Time) {
+        if (state(machine, "io") == ComponentState::stopped)
+            machine.find<gpio::LinePort<bed_lines>>("io")->start(Cycle{}),
+                machine.find<gpio::LinePort<bed_lines>>("io")->set<gate>();
+    });
+    EXPECT_THAT(std::string{why.view()}, HasSubstr("io.gate"));
+}
+
+/// As people and seeds choose; nothing is judged here but that it is the same again.
+TEST(Adversary, does_the_same_again_with_one_seed) {
+    const SwarmOf of{on_host(), &make_plant, {}};
+    std::vector<std::string> told[2];
+    for (auto& each : told)
+        static_cast<void>(SwarmRun{
+            of, 5, [&each](Time at, std::string_view text) {
+                each.push_back(std::to_string(to_ns(at)) + " " + std::string{text});
+            }}.go());
+    EXPECT_EQ(told[0], told[1]);
+    EXPECT_GT(told[0].size(), 50u);
+}
+
+TEST(Adversary, has_people_of_every_role_and_verb) {
+    const SwarmOf of{on_host(), &make_plant, {}};
+    std::string told;
+    for (std::uint64_t seed = 1; seed <= 30; ++seed)
+        static_cast<void>(
+            SwarmRun{of, seed, [&told](Time, std::string_view text) { (told += text) += "\n"; }}.go());
+    for (const char* verb : {"call ", "send ", "set ", "force ", "release ", "stop ", "restart ", "execute ",
+                             "script ", "load ", "unload ", "roll_back ", "get ", "save", "break_off"})
+        EXPECT_THAT(told, HasSubstr(std::string{"somebody asks: "} + verb)) << verb;
+    EXPECT_THAT(told, HasSubstr("a visitor asks: "));
+}
+
+} // namespace
+} // namespace adversary

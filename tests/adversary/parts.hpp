@@ -1,0 +1,145 @@
+// Components that write to their outputs in every way in which one can: from a method, an operation, a
+// command, a property's change, a step; and one whose preparations take long.
+#pragma once
+
+#include "tests/adversary/maps.hpp"
+
+namespace adversary {
+
+/// Opens and closes upon a call; a property holds it open.
+struct Valve {
+    Output<bool> on;
+    Property<bool> held_open{false};
+    Property<std::int64_t> opened{0}; ///< kept: so often
+
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { on.write(false); }
+    void changed() noexcept TAPPET_REALTIME {
+        if (held_open.get() != on.last()) on.write(held_open.get());
+    }
+    void open() noexcept TAPPET_REALTIME { on.write(true); }
+    void close() noexcept TAPPET_REALTIME { on.write(false); }
+    bool turn(bool open) noexcept TAPPET_REALTIME {
+        on.write(open);
+        return true;
+    }
+    static constexpr auto interface() {
+        return facets(
+            output<&Valve::on>("on", "", "it is open"),
+            property<&Valve::held_open>("held_open", "", "whatever is called"),
+            property<&Valve::opened>("opened", "", "so often", range(0, 1'000'000)),
+            method<&Valve::open>("open", "lets through", for_people(Role::machine_operator), any_thread),
+            method<&Valve::close>("close", "lets nothing through", for_people(Role::machine_operator),
+                                  any_thread),
+            method<&Valve::turn>("turn", "open or not", any_thread));
+    }
+};
+
+/// Turns as fast as it is told by a command, and by an event of somebody else.
+struct Pump {
+    Output<double> speed, torque;
+    Output<std::int64_t> on, spare;
+    Property<double> most_torque{5.0};
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME { write(0); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { write(0); }
+    void changed() noexcept TAPPET_REALTIME { torque.write(on.last() != 0 ? most_torque.get() : 0.0); }
+    bool run(double at) noexcept TAPPET_REALTIME {
+        if (!(at >= -1000 && at <= 1000)) return false;
+        write(at);
+        return true;
+    }
+    void nudge() noexcept TAPPET_REALTIME { write(speed.last() + 1); }
+
+    static constexpr auto interface() {
+        return facets(output<&Pump::speed>("speed", "rpm", "wanted"),
+                      output<&Pump::torque>("torque", "Nm", "at most"),
+                      output<&Pump::on>("on", "", "its power"),
+                      output<&Pump::spare>("spare", "", "no bit is left over"),
+                      property<&Pump::most_torque>("most_torque", "Nm", "while it turns", range(0, 100)),
+                      command<&Pump::run>("run", "as fast as that", for_people(Role::machine_operator)),
+                      operation<&Pump::nudge>("nudge", "a bit faster"));
+    }
+
+private:
+    void write(double at) noexcept TAPPET_REALTIME {
+        speed.write(at);
+        on.write(at != 0);
+        torque.write(at != 0 ? most_torque.get() : 0.0);
+        spare.write(0);
+    }
+};
+
+/// Moves a gate by events, which its method emits.
+struct Gate {
+    Event<> lifts, falls;
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { falls.emit(); }
+    void lift() noexcept TAPPET_REALTIME { lifts.emit(); }
+    void drop() noexcept TAPPET_REALTIME { falls.emit(); }
+    static constexpr auto interface() {
+        return facets(event<&Gate::lifts>("lifts", "up"), event<&Gate::falls>("falls", "down"),
+                      method<&Gate::lift>("lift", "up", for_people(Role::machine_operator)),
+                      operation<&Gate::drop>("drop", "down", for_people(Role::machine_operator)));
+    }
+};
+
+/// Heats to what it is set to, without a step.
+struct Oven {
+    Input<double> temperature;
+    Output<double> power, fan, burner;
+    Property<double> wanted{0.0};
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME { write(); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        for (auto* each : {&power, &fan, &burner}) each->write(0);
+    }
+    void changed() noexcept TAPPET_REALTIME { write(); }
+    void light() noexcept TAPPET_REALTIME { burner.write(1); }
+
+    static constexpr auto interface() {
+        return facets(input<&Oven::temperature>("temperature", "degC", "inside", optional),
+                      output<&Oven::power>("power", "%", "of its coils"),
+                      output<&Oven::fan>("fan", "rpm", "of its air"),
+                      output<&Oven::burner>("burner", "", "1: it is lit"),
+                      property<&Oven::wanted>("wanted", "%", "of its power", range(0, 100)),
+                      operation<&Oven::light>("light", "the burner", for_people(Role::machine_operator)));
+    }
+
+private:
+    void write() noexcept TAPPET_REALTIME {
+        power.write(wanted.get());
+        fan.write(wanted.get() > 0 ? 1500.0 : 0.0);
+        burner.write(burner.last());
+    }
+};
+
+/// Asks the valve, by a row of its own, whenever its level is low.
+struct Doser {
+    Input<double> height;
+    Output<bool> lamp;
+    MethodCall<void()> open, close;
+    std::uint32_t cycles = 0;
+
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (++cycles % 50 != 0) return;
+        if (cycles % 100 == 0)
+            open();
+        else
+            close();
+        lamp.write(cycles % 100 == 0);
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { lamp.write(false); }
+    static constexpr auto interface() {
+        return facets(input<&Doser::height>("height", "mm", "of what is dosed"),
+                      output<&Doser::lamp>("lamp", "", "it doses"), calls<&Doser::open>("open", "the valve"),
+                      calls<&Doser::close>("close", "the valve"));
+    }
+};
+
+/// Room for a script, which may call the valve, the pump and the gate.
+struct Recipe {
+    Output<std::int64_t> steps;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { steps.write(steps.last() + 1); }
+    static constexpr auto interface() { return facets(output<&Recipe::steps>("steps", "", "of the recipe")); }
+};
+
+} // namespace adversary

@@ -1,0 +1,270 @@
+// People of every role who may do anything that the machine offers: requests by the names of its own table, a
+// few at a time in one cycle of its service. What they do is no fault; what the machine does of it is judged.
+#include "kernel/services/browsing/browser_service.hpp"
+#include "toolchain/machine/swarm.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace tappet {
+
+namespace {
+
+constexpr Duration longest_force = 12s;  // from its request to what follows from its release
+constexpr Duration longest_line = 3s;    // from its request to its last statement, and to the wire
+constexpr Duration told_late = 100ms;    // an answer that was made, to who asked
+constexpr std::size_t most_at_once = 24; // requests of somebody who floods the service
+using Kinds = std::initializer_list<FacetKind>;
+
+} // namespace
+
+std::string SwarmRun::name_of(End end) const {
+    const ComponentRow& row = of_.machine.table.components[end.component];
+    return std::string{row.name} + "." + std::string{row.type->facets[end.facet].name};
+}
+
+/// A facet of one of these kinds, of a component if it has one; nowhere: the machine has none.
+End SwarmRun::any_of(Kinds kinds, std::size_t component) {
+    const auto rows = of_.machine.table.components;
+    std::vector<End> own, all;
+    for (std::size_t c = 0; c < rows.size(); ++c)
+        for (std::size_t f = 0; f < rows[c].type->facets.size(); ++f)
+            if (c != service_ && std::ranges::find(kinds, rows[c].type->facets[f].kind) != kinds.end()) {
+                all.push_back({c, f});
+                if (c == component) own.push_back({c, f});
+            }
+    const auto& some = own.empty() || random_.one_in(6) ? all : own;
+    return some.empty() ? End{nowhere, nowhere} : some[random_.below(some.size())];
+}
+
+/// The arguments of a call, in between `between`; nothing: there is a type of which none can be drawn.
+std::optional<std::string> SwarmRun::any_arguments(const Facet& facet, std::string_view between) {
+    std::string all;
+    for (const TypeId each : (facet.command != nullptr ? *facet.command->arguments : *facet.type).elements) {
+        const bool is_real = each->kind == ValueKind::real;
+        const std::string value = is_real && between == " " && random_.one_in(12) ? "nan" : draw(*each, {});
+        if (value.empty()) return {};
+        all += (all.empty() ? "" : std::string{between}) + value;
+    }
+    return all;
+}
+
+/// "component.name(arguments)", as a statement calls it.
+std::string SwarmRun::any_call(End end) {
+    const auto arguments =
+        end.component == nowhere ? std::nullopt : any_arguments(facet_at(of_.machine.table, end), ", ");
+    return arguments ? name_of(end) + "(" + *arguments + ")" : std::string{};
+}
+
+std::string SwarmRun::any_line(std::size_t component) {
+    const auto call = [&] {
+        return any_call(any_of({FacetKind::method, FacetKind::operation, FacetKind::command}, component));
+    };
+    const std::string first = call();
+    if (first.empty()) return {};
+    switch (random_.below(5)) {
+    case 0: return name_of(any_of({FacetKind::output, FacetKind::property, FacetKind::input}, component));
+    case 1: return "do " + first + ";";
+    case 2: {
+        const End end = any_of({FacetKind::property}, component);
+        if (end.component == nowhere) return {};
+        const std::string value =
+            draw(*facet_at(of_.machine.table, end).type, facet_at(of_.machine.table, end).range);
+        return value.empty() ? value : "wait(200 ms); set " + name_of(end) + " = " + value + ";";
+    }
+    case 3: return "wait(" + std::to_string(random_.below(1500)) + " ms); do " + first + ";";
+    default: return "for (var int i = 0; i < 20; i = i + 1) { wait(50 ms); try do " + first + "; catch ; }";
+    }
+}
+
+/// A state machine that calls one after the other of what the slot may reach, for as long as it is there.
+std::string SwarmRun::any_script(const BehaviourRow& row) {
+    std::vector<std::string> calls;
+    for (const std::string_view operation : row.slot.operations)
+        for (const FacetKind kind : {FacetKind::method, FacetKind::operation, FacetKind::command}) {
+            End end;
+            if (!resolve(of_.machine.table, operation, kind, end).empty()) continue;
+            if (std::string call = any_call(end); !call.empty()) calls.push_back(std::move(call));
+            break;
+        }
+    if (calls.empty()) return {};
+    std::string text = "StateMachine Anything { var int n = 0; ";
+    for (const std::string_view state : {"One", "Two"})
+        text += std::string{state == "One" ? "initial " : ""} + "state " + std::string{state} +
+                " { run { var int i = 0; while i < " + std::to_string(1 + random_.below(100)) +
+                " { yield; set i = i + 1; } try do " + calls[random_.below(calls.size())] +
+                "; catch ; set n = n + 1; } transitions { if n > 1000 then select Last select " +
+                (state == "One" ? "Two" : "One") + " } } ";
+    return text + "final state Last { } }";
+}
+
+void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
+    say(Sentence{&by == &browser_ ? "somebody asks: " : "a visitor asks: ", request}.view());
+    // What is asked of a driver itself its wires may follow.
+    for (const std::size_t c : drivers_)
+        if (request.contains(std::string{of_.machine.table.components[c].name}))
+            wires_.excuse(c, run_.now() + BrowserService::patience + longest_line);
+    if (request.starts_with("force ")) wires_.excuse_axes(run_.now() + longest_force);
+    const bool reads = request.starts_with("get ");
+    const std::string name = reads ? request.substr(4) : std::string{};
+    by.ask(std::move(request), run_.now(), [this, name](std::string_view answer) {
+        if (!name.empty() && is_good(answer)) judge_shown(name, answer);
+    });
+}
+
+/// A value that is shown as good was written within the age that its row allows.
+void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
+    if (field_of(answer, "flow") != "fresh" || field_of(answer, "forced") == "true") return;
+    const MachineView& table = of_.machine.table;
+    Duration oldest{};
+    for (std::size_t x = 0; x < table.connections.size(); ++x)
+        if (name_of(of_.machine.index.connections[x].to) == name)
+            oldest = std::max(oldest, table.connections[x].max_age);
+    const Time stamp{Duration{std::strtoll(field_of(answer, "time_ns").c_str(), nullptr, 10)}};
+    if (oldest > Duration{} && run_.now() - stamp > oldest + told_late)
+        deny(Sentence{"input \"", name, "\" is shown as fresh, and was written ", (run_.now() - stamp) / 1ms,
+                      " ms ago"});
+}
+
+void SwarmRun::call_anything(std::size_t component) {
+    const End end = any_of({FacetKind::method, FacetKind::operation, FacetKind::command}, component);
+    if (end.component == nowhere) return;
+    const Facet& facet = facet_at(of_.machine.table, end);
+    const auto arguments = any_arguments(facet, " ");
+    if (!arguments) return;
+    ++verdict_.faults["called"];
+    anyone_asks(browser_, (facet.command != nullptr ? "send " : "call ") + name_of(end) +
+                              (arguments->empty() ? "" : " ") + *arguments);
+}
+
+/// One request about a component, or about another one.
+void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
+    const MachineView& table = of_.machine.table;
+    const std::string name{table.components[component].name};
+    const std::uint64_t what = random_.below(100);
+    if (what < 22) return call_anything(component);
+    if (what < 34) {
+        const End end = any_of({FacetKind::property}, component);
+        if (end.component == nowhere) return;
+        const Facet& facet = facet_at(table, end);
+        const std::string value = random_.one_in(8) ? "nan" : draw(*facet.type, facet.range);
+        if (value.empty()) return;
+        ++verdict_.faults["set"];
+        return anyone_asks(browser_, "set " + name_of(end) + " " + value);
+    }
+    if (what < 44) {
+        const End end = any_of({FacetKind::input, FacetKind::output}, component);
+        if (end.component == nowhere) return;
+        const std::string value = random_.one_in(8) ? "nan" : draw(*facet_at(table, end).type, {});
+        if (value.empty()) return;
+        anyone_asks(browser_, "force " + name_of(end) + " " + value);
+        return begin("forced", Sentence{"port \"", name_of(end), "\" is forced"}, lasts, {}, [this, end] {
+            anyone_asks(browser_, "release " + name_of(end));
+            return true;
+        });
+    }
+    if (what < 66) return stop_a_part(component, lasts);
+    if (what < 80) {
+        const std::string line = random_.one_in(10) ? "" : any_line(component);
+        ++verdict_.faults["line"];
+        std::string quoted;
+        for (const char each : line) quoted += (each == '"' || each == '\\' ? "\\" : "") + std::string{each};
+        return anyone_asks(browser_, line.empty() ? "break_off" : "execute \"" + quoted + "\"");
+    }
+    if (what < 88) {
+        std::vector<const BehaviourRow*> slots;
+        for (const BehaviourRow& row : table.behaviours)
+            if (row.is_slot()) slots.push_back(&row);
+        if (slots.empty()) return;
+        const BehaviourRow& row = *slots[random_.below(slots.size())];
+        const std::string slot{row.component};
+        const std::uint64_t how = random_.below(8);
+        ++verdict_.faults["script"];
+        if (how < 2) return anyone_asks(browser_, (how == 0 ? "unload " : "roll_back ") + slot);
+        std::string quoted;
+        for (const char each : any_script(row)) quoted += (each == '"' ? "\\" : "") + std::string{each};
+        if (quoted.empty()) return;
+        anyone_asks(browser_, "script " + slot + " 0 \"" + quoted + "\"");
+        return anyone_asks(browser_, "load " + slot + " anything.osd");
+    }
+    if (what < 94) {
+        if (table.behaviours.empty()) return;
+        const BehaviourRow& row = table.behaviours[random_.below(table.behaviours.size())];
+        const ScriptUnit unit = row.unit();
+        if (unit.instances.empty() || unit.types.empty()) return;
+        const auto& instance = unit.instances[random_.below(unit.instances.size())];
+        const auto states = unit.types.back().machine.states;
+        const std::string behaviour = std::string{row.component} + "." + std::string{instance.name};
+        ++verdict_.faults["behaviour"];
+        if (!states.empty() && random_.one_in(2)) {
+            const std::string state{states[random_.below(states.size())].name};
+            return anyone_asks(browser_, random_.one_in(2) ? "why " + std::string{row.component} + "." + state
+                                                           : "behave request " + behaviour + " " + state);
+        }
+        constexpr std::array<std::string_view, 6> actions{"start", "stop",  "pause",
+                                                          "step",  "reset", "reactive"};
+        return anyone_asks(browser_,
+                           "behave " + std::string{actions[random_.below(actions.size())]} + " " + behaviour);
+    }
+    constexpr std::array<std::string_view, 5> all{"hello", "forced", "counters", "behaviours", "save"};
+    ++verdict_.faults["read"];
+    if (random_.one_in(2)) return anyone_asks(browser_, std::string{all[random_.below(all.size())]});
+    const End end = readable_[random_.below(readable_.size())];
+    anyone_asks(browser_, "get " + name_of(end));
+}
+
+/// A component, or its whole activity, is stopped or started anew; after a while somebody starts it again.
+void SwarmRun::stop_a_part(std::size_t c, Duration lasts) {
+    const std::size_t a = of_.machine.index.activity[c];
+    if (service_ != nowhere && a == of_.machine.index.activity[service_]) return;
+    const bool whole = random_.one_in(4), restarts = random_.one_in(4);
+    const std::string part = whole ? "activity:" + std::string{of_.machine.table.activities[a].name}
+                                   : std::string{of_.machine.table.components[c].name};
+    anyone_asks(browser_, (restarts ? "restart " : "stop ") + part);
+    const std::string kind =
+        std::string{whole ? "activity " : "component "} + (restarts ? "restarted" : "stopped");
+    begin(kind, Sentence{part, restarts ? " restarts" : " stops"}, std::max(lasts, Duration{300ms}),
+          whole ? components_of(a) : std::vector{c}, [this, c, a, whole] {
+              const bool runs = whole ? run_.instance().engines()[a].is_active()
+                                      : run_.instance().life().state_of(c) == ComponentState::running;
+              if (runs) return true;
+              if (whole)
+                  refusal_ = run_.world().change_activity(a, LifeChange::start);
+              else
+                  static_cast<void>(run_.instance().life().ask_component(c, LifeChange::start));
+              return false;
+          });
+    faults_.back().of_activity = true; // what is told to who stands is lost
+}
+
+/// A few requests, which the service finds in one cycle, most of them about one component.
+void SwarmRun::strike_as_anyone(Duration lasts) {
+    const std::size_t components = of_.machine.table.components.size();
+    std::size_t focus = random_.below(components);
+    if (run_.now() < busy_until_) return call_anything(busy_with_);
+    if (random_.one_in(8)) return flood();
+    if (random_.one_in(6)) { // somebody works with it for a while, and stops nothing
+        busy_with_ = focus;
+        busy_until_ = run_.now() + Duration{random_.between(1'000'000'000, 10'000'000'000)};
+    }
+    for (std::int64_t n = random_.between(1, 4); n > 0; --n) {
+        ask_anything(focus, lasts);
+        if (random_.one_in(6)) focus = random_.below(components);
+    }
+}
+
+/// Somebody of a lower role asks for as much as fits, and for what is not his.
+void SwarmRun::flood() {
+    SwarmBrowser& by = visitors_[random_.below(visitors_.size())];
+    ++verdict_.faults["flood"];
+    for (std::int64_t n = random_.between(1, most_at_once); n > 0; --n) {
+        const End end = readable_[random_.below(readable_.size())];
+        switch (random_.below(4)) {
+        case 0: anyone_asks(by, "set " + name_of(end) + " 1"); break;
+        case 1: anyone_asks(by, "execute \"" + name_of(end) + "\""); break;
+        default: anyone_asks(by, "get " + name_of(end));
+        }
+    }
+}
+
+} // namespace tappet

@@ -1,0 +1,119 @@
+// What a machine puts on its wires, judged by rules that hold of every machine: which part drives which
+// output is read from its table, what is safe and what is in range from its maps.
+#pragma once
+
+#include "drivers/can/signal_map.hpp"
+#include "drivers/plant/simulation.hpp"
+#include "kernel/machine/instance/instance.hpp"
+#include "toolchain/machine/swarm_rules.hpp"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tappet {
+
+/// What is on an output's wire when all that writes to it was stopped while nothing else went on.
+struct LeftBehind {
+    bool holds = false;                  ///< whatever it was before
+    std::vector<std::uint64_t> values{}; ///< beside what is safe
+};
+using AllLeftBehind = std::map<std::string, LeftBehind>; ///< by the names of outputs
+
+/// Not real-time. Lives as long as the run.
+class SwarmWires {
+public:
+    /// `left`: null: nobody has looked.
+    SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices, const Struck& struck,
+               const AllLeftBehind* left = nullptr);
+
+    /// After the devices were opened: looks at what goes over them.
+    void listen();
+    /// A new machine drives the wires.
+    void begin(MachineInstance& instance);
+    /// Somebody asks for something of the driver itself: until then its outputs follow who asked.
+    void excuse(std::size_t driver, Time until);
+    /// Somebody forces a port: an axis may be told anything.
+    void excuse_axes(Time until);
+    /// The first rule that is broken at this moment; empty: none.
+    [[nodiscard]] Sentence broken(Time now);
+    /// All of it is over: in order, or by the guardian.
+    [[nodiscard]] Sentence broken_at_rest(bool orderly) const;
+
+    // ---- to see what is left behind
+
+    /// The components that write to one output, for each output, each set once.
+    [[nodiscard]] std::vector<std::vector<std::size_t>> all_writers() const;
+    /// As long as anything takes from there to a wire.
+    [[nodiscard]] Duration settles(const std::vector<std::size_t>& writers) const;
+    /// They stand since so long, and nothing else went on.
+    void note_left(const std::vector<std::size_t>& writers, AllLeftBehind& left) const;
+
+private:
+    /// One output at the wires.
+    struct Output {
+        std::size_t driver = 0; ///< the component
+        std::string name{};
+        std::vector<End> facets{};          ///< of the driver: its input, or the operations that switch it
+        std::vector<std::size_t> writers{}; ///< the components that write there; the driver is none of them
+        std::optional<std::uint64_t> safe{};
+        bool is_switch = false; ///< one bit
+        bool is_line = false;
+        Duration settles{}; ///< longer than anything takes from a writer to the wire
+        std::function<std::optional<std::uint64_t>()> read{};
+        // Of this machine.
+        std::optional<std::uint64_t> before{}, left{}; ///< while a writer ran; when all had stopped
+        Time since = never;                            ///< no writer runs
+        Time excused{};
+        bool is_meddled = false; ///< somebody asked its driver, and it was not safe since
+    };
+    /// A frame that the machine sends, as it was on the wire last.
+    struct Sent {
+        std::string_view device;
+        const can::Identifiers* map = nullptr;
+        std::size_t row = 0;
+        std::optional<can::Frame> last{};
+    };
+
+    /// An axis of the library, as its facets say, and what its drive tells at the wire.
+    struct Axis {
+        std::string_view name{}, device{};
+        can::Identifier frame{}, word_frame{};
+        const can::Signal *place = nullptr, *word = nullptr;
+        End state{}, standing{};
+        bool is_enabled = false;  ///< the drive says so
+        Time rests_since = never; ///< by its state, which names no motion
+        std::optional<double> rests_at{};
+        double stands_below = -1.0; ///< its property as the table has it
+        Time excused{};
+        unsigned elsewhere = 0; ///< frames that say so, one after the other
+    };
+
+    void add_axes();
+    void hear_axis(Axis& axis, std::string_view device, const can::Frame& frame);
+    [[nodiscard]] std::string_view state_of(const Axis& axis) const;
+    void add_lines(std::size_t component);
+    void add_signals(std::size_t component);
+    void add_registers(std::size_t component);
+    void add(Output output, std::string_view facet, std::string_view other_facet = {});
+    void hear(std::string_view device, const can::Frame& frame);
+    [[nodiscard]] bool drives(const Output& output) const;
+    [[nodiscard]] bool is_forced(const Output& output) const;
+    [[nodiscard]] Sentence broken(Output& output, Time now) const;
+    [[nodiscard]] Sentence told(const Output& output, std::uint64_t value) const;
+
+    const AcceptedMachine& machine_;
+    SimulatedDevices& devices_;
+    const Struck& struck_;
+    const AllLeftBehind* left_;
+    MachineInstance* instance_ = nullptr;
+    Time now_{};
+    std::vector<Output> outputs_{};
+    std::vector<Sent> sent_{};
+    std::vector<Axis> axes_{};
+    Sentence heard_{}; ///< what was wrong with a frame
+};
+
+} // namespace tappet
