@@ -20,6 +20,7 @@ constexpr Duration again = 50ms;                           // a part that does n
 constexpr Duration heard_every = 50ms;                     // by who browses
 constexpr std::size_t told_actions = 12;                   // of a finding, before it
 constexpr Duration learnt_after = 5s, learnt_between = 1s; // until it works, and again
+constexpr Duration longest_makers = 3s;                    // what makers' functions take, of a restart
 constexpr Duration stopped_within = 25ms;                  // a stop in order, to the last line
 constexpr Duration at_rest = 500ms;                        // after a stop
 
@@ -155,6 +156,9 @@ bool SwarmRun::start(bool is_again) {
     }
     if (!is_again) wires_.listen();
     wires_.begin(run_.instance());
+    // What makers write for a restart may take its time: nothing waits for it but that restart.
+    if (anything_goes_ && random_.one_in(2))
+        run_.world().makers_take(Duration{random_.between(1, longest_makers.count())});
     rules_ = of_.rules ? of_.rules(run_.instance(), *plant_, struck_) : std::make_unique<NoRules>();
     is_gone_ = false;
     lost_ = 0;
@@ -286,7 +290,11 @@ void SwarmRun::note_responses() {
 /// In the stated order, and what it leaves on the wires stays there.
 void SwarmRun::stop() {
     note_responses();
+    const Time asked = run_.now();
     run_.stop();
+    if (const Duration took = run_.now() - asked; took > of_.machine.board->stop_within)
+        deny(Sentence{"its stop took ", took / 1ms, " ms, and its board allows ",
+                      of_.machine.board->stop_within / 1ms});
     leave();
     if (const Sentence fault = run_.instance().save_properties(run_.instance().standing()); !fault.empty())
         deny(Sentence{"the properties cannot be saved at halt: ", fault});

@@ -21,13 +21,8 @@ public:
             order.controlword = static_cast<std::uint16_t>(can.integer("control.word"));
             order.mode = can.integer("control.mode");
             order.position = can.get("target.position");
-            const double profile = can.get("profile.velocity");
-            if constexpr (requires { order.profile_velocity; }) {
-                order.profile_velocity = profile;
-                order.velocity = can.get("target.velocity");
-            } else {
-                order.velocity = profile != 0 ? profile : can.get("target.velocity");
-            }
+            order.profile_velocity = can.get("profile.velocity");
+            order.velocity = can.get("target.velocity");
             order.torque = can.get("profile.torque");
             return order;
         }(canopen::DriveOrder{});
