@@ -121,11 +121,9 @@ struct Doser {
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         if (++cycles % 50 != 0) return;
-        if (cycles % 100 == 0)
-            open();
-        else
-            close();
-        lamp.write(cycles % 100 == 0);
+        const bool opens = cycles % 100 == 0;
+        const Answer<void> answer = opens ? open() : close();
+        lamp.write(opens && answer.given());
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { lamp.write(false); }
     static constexpr auto interface() {

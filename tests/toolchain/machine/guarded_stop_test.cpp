@@ -125,7 +125,7 @@ public:
         return 0;
     }
     std::size_t send_safe_frames(Duration) noexcept override { return 0; }
-    std::size_t write_safe_registers() noexcept override { return 0; }
+    std::size_t write_safe_registers(Duration, const Meanwhile&) noexcept override { return 0; }
 };
 
 struct AFirmware : testing::Test {
