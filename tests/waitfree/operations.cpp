@@ -80,7 +80,7 @@ bool command_send(CommandCall<double, int&>& command, const double& goal) noexce
 }
 CommandState command_state(const CommandCall<double, int&>& command) noexcept { return command.state(); }
 bool command_reset(CommandCall<double, int&>& command) noexcept { return command.reset(); }
-bool command_begin(CommandSlot& slot) noexcept { return slot.begin(true); }
+bool command_begin(CommandSlot& slot) noexcept { return slot.begin(); }
 CommandState command_follow(CommandSlot& slot) noexcept { return slot.follow(); }
 CommandState command_take_up(CommandProcessor& processor, CommandSlot& slot) noexcept {
     return processor.take_up(slot);
