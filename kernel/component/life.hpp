@@ -47,10 +47,9 @@ inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTI
 
 /// How a call comes to a component.
 enum class Entry : std::uint8_t {
-    at_once,   ///< in the caller's thread: also into a component that has not begun, starts or stops just now
-    queued,    ///< by a message: only while it runs
-    properties ///< always: values are kept, and what the component does of it reaches no output while it
-               ///< stands
+    at_once, ///< in the caller's thread: also into a component that has not begun, starts or stops just now
+    queued,  ///< by a message: only while it runs
+    always   ///< what moves nothing: a const method, or a property, whose values are kept while it stands
 };
 
 /// The one way into a component for everybody but its engine: reactions, method calls, commands, scripts,
@@ -71,7 +70,7 @@ public:
         switch (entry) {
         case Entry::at_once: return now < ComponentState::stopped;
         case Entry::queued: return now == ComponentState::running;
-        case Entry::properties: break;
+        case Entry::always: break;
         }
         return true;
     }

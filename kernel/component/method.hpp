@@ -19,7 +19,7 @@
 namespace tappet {
 
 /// The answer to a method call: a result, or none when the component that was called does not run. The caller
-/// says what it does then. Real-time.
+/// says what it does then. A const method is always answered. Real-time.
 template <class R>
 class [[nodiscard("the component that was called may not run: say what happens then")]] Answer {
 public:
@@ -177,15 +177,17 @@ struct MethodOf {
         else
             return (static_cast<Component*>(component)->*Method)(arguments...);
     }
+    /// One that only looks is answered by a component that stands, too: whether it is ready, for instance.
+    static constexpr Entry by(Entry entry) noexcept { return is_const ? Entry::always : entry; }
     static Answer<R> call(GatedComponent& at, const std::remove_cvref_t<A>&... arguments) noexcept
         TAPPET_REALTIME {
         if constexpr (std::is_void_v<R>) {
-            return Answer<void>{at.enter(Entry::at_once, [&](void* component) noexcept
+            return Answer<void>{at.enter(by(Entry::at_once), [&](void* component) noexcept
                                          TAPPET_REALTIME { run(component, arguments...); })};
         } else {
             Answer<R> answer;
             static_cast<void>( // the answer says it
-                at.enter(Entry::at_once, [&](void* component) noexcept
+                at.enter(by(Entry::at_once), [&](void* component) noexcept
                          TAPPET_REALTIME { answer = run(component, arguments...); }));
             return answer;
         }
@@ -201,7 +203,7 @@ struct MethodOf {
     }
     static bool call_packed(GatedComponent& at, Entry entry, const std::byte* packed,
                             std::byte* result) noexcept TAPPET_REALTIME {
-        return at.enter(entry, [&](void* component) noexcept TAPPET_REALTIME {
+        return at.enter(by(entry), [&](void* component) noexcept TAPPET_REALTIME {
             unpack_and_run(component, packed, result, std::index_sequence_for<A...>{});
         });
     }

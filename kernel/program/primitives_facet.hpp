@@ -186,10 +186,9 @@ inline ActionResult write_property(ProgramContext& context, const Instruction& i
     const ProposedValue proposed{static_cast<std::byte*>(link.place), a, in.size,
                                  static_cast<std::uint32_t>(in.facet - link.type->facets.data())};
     bool taken = false;
-    const bool entered =
-        link.component->enter(Entry::properties, [&](void* component) noexcept TAPPET_REALTIME {
-            taken = link.type->change(component, {&proposed, 1}).empty();
-        });
+    const bool entered = link.component->enter(Entry::always, [&](void* component) noexcept TAPPET_REALTIME {
+        taken = link.type->change(component, {&proposed, 1}).empty();
+    });
     return entered && taken ? ActionResult::done : ActionResult::failed;
 }
 

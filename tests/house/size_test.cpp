@@ -18,7 +18,7 @@ const std::vector<Size> sizes{
     {"kernel/base",           2392},
     {"kernel/os",             4061},
     {"kernel/exchange",       919},
-    {"kernel/component",      4199},
+    {"kernel/component",      4200},
     {"kernel/activity",       1756},
     {"kernel/program",        3196},
     {"kernel/statechart",     4003},
@@ -39,7 +39,7 @@ const std::vector<Size> sizes{
     {"apps/car_tracking",     1889},
     {"apps/two_robots",       3048},
     {"apps/woodworking_lane", 1035},
-    {"toolchain/machine",     5823},
+    {"toolchain/machine",     5840},
     {"toolchain/tools",       13182},
     {"tests/kernel",         31019},
     {"tests/drivers",         14858},
@@ -51,7 +51,7 @@ const std::vector<Size> sizes{
     {"tests/figures",         15157},
     {"tests/stack",           742},
     {"tests/waitfree",        1755},
-    {"tests/house",           2055},
+    {"tests/house",           1847},
 };
 // clang-format on
 
@@ -94,10 +94,10 @@ TEST(SizeRule, counts_what_lies_below_and_no_text) {
     const Tree two{file("kernel/os/a.hpp", "// A.\n// B.\n"), file("kernel/os/deep/b.cpp", "// C.\n"),
                    file("kernel/os/README.md", "Much.\nText.\n")};
     EXPECT_EQ(lines_under(two, "kernel/os"), 3u);
-    EXPECT_EQ(grown(two, {{"kernel/os", 3875}}).size(), 1u);
-    EXPECT_TRUE(grown(two, {{"kernel/os", 3875}}).empty());
-    EXPECT_EQ(slack(two, {{"kernel/os", 3875}}).size(), 1u);
-    EXPECT_TRUE(slack(two, {{"kernel/os", 3875}}).empty());
+    EXPECT_EQ(grown(two, {{"kernel/os", 2}}).size(), 1u);
+    EXPECT_TRUE(grown(two, {{"kernel/os", 3}}).empty());
+    EXPECT_EQ(slack(two, {{"kernel/os", 60}}).size(), 1u);
+    EXPECT_TRUE(slack(two, {{"kernel/os", 50}}).empty());
 }
 
 } // namespace

@@ -49,7 +49,7 @@ const Rules rules{
     .ends = {"contract_broken", "break_contract", "__assert_fail", "__stack_chk_fail", "abort", "__libc_message", "std::terminate",
              "__throw_", "__cxa_", "_Unwind_", "__libc_fatal", "pthread_exit"},
     // Called by the main thread: arming, opening devices, the end; and by the guardian.
-    .outside = {"::analyse_traffic(", "::longest_seen(", "os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "ExtraSection::", "Limits<", "Control<", "RealWorld::", "Activity::enter(", "MachineInstance",
+    .outside = {"::analyse_traffic(", "::longest_seen(", "os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "ExtraSection::", "Limits<", "Control<", "RealWorld::", "MakersThread::", "Activity::enter(", "MachineInstance",
                 "tappet::Hardware<", "os::Guard::try_apart<", "::GuardedProcess::", "tappet::end_safely(", "BrowserService::answer_for_nobody", "run_firmware(", "Probe::wake(", "Probe::load(", "os::build_id()", "cpf::is_blank"},
     .stated = {
         {picked_at_start, 256, "bytes copied or compared: libc picks the function for the processor, none has a frame to speak of"},

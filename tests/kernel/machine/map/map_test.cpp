@@ -243,8 +243,7 @@ TEST_F(Map, leads_to_the_figures_that_the_framework_keeps) {
             EXPECT_EQ(value<std::uint64_t>(each.value_at), 10u);
             cycles = true;
         }
-        if (each.owner == map::Owner::component && each.index == 0 &&
-            view.text(each.name) == "state") {
+        if (each.owner == map::Owner::component && each.index == 0 && view.text(each.name) == "state") {
             EXPECT_EQ(value<ComponentState>(each.value_at), ComponentState::running);
             state = true;
         }
