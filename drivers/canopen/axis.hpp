@@ -40,7 +40,11 @@ template <text unit> struct Axis {
     }
     void changed() noexcept TAPPET_REALTIME { standing_changed(); }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        if (double wanted = 0; set_point.read(wanted) == Flow::fresh) motion_.follow(wanted);
+        double wanted = 0;
+        const Flow flow = set_point.read(wanted);
+        // What the row gives for a stale velocity or torque counts; a place that is stale leads nowhere.
+        const bool is_place = mode.last() == static_cast<std::int64_t>(OperationMode::cyclic_position);
+        if (flow == Flow::fresh || (flow == Flow::stale && !is_place)) motion_.follow(wanted);
         const AxisMode before = motion_.state();
         const bool heard = statusword.good() && mode_display.good() && position.good() && velocity.good();
         const DriveOrder order =

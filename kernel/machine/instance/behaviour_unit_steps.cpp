@@ -116,6 +116,10 @@ void BehaviourUnit::deactivate(Time now) noexcept TAPPET_REALTIME {
         if (part.machine != nullptr) static_cast<void>(part.machine->deactivate(now));
 }
 
+bool BehaviourUnit::component_runs() const noexcept TAPPET_REALTIME {
+    return machine_->gate_of(driven_)->admits(Entry::queued);
+}
+
 bool BehaviourUnit::is_active() const noexcept TAPPET_REALTIME {
     for (const UnitPart& part : parts_)
         if (part.machine != nullptr ? part.machine->is_active() : part.program->is_at_work()) return true;

@@ -42,6 +42,7 @@ bool act(ProgramExecution& program, BehaviourAction action, Time now) noexcept T
 
 bool act(BehaviourUnit& unit, UnitPart& part, BehaviourAction action, StateIndex state, Time now) noexcept
     TAPPET_REALTIME {
+    if (!unit.component_runs()) return false;
     const bool ends = action == BehaviourAction::stop || action == BehaviourAction::deactivate;
     if (!unit.may_begin() && !ends && action != BehaviourAction::pause) return false;
     const bool acts =

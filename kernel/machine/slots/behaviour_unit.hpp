@@ -96,6 +96,8 @@ public:
     [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME;
     /// Between start() and finish(): outside of it nothing begins.
     [[nodiscard]] bool may_begin() const noexcept TAPPET_REALTIME { return may_begin_; }
+    /// While it does not, nothing of the unit runs, whoever asks.
+    [[nodiscard]] bool component_runs() const noexcept TAPPET_REALTIME;
     /// Inactive from now on, whatever was in hand: no program of it runs.
     void drop() noexcept TAPPET_REALTIME;
     /// The first instance in error; null: none is.

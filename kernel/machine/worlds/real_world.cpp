@@ -9,6 +9,7 @@
 #include "kernel/os/stamps.hpp"
 #include "kernel/os/terminal.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace tappet {
@@ -231,8 +232,22 @@ bool RealWorld::supervise(Duration time) {
     return false;
 }
 
-void RealWorld::give_up(std::size_t a) noexcept {
+void RealWorld::count_hung(std::size_t a) noexcept {
     if (hung_++ == 0) first_hung_ = instance_.engines()[a].name();
+}
+
+bool RealWorld::reaches_others(std::size_t a) const {
+    const auto& index = instance_.machine().index;
+    const auto leads_out = [&](const Link& link) {
+        return link.from.component != nowhere && link.to.component != nowhere &&
+               index.activity[link.from.component] == a && index.activity[link.to.component] != a;
+    };
+    return std::ranges::any_of(index.connections, leads_out) ||
+           std::ranges::any_of(index.reactions, leads_out);
+}
+
+void RealWorld::give_up(std::size_t a) noexcept {
+    count_hung(a);
     instance_.engines()[a].mark_failed();
     instance_.life().lose(a);
     activities_[a].give_up();
@@ -250,8 +265,9 @@ int RealWorld::make_safe() {
         const auto half_of_the_rest = static_cast<int>((due - now()) / 2ms);
         return std::clamp(half_of_the_rest, least_patience_ms, patience_ms);
     };
-    const Time grace = now() + Board::stop_grace;
-    Bounded<std::size_t, max_activities> asked;
+    // Before the drivers stop, so that what it leaves reaches them.
+    const Time grace = now() + std::max<Duration>(Board::stop_grace, (due - now()) / 4);
+    Bounded<std::size_t, max_activities> late;
     for (std::size_t a = instance_.engines().size(); a-- > 0;) {
         if (activities_[a].is_stopped_within(0)) continue;
         const int time = patience();
@@ -260,12 +276,15 @@ int RealWorld::make_safe() {
             if (!activities_[a].is_stopped_within(time)) give_up(a);
             continue;
         }
-        static_cast<void>(asked.push(a));
         const Duration left = std::max(grace - now(), Duration::zero());
-        static_cast<void>(activities_[a].is_stopped_within(static_cast<int>(left / 1ms)));
+        if (!activities_[a].is_stopped_within(static_cast<int>(left / 1ms))) static_cast<void>(late.push(a));
     }
-    for (const std::size_t a : asked)
-        if (!activities_[a].is_stopped_within(patience())) give_up(a);
+    for (const std::size_t a : late) {
+        if (!activities_[a].is_stopped_within(patience()))
+            give_up(a);
+        else if (reaches_others(a)) // whose drivers had stopped by then
+            count_hung(a);
+    }
     for (std::size_t a = 0; a < instance_.engines().size(); ++a)
         if (activities_[a].is_lost()) instance_.life().lose(a);
     return hung_;

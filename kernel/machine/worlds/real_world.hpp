@@ -104,6 +104,9 @@ private:
     /// While nothing else is left to do; false: they take too long.
     [[nodiscard]] bool await_makers();
     [[nodiscard]] Sentence makers_too_long() const;
+    void count_hung(std::size_t activity) noexcept;
+    /// What its components leave when they stop is taken by others.
+    [[nodiscard]] bool reaches_others(std::size_t activity) const;
     void give_up(std::size_t activity) noexcept;
 
     MachineInstance& instance_;

@@ -106,7 +106,7 @@ constexpr auto servo_machine = machine("servo-machine",
         data("can.actual.position",    "axis.position",     stale_after(5ms), hold),
         data("can.actual.velocity",    "axis.velocity",     stale_after(5ms), hold),
         data("can.actual.position",    "client.position"),
-        data("client.set_point",       "axis.set_point"),
+        data("client.set_point",       "axis.set_point",    stale_after(20ms), substitute(0.0)),
         data("axis.controlword",       "can.control.word"),
         data("axis.mode",              "can.control.mode"),
         data("axis.target_position",   "can.target.position"),
@@ -214,6 +214,18 @@ TEST_F(ServoAxis, follows_set_points_at_each_sync) {
     EXPECT_GT(client->worst_lag, 0);
     EXPECT_LT(client->worst_lag, 0.32) << "five cycles of 63 mm/s at most: out, SYNC, motion, SYNC, in";
     EXPECT_EQ(client->errors, 0);
+}
+
+TEST_F(ServoAxis, takes_what_the_row_gives_for_a_velocity_that_grew_stale) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    client->oscillates = true;
+    run(2100ms); // a tenth of a period: it moves
+    ASSERT_GT(std::abs(axis->target_velocity.last()), 1.0);
+    client->oscillates = false;
+    run(100ms);
+    EXPECT_EQ(axis->target_velocity.last(), 0.0);
+    EXPECT_NEAR(servo.velocity(), 0.0, 1e-6);
 }
 
 TEST_F(ServoAxis, stays_where_it_was_turned_without_power) {

@@ -398,5 +398,55 @@ TEST_F(TheMachine, stops_when_a_contract_breaks_in_what_initialises_it_and_waits
     EXPECT_FALSE(rig->instance.standing());
 }
 
+/// The last of the way: what it read last is on the wire.
+struct Wire {
+    Input<std::int64_t> level;
+    std::atomic<std::int64_t> at_wire{-1};
+    void step(const Cycle&) noexcept TAPPET_REALTIME { at_wire.store(level.get()); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { at_wire.store(level.get()); }
+    static constexpr auto interface() { return facets(input<&Wire::level>("level", "", "0: safe")); }
+};
+/// Blocks, and leaves its safe value when it comes back.
+struct Oven {
+    Output<std::int64_t> heats;
+    std::atomic<int> blocks_ms{5};
+    void start(const Cycle&) noexcept TAPPET_REALTIME { heats.write(1); }
+    void work(const Cycle&) { os::sleep_for(blocks_ms.load() * 1ms); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { heats.write(0); }
+    static constexpr auto interface() { return facets(output<&Oven::heats>("heats", "", "0: safe")); }
+};
+// clang-format off
+constexpr auto oven_table = machine("baking",
+    components(component<Wire>("wire"), component<Oven>("oven")),
+    activities(
+        activity("wire", every(5ms),  runs("wire"), budget(50us),   stack(256 * 1024)),
+        activity("oven", every(10ms), not_real_time, runs("oven"), stack(256 * 1024))),
+    connections(data("oven.heats", "wire.level")), reactions(), behaviours());
+// clang-format on
+
+TEST(StopOfWhatBlocks, reaches_the_wire_or_is_told_as_unsafe) {
+    for (const int blocks_ms : {5, 150, 400}) {
+        SCOPED_TRACE(blocks_ms);
+        os::Clock clock{os::Clock::Kind::real};
+        MachineInstance instance{Firmware<oven_table, board>::machine(), clock};
+        RealWorld world{instance};
+        os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
+        ASSERT_TRUE(instance.configure({}));
+        const int nowhere_to_print = open("/dev/null", O_WRONLY);
+        const auto armed = world.arm(report, nowhere_to_print);
+        close(nowhere_to_print);
+        ASSERT_TRUE(armed && world.start(*armed));
+        const Wire& wire = *instance.find<Wire>("wire");
+        instance.find<Oven>("oven")->blocks_ms = blocks_ms;
+        ASSERT_TRUE(world.supervise(100ms));
+        EXPECT_EQ(wire.at_wire, 1);
+        const int hung = world.stop();
+        EXPECT_TRUE(hung != 0 || wire.at_wire == 0) << "it said that all is safe";
+        if (blocks_ms < 100) {
+            EXPECT_EQ(hung, 0);
+        }
+    }
+}
+
 } // namespace
 } // namespace tappet
