@@ -20,7 +20,6 @@ constexpr Duration again = 50ms;                           // a part that does n
 constexpr Duration heard_every = 50ms;                     // by who browses
 constexpr std::size_t told_actions = 12;                   // of a finding, before it
 constexpr Duration learnt_after = 5s, learnt_between = 1s; // until it works, and again
-constexpr Duration longest_makers = 3s;                    // what makers' functions take, of a restart
 constexpr Duration stopped_within = 25ms;                  // a stop in order, to the last line
 constexpr Duration at_rest = 500ms;                        // after a stop
 
@@ -156,9 +155,6 @@ bool SwarmRun::start(bool is_again) {
     }
     if (!is_again) wires_.listen();
     wires_.begin(run_.instance());
-    // What makers write for a restart may take its time: nothing waits for it but that restart.
-    if (anything_goes_ && random_.one_in(2))
-        run_.world().makers_take(Duration{random_.between(1, longest_makers.count())});
     rules_ = of_.rules ? of_.rules(run_.instance(), *plant_, struck_) : std::make_unique<NoRules>();
     is_gone_ = false;
     lost_ = 0;

@@ -109,7 +109,6 @@ private:
     void strike_server(std::size_t component, Duration lasts);
     void strike_component(Duration lasts);
     void strike_activity(Duration lasts);
-    Sentence change_activity(std::size_t activity, LifeChange change);
 
     // swarm_people.cpp
     void find_what_people_may();

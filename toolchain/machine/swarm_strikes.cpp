@@ -226,21 +226,13 @@ void SwarmRun::strike_component(Duration lasts) {
     faults_.back().is_over = is_over;
 }
 
-/// Done when it returns; asked for alone, where makers' functions may take their time.
-Sentence SwarmRun::change_activity(std::size_t a, LifeChange change) {
-    if (!anything_goes_) return run_.world().change_activity(a, change);
-    MachineLife& life = run_.instance().life();
-    if (!life.changes(a)) static_cast<void>(life.ask_activity(a, change)); // it is looked at again
-    return {};
-}
-
 void SwarmRun::strike_activity(Duration lasts) {
     const std::size_t a = random_.below(of_.machine.table.activities.size());
     Sentence text{"activity \"", of_.machine.table.activities[a].name, "\" "};
     const auto runs = [this, a] {
         if (run_.instance().engines()[a].is_active()) return true;
-        refusal_ = change_activity(a, LifeChange::start);
-        return refusal_.empty() && run_.instance().engines()[a].is_active();
+        refusal_ = run_.world().change_activity(a, LifeChange::start);
+        return refusal_.empty();
     };
     const auto is_same = [of = components_of(a)](const Fault& each) {
         return each.of_activity && each.components == of;
@@ -256,11 +248,11 @@ void SwarmRun::strike_activity(Duration lasts) {
                      [this, a] { return run_.world().hang(a, run_.now()), true; });
     case 2:
         begin("activity restarted", text.add("restarts"), 1ms, components_of(a), runs);
-        return static_cast<void>(change_activity(a, LifeChange::restart));
+        return static_cast<void>(run_.world().change_activity(a, LifeChange::restart));
     default:
         begin("activity stopped", text.add("stops"), lasts, components_of(a), runs);
         faults_.back().is_over = [this, a] { return run_.instance().engines()[a].is_active(); };
-        return static_cast<void>(change_activity(a, LifeChange::stop));
+        return static_cast<void>(run_.world().change_activity(a, LifeChange::stop));
     }
 }
 
