@@ -219,6 +219,7 @@ public:
     /// a part before them. Real-time.
     void rest(Parts waiting, Parts of_all) noexcept TAPPET_REALTIME {
         resting_ = (resting_ & ~of_all) | waiting;
+        tell_resting();
     }
     /// From a step of a part before them: those parts start from what they read now; or all of them wait on,
     /// and the answer says which input was in the way. Real-time.
@@ -354,6 +355,7 @@ private:
     void refuse_ending(std::uint32_t part) noexcept TAPPET_REALTIME;
     void end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME;
     /// What the component writes reaches its readers from now on, or no longer.
+    void tell_resting() noexcept TAPPET_REALTIME;
     static void open_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
     static void close_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
     void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;

@@ -161,7 +161,10 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     }
     ends_at_ = never;
     if (!broke) static_cast<void>(run_messages());
-    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) stop_part(i);
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
+        stop_part(i);
+        plan_.parts[i].waits_for_its_turn.store(false, std::memory_order_relaxed);
+    }
     if (recorder_ != nullptr && !broke) recorder_->record(*recorder_, cycle_, false);
     commands_.reject_sent();
     awaiting_ = 0;
@@ -189,6 +192,11 @@ void Engine::end_forces(const EnginePart& part, FacetKind of) const noexcept TAP
         facet.port->release(port, is_input);
         if (plan_.forced != nullptr) plan_.forced->fetch_sub(1, std::memory_order_relaxed);
     });
+}
+
+void Engine::tell_resting() noexcept TAPPET_REALTIME {
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i)
+        plan_.parts[i].waits_for_its_turn.store(rests(i), std::memory_order_relaxed);
 }
 
 void Engine::open_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
@@ -338,6 +346,7 @@ LifeAnswer Engine::change(std::uint32_t i, LifeChange wanted) noexcept TAPPET_RE
 
 LifeAnswer Engine::enter(Parts entering) noexcept TAPPET_REALTIME {
     resting_ &= ~entering;
+    tell_resting();
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if ((entering >> i & 1) == 0) continue;
         const LifeAnswer answer = change(i, LifeChange::start);
@@ -370,6 +379,7 @@ void Engine::leave(Parts leaving) noexcept TAPPET_REALTIME {
         note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(LifeChange::stop),
              cycle_.now);
     }
+    tell_resting();
 }
 
 void Engine::start_awaiting() noexcept TAPPET_REALTIME {

@@ -47,7 +47,8 @@ inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTI
 
 /// How a call comes to a component.
 enum class Entry : std::uint8_t {
-    at_once, ///< in the caller's thread: also into a component that has not begun, starts or stops just now
+    at_once, ///< in the caller's thread: also into one that has not begun, starts or stops just now, or waits
+             ///< for its turn
     queued,  ///< by a message: only while it runs
     always   ///< what moves nothing: a const method, or a property, whose values are kept while it stands
 };
@@ -68,7 +69,8 @@ public:
     [[nodiscard]] bool admits(Entry entry) const noexcept TAPPET_REALTIME {
         const ComponentState now = state.load(std::memory_order_acquire);
         switch (entry) {
-        case Entry::at_once: return now < ComponentState::stopped;
+        case Entry::at_once:
+            return now < ComponentState::stopped || waits_for_its_turn.load(std::memory_order_relaxed);
         case Entry::queued: return now == ComponentState::running;
         case Entry::always: break;
         }
@@ -84,8 +86,10 @@ public:
     }
 
     AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
-    std::atomic<std::uint32_t> dropped{0};                ///< synchronous reactions that were not let in
-    std::atomic<std::uint32_t> dropped_writes{0};         ///< to its outputs, while it did not run
+    /// By turns with others (thesis 3.1.3): it stands, its outputs are shut, and its peers may ask it.
+    std::atomic<bool> waits_for_its_turn{false};
+    std::atomic<std::uint32_t> dropped{0};        ///< synchronous reactions that were not let in
+    std::atomic<std::uint32_t> dropped_writes{0}; ///< to its outputs, while it did not run
 
 private:
     friend class Engine;
