@@ -71,7 +71,7 @@ void Custody::end_everything() {
             processes_.say("the firmware does not end: its machine is killed, and its guardian makes the "
                            "outputs safe");
             processes_.kill_children_of(firmware_); // init.kill_machine
-            // What a guardian that has said so still writes, its black box, keeps nobody.
+            // The guardian has said so: nobody waits for its black box.
             await(guardian_patience, [this] { return !firmware_runs() || outputs_.is_safe(); });
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who has the outputs and the watchdog: a firmware with its guardian, or init. A firmware ends through here
-// only.
+// Custody of the outputs and the watchdog: a firmware with its guardian has it, or init. A firmware is ended
+// here and nowhere else.
 #pragma once
 
 #include "board/init/system.hpp"
@@ -16,7 +16,7 @@
 
 namespace tappet::box {
 
-/// What custody asks of the system; a test answers in its place.
+/// The system calls that custody makes. Tests replace them.
 class Processes {
 public:
     Processes() = default;
@@ -30,7 +30,7 @@ public:
     virtual void say(const std::string& sentence) = 0;
     virtual void ask_to_end(pid_t process) = 0;
     virtual void kill(pid_t process) = 0;
-    /// Of a guardian the machine's process.
+    /// Kills the children of this process: those of a guardian are the machine.
     virtual void kill_children_of(pid_t process) = 0;
     /// All but init, and until they are gone, for a short time.
     virtual void kill_others() = 0;
@@ -44,7 +44,7 @@ public:
     static constexpr Duration stop_patience = 15s;
     /// A guardian's black box comes last.
     static constexpr Duration guardian_patience = os::guardian_acts_within + 5s;
-    /// Of what is killed, until it is gone.
+    /// How long a killed process may take to disappear.
     static constexpr Duration gone_patience = 10s;
 
     /// `watchdog`: its path; empty: the board has none.
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] init::Done hand_over();
     /// After hand_over(). A negative number: it was not started.
     void firmware_started(pid_t process);
-    /// What a child has notified init of; any other than a guardian's statement has no effect.
+    /// Takes a child's notice. Only a guardian's statement that the outputs are safe has an effect.
     void hear(std::string_view notice);
     /// With its exit code. When the outputs are safe the watchdog is init's again.
     void firmware_ended(int code);

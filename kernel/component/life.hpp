@@ -50,7 +50,7 @@ enum class Entry : std::uint8_t {
     at_once, ///< in the caller's thread: also into one that has not begun, starts or stops just now, or waits
              ///< for its turn
     queued,  ///< by a message: only while it runs
-    always   ///< what moves nothing: a const method, or a property, whose values are kept while it stands
+    always   ///< a const method, or properties: its own outputs are shut while it stands
 };
 
 /// The one way into a component for everybody but its engine: reactions, method calls, commands, scripts,
