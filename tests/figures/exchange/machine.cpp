@@ -1,5 +1,5 @@
-// Configures the machine; its engines stay where they are, for each operation is called by the measuring
-// threads.
+// Starts the machine, whose outputs are shut before; no engine steps, for each operation is called by the
+// measuring threads.
 #include "tests/figures/exchange/machine.hpp"
 
 #include "kernel/machine/firmware.hpp"
@@ -28,6 +28,11 @@ bool start_machine() {
     static MachineInstance instance{Firmware<exchange_machine, exchange_board>::machine(), clock};
     if (const auto done = instance.configure({}); !done) {
         std::cerr << done.error().view() << '\n';
+        return false;
+    }
+    static VirtualWorld world{instance};
+    if (const Sentence refused = world.start(); !refused.empty()) {
+        std::cerr << refused.view() << '\n';
         return false;
     }
     find_ends<8>(instance);

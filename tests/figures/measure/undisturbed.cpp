@@ -9,6 +9,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace tappet::figures {
@@ -21,6 +22,9 @@ Undisturbed::Undisturbed(int processor) {
         if (pthread_setaffinity_np(pthread_self(), sizeof set, &set) != 0)
             refused_ += "processor " + std::to_string(processor) + " for a thread of its own; ";
     }
+    // One that spins without end is ended, and does not take the host's processors with it.
+    constexpr rlimit spins{.rlim_cur = 60'000'000, .rlim_max = RLIM_INFINITY}; // us
+    if (setrlimit(RLIMIT_RTTIME, &spins) != 0) refused_ += "RLIMIT_RTTIME; ";
     sched_param parameters{};
     parameters.sched_priority = priority;
     if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) != 0)
