@@ -21,6 +21,8 @@ public:
     /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
+    /// Of those, for who has a higher role: nobody keeps a higher one from being served.
+    static constexpr std::size_t kept_from_observers = 8, kept_from_operators = 4;
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 
@@ -81,7 +83,7 @@ private:
     }
 
     // What waits for an answer; requests_pending.cpp
-    [[nodiscard]] Pending* free_place() noexcept;
+    [[nodiscard]] Pending* free_place(Role role) noexcept;
     static Verdict no_place() noexcept;
     Verdict await(Pending& place, const browsing::Asker& asker, bool (BrowserService::*look)(Pending&));
     Verdict await_engine(Pending& place, const browsing::Asker& asker, std::size_t component,

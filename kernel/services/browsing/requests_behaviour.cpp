@@ -200,7 +200,7 @@ BrowserService::Verdict BrowserService::behave(Client& client, const Request& re
         }
     }
     const std::size_t c = find_component(machine.table, machine.table.behaviours[found.row].component);
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     order.unit = found.unit;
     order.slot = machine_->slot_of_row(found.row);

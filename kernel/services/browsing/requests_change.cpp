@@ -102,7 +102,7 @@ BrowserService::Verdict BrowserService::force(Client& client, const Request& req
     const MachineView& table = machine_->machine().table;
     if (const Sentence fault = find_port(table, request.arguments[0], end); !fault.empty())
         return {Refusal::unknown, fault};
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     const TypeTag& type = *facet_at(table, end).type;
     if (place == nullptr) return no_place();
     auto& call = place->work.emplace<FacetCall>();
@@ -119,7 +119,7 @@ BrowserService::Verdict BrowserService::release(Client& client, const Request& r
     if (const Sentence fault = find_port(machine_->machine().table, request.arguments[0], end);
         !fault.empty())
         return {Refusal::unknown, fault};
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     place->work.emplace<FacetCall>();
     return reach(*place, asker(client, request), end, &release_port);
@@ -141,7 +141,7 @@ bool BrowserService::release_readers_of(const browsing::FollowedLife& stopped) {
         if (!meant || record.forced_at == 0 || view->word<std::uint8_t>(record.forced_at) == 0 ||
             !check_alive(link.to.component).good())
             continue;
-        Pending* place = free_place();
+        Pending* place = free_place(Role::engineer);
         if (place == nullptr) return false;
         place->work.emplace<FacetCall>();
         if (!reach(*place, {.since = now_}, link.to, &release_port).good()) return false;
@@ -183,7 +183,7 @@ BrowserService::Verdict BrowserService::call(Client& client, const Request& requ
     if (!unknown.empty()) return {Refusal::unknown, unknown};
     const Facet& facet = facet_at(table, end);
     if (Verdict role = check_role(client, request.arguments[0], facet.least_role); !role.good()) return role;
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     auto& values = place->work.emplace<FacetCall>().value;
     if (Verdict read = read_arguments(facet, request, values); !read.good()) return read;
@@ -230,7 +230,7 @@ BrowserService::Verdict BrowserService::set(Client& client, const Request& reque
     if (request.arguments.size() % 2 != 0)
         return {Refusal::bad_request,
                 Sentence{"each property needs its value; it is spelled: ", request.verb->usage}};
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     auto& transaction = place->work.emplace<PropertyTransaction>();
     End end;

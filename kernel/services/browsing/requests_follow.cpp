@@ -18,7 +18,7 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
     if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
         !role.good())
         return role;
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     auto& call = place->work.emplace<FollowedCommand>();
     const Facet& facet = facet_at(table, end);
@@ -78,7 +78,7 @@ BrowserService::Verdict BrowserService::change_life(Client& client, const Reques
         return {Refusal::unsupported,
                 Sentence{"the browser answers from activity \"", machine.table.activities[activity].name,
                          "\" itself and does not stop or start it; stop the machine instead"}};
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     const LifeTicket ticket = target.component != nowhere
                                   ? machine_->life().ask_component(target.component, change)

@@ -1,14 +1,20 @@
 // What waits for an answer, whatever it is: taken up, looked at, and given up by one rule.
 #include "kernel/services/browsing/browser_service.hpp"
 
+#include <algorithm>
+
 namespace tappet {
 
 using browsing::Asker;
 
-BrowserService::Pending* BrowserService::free_place() noexcept {
-    for (Pending& each : pending_)
-        if (each.look == nullptr) return &each;
-    return nullptr;
+BrowserService::Pending* BrowserService::free_place(Role role) noexcept {
+    const auto is_free = [](const Pending& each) { return each.look == nullptr; };
+    const std::size_t kept = role == Role::observer           ? kept_from_observers
+                             : role == Role::machine_operator ? kept_from_operators
+                                                              : 0;
+    const auto first = std::ranges::find_if(pending_, is_free);
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(pending_, is_free));
+    return count > kept ? &*first : nullptr;
 }
 
 BrowserService::Verdict BrowserService::no_place() noexcept {
@@ -42,11 +48,13 @@ void BrowserService::follow_pending() {
             each.look = nullptr;
         } else if (!each.is_told && now_ - each.asker.since > patience) {
             // What its engine may still come to keeps its place until then.
+            const bool nothing_was_done = each.call.withdraw();
             answer_bad(each, Refusal::not_now,
-                       each.call.withdraw()
+                       nothing_was_done
                            ? Sentence{"its engine did not come to it; nothing was done: look at its activity"}
                            : Sentence{"it has not happened yet and may still happen: look at its activity"});
             each.is_told = true;
+            if (nothing_was_done) each.look = nullptr;
         }
     }
 }

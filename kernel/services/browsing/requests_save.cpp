@@ -19,7 +19,7 @@ BrowserService::Verdict BrowserService::save(Client& client, const Request& requ
                     Sentence{"component \"", request.arguments[0],
                              "\" has no properties file; give its row properties_file(...)"}};
     }
-    Pending* place = free_place();
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     place->work.emplace<PropertySaving>().begin(*machine_, own_activity_, component);
     return await(*place, asker(client, request), &BrowserService::look_at_saving);

@@ -49,12 +49,12 @@ struct Watchdog {
         }
         if (alive.last() == silent_) alive.write(!silent_);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { alive.write(false); }
 
     static constexpr auto interface() {
         return facets(
             output<&Watchdog::alive>("alive", "",
-                                     "what it watches has shown life within the limit; written on change"),
+                                     "what it watches has shown life within the limit; written on change",
+                                     while_stopped(false)),
             event<&Watchdog::silent>("silent", "no life for longer than the limit; how long"),
             event<&Watchdog::revived>("revived", "life again after a silence; how long that was"),
             property<&Watchdog::limit>("limit", "s", "the longest time without life", range(0, 3600)));

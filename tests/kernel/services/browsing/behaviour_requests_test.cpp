@@ -133,6 +133,25 @@ TEST_F(Behaviours, one_says_why_it_is_not_in_a_state) {
     EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "down")")) << "asking takes nothing";
 }
 
+TEST_F(Behaviours, observers_who_ask_without_end_keep_nobody_of_a_higher_role_waiting) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    instance.engines()[0].stop(clock.now());
+    instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // it answers nobody
+    ASSERT_EQ(seteuid(65534), 0);
+    std::vector<std::unique_ptr<Talker>> observers;
+    for (int i = 0; i < 4; ++i) observers.push_back(std::make_unique<Talker>(directory + "/press.socket"));
+    ASSERT_EQ(seteuid(0), 0);
+    for (const auto& each : observers)
+        for (std::size_t n = 0; n < BrowserService::max_pending; ++n)
+            ASSERT_TRUE(each->send("1 why ram.held"));
+    run(100ms);
+    EXPECT_THAT(ask("force table.height 7"), HasSubstr("\"ok\": true"));
+    std::string answers;
+    for (const auto& each : observers)
+        for (std::string one = each->receive(); !one.empty(); one = each->receive()) answers += one;
+    EXPECT_THAT(answers, HasSubstr("too many requests are under way"));
+}
+
 TEST_F(Behaviours, why_of_a_misspelt_name_is_told_the_nearest) {
     EXPECT_THAT(ask("why ram.hold"), HasSubstr(R"(has a state \"hold\"; did you mean \"held\"?)"));
     EXPECT_THAT(ask("why rum.held"), HasSubstr(R"(no state machine of \"rum\"; did you mean \"ram\"?)"));
