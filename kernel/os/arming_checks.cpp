@@ -66,7 +66,7 @@ Verdict look_at_kernel(const ArmingOptions& options, const ProcessFacts&) noexce
     const SystemFile flag{options.root, Sentence{"/sys/kernel/realtime"}};
     const SystemFile version{options.root, Sentence{"/proc/sys/kernel/version"}};
     const Sentence name{"kernel ", Release{options.root}.text()};
-    if (flag.text() == "1" || version.text().find("PREEMPT_RT") != std::string_view::npos)
+    if (flag.text() == "1" || version.text().find(" PREEMPT_RT ") != std::string_view::npos)
         return {true, Sentence{name, " is PREEMPT_RT"}};
     return {false, Sentence{name, " is not PREEMPT_RT"}};
 }
@@ -144,6 +144,9 @@ Verdict look_at_lock(const ArmingOptions& options, const ProcessFacts& facts) no
 
 Verdict look_at_swap(const ArmingOptions& options, const ProcessFacts&) noexcept {
     const SystemFile file{options.root, Sentence{"/proc/swaps"}};
+    // A kernel built without swap has no such file.
+    if (!file.readable && file.error != ENOENT)
+        return {false, Sentence{"/proc/swaps cannot be read (", std::strerror(file.error), ")"}};
     const std::string_view lines = file.text(); // a heading, and a line for each swap
     const std::size_t second = lines.find('\n');
     if (second == std::string_view::npos) return {true, Sentence{"no swap is in use"}};
@@ -165,9 +168,11 @@ Verdict look_at_processors(const ArmingOptions& options, const ProcessFacts&) no
 Verdict look_at_governor(const ArmingOptions& options, const ProcessFacts&) noexcept {
     bool scaled = false;
     for (const int processor : options.processors) {
-        const SystemFile file{
-            options.root, Sentence{"/sys/devices/system/cpu/cpu", processor, "/cpufreq/scaling_governor"}};
-        if (!file.readable) continue;
+        const Sentence path{"/sys/devices/system/cpu/cpu", processor, "/cpufreq/scaling_governor"};
+        const SystemFile file{options.root, path};
+        if (!file.readable && file.error == ENOENT) continue;
+        if (!file.readable)
+            return {false, Sentence{path, " cannot be read (", std::strerror(file.error), ")"}};
         scaled = true;
         if (file.text() != "performance")
             return {false, Sentence{"processor ", processor, " has the frequency governor ", file.text()}};

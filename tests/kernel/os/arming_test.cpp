@@ -155,6 +155,13 @@ const Fault faults[] = {
     {"unlocked", "memory-locked", "not locked", [](Situation& s) { s.facts.memory_locked = false; }},
     {"lock_lost", "memory-locked", "0 kB", [](Situation& s) { s.box.write("proc/self/status", "VmLck:\t       0 kB\nCapEff:\t0000000000004000\n"); }},
     {"swap", "swap", "in use on /dev/sda2", [](Situation& s) { s.box.write("proc/swaps", "Filename Type\n/dev/sda2\tpartition 1 0 -2\n"); }},
+    {"unreadable_swap", "swap", "/proc/swaps cannot be read (Is a directory)",
+     [](Situation& s) { s.box.remove("proc/swaps"); s.box.write("proc/swaps/what", ""); }},
+    {"unreadable_governor", "cpu-governor", "scaling_governor cannot be read (Is a directory)",
+     [](Situation& s) {
+         s.box.remove("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor");
+         s.box.write("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor/what", "");
+     }},
     {"missing_processor", "processors", "not online: 4; online are 0-3", [](Situation& s) { s.box.write("sys/devices/system/cpu/online", "0-3\n"); }},
     {"unreadable_processors", "processors", "not online: 1 4", [](Situation& s) { s.box.write("sys/devices/system/cpu/online", "what?\n"); }},
     {"powersave", "cpu-governor", "processor 1 has the frequency governor powersave",
