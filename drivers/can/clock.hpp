@@ -150,7 +150,8 @@ template <const auto& row> struct ToldClock {
             output<&ToldClock::is_known>(
                 "known", "",
                 "the clock was told lately, and its error is small enough; written on "
-                "change"),
+                "change",
+                while_stopped(false)),
             output<&ToldClock::rate>("rate", "",
                                      "by how much the teller's clock went faster, s in a s, on the "
                                      "average of the last time over which it is taken"),

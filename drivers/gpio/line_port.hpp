@@ -122,7 +122,6 @@ template <const auto& map> struct LinePort {
         drive(outputs, safe_values);
         // Lines that nobody drives cannot be relied on, though the chip be well.
         if (!faulted_) line_fault.emit();
-        is_faulted.write(true);
     }
 
     template <std::size_t line> void set() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, true); }
@@ -163,7 +162,7 @@ private:
         all[n++] = tappet::event<&LinePort::edges_were_lost>("edges_were_lost",
                                                              "edges were lost; the levels were read anew");
         all[n++] = tappet::output<&LinePort::is_faulted>(
-            "faulted", "", "the chip refuses what is asked of it; written on change");
+            "faulted", "", "the chip refuses what is asked of it; written on change", while_stopped(true));
         all[n++] = tappet::event<&LinePort::line_fault>("line_fault", "the lines can no longer be relied on");
         all[n++] =
             timer<&LinePort::next_look, &LinePort::step>("next_look", "whether a faulted chip answers again");
@@ -179,6 +178,7 @@ private:
                         .doc = "the line's level",
                         .kind = FacetKind::output,
                         .type = type_id<bool>,
+                        .at_rest = AtRest::as_it_was,
                         .index = i,
                         .at = [](void* c, std::size_t k) noexcept -> void* {
                             return &static_cast<LinePort*>(c)->level[k];

@@ -64,7 +64,6 @@ struct AnalogInput {
         if (is_good) value.write(scale.value(now), raw.stamp());
         good.write(is_good);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { good.write(false); }
     Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
         return detail::check_scale(*this, proposal);
     }
@@ -73,7 +72,8 @@ struct AnalogInput {
         return facets(
             input<&AnalogInput::raw>("raw", "", "of the converter: mA, V or counts"),
             output<&AnalogInput::value>("value", unit.view(), "the quantity"),
-            output<&AnalogInput::good>("good", "", "the wire is whole and the value that of now"),
+            output<&AnalogInput::good>("good", "", "the wire is whole and the value that of now",
+                                       while_stopped(false)),
             property<&AnalogInput::raw_low>("raw_low", "", "one end of the signal", range(-1e9, 1e9)),
             property<&AnalogInput::raw_high>("raw_high", "", "the other end", range(-1e9, 1e9)),
             property<&AnalogInput::low>("low", unit.view(), detail::of_low, range(-1e9, 1e9)),

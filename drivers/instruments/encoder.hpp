@@ -36,12 +36,11 @@ struct Encoder {
         }
         good.write(is_good);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { good.write(false); }
 
     static constexpr auto interface() {
         return facets(input<&Encoder::counts>("counts", "", "of the encoder's register"),
                       output<&Encoder::position>("position", unit.view(), "of the axis"),
-                      output<&Encoder::good>("good", "", "the position is that of now"),
+                      output<&Encoder::good>("good", "", "the position is that of now", while_stopped(false)),
                       property<&Encoder::counts_per_unit>("counts_per_unit", "",
                                                           "negative: it is mounted the other "
                                                           "way round",

@@ -31,10 +31,7 @@ struct ForceSensor {
         is_overloaded_ = too_much;
     }
     /// Others are not to push on with a force that nobody measures.
-    void stop(const Cycle&) noexcept TAPPET_REALTIME {
-        force.write(0.0);
-        good.write(false);
-    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { force.write(0.0); }
     /// What lies on it now is no load.
     void tare() noexcept TAPPET_REALTIME {
         if (good.last()) tare_ += force.last();
@@ -44,7 +41,7 @@ struct ForceSensor {
         return facets(
             input<&ForceSensor::measured>("measured", "N", "by the cell"),
             output<&ForceSensor::force>("force", "N", "without the tare"),
-            output<&ForceSensor::good>("good", "", "the force is that of now"),
+            output<&ForceSensor::good>("good", "", "the force is that of now", while_stopped(false)),
             event<&ForceSensor::overloaded>("overloaded", "N: it is above the cell's range"),
             property<&ForceSensor::most>("most", "N", "that the cell bears, tare included", range(0.0, 1e9)),
             operation<&ForceSensor::tare>("tare", "what lies on it now is no load"));

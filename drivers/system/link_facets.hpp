@@ -42,6 +42,7 @@ struct LinkFacets {
                     .doc = port.is_input ? "told to other nodes" : "as another node tells it",
                     .kind = port.is_input ? FacetKind::input : FacetKind::output,
                     .type = port.facet->type,
+                    .at_rest = AtRest::as_it_was,
                     .index = p,
                     .at = [](void* self, std::size_t i) noexcept -> void* {
                         return static_cast<Link*>(self)->storage_.data() + Rows::ports[i].at;
@@ -125,6 +126,7 @@ struct LinkFacets {
                              .doc = "it is heard; written on change",
                              .kind = FacetKind::output,
                              .type = type_id<bool>,
+                             .at_rest = AtRest::says_false,
                              .index = node,
                              .at = [](void* self, std::size_t i) noexcept -> void* {
                                  return &static_cast<Link*>(self)->is_there[i];

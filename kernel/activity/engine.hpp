@@ -357,6 +357,8 @@ private:
     /// Tells the gates of all parts which of them wait for their turn.
     void tell_resting() noexcept TAPPET_REALTIME;
     /// What the component writes reaches its readers from now on, or no longer.
+    void cancel_timers(std::uint32_t part) noexcept TAPPET_REALTIME;
+    static void say_at_rest(const EnginePart& part) noexcept TAPPET_REALTIME;
     static void open_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
     static void close_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
     void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;

@@ -181,6 +181,7 @@ void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     part.state.store(ComponentState::starting, std::memory_order_release);
     open_outputs(part);
+    cancel_timers(i); // armed while it stood: by changed()
     if (part.type->start != nullptr) part.type->start(part.component_, cycle_);
     part.state.store(ComponentState::running, std::memory_order_release);
 }
@@ -199,12 +200,27 @@ void Engine::tell_resting() noexcept TAPPET_REALTIME {
         plan_.parts[i].waits_for_its_turn.store(rests(i), std::memory_order_relaxed);
 }
 
+// In one place, so that no driver's stop() forgets it.
+void Engine::say_at_rest(const EnginePart& part) noexcept TAPPET_REALTIME {
+    for_ports(*part.type, part.component_, FacetKind::output,
+              [](const Facet& facet, void* port) noexcept TAPPET_REALTIME {
+                  if (facet.at_rest < AtRest::says_false) return;
+                  const bool says = facet.at_rest == AtRest::says_true;
+                  facet.port->write(port, reinterpret_cast<const std::byte*>(&says));
+              });
+}
+
 void Engine::open_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
     close(*part.type, part.component_, nullptr);
 }
 
 void Engine::close_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
     close(*part.type, part.component_, &part.dropped_writes);
+}
+
+void Engine::cancel_timers(std::uint32_t part) noexcept TAPPET_REALTIME {
+    for (const EngineTimer& each : plan_.timers)
+        if (each.part == part) each.timer->cancel();
 }
 
 // A component that failed or stopped before has left its safe values already. Its inputs are released before
@@ -220,10 +236,10 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     commands_.fail(i);
     open_outputs(part); // it may never have started
     if (part.type->stop != nullptr) part.type->stop(part.component_, cycle_);
+    say_at_rest(part);
     end_forces(part, FacetKind::output);
     close_outputs(part);
-    for (const EngineTimer& each : plan_.timers)
-        if (each.part == i) each.timer->cancel();
+    cancel_timers(i);
     part.state.store(ComponentState::stopped, std::memory_order_release);
 }
 

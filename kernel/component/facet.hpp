@@ -116,6 +116,9 @@ struct TimerOperations {
     void (*fire)(void* component, const Cycle&) noexcept TAPPET_REALTIME;
 };
 
+/// What an output of bool says while its component stands, and nobody looks: a driver's says it in any case.
+enum class AtRest : std::uint8_t { unsaid, as_it_was, says_false, says_true };
+
 struct Facet {
     std::string_view name{};
     std::string_view unit{};
@@ -126,6 +129,7 @@ struct Facet {
         false; ///< an input or a call that must be connected, an operation that a reaction must name
     bool valid_to_start = false;      ///< an input: its component does not start before it has a valid value
     bool grows_stale = false;         ///< an input: its row says when its value is stale
+    AtRest at_rest = AtRest::unsaid;  ///< of an output of bool
     std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
     bool any_thread = false;          ///< an operation or a method that any activity may call
     bool may_block = false;           ///< a method or a command; never in a real-time activity

@@ -41,6 +41,16 @@ inline constexpr ValidToStart valid_to_start{};
 /// Marks an input by whose age its component tells a silence: its row must say stale_after(...).
 struct GrowsStale {};
 inline constexpr GrowsStale grows_stale{};
+/// What an output of bool says while its component stands: `connected` of a driver that nobody runs is
+/// false. The engine writes it behind stop(). A driver's outputs of bool say it; one that has no better value
+/// stays as_it_was.
+struct WhileStopped {
+    AtRest says;
+};
+constexpr WhileStopped while_stopped(bool value) noexcept {
+    return {value ? AtRest::says_true : AtRest::says_false};
+}
+inline constexpr WhileStopped as_it_was{AtRest::as_it_was};
 /// An event that means something to the machine's safety: at least so many reaction rows must name it.
 struct HeardBy {
     std::uint8_t reactions = 1;
@@ -96,6 +106,7 @@ constexpr void apply(Facet& facet, Optional) noexcept { facet.required = false; 
 constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
 constexpr void apply(Facet& facet, ValidToStart) noexcept { facet.valid_to_start = true; }
 constexpr void apply(Facet& facet, GrowsStale) noexcept { facet.grows_stale = true; }
+constexpr void apply(Facet& facet, WhileStopped stopped) noexcept { facet.at_rest = stopped.says; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
 constexpr void apply(Facet& facet, MayBlock) noexcept { facet.may_block = true; }
@@ -139,10 +150,13 @@ constexpr Facet input(std::string_view name, std::string_view unit, std::string_
                             options...);
 }
 
-template <auto Member>
-constexpr Facet output(std::string_view name, std::string_view unit, std::string_view doc) {
+template <auto Member, class... Options>
+constexpr Facet output(std::string_view name, std::string_view unit, std::string_view doc,
+                       Options... options) {
     using M = detail::MemberOf<Member>;
     using T = typename M::Type::Value;
+    static_assert(std::same_as<typename M::Type, Output<bool>> || sizeof...(Options) == 0,
+                  "while_stopped(..) is said of an Output<bool>; another output is written in stop()");
     if constexpr (std::same_as<typename M::Type, BufferOutput<T>>)
         return {.name = name,
                 .unit = unit,
@@ -152,13 +166,14 @@ constexpr Facet output(std::string_view name, std::string_view unit, std::string
                 .at = &M::at,
                 .buffer = &PortAccess::buffer<T>};
     else
-        return {.name = name,
-                .unit = unit,
-                .doc = doc,
-                .kind = FacetKind::output,
-                .type = type_id<T>,
-                .at = &M::at,
-                .port = &PortAccess::data<T>};
+        return detail::with({.name = name,
+                             .unit = unit,
+                             .doc = doc,
+                             .kind = FacetKind::output,
+                             .type = type_id<T>,
+                             .at = &M::at,
+                             .port = &PortAccess::data<T>},
+                            options...);
 }
 
 template <auto Member, class... Options>

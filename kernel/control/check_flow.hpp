@@ -210,7 +210,12 @@ constexpr Sentence check_seat(const ControlView& c, const MachineView& m, const 
     if (!writes && (seat.role != ControlRole::effector || !is_driver(m, seat.component)))
         return of_level(level, "nobody reads what the ", to_text(seat.role), " \"", name,
                         "\" writes; connect an output of it, or leave it out");
-    if (writes && m.components[seat.component].type->stop == nullptr && !is_driver(m, seat.component))
+    const ComponentType& type = *m.components[seat.component].type;
+    const bool says_so =
+        seat.role == ControlRole::sensor && std::ranges::any_of(type.facets, [](const Facet& each) {
+            return each.at_rest >= AtRest::says_false;
+        });
+    if (writes && type.stop == nullptr && !says_so && !is_driver(m, seat.component))
         return of_level(
             level, "the ", to_text(seat.role), " \"", name,
             "\" has no stop(), so that others would go on with its last value when it has stopped; "

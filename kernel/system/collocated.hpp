@@ -14,7 +14,8 @@ struct AlwaysThere {
     Output<bool> is_there{};
     void start(const Cycle&) noexcept TAPPET_REALTIME { is_there.write(true); }
     static constexpr auto interface() {
-        return facets(output<&AlwaysThere::is_there>("is_there", "", "the others run in this machine, too"));
+        return facets(output<&AlwaysThere::is_there>("is_there", "", "the others run in this machine, too",
+                                                     while_stopped(false)));
     }
 };
 inline constexpr std::string_view always_there = "the_others";

@@ -60,6 +60,17 @@ constexpr Sentence check_recorders(const MachineView& m) {
     return {};
 }
 
+/// Whoever reads "connected" of a driver that stands must not believe it.
+constexpr Sentence check_says_at_rest(const ComponentRow& row) {
+    if (row.type->device_kind.empty()) return {};
+    for (const Facet& each : row.type->facets)
+        if (each.kind == FacetKind::output && each.type == type_id<bool> && each.at_rest == AtRest::unsaid)
+            return of_component(row.name, " is a driver, and its output \"", each.name,
+                                "\" does not say what it is while the driver is stopped; write "
+                                "while_stopped(false), while_stopped(true) or as_it_was behind its doc");
+    return {};
+}
+
 /// Fills the list by name.
 constexpr Sentence check_components(const MachineView& m, const TableIndexView& r) {
     if (m.components.empty())
@@ -79,6 +90,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
                                 " device but its row names none; add device(\"...\")");
         if (row.type->device_kind.empty() && !row.device.empty())
             return of_component(row.name, " drives no device; remove device(\"", row.device, "\")");
+        if (Sentence fault = check_says_at_rest(row); !fault.empty()) return fault;
     }
     if (Sentence fault = check_recorders(m); !fault.empty()) return fault;
     sort_by_name(m, r.by_name);

@@ -35,6 +35,15 @@ struct Camera {
     static constexpr std::string_view device_kind = "udp";
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
+struct Trusted {
+    static constexpr std::string_view device_kind = "can";
+    Output<bool> connected, level;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(output<&Trusted::level>("level", "", "of a line", as_it_was),
+                      output<&Trusted::connected>("connected", "", "somebody answers"));
+    }
+};
 struct SlowBus {
     static constexpr std::string_view device_kind = "can";
     static constexpr Sentence analyse(const DeviceUse& use, std::span<TrafficRow>) {
@@ -266,6 +275,9 @@ constexpr Fault device_faults[] = {
      R"(loom: component "encoder" drives a can device but its row names none; add device("..."))"},
     {"device_kind", [](Table& m) { m.put(component<Encoder>("encoder", device("panel"))); },
      R"(loom: component "encoder": binding to board "bench", wired("panel"): it drives a can device but "io" is of kind gpio; name another)"},
+    {"device_trusted_while_it_stands",
+     [](Table& m) { m.put(component<Trusted>("encoder", device("main_encoder"))); },
+     R"(loom: component "encoder" is a driver, and its output "connected" does not say what it is while the driver is stopped; write while_stopped(false), while_stopped(true) or as_it_was behind its doc)"},
     {"device_shared_with_nobody",
      [](Table& m) {
          m.add(component<Restarter>("restarter", device("spare_encoder")));
