@@ -108,6 +108,7 @@ struct Bus {
         may_repeat_ = {};
         was_faulted_ = false;
         if (was_stopped_) forget_stopped_time();
+        if (was_stopped_ && !faulted(device_->state())) bus_recovered.emit();
         lost_ = taken_ = 0;
         too_often_ = 0;
         status_ = status_now();
@@ -125,19 +126,25 @@ struct Bus {
         finish(cycle.now);
     }
 
-    /// The cyclic frames once more: the machine has written safe values by now.
+    /// What the machine has written by now, and behind it what makes the receivers safe: the frames that its
+    /// guardian would send, whoever wrote and whatever their stop() left.
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
-            if (is_cyclic(f)) send(f, cycle.now);
+            if (is_cyclic(f) && map.frames[f].silence_is_safe) send(f, cycle.now);
         send_services();
         static_cast<void>(send_on_demand(cycle.now));
-        device_->service(cycle.now);
-        // They wait for the frames in flight, and nobody serves the device after this.
-        Frame ignored;
-        for (int n = 0; n < max_passes && device_->next_service() != never; ++n) {
-            static_cast<void>(device_->receive(ignored));
-            device_->service(cycle.now);
+        device_->finish(cycle.now);
+        for (Frame frame : device_map.safe) {
+            frame.stamp = cycle.now;
+            if (device_->send(frame, Keep::last) == Send::refused_full) {
+                device_->finish(cycle.now);
+                static_cast<void>(device_->send(frame, Keep::last));
+            }
         }
+        device_->finish(cycle.now);
+        // A bus that nobody serves cannot be relied on, though it be well.
+        bus_state.write(static_cast<std::int64_t>(State::down));
+        if (!was_faulted_) bus_fault.emit();
         was_stopped_ = true;
     }
 
@@ -176,27 +183,29 @@ struct Bus {
             facet.index = f;
             list[n++] = facet;
         }
-        for (
-            const Facet& facet : {
-                output<&Bus::is_faulted>("faulted", "", "nothing is sent; written on change"),
-                output<&Bus::bus_state>(
-                    "state", "",
-                    "0 active, 1 warning, 2 passive, 3 unacknowledged, 4 bus-off, 5 down; written on change"),
-                output<&Bus::frames_lost>("frames_lost", "",
-                                          "arrived but never read, since its start; written on change"),
-                output<&Bus::frames_received>("frames_received", "", "since its start; written on change"),
-                output<&Bus::wrong_lengths>(
-                    "wrong_lengths", "",
-                    "frames of another length or format than the map's; written on change"),
-                output<&Bus::sent_too_often>(
-                    "sent_too_often", "",
-                    "frames on demand that followed sooner than the map says; written on change"),
-                tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
-                tappet::event<&Bus::bus_recovered>("bus_recovered", "the bus works again, with empty queues"),
-                operation<&Bus::purge>("purge", "drops what waits to be sent"),
-                timer<&Bus::next_send, &Bus::send_cyclic>("next_send", "the next cyclic frame"),
-                timer<&Bus::next_service, &Bus::serve_device>("next_service", "the next time-out of a frame"),
-            })
+        for (const Facet& facet : {
+                 output<&Bus::is_faulted>("faulted", "", "nothing is sent; written on change",
+                                          while_stopped(true)),
+                 output<&Bus::bus_state>("state", "",
+                                         "0 active, 1 warning, 2 passive, 3 unacknowledged, 4 bus-off, 5 "
+                                         "down or stopped; written on change"),
+                 output<&Bus::frames_lost>("frames_lost", "",
+                                           "arrived but never read, since its start; written on change"),
+                 output<&Bus::frames_received>("frames_received", "", "since its start; written on change"),
+                 output<&Bus::wrong_lengths>(
+                     "wrong_lengths", "",
+                     "frames of another length or format than the map's; written on change"),
+                 output<&Bus::sent_too_often>(
+                     "sent_too_often", "",
+                     "frames on demand that followed sooner than the map says; written on change"),
+                 tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
+                 tappet::event<&Bus::bus_recovered>("bus_recovered",
+                                                    "the bus works again, with empty queues"),
+                 operation<&Bus::purge>("purge", "drops what waits to be sent"),
+                 timer<&Bus::next_send, &Bus::send_cyclic>("next_send", "the next cyclic frame"),
+                 timer<&Bus::next_service, &Bus::serve_device>("next_service",
+                                                               "the next time-out of a frame"),
+             })
             list[n++] = facet;
         if constexpr (protocol.any) {
             list[n++] = output<&Bus::services>("services", "", "frames of the protocol's own, received");
@@ -208,8 +217,7 @@ struct Bus {
 
 private:
     static constexpr std::size_t fixed_facets = 11;
-    // At stop and at start: some milliseconds. Four frames at 125 kbit/s take 5 ms; the kernel's buffer holds
-    // fewer frames.
+    // At start: the kernel's buffer holds fewer frames.
     static constexpr int max_passes = 4096;
 
     static constexpr bool is_cyclic(std::size_t f) noexcept {

@@ -43,6 +43,10 @@ public:
     const Frame* next(Time now) noexcept TAPPET_REALTIME {
         return faulted(state_) ? nullptr : transmitter_.next(now, count);
     }
+    /// The frame that is next, whatever is in flight; nobody waits for its confirmation. False: none waits.
+    bool take_waiting(Frame& frame) noexcept TAPPET_REALTIME {
+        return !faulted(state_) && transmitter_.take_waiting(frame);
+    }
     void handed_over(Time now) noexcept TAPPET_REALTIME { transmitter_.handed_over(now); }
     void confirmed(Time now) noexcept TAPPET_REALTIME {
         const Transmitter::Flight sent = transmitter_.confirmed(now, count);

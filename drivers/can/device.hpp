@@ -32,6 +32,7 @@ enum class Send : std::uint8_t {
 enum class Keep : std::uint8_t {
     latest, ///< cyclic contents: the newer replaces the older
     every,  ///< commands: all go out, in their order
+    last,   ///< last words: behind everything else, in their order, and never too old
 };
 
 enum class Restart : std::uint8_t {
@@ -95,6 +96,17 @@ public:
     /// Once per activation, after the sends: hands frames over, drops old ones, notices time-outs and
     /// restarts.
     virtual void service(Time now) noexcept TAPPET_REALTIME = 0;
+    /// The owner's last call before it rests: what waits goes out now, since nobody serves the device after
+    /// this. Takes some milliseconds at most for each frame. What arrives meanwhile is dropped.
+    virtual void finish(Time now) noexcept TAPPET_REALTIME {
+        Frame ignored;
+        service(now);
+        // Four frames at 125 kbit/s take 5 ms; the kernel's buffer holds fewer frames than are read here.
+        for (int n = 0; n < most_passes && next_service() != never; ++n) {
+            static_cast<void>(receive(ignored));
+            service(now);
+        }
+    }
     /// When service() has something to do even if nothing arrives: the next time-out of a frame, or never.
     [[nodiscard]] virtual Time next_service() const noexcept TAPPET_REALTIME = 0;
 
@@ -118,6 +130,7 @@ public:
     virtual void set_listener(Listener ready, void* context) noexcept = 0;
 
 protected:
+    static constexpr int most_passes = 4096;
     OneActivity belongs_to_; ///< checked by every call that belongs to the activity
 };
 

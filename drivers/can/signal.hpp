@@ -57,7 +57,8 @@ struct Signal {
     double factor = 1;
     double offset = 0;
     std::string_view unit{};
-    double safe_value = 0; ///< of what is transmitted: sent when the machine's process is no more
+    double safe_value =
+        0; ///< of what is transmitted: sent when the bus stops or the machine's process is no more
     bool says_safe = false;
     std::string_view safe_name{}; ///< instead of `safe_value`, which the map takes from `names`
     bool has_range = false;       ///< of physical values, as they are sent: `least` and `most`

@@ -30,7 +30,7 @@ struct FrameRow {
     Duration jitter{};     ///< receive: by how much its node may be late
     std::size_t first = 0; ///< its signals in the map's array
     std::size_t signals = 0;
-    bool silence_is_safe = false; ///< transmit: it is not sent when the machine's process is no more
+    bool silence_is_safe = false; ///< transmit: no safe values are sent
     bool multiplexed = false;     ///< not all of its signals are in every frame
     std::string_view in_file{};   ///< its name in its DBC file, where a row gives it another
     Format format = Format::classical;

@@ -19,7 +19,7 @@ public:
         for (std::size_t i = 0; i < capacity; ++i) order_[i].slot = static_cast<std::uint8_t>(i);
     }
     constexpr Send push(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
-        const std::uint32_t rank = arbitration(frame);
+        const std::uint32_t rank = keep == Keep::last ? behind_all : arbitration(frame);
         std::size_t at = 0;
         while (at < size_ && order_[at].rank < rank) ++at;
         if (keep == Keep::latest && at < size_ && order_[at].rank == rank) {
@@ -64,6 +64,7 @@ public:
     [[nodiscard]] constexpr std::size_t size() const noexcept TAPPET_REALTIME { return size_; }
 
 private:
+    static constexpr std::uint32_t behind_all = ~std::uint32_t{0};
     struct Waiting {
         Time made{};
         std::uint32_t rank = 0;
@@ -71,7 +72,7 @@ private:
     };
     constexpr void put(const Frame& frame, std::uint32_t rank, Waiting& waiting) noexcept TAPPET_REALTIME {
         frames_[waiting.slot] = frame;
-        waiting.made = frame.stamp;
+        waiting.made = rank == behind_all ? never : frame.stamp;
         waiting.rank = rank;
     }
 

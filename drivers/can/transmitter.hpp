@@ -55,6 +55,13 @@ public:
         if (frame == nullptr) return;
         if (in_flight_.push({frame->stamp, now, {frame->id, frame->extended}})) queue_.pop();
     }
+    /// See Controller::take_waiting().
+    constexpr bool take_waiting(Frame& frame) noexcept TAPPET_REALTIME {
+        if (queue_.front() == nullptr) return false;
+        frame = *queue_.front();
+        queue_.pop();
+        return true;
+    }
     /// A frame that was handed over.
     struct Flight {
         Time made{};

@@ -89,16 +89,28 @@ void Twin::hand_over(Time now) noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < most_in_flight; ++i) {
         const Frame* frame = controller_.next(now);
         if (frame == nullptr) return;
-        Departure* const leaving = outbox_.room();
-        if (leaving == nullptr) {
-            ++controller_.count.back_pressure;
-            return;
-        }
-        leaving->frame = *frame;
-        leaving->handed_over = now;
-        leaving->generation = generation_.load(std::memory_order_acquire);
-        outbox_.add();
+        if (!put_out(*frame, now)) return;
         controller_.handed_over(now);
+    }
+}
+
+bool Twin::put_out(const Frame& frame, Time now) noexcept TAPPET_REALTIME {
+    Departure* const leaving = outbox_.room();
+    if (leaving == nullptr) {
+        ++controller_.count.back_pressure;
+        return false;
+    }
+    leaving->frame = frame;
+    leaving->handed_over = now;
+    leaving->generation = generation_.load(std::memory_order_acquire);
+    outbox_.add();
+    return true;
+}
+
+void Twin::finish(Time now) noexcept TAPPET_REALTIME {
+    service(now);
+    Frame frame;
+    while (controller_.take_waiting(frame) && put_out(frame, now)) {
     }
 }
 

@@ -15,8 +15,9 @@ namespace tappet::can {
 class Twin final : public Device {
 public:
     static constexpr std::size_t inbox = 256; // of the size of Linux's default socket buffer: 278 frames
-    static constexpr std::size_t outbox = 16;
-    static_assert(outbox >= most_in_flight, "what may be in flight fits");
+    static constexpr std::size_t outbox = 256;
+    static_assert(outbox >= most_in_flight + 3 * TransmitQueue::capacity,
+                  "what may be in flight fits, and the last words");
 
     /// Not real-time, before the bus runs. `interface` is a name for messages only.
     std::expected<void, Sentence> open(const Settings& settings) noexcept;
@@ -25,6 +26,8 @@ public:
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
     Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
+    /// At once, however many may be in flight: who stops under virtual time waits for no confirmation.
+    void finish(Time now) noexcept TAPPET_REALTIME override;
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
         return controller_.next_timeout();
     }
@@ -64,6 +67,7 @@ private:
     Receive judge(const Arrival& arrival, Frame& frame) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool wants(const Frame& frame) const noexcept TAPPET_REALTIME;
     void hand_over(Time now) noexcept TAPPET_REALTIME;
+    bool put_out(const Frame& frame, Time now) noexcept TAPPET_REALTIME;
     // The bus's side.
     void arrive(Happened what, const Frame& frame) noexcept TAPPET_REALTIME;
     const Departure* head() noexcept TAPPET_REALTIME;

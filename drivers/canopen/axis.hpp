@@ -130,7 +130,7 @@ template <text unit> struct Axis {
             command<&Axis::move_to, &Axis::moved>("move_to", "MC_MoveAbsolute: place, velocity"),
             command<&Axis::move_at>("move_at", "MC_MoveVelocity"),
             command<&Axis::superimpose, &Axis::superimposed>("superimpose", "MC_MoveSuperimposed: distance, velocity, acceleration; while it follows positions, or stands"),
-            command<&Axis::synchronize>("synchronize", "with set points: 8 positions, 9 velocities, 10 torques"),
+            command<&Axis::synchronize>("synchronize", "with set points: 8 positions, 9 velocities, 10 torques; not 8 over a superimposed distance"),
             command<&Axis::halt, &Axis::halted>("halt", "MC_Halt"),
             command<&Axis::stop_axis, &Axis::is_stopped>("stop", "MC_Stop: takes no motion before it is released"));
     }

@@ -80,9 +80,12 @@ public:
         return asked;
     }
     /// Its set points come each cycle from now on, by follow(). Into cyclic position it comes to a stand
-    /// first.
+    /// first. Refused while it follows positions with a superimposed distance: whether the new ones have it
+    /// in them nobody knows. It halts first.
     Asked synchronize(OperationMode cyclic) noexcept TAPPET_REALTIME {
         if (cyclic < OperationMode::cyclic_position) return std::unexpected(wrong_state);
+        if (cyclic == OperationMode::cyclic_position && gate_.leads(cyclic) && gate_.has_offset())
+            return std::unexpected(wrong_state);
         return begin(AxisCommand::synchronize, cyclic, 0);
     }
     /// Of the quantity of the mode that it is in. Dropped: what is no number, and positions before follows().

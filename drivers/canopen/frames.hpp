@@ -22,6 +22,16 @@ constexpr can::Frame heartbeat_frame(std::uint8_t node, NmtState state) noexcept
     return frame;
 }
 
+/// `counter` stands in it when `overflow` says that it is counted.
+constexpr can::Frame sync_frame(std::uint8_t overflow, std::uint8_t counter) noexcept TAPPET_REALTIME {
+    can::Frame frame;
+    frame.id = cob::sync;
+    if (overflow == 0) return frame;
+    frame.length = 1;
+    frame.data = {counter};
+    return frame;
+}
+
 /// The least time between two SDO requests to one node, and between two NMT commands: the manager keeps both,
 /// and the bus is proven for the commands.
 inline constexpr Duration requests_apart = 1ms;
@@ -44,16 +54,19 @@ template <const auto& map> struct ServiceNames {
 
 } // namespace detail
 
-/// For can::Bus<signals, frames<network>>. When the machine's process is no more, the nodes leave their
-/// operational state. Emergency messages and SDO transfers have no rate, and the bus is not proven for them:
-/// they come before the network is operational, or after a node's fault.
+/// For can::Bus<signals, frames<network>>. When the bus stops, or the machine's process is no more, the
+/// nodes take the safe values and leave their operational state. Emergency messages and SDO transfers have no
+/// rate, and the bus is not proven for them: they come before the network is operational, or after a node's
+/// fault.
 template <const auto& map>
 inline constexpr auto frames = [] {
     constexpr std::size_t n = map.nodes.size();
     constexpr ManagerRow manager = map.manager;
     constexpr bool beats = manager.beats != Duration{}, synchronises = manager.sync_every != Duration{},
                    tells_time = manager.time_every != Duration{};
-    can::Services<4 * n + 1 + (beats ? 1 : 0) + (synchronises ? 1 : 0) + (tells_time ? 1 : 0), 1> all;
+    can::Services<4 * n + 1 + (beats ? 1 : 0) + (synchronises ? 1 : 0) + (tells_time ? 1 : 0),
+                  1u + (synchronises ? 1u : 0u)>
+        all;
     std::size_t used = 0;
     // What is sent by the manager is on no grid of the bus's own: it has a rate, and no period there.
     const auto add = [&](std::uint32_t id, std::string_view name, can::Direction direction,
@@ -82,7 +95,9 @@ inline constexpr auto frames = [] {
     if (synchronises)
         add(cob::sync, "sync", transmit, manager.sync_overflow != 0 ? 1 : 0, {}, manager.sync_every);
     if (tells_time) add(cob::time, "time", transmit, 6, {}, manager.time_every);
-    all.safe[0] = nmt_frame(NmtCommand::enter_pre_operational, 0);
+    // What was sent before it counts for the nodes once they are told SYNC.
+    if constexpr (synchronises) all.safe[0] = sync_frame(manager.sync_overflow, 1);
+    all.safe.back() = nmt_frame(NmtCommand::enter_pre_operational, 0);
     return all;
 }();
 

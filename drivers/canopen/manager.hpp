@@ -65,7 +65,9 @@ template <const auto& map> struct Manager {
         send_command(NmtCommand::reset_communication, 0, cycle.now);
         tell();
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { operational_.write(operational, false); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        for (std::size_t i = 0; i < node_count; ++i) phase_[i].write(phases[i], NodePhase::absent);
+    }
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         produce(cycle.now);
@@ -99,7 +101,8 @@ template <const auto& map> struct Manager {
                  input<&Manager::received>("received", "", "frames of the network"),
                  output<&Manager::to_send>("to_send", "", "frames for the network"),
                  input<&Manager::time_of_day>("time_of_day", "s", "since 1984, for TIME", optional),
-                 output<&Manager::operational>("operational", "", "every node works; written on change"),
+                 output<&Manager::operational>("operational", "", "every node works; written on change",
+                                               while_stopped(false)),
                  output<&Manager::silent_node>("silent_node", "",
                                                "the first that is not heard, 0: none; written on change"),
                  output<&Manager::reason>("reason", "", "why not every node works; written on change"),
@@ -211,15 +214,10 @@ private:
         constexpr ManagerRow row = map.manager;
         if constexpr (row.sync_every != Duration{})
             if (is_due(next_sync_, row.sync_every, now)) {
-                can::Frame sync;
-                sync.id = cob::sync;
-                if constexpr (row.sync_overflow != 0) {
+                if constexpr (row.sync_overflow != 0)
                     counter_ = counter_ == row.sync_overflow ? std::uint8_t{1}
                                                              : static_cast<std::uint8_t>(counter_ + 1);
-                    sync.length = 1;
-                    sync.data[0] = counter_;
-                }
-                send(sync, now);
+                send(sync_frame(row.sync_overflow, counter_), now);
             }
         if constexpr (row.beats != Duration{})
             if (is_due(next_beat_, row.beats, now)) send(heartbeat_frame(row.id, NmtState::operational), now);

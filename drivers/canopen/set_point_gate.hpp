@@ -90,6 +90,10 @@ public:
         offset_ = offset;
         offset_age_ = {};
     }
+    /// A superimposed motion is under way, or has left a distance behind.
+    [[nodiscard]] bool has_offset() const noexcept TAPPET_REALTIME {
+        return superimposes() || offset().position != 0;
+    }
     [[nodiscard]] motion::AxisState offset() const noexcept TAPPET_REALTIME {
         return offset_.at(offset_age_);
     }

@@ -27,8 +27,8 @@ template <const auto& map> struct RegisterNames {
 /// For each register read an output, stamped when the answer came and written only then, so that its age
 /// tells of an outage; for each register written a required input. It blocks for the requests that are due,
 /// until one is not answered or a period has gone by: it runs in an activity of its own, one server each,
-/// that is not_real_time. At stop, values written since go out; what the server does when it hears no more is
-/// its own time-out's business.
+/// that is not_real_time. When it stops, values written since go out, and behind them the safe values of its
+/// map, as its guardian would write them; it calls its server lost.
 template <const auto& map> struct Client {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.registers.size();
@@ -75,8 +75,13 @@ template <const auto& map> struct Client {
         outages.write(static_cast<std::int64_t>(session_->counters().outages));
         outages_survived.write(static_cast<std::int64_t>(session_->counters().outages_survived));
         tell_trouble();
+        if (was_stopped_ && session_->connected()) {
+            was_stopped_ = false;
+            return back.emit();
+        }
         if (session_->outage() == was_lost_) return;
         was_lost_ = !was_lost_;
+        was_stopped_ = false;
         if (was_lost_)
             lost.emit();
         else
@@ -86,7 +91,9 @@ template <const auto& map> struct Client {
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         // A server that is silent now would only hold the machine's stop up.
         if (session_->connected() && !session_->outage())
-            TAPPET_ESCAPE("this activity is not real-time", exchange(cycle));
+            TAPPET_ESCAPE("this activity is not real-time", exchange(cycle); write_safe_values(cycle));
+        if (!was_lost_) lost.emit();
+        was_stopped_ = true;
     }
 
     [[nodiscard]] Counters counters() const noexcept { return session_->counters(); }
@@ -114,7 +121,7 @@ template <const auto& map> struct Client {
                 };
             list[n++] = facet;
         }
-        list[n++] = output<&Client::connected>("connected", "", "the server answers");
+        list[n++] = output<&Client::connected>("connected", "", "the server answers", while_stopped(false));
         list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");
         list[n++] = output<&Client::outages_survived>("outages_survived", "", "times it came back");
         list[n++] = output<&Client::reason>(
@@ -136,6 +143,12 @@ private:
         reason.write(text);
     }
 
+    void write_safe_values(const Cycle& cycle) noexcept {
+        for (std::size_t v = 0; v < count; ++v)
+            if (is_written(v) && map.registers[v].says_safe)
+                static_cast<void>(session_->set(v, map.registers[v].safe_value, cycle.now)); // it is in range
+        serve(cycle);
+    }
     void exchange(const Cycle& cycle) noexcept {
         for (std::size_t v = 0; v < count; ++v) {
             if (!is_written(v)) continue;
@@ -146,6 +159,9 @@ private:
                 is_set_[v] = session_->set(v, value, since);
             }
         }
+        serve(cycle);
+    }
+    void serve(const Cycle& cycle) noexcept {
         // The client says when a request ended; the next one begins then.
         Time at = cycle.now;
         for (std::size_t n = 0; n <= map.rows.size(); ++n) {
@@ -169,7 +185,7 @@ private:
         return none;
     }();
     std::array<bool, count> is_set_{}; ///< in the client, since start
-    bool was_lost_ = false;
+    bool was_lost_ = false, was_stopped_ = false;
     Trouble told_{};
 };
 

@@ -49,7 +49,7 @@ struct Row {
     Duration stale_after{}; ///< write: older values are not sent any more; 0: never
     std::size_t first = 0;  ///< its registers in the map's array
     std::size_t registers = 0;
-    bool silence_is_safe = false; ///< write: it is not sent when the machine's process is no more
+    bool silence_is_safe = false; ///< write: no safe values are sent
 };
 
 template <std::size_t N> struct RowWithRegisters {
@@ -114,7 +114,7 @@ template <std::size_t R, std::size_t V> struct RegisterMap {
     std::size_t safe_count = 0;
     Sentence fault{}; ///< empty when the table is right
 
-    /// What is sent when the machine's process is no more.
+    /// What is sent when the client stops, or the machine's process is no more.
     [[nodiscard]] constexpr SafeWrites safe_writes() const noexcept {
         return {std::span{safe}.first(safe_count), safe_words, rows, registers};
     }

@@ -42,7 +42,8 @@ struct Register {
     double factor = 1;
     double offset = 0;
     std::string_view unit{};
-    double safe_value = 0; ///< of what is written: sent when the machine's process is no more
+    double safe_value =
+        0; ///< of what is written: sent when the client stops or the machine's process is no more
     bool says_safe = false;
 
     [[nodiscard]] constexpr unsigned width() const noexcept { return kind >= Kind::unsigned_double ? 2 : 1; }

@@ -153,18 +153,9 @@ void SimulatedDevices::send_safe_frames(Time now) noexcept {
     for (const auto& bus : buses_)
         for (can::Frame frame : bus->safe) {
             frame.stamp = now;
-            static_cast<void>(bus->machine.send(frame, can::Keep::every));
+            static_cast<void>(bus->machine.send(frame, can::Keep::last));
         }
-    attend(now);
-}
-
-void SimulatedDevices::attend(Time now) noexcept {
-    can::Frame heard;
-    for (const auto& bus : buses_) {
-        while (bus->machine.receive(heard).what != can::Received::none) {
-        }
-        bus->machine.service(now);
-    }
+    for (const auto& bus : buses_) bus->machine.finish(now);
 }
 
 void SimulatedDevices::write_safe_registers() noexcept {

@@ -50,10 +50,9 @@ public:
     /// stay as they were left.
     std::expected<void, Sentence> open_again();
     /// What the guardian of a machine does whose process is gone: lines at once, frames and registers once it
-    /// has ended. The machine's ends of the wires are nobody's then; attend() lets the frames go out.
+    /// has ended. The machine's ends of the wires are nobody's then.
     void write_safe_lines() noexcept;
     void send_safe_frames(Time now) noexcept;
-    void attend(Time now) noexcept;
     void write_safe_registers() noexcept;
     [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return provided_; }
     void report(os::ArmingReport&) override {}

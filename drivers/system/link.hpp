@@ -92,12 +92,14 @@ struct Link {
         serve(cycle.now);
     }
     void fire(const Cycle& cycle) noexcept TAPPET_REALTIME { serve(cycle.now); }
-    /// The others need not wait for its silence.
+    /// The others need not wait for its silence, and here nobody hears them any longer.
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        for (std::size_t node = 0; node < node_count; ++node)
+            if (peers_[node].there) lose(node);
         Room payload{};
         put_beat(shape, payload, {.runs = false, .epoch = epoch_});
         send(Rows::beat_frame, payload, cycle.now);
-        device_->service(cycle.now);
+        device_->finish(cycle.now);
     }
 
     /// For tests and summaries.

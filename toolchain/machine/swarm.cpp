@@ -331,8 +331,6 @@ void SwarmRun::restart(bool orderly) {
         run_.devices().write_safe_lines();
         rest(Duration{random_.between(0, 10'000'000)});
         run_.devices().send_safe_frames(run_.now());
-        rest(5ms);
-        run_.devices().attend(run_.now());
         run_.devices().write_safe_registers();
         rest(25ms);
         if (const Sentence unsafe = wires_.broken_at_rest(false); !unsafe.empty()) deny(unsafe);

@@ -368,7 +368,7 @@ Sentence SwarmWires::broken(Time now) {
 
 Sentence SwarmWires::broken_at_rest(bool orderly) const {
     for (const Output& each : outputs_) {
-        if (!each.safe || (orderly && !each.is_line) || struck_.whole_for(each.driver, never) < Duration{})
+        if (!each.safe || struck_.whole_for(each.driver, never) < Duration{})
             continue;
         if (const auto value = each.read(); value && *value != *each.safe)
             return told(each, *value)

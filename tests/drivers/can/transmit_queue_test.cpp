@@ -52,6 +52,20 @@ TEST(TransmitQueue, replaces_the_older_frame_of_a_cyclic_identifier) {
     EXPECT_EQ(queue.front()->data[0], 2);
 }
 
+TEST(TransmitQueue, puts_last_words_behind_all_in_their_order_and_never_drops_them) {
+    TransmitQueue queue;
+    for (const std::uint32_t id : {0x205u, 0x80u, 0u})
+        EXPECT_EQ(queue.push(frame(id, at_ns(1)), Keep::last), Send::queued);
+    EXPECT_EQ(queue.push(frame(0x700, at_ns(1)), Keep::latest), Send::queued);
+    EXPECT_EQ(queue.push(frame(0x701, at_ns(9)), Keep::latest), Send::queued);
+    EXPECT_EQ(queue.drop_older(at_ns(5)), 1u);
+    for (const std::uint32_t id : {0x701u, 0x205u, 0x80u, 0u}) {
+        ASSERT_NE(queue.front(), nullptr);
+        EXPECT_EQ(queue.front()->id, id);
+        queue.pop();
+    }
+}
+
 TEST(TransmitQueue, keeps_every_command_in_its_order) {
     TransmitQueue queue;
     for (const std::uint8_t command : {std::uint8_t{0x81}, std::uint8_t{0x01}, std::uint8_t{0x02}})

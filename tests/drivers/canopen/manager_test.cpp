@@ -212,6 +212,24 @@ TEST_F(Network, lets_nodes_notice_that_the_manager_is_gone) {
     EXPECT_FALSE(drive.operational());
 }
 
+TEST_F(Network, tells_its_nodes_at_stop_to_take_what_is_safe_and_only_then_to_leave) {
+    run_until(500ms);
+    ASSERT_TRUE(operational());
+    heard.clear();
+    world.stop();
+    run(20ms);
+    ASSERT_GE(heard.size(), 3u);
+    const can::Frame *const command = &heard[heard.size() - 3], *const sync = command + 1,
+                            *const nmt = sync + 1;
+    EXPECT_EQ(command->id, 0x205u);
+    EXPECT_EQ(command->data[0], 2) << "a quick stop, by the map; its writer has no stop()";
+    EXPECT_EQ(sync->id, 0x080u) << "what was told counts with it";
+    EXPECT_EQ(nmt->id, 0x000u);
+    EXPECT_EQ(nmt->data[0], 0x80);
+    EXPECT_FALSE(manager->operational.last());
+    EXPECT_EQ(phase(0), NodePhase::absent);
+}
+
 TEST_F(Network, gives_a_person_the_reset_of_one_node) {
     run_until(500ms);
     manager->reset(7);

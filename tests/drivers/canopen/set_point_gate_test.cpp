@@ -236,6 +236,14 @@ TEST(SetPointGate, adds_a_superimposed_motion_to_the_one_that_runs) {
         EXPECT_NEAR(rig.servo.position(), 4 + 10 + 3, 1e-9);
         EXPECT_FALSE(rig.axis.superimpose(std::nan(""), 10, 500));
         EXPECT_FALSE(rig.axis.superimpose(1, 0, 500));
+        EXPECT_FALSE(rig.axis.synchronize(OperationMode::cyclic_position))
+            << "whether new positions have the distance in them nobody knows";
+        for (int i = 0; i < 100; ++i) {
+            rig.axis.follow(place += 0.02);
+            rig.watched_cycle();
+        }
+        rig.watched_run(rig.round_trip());
+        EXPECT_NEAR(rig.servo.position(), 4 + 12 + 3, 1e-9) << "what runs goes on";
         ASSERT_TRUE(rig.axis.halt());
         EXPECT_FALSE(rig.axis.superimpose(1, 10, 500)) << "nothing runs that it could be added to";
     });

@@ -270,6 +270,19 @@ TEST_F(CanBus, sends_its_safe_values_at_stop_and_repeats_no_demand) {
     EXPECT_EQ(target_rpm(heard[0]), 0.0);
 }
 
+TEST_F(CanBus, sends_the_safe_values_of_its_map_at_stop_whatever_their_writer_left) {
+    master->leaves_safe = false;
+    run_until(20500us);
+    heard.clear();
+    change(0, LifeChange::stop);
+    run_until(30ms);
+    ASSERT_EQ(heard.size(), 1u);
+    EXPECT_EQ(controlword(heard[0]), 2);
+    EXPECT_EQ(target_rpm(heard[0]), 0.0);
+    EXPECT_TRUE(master->was_faulted) << "nobody serves it";
+    EXPECT_EQ(master->faults, 1);
+}
+
 TEST_F(CanBus, begins_anew_when_it_is_stopped_and_started_again) {
     run_until(10ms);
     wire.overflow(twin, 3);
@@ -302,7 +315,8 @@ TEST_F(CanBus, begins_anew_when_it_is_stopped_and_started_again) {
     EXPECT_EQ(master->frames, 1);
     EXPECT_EQ(master->received.get(), 0);
     EXPECT_EQ(master->lost.get(), 0);
-    EXPECT_EQ(master->faults + master->recoveries, 0);
+    EXPECT_EQ(master->faults, 1) << "that nobody serves it";
+    EXPECT_EQ(master->recoveries, 1);
     send(0x181, 6, {2});
     demand(1, 3);
     run_until(155ms);
@@ -343,7 +357,7 @@ TEST_F(CanBus, drops_at_its_start_what_still_waited_to_be_sent_when_it_was_stopp
     run_until(50ms);
     EXPECT_TRUE(heard_of(0x000).empty());
     for (const auto& frame : heard_of(0x201)) EXPECT_EQ(controlword(frame), 1) << "not the safe value";
-    EXPECT_EQ(master->faults, 0);
+    EXPECT_EQ(master->faults, 1) << "that nobody served it";
 }
 
 TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {

@@ -49,6 +49,7 @@ struct Master {
 
     bool writes_controlword = true;
     bool writes_target = true;
+    bool leaves_safe = true; ///< by its stop()
     std::int64_t word = 1;
     double rpm = 100;
     Bounded<Demand, 16> demands{}; // one a cycle
@@ -86,6 +87,7 @@ struct Master {
         overrun = 0ns;
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        if (!leaves_safe) return;
         controlword.write(2);
         target.write(0.0);
     }

@@ -39,7 +39,10 @@ struct Reader {
         if (pump_next >= 0) pump.write(pump_next);
         pump_next = -1;
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { pump.write(0); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        if (leaves_safe) pump.write(0);
+    }
+    bool leaves_safe = true;
     static constexpr auto interface() {
         return facets(input<&Reader::temperature>("temperature", "degC", "of the hall"),
                       input<&Reader::connected>("connected", "", "the server answers"),
@@ -259,6 +262,23 @@ TEST_F(Utility, brings_what_was_written_last_to_the_server_at_stop) {
     EXPECT_FALSE(pump_runs());
 }
 
+TEST_F(Utility, leaves_the_safe_values_of_its_map_at_stop_whatever_their_writer_left) {
+    run_until(1s);
+    reader->pump_next = 1;
+    reader->leaves_safe = false;
+    run_until(2s);
+    ASSERT_TRUE(pump_runs());
+    change_server(LifeChange::stop);
+    EXPECT_FALSE(pump_runs());
+    EXPECT_FALSE(reader->connected.get()) << "nobody asks it any longer";
+    run_until(3s);
+    EXPECT_EQ(reader->lost, 1);
+    change_server(LifeChange::start);
+    run_until(4s);
+    EXPECT_TRUE(reader->connected.get());
+    EXPECT_EQ(reader->back, 1);
+}
+
 TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
     run_until(1s);
     reader->pump_next = 1;
@@ -285,8 +305,8 @@ TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
     EXPECT_TRUE(pump_runs()) << "what is wanted is written again";
     EXPECT_EQ(reader->outages.get(), 0);
     EXPECT_EQ(reader->survived.get(), 0);
-    EXPECT_EQ(reader->lost, 1);
-    EXPECT_EQ(reader->back, 1);
+    EXPECT_EQ(reader->lost, 2);
+    EXPECT_EQ(reader->back, 2);
 }
 
 TEST_F(Utility, writes_after_a_start_nothing_that_grew_stale_before_it) {

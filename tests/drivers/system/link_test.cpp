@@ -107,6 +107,21 @@ TEST_F(LinkTest, whoever_is_not_heard_any_more_believes_nobody_is_there) {
     EXPECT_TRUE(giver().other_is_there.get() && taker().other_is_there.get()) << "it was restarted";
 }
 
+TEST_F(LinkTest, whoever_stops_its_link_believes_nobody_is_there) {
+    ASSERT_TRUE(giver().other_is_there.get());
+    MachineInstance& here = run.instance(0);
+    const std::size_t part = find_component(here.machine().table, "wire");
+    const LifeTicket stop = here.life().ask_component(part, LifeChange::stop);
+    run.run_for(20ms);
+    ASSERT_EQ(here.life().answer_of_component(part, stop).outcome, LifeOutcome::done);
+    EXPECT_FALSE(giver().other_is_there.get());
+    EXPECT_FALSE(taker().other_is_there.get());
+    const LifeTicket start = here.life().ask_component(part, LifeChange::start);
+    run.run_for(1s);
+    ASSERT_EQ(here.life().answer_of_component(part, start).outcome, LifeOutcome::done);
+    EXPECT_TRUE(giver().other_is_there.get() && taker().other_is_there.get());
+}
+
 TEST_F(LinkTest, an_event_for_a_node_that_is_gone_is_known_to_be_lost) {
     run.kill(1);
     giver().to_send = {7};
