@@ -91,7 +91,7 @@ template <const auto& map> struct Client {
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         // A server that is silent now would only hold the machine's stop up.
         if (session_->connected() && !session_->outage())
-            TAPPET_ESCAPE("this activity is not real-time", exchange(cycle); write_safe_values(cycle));
+            TAPPET_ESCAPE("this activity is not real-time", write_last(cycle));
         if (!was_lost_) lost.emit();
         was_stopped_ = true;
     }
@@ -143,13 +143,14 @@ private:
         reason.write(text);
     }
 
-    void write_safe_values(const Cycle& cycle) noexcept {
+    void write_last(const Cycle& cycle) noexcept {
+        take_wanted(cycle);
         for (std::size_t v = 0; v < count; ++v)
             if (is_written(v) && map.registers[v].says_safe)
                 static_cast<void>(session_->set(v, map.registers[v].safe_value, cycle.now)); // it is in range
-        serve(cycle);
+        session_->finish(cycle.now);
     }
-    void exchange(const Cycle& cycle) noexcept {
+    void take_wanted(const Cycle& cycle) noexcept {
         for (std::size_t v = 0; v < count; ++v) {
             if (!is_written(v)) continue;
             double value = 0;
@@ -159,9 +160,9 @@ private:
                 is_set_[v] = session_->set(v, value, since);
             }
         }
-        serve(cycle);
     }
-    void serve(const Cycle& cycle) noexcept {
+    void exchange(const Cycle& cycle) noexcept {
+        take_wanted(cycle);
         // The client says when a request ended; the next one begins then.
         Time at = cycle.now;
         for (std::size_t n = 0; n <= map.rows.size(); ++n) {

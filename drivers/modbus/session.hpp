@@ -73,6 +73,14 @@ public:
         return request(r, now);
     }
 
+    /// The last writing: each written row whose values were set and are not too old, due or not, one after
+    /// the other while the server answers.
+    void finish(Time now) noexcept {
+        Time at = std::max(now, busy_until_);
+        for (std::size_t r = 0; r < R && connected_ && !outage_; ++r)
+            if (map_->rows[r].write) at = request(r, at);
+    }
+
     /// The value by its index in the map; its stamp tells its age.
     [[nodiscard]] const Value& value(std::size_t v) const noexcept {
         TAPPET_CONTRACT(v < V, Contract::index_out_of_range, v, V);

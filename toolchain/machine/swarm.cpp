@@ -297,7 +297,7 @@ void SwarmRun::stop() {
     judge_saved(true);
     kept_ = kept_values();
     rest(stopped_within);
-    if (const Sentence unsafe = wires_.broken_at_rest(true); !unsafe.empty()) deny(unsafe);
+    if (const Sentence unsafe = wires_.broken_at_rest(asked); !unsafe.empty()) deny(unsafe);
     rest(at_rest - stopped_within);
     ++verdict_.restarts;
 }
@@ -333,7 +333,8 @@ void SwarmRun::restart(bool orderly) {
         run_.devices().send_safe_frames(run_.now());
         run_.devices().write_safe_registers();
         rest(25ms);
-        if (const Sentence unsafe = wires_.broken_at_rest(false); !unsafe.empty()) deny(unsafe);
+        if (const Sentence unsafe = wires_.broken_at_rest(SwarmWires::by_guardian); !unsafe.empty())
+            deny(unsafe);
         rest(Duration{random_.between(100'000'000, 3'000'000'000)});
         ++verdict_.restarts;
     }

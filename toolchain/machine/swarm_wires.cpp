@@ -3,6 +3,7 @@
 
 #include "drivers/gpio/line_map.hpp"
 #include "drivers/modbus/register_map.hpp"
+#include "drivers/modbus/session.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -204,7 +205,10 @@ void SwarmWires::add_registers(std::size_t c) {
                 for (unsigned w = 0; w < width; ++w) all = all << 16 | word(w);
                 return all;
             };
-            Output output{.driver = c, .is_switch = one.kind == modbus::Kind::bit, .settles = request.every};
+            Output output{.driver = c,
+                          .is_switch = one.kind == modbus::Kind::bit,
+                          .settles = request.every,
+                          .comes_back = modbus::Backoff{}.most};
             if (one.says_safe)
                 output.safe = whole(
                     [words = modbus::to_words(one, one.safe_value)](unsigned w) { return words.words[w]; });
@@ -249,6 +253,7 @@ void SwarmWires::add(Output output, std::string_view facet, std::string_view oth
                 operation == driver + "." + std::string{other_facet})
                 write(find_component(table, row.component));
     output.settles += usual_settling + oldest;
+    if (!output.is_line) output.comes_back += output.settles;
     output.name = driver + "." + output.name;
     outputs_.push_back(std::move(output));
 }
@@ -366,10 +371,12 @@ Sentence SwarmWires::broken(Time now) {
     return {};
 }
 
-Sentence SwarmWires::broken_at_rest(bool orderly) const {
+Sentence SwarmWires::broken_at_rest(Time asked) const {
+    const bool orderly = asked != by_guardian;
     for (const Output& each : outputs_) {
-        if (!each.safe || struck_.whole_for(each.driver, never) < Duration{})
-            continue;
+        // What nobody could be told just then, its receiver notices.
+        const Duration whole = struck_.whole_for(each.driver, asked);
+        if (!each.safe || whole < (orderly ? each.comes_back : Duration{})) continue;
         if (const auto value = each.read(); value && *value != *each.safe)
             return told(each, *value)
                 .add(orderly ? ", though the machine has stopped" : ", though its guardian has left it safe");
