@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         616},
     {"kernel/services",       5740},
     {"kernel/system",         2065},
-    {"drivers",               17829},
+    {"drivers",               17838},
     {"board",                 4247},
     {"apps/carpet_loom",      6325},
     {"apps/bearing_press",    763},

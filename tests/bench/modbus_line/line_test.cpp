@@ -133,8 +133,8 @@ std::string seen_by_mbpoll() {
     return looks.output();
 }
 
-TEST_F(ModbusLine, leaves_what_it_wrote_last_in_the_device) {
-    EXPECT_THAT(seen_by_mbpoll(), HasSubstr("[20]: \t0"));
+TEST_F(ModbusLine, leaves_the_safe_values_of_its_map_in_the_device) {
+    EXPECT_THAT(seen_by_mbpoll(), HasSubstr("[20]: \t-2"));
 }
 
 TEST_F(ModbusLine, becomes_safe_over_the_same_line_when_the_machine_is_killed) {
