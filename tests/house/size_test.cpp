@@ -29,7 +29,7 @@ const std::vector<Size> sizes{
     {"kernel/control",        1737},
     {"kernel/limits",         297},
     {"kernel/pieces",         616},
-    {"kernel/services",       5740},
+    {"kernel/services",       5763},
     {"kernel/system",         2065},
     {"drivers",               17838},
     {"board",                 4247},

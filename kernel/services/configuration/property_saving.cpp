@@ -18,9 +18,14 @@ bool PropertySaving::step() noexcept {
     if (!busy_) return false;
     const auto components = machine_->machine().table.components;
     if (asked_) {
-        if (!copy_.finished()) return true;
+        if (!call_.is_over() && machine_->clock().now() - asked_at_ < patience) return true;
+        if (call_.withdraw())
+            give_up();
+        else if (!call_.is_over())
+            return true; // it is being copied
+        else
+            write();
         asked_ = false;
-        write();
         ++next_;
     }
     while (next_ < end_ && !components[next_].has_properties_file) ++next_;
@@ -39,9 +44,20 @@ void PropertySaving::ask(std::size_t component) noexcept {
     const std::size_t activity = machine.index.activity[component];
     if (activity == activity_)
         copy_.capture();
-    else if (!machine_->requests().post(activity, copy_.capture_message(machine.plan.part_of[component])))
+    else if (!call_.post(*machine_, activity, copy_.capture_message(machine.plan.part_of[component])))
         return; // its engine has much to do: again in the next step
+    asked_at_ = machine_->clock().now();
     asked_ = true;
+}
+
+void PropertySaving::give_up() noexcept {
+    const AcceptedMachine& machine = machine_->machine();
+    if (fault_.empty())
+        fault_ =
+            Sentence{"component \"", machine.table.components[next_].name,
+                     "\": its properties are not saved, since its engine did not come to it: look at "
+                     "activity \"",
+                     machine.table.activities[machine.index.activity[next_]].name, "\"; the old file stands"};
 }
 
 void PropertySaving::write() noexcept {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
+#include "kernel/services/engine_call.hpp"
 
 namespace tappet {
 
@@ -10,6 +11,9 @@ namespace tappet {
 /// nothing is left. May block on the file; takes no heap. Large: in static memory.
 class PropertySaving {
 public:
+    /// An engine that does not come to be copied for so long is left out, and told of.
+    static constexpr Duration patience = 1s;
+
     /// `activity`: the one that calls; components in it stand still meanwhile. Of one component, or of all.
     void begin(MachineInstance& machine, std::size_t activity, std::size_t component = nowhere) noexcept;
     /// False when every file is written or has its fault.
@@ -21,6 +25,7 @@ public:
 
 private:
     void ask(std::size_t component) noexcept;
+    void give_up() noexcept;
     void write() noexcept;
 
     MachineInstance* machine_ = nullptr;
@@ -32,6 +37,8 @@ private:
     bool asked_ = false;
     Sentence fault_{};
     PropertyTransaction copy_{};
+    EngineCall call_{}; ///< that copies
+    Time asked_at_{};
 };
 
 } // namespace tappet
