@@ -24,14 +24,23 @@ struct LinkFacets {
     static constexpr std::size_t row_count = Rows::row_count;
 
     template <std::size_t i>
-    using Call = GatedCommand<&Link::template begin_call<i>, &Link::template call_progress<i>>;
+    struct Call { // ordinary functions: clang 22 drops the effects of a template's when it is an argument
+        static bool begin(void* link, std::byte* values) noexcept TAPPET_REALTIME {
+            return Link::template begin_call<i>(link, values);
+        }
+        static CommandProgress progress(void* link, std::byte* values) noexcept TAPPET_REALTIME {
+            return Link::template call_progress<i>(link, values);
+        }
+        using Gated = GatedCommand<&begin, &progress>;
+    };
     template <std::size_t... i>
     static constexpr auto command_operations(std::index_sequence<i...>) {
-        return std::array<CommandOperations, sizeof...(i)>{CommandOperations{
-            Rows::is_command(i) ? Rows::command(i).arguments : nullptr,
-            Rows::is_command(i) ? Rows::command(i).results : nullptr,
-            Rows::is_command(i) ? Rows::command(i).argument_bytes : 0,
-            Rows::is_command(i) ? Rows::command(i).result_bytes : 0, &Call<i>::begin, &Call<i>::progress}...};
+        return std::array<CommandOperations, sizeof...(i)>{
+            CommandOperations{Rows::is_command(i) ? Rows::command(i).arguments : nullptr,
+                              Rows::is_command(i) ? Rows::command(i).results : nullptr,
+                              Rows::is_command(i) ? Rows::command(i).argument_bytes : 0,
+                              Rows::is_command(i) ? Rows::command(i).result_bytes : 0, &Call<i>::Gated::begin,
+                              &Call<i>::Gated::progress}...};
     }
     static constexpr auto commands = command_operations(std::make_index_sequence<row_count>{});
 
