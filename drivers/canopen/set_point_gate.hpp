@@ -67,21 +67,24 @@ public:
     }
     /// Asks for a motion; `target` is the first set point, a place, a velocity or a torque.
     void lead(OperationMode mode, double target, double profile_velocity = 0) noexcept TAPPET_REALTIME {
+        leads_ = leads_ && mode == asked_;
+        const bool is_place = mode == OperationMode::cyclic_position;
+        if (leads_ && is_place) return; // what it follows goes on
         rests_ = false;
         is_new_ = true;
         began_ = false;
         start_cycles_ = 0;
-        leads_ = leads_ && mode == asked_;
+        stands_first_ = is_place; // whatever was led before, and however far it had gone
         asked_ = mode;
         target_ = target;
         profile_velocity_ = profile_velocity;
         offset_ = {};
     }
-    /// The next set point of a cyclic mode. Positions count only once the drive shows the mode: until then it
-    /// stands, and would jump to what was meant for earlier.
+    /// The next set point of a cyclic mode. Positions count only once the drive shows the mode and says that
+    /// it follows: until then it stands, and would jump to what was meant for earlier.
     void follow(double set_point) noexcept TAPPET_REALTIME {
         if (rests_ || asked_ < OperationMode::cyclic_position) return;
-        if (asked_ == OperationMode::cyclic_position && !leads_) return;
+        if (asked_ == OperationMode::cyclic_position && (!leads_ || is_new_)) return;
         target_ = set_point;
         is_new_ = false;
     }
@@ -127,7 +130,7 @@ public:
         } else {
             waits_ = shown == ordered_ ? 0 : waits_ + 1;
             if (shown == ordered_) order_mode(next_mode());
-            leads_ = !rests_ && shown == ordered_ && ordered_ == asked_;
+            leads_ = !rests_ && !stands_first_ && shown == ordered_ && ordered_ == asked_;
             if (leads_)
                 move(seen);
             else if (hands_over(shown))
@@ -188,7 +191,7 @@ private:
     [[nodiscard]] OperationMode next_mode() const noexcept TAPPET_REALTIME {
         if (rests_) return rest_mode;
         // Into cyclic position only from a stand: there alone the place of some cycles ago is that of now.
-        if (asked_ == OperationMode::cyclic_position && ordered_ != asked_ &&
+        if (asked_ == OperationMode::cyclic_position && (ordered_ != asked_ || stands_first_) &&
             !(ordered_ == rest_mode && is_still()))
             return rest_mode;
         return asked_;
@@ -196,6 +199,7 @@ private:
     void order_mode(OperationMode mode) noexcept TAPPET_REALTIME {
         if (mode == ordered_) return;
         ordered_ = mode;
+        stands_first_ = false; // into rest, or from it
         hand_shake_ = HandShake::over;
         slow_cycles_ = 0;
     }
@@ -241,7 +245,10 @@ private:
         case OperationMode::profile_torque:
         case OperationMode::none: break;
         }
-        if (asked_ != OperationMode::profile_position) is_new_ = false;
+        // Positions begin when the drive says that it follows them: who leads it begins where it stands then.
+        if (asked_ != OperationMode::profile_position &&
+            (asked_ != OperationMode::cyclic_position || (seen.statusword & status::acknowledged) != 0))
+            is_new_ = false;
     }
     /// The bits of the drive may be those of a homing before: they count when they were seen clear since this
     /// one was about to start. It starts late enough that they are of this mode, should they travel apart
@@ -298,9 +305,10 @@ private:
     motion::Profile offset_{};
     Duration offset_age_{};
     bool rests_ = true, leads_ = false;
-    bool is_new_ = false;      ///< its target has not been sent
-    bool is_released_ = false; ///< in pp: the halt bit fell with a new place
-    bool began_ = false;       ///< a homing
+    bool stands_first_ = false; ///< it comes to a stand before it follows positions
+    bool is_new_ = false;       ///< its target has not been sent
+    bool is_released_ = false;  ///< in pp: the halt bit fell with a new place
+    bool began_ = false;        ///< a homing
     int slow_cycles_ = 0, waits_ = 0, start_cycles_ = 0, raised_cycles_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace tappet::canopen {
 namespace {
@@ -238,6 +239,54 @@ TEST_F(Axis, tells_a_lag_and_a_limit_of_the_drive) {
     servo.faults.is_blocked = servo.faults.is_at_limit = false;
     EXPECT_TRUE(reaches(AxisMode::standstill));
     EXPECT_FALSE(axis.lags());
+}
+
+/// Follows a shaft with a distance superimposed on it; then what `ask` asks for, within one cycle. What leads
+/// it goes on, and begins anew where it stands only if the axis said that it did not follow: how far the
+/// place that is ordered jumps at most.
+template <class Ask>
+double jump_after(Ask ask) {
+    DriveRig rig;
+    double place = 0, jump = 0;
+    bool followed = true;
+    const auto follow = [&](int cycles) {
+        for (int k = 0; k < cycles; ++k) {
+            if (rig.axis.follows() && !std::exchange(followed, true)) place = rig.last.position;
+            if (!rig.axis.follows()) followed = false;
+            rig.axis.follow(place += 0.02);
+            const double was = rig.last.position;
+            rig.cycle();
+            jump = std::max(jump, std::abs(rig.last.position - was));
+        }
+    };
+    EXPECT_TRUE(rig.gets_power() && rig.axis.synchronize(OperationMode::cyclic_position));
+    EXPECT_TRUE(rig.until([&] { return rig.axis.follows(); }));
+    follow(100);
+    EXPECT_TRUE(rig.axis.superimpose(30, 100, 5000));
+    follow(1000);
+    ask(rig, follow);
+    follow(1000);
+    EXPECT_TRUE(rig.axis.follows());
+    return jump;
+}
+
+TEST(DriveMotion, never_jumps_by_a_superimposed_distance) {
+    const auto anew = [](DriveRig& rig) {
+        return rig.axis.synchronize(OperationMode::cyclic_position).has_value();
+    };
+    EXPECT_LT(jump_after([&](DriveRig& rig, auto&) { EXPECT_FALSE(anew(rig)); }), 0.5);
+    EXPECT_LT(jump_after([&](DriveRig& rig, auto&) { EXPECT_TRUE(rig.axis.halt() && anew(rig)); }), 0.5);
+    EXPECT_LT(jump_after([&](DriveRig& rig, auto&) { EXPECT_TRUE(rig.axis.move_at(20) && anew(rig)); }), 0.5);
+    EXPECT_LT(jump_after([&](DriveRig& rig, auto&) {
+                  EXPECT_TRUE(rig.axis.synchronize(OperationMode::cyclic_velocity) && anew(rig));
+              }),
+              0.5);
+    EXPECT_LT(jump_after([&](DriveRig& rig, auto& follow) {
+                  rig.feedback[1].mode = 0; // one frame
+                  follow(1);
+                  static_cast<void>(anew(rig)); // refused or not
+              }),
+              0.5);
 }
 
 } // namespace
