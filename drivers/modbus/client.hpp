@@ -89,9 +89,7 @@ template <const auto& map> struct Client {
     }
 
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        // A server that is silent now would only hold the machine's stop up.
-        if (session_->connected() && !session_->outage())
-            TAPPET_ESCAPE("this activity is not real-time", write_last(cycle));
+        TAPPET_ESCAPE("this activity is not real-time", write_last(cycle));
         if (!was_lost_) lost.emit();
         was_stopped_ = true;
     }

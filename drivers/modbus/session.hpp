@@ -73,12 +73,25 @@ public:
         return request(r, now);
     }
 
-    /// The last writing: each written row whose values were set and are not too old, due or not, one after
-    /// the other while the server answers.
+    /// The last writing: each written row whose values were set, due or not, one after the other, and once
+    /// more what gets no answer or an exception. A server that was lost just now is asked again; one that is
+    /// silent for longer would only hold its caller up.
     void finish(Time now) noexcept {
-        Time at = std::max(now, busy_until_);
-        for (std::size_t r = 0; r < R && connected_ && !outage_; ++r)
-            if (map_->rows[r].write) at = request(r, at);
+        if (outage_ && wait_ > 2 * backoff_.first) return;
+        Time at = outage_ ? now : std::max(now, busy_until_);
+        int unanswered = 0;
+        for (std::size_t r = 0; r < R && unanswered < 2; ++r) {
+            const Row& row = map_->rows[r];
+            // None grows old while the ones before it are written.
+            for (std::size_t v = row.first; v < row.first + row.registers; ++v)
+                if (values_[v].stamp == now) values_[v].stamp = at;
+            for (int tries = 0; row.write && tries < 2 && unanswered < 2; ++tries) {
+                if (!connected_) at = connect(at);
+                if (connected_) at = request(r, at);
+                if (!outage_ && exception_[r] == 0) break;
+                if (outage_) ++unanswered;
+            }
+        }
     }
 
     /// The value by its index in the map; its stamp tells its age.

@@ -279,6 +279,31 @@ TEST_F(Utility, leaves_the_safe_values_of_its_map_at_stop_whatever_their_writer_
     EXPECT_EQ(reader->back, 1);
 }
 
+TEST_F(Utility, writes_its_safe_values_once_more_when_a_request_is_lost_or_refused_at_the_stop) {
+    for (const modbus::Fault fault : {modbus::Fault::silent, modbus::Fault::exception}) {
+        run_until(clock.now().time_since_epoch() + 1s);
+        reader->pump_next = 1;
+        reader->leaves_safe = false;
+        run_until(clock.now().time_since_epoch() + 1s);
+        ASSERT_TRUE(pump_runs());
+        twin.set_exception(6);
+        twin.inject(fault, 1);
+        change_server(LifeChange::stop);
+        EXPECT_FALSE(pump_runs());
+        change_server(LifeChange::start);
+    }
+}
+
+TEST_F(Utility, leaves_its_safe_values_though_an_answer_was_lost_just_before_the_stop) {
+    run_until(1s);
+    reader->pump_next = 1;
+    run_until(2s);
+    twin.inject(modbus::Fault::silent, 1);
+    while (server->counters().timeouts == 0) run_until(clock.now().time_since_epoch() + 10ms);
+    change_server(LifeChange::stop);
+    EXPECT_FALSE(pump_runs());
+}
+
 TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
     run_until(1s);
     reader->pump_next = 1;
