@@ -241,6 +241,22 @@ void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
     hand_over(now);
 }
 
+void SocketCan::finish(Time now) noexcept TAPPET_REALTIME {
+    constexpr Duration longest_pause = 20ms, longest = 200ms;
+    const Time begin = read(CLOCK_MONOTONIC);
+    std::uint64_t sent = controller_.count.sent;
+    Frame ignored;
+    service(now);
+    for (Time at = begin, last = begin;
+         controller_.has_unsent() && at - last < longest_pause && at - begin < longest;
+         at = read(CLOCK_MONOTONIC)) {
+        static_cast<void>(receive(ignored));
+        hand_over(now);
+        if (controller_.count.sent != sent) last = at;
+        sent = controller_.count.sent;
+    }
+}
+
 void SocketCan::hand_over(Time now) noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < most_in_flight && fd_ >= 0; ++i) {
         const Frame* frame = controller_.next(now);

@@ -37,7 +37,9 @@ public:
     constexpr Send push(const Frame& frame, Keep keep, Counters& count) noexcept TAPPET_REALTIME {
         Send answer = Send::refused_invalid;
         if (valid(frame)) {
-            const bool fresh = frame.stamp > restarted_at_ && frame.stamp >= now_ - max_age_;
+            // Last words are of now, though a restart was taken up in the same moment.
+            const bool fresh =
+                keep == Keep::last || (frame.stamp > restarted_at_ && frame.stamp >= now_ - max_age_);
             answer = fresh ? queue_.push(frame, keep) : Send::refused_stale;
         }
         if (answer == Send::replaced) ++count.replaced;

@@ -283,6 +283,19 @@ TEST_F(CanBus, sends_the_safe_values_of_its_map_at_stop_whatever_their_writer_le
     EXPECT_EQ(master->faults, 1);
 }
 
+TEST_F(CanBus, sends_its_safe_values_at_a_stop_between_a_restart_and_its_look_at_it) {
+    run_until(20300us);
+    wire.bus_off(twin);
+    restarter->attempts.set(0);
+    run_until(45ms);
+    ASSERT_EQ(twin.restart(), can::Restart::done);
+    heard.clear();
+    change(0, LifeChange::stop);
+    run_until(60ms);
+    ASSERT_FALSE(heard_of(0x201).empty());
+    EXPECT_EQ(controlword(heard_of(0x201).back()), 2);
+}
+
 TEST_F(CanBus, begins_anew_when_it_is_stopped_and_started_again) {
     run_until(10ms);
     wire.overflow(twin, 3);
