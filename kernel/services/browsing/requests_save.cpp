@@ -28,7 +28,8 @@ BrowserService::Verdict BrowserService::save(Client& client, const Request& requ
 bool BrowserService::look_at_saving(Pending& place) {
     auto& saving = std::get<PropertySaving>(place.work);
     if (saving.step()) return false;
-    if (!saving.fault().empty()) return answer_bad(place, Refusal::unsupported, saving.fault());
+    if (!saving.fault().empty())
+        return answer_bad(place, saving.gave_up() ? Refusal::not_now : Refusal::unsupported, saving.fault());
     if (Client* client = who_waits(place)) {
         Reply reply{place.asker.number, true};
         reply.json().field("files", saving.saved());

@@ -11,7 +11,7 @@ void PropertySaving::begin(MachineInstance& machine, std::size_t activity, std::
     saved_ = 0;
     fault_ = Sentence{};
     busy_ = true;
-    asked_ = false;
+    asked_ = gave_up_ = false;
 }
 
 bool PropertySaving::step() noexcept {
@@ -52,6 +52,7 @@ void PropertySaving::ask(std::size_t component) noexcept {
 
 void PropertySaving::give_up() noexcept {
     const AcceptedMachine& machine = machine_->machine();
+    gave_up_ = true;
     if (fault_.empty())
         fault_ =
             Sentence{"component \"", machine.table.components[next_].name,

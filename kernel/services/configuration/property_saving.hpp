@@ -22,6 +22,8 @@ public:
     [[nodiscard]] std::size_t saved() const noexcept { return saved_; }
     /// The first fault; empty: none.
     [[nodiscard]] const Sentence& fault() const noexcept { return fault_; }
+    /// An engine did not come: what is at fault is the moment.
+    [[nodiscard]] bool gave_up() const noexcept { return gave_up_; }
 
 private:
     void ask(std::size_t component) noexcept;
@@ -34,7 +36,7 @@ private:
     std::size_t end_ = 0;
     std::size_t saved_ = 0;
     bool busy_ = false;
-    bool asked_ = false;
+    bool asked_ = false, gave_up_ = false;
     Sentence fault_{};
     PropertyTransaction copy_{};
     EngineCall call_{}; ///< that copies

@@ -52,8 +52,12 @@ TEST_F(Saving, of_an_engine_that_does_not_come_is_given_up_and_keeps_nobody_from
     engine.stop(clock.now());
     engine.plan().parts[0].state.store(ComponentState::running); // as of a thread that does not come
     Talker talker{path()};
-    for (int i = 0; i < 3; ++i)
-        EXPECT_TRUE(has(ask(talker, "1 save", 3s), R"(look at activity \"motion\"; the old file stands)"));
+    for (int i = 0; i < 3; ++i) {
+        const std::string answer = ask(talker, "1 save", 3s);
+        EXPECT_TRUE(has(answer, R"("code": "not_now")") &&
+                    has(answer, R"(look at activity \"motion\"; the old file stands)"))
+            << answer;
+    }
     engine.start(clock.now());
     run(100ms);
     EXPECT_EQ(kept(), "") << "what was called not saved is not saved later";
