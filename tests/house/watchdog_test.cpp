@@ -6,14 +6,14 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
+#include <vector>
 
 namespace tappet::house {
 namespace {
 
 struct Gate {
     std::string_view words;
-    std::initializer_list<std::string_view> files; ///< that may say them
+    std::vector<std::string_view> files; ///< that may say them
     std::string_view cure;
 };
 
