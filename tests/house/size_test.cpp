@@ -42,7 +42,7 @@ const std::vector<Size> sizes{
     {"toolchain/machine",     5840},
     {"toolchain/tools",       13182},
     {"tests/kernel",         31120},
-    {"tests/drivers",         15048},
+    {"tests/drivers",         15050},
     {"tests/apps",            6050},
     {"tests/toolchain",       6082},
     {"tests/bench",           4638},

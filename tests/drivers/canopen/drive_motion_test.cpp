@@ -245,10 +245,10 @@ TEST_F(Axis, tells_a_lag_and_a_limit_of_the_drive) {
 /// it goes on, and begins anew where it stands only if the axis said that it did not follow: how far the
 /// place that is ordered jumps at most.
 template <class Ask>
-double jump_after(Ask ask) {
+double jump_after(Ask ask, bool comes_to_a_stand = true) {
     DriveRig rig;
     double place = 0, jump = 0;
-    bool followed = true;
+    bool followed = true, left_the_mode = false;
     const auto follow = [&](int cycles) {
         for (int k = 0; k < cycles; ++k) {
             if (rig.axis.follows() && !std::exchange(followed, true)) place = rig.last.position;
@@ -257,6 +257,7 @@ double jump_after(Ask ask) {
             const double was = rig.last.position;
             rig.cycle();
             jump = std::max(jump, std::abs(rig.last.position - was));
+            left_the_mode |= rig.last.mode != 8;
         }
     };
     EXPECT_TRUE(rig.gets_power() && rig.axis.synchronize(OperationMode::cyclic_position));
@@ -267,6 +268,7 @@ double jump_after(Ask ask) {
     ask(rig, follow);
     follow(1000);
     EXPECT_TRUE(rig.axis.follows());
+    EXPECT_EQ(left_the_mode, comes_to_a_stand);
     return jump;
 }
 
@@ -274,7 +276,7 @@ TEST(DriveMotion, never_jumps_by_a_superimposed_distance) {
     const auto anew = [](DriveRig& rig) {
         return rig.axis.synchronize(OperationMode::cyclic_position).has_value();
     };
-    EXPECT_LT(jump_after([&](DriveRig& rig, auto&) { EXPECT_FALSE(anew(rig)); }), 0.5);
+    EXPECT_LT(jump_after([&](DriveRig& rig, auto&) { EXPECT_FALSE(anew(rig)); }, false), 0.5);
     EXPECT_LT(jump_after([&](DriveRig& rig, auto&) { EXPECT_TRUE(rig.axis.halt() && anew(rig)); }), 0.5);
     EXPECT_LT(jump_after([&](DriveRig& rig, auto&) { EXPECT_TRUE(rig.axis.move_at(20) && anew(rig)); }), 0.5);
     EXPECT_LT(jump_after([&](DriveRig& rig, auto&) {
