@@ -126,8 +126,8 @@ struct Bus {
         finish(cycle.now);
     }
 
-    /// What the machine has written by now, and behind it what makes the receivers safe: the frames that its
-    /// guardian would send, whoever wrote and whatever their stop() left.
+    /// Sends what is still to be sent, then the safe frames of the map. The guardian would send the same
+    /// ones. They do not depend on what the stop() of a writer left.
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
             if (is_cyclic(f) && map.frames[f].silence_is_safe) send(f, cycle.now);

@@ -95,7 +95,7 @@ inline constexpr auto frames = [] {
     if (synchronises)
         add(cob::sync, "sync", transmit, manager.sync_overflow != 0 ? 1 : 0, {}, manager.sync_every);
     if (tells_time) add(cob::time, "time", transmit, 6, {}, manager.time_every);
-    // What was sent before it counts for the nodes once they are told SYNC.
+    // Synchronous PDOs take effect with the next SYNC.
     if constexpr (synchronises) all.safe[0] = sync_frame(manager.sync_overflow, 1);
     all.safe.back() = nmt_frame(NmtCommand::enter_pre_operational, 0);
     return all;

@@ -114,7 +114,7 @@ template <std::size_t R, std::size_t V> struct RegisterMap {
     std::size_t safe_count = 0;
     Sentence fault{}; ///< empty when the table is right
 
-    /// What is sent when the client stops, or the machine's process is no more.
+    /// The client sends these when it stops; the guardian sends them when the machine's process has ended.
     [[nodiscard]] constexpr SafeWrites safe_writes() const noexcept {
         return {std::span{safe}.first(safe_count), safe_words, rows, registers};
     }

@@ -116,7 +116,7 @@ struct TimerOperations {
     void (*fire)(void* component, const Cycle&) noexcept TAPPET_REALTIME;
 };
 
-/// What an output of bool says while its component stands, and nobody looks: a driver's says it in any case.
+/// The value of an output of bool while its component is stopped. A driver has to state it.
 enum class AtRest : std::uint8_t { unsaid, as_it_was, says_false, says_true };
 
 struct Facet {

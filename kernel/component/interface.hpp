@@ -41,9 +41,9 @@ inline constexpr ValidToStart valid_to_start{};
 /// Marks an input by whose age its component tells a silence: its row must say stale_after(...).
 struct GrowsStale {};
 inline constexpr GrowsStale grows_stale{};
-/// What an output of bool says while its component stands: `connected` of a driver that nobody runs is
-/// false. The engine writes it behind stop(). A driver's outputs of bool say it; one that has no better value
-/// stays as_it_was.
+/// The value of an output of bool while its component is stopped, for example `connected` is false. The
+/// engine writes it after stop(). A driver states it for each of its outputs of bool, or marks the output
+/// as_it_was.
 struct WhileStopped {
     AtRest says;
 };

@@ -60,7 +60,7 @@ constexpr Sentence check_recorders(const MachineView& m) {
     return {};
 }
 
-/// Whoever reads "connected" of a driver that stands must not believe it.
+/// A stopped driver must not go on saying that its device is well.
 constexpr Sentence check_says_at_rest(const ComponentRow& row) {
     if (row.type->device_kind.empty()) return {};
     for (const Facet& each : row.type->facets)

@@ -47,14 +47,12 @@ void BrowserService::follow_pending() {
         if ((this->*each.look)(each)) {
             each.look = nullptr;
         } else if (!each.is_told && now_ - each.asker.since > patience) {
-            // What its engine may still come to keeps its place until then.
-            const bool nothing_was_done = each.call.withdraw();
+            // A withdrawn call is over, and the next look frees its place; one that may still run keeps it.
             answer_bad(each, Refusal::not_now,
-                       nothing_was_done
+                       each.call.withdraw()
                            ? Sentence{"its engine did not come to it; nothing was done: look at its activity"}
                            : Sentence{"it has not happened yet and may still happen: look at its activity"});
             each.is_told = true;
-            if (nothing_was_done) each.look = nullptr;
         }
     }
 }
