@@ -133,20 +133,23 @@ struct Bus {
             if (is_cyclic(f) && map.frames[f].silence_is_safe) send(f, cycle.now);
         send_services();
         static_cast<void>(send_on_demand(cycle.now));
-        device_->finish(cycle.now);
+        static_cast<void>(device_->finish(cycle.now));
+        stopped_safely_ = true;
         for (Frame frame : device_map.safe) {
             frame.stamp = cycle.now;
-            if (device_->send(frame, Keep::last) == Send::refused_full) {
-                device_->finish(cycle.now);
-                static_cast<void>(device_->send(frame, Keep::last));
-            }
+            Send answer = device_->send(frame, Keep::last);
+            if (answer == Send::refused_full && device_->finish(cycle.now))
+                answer = device_->send(frame, Keep::last);
+            stopped_safely_ = stopped_safely_ && answer == Send::queued;
         }
-        device_->finish(cycle.now);
+        stopped_safely_ = (device_->finish(cycle.now) && stopped_safely_) || device_map.safe.empty();
         // A bus that nobody serves cannot be relied on, though it be well.
         bus_state.write(static_cast<std::int64_t>(State::down));
         if (!was_faulted_) bus_fault.emit();
         was_stopped_ = true;
     }
+
+    [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return stopped_safely_; }
 
     /// Drops what waits to be sent.
     void purge() noexcept TAPPET_REALTIME { device_->purge(); }
@@ -484,6 +487,7 @@ private:
     Status status_{};
     bool was_faulted_ = false;
     bool was_stopped_ = false;
+    bool stopped_safely_ = true;
 };
 
 } // namespace tappet::can

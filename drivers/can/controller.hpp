@@ -88,9 +88,9 @@ public:
     [[nodiscard]] bool ours(const Frame& frame) const noexcept TAPPET_REALTIME {
         return index_of({frame.id, frame.extended}) < transmit_.size();
     }
-    /// Something waits to be handed over, or to be confirmed.
-    [[nodiscard]] bool has_unsent() const noexcept TAPPET_REALTIME {
-        return !faulted(state_) && (transmitter_.waiting() != 0 || transmitter_.in_flight() != 0);
+    /// Nothing waits to be handed over, or to be confirmed.
+    [[nodiscard]] bool all_is_sent() const noexcept TAPPET_REALTIME {
+        return !faulted(state_) && transmitter_.waiting() == 0 && transmitter_.in_flight() == 0;
     }
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_; }
     [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME {

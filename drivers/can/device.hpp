@@ -97,16 +97,9 @@ public:
     /// restarts.
     virtual void service(Time now) noexcept TAPPET_REALTIME = 0;
     /// The owner's last call before it rests: what waits goes out now, since nobody serves the device after
-    /// this. Takes some milliseconds at most for each frame. What arrives meanwhile is dropped.
-    virtual void finish(Time now) noexcept TAPPET_REALTIME {
-        Frame ignored;
-        service(now);
-        // Four frames at 125 kbit/s take 5 ms; the kernel's buffer holds fewer frames than are read here.
-        for (int n = 0; n < most_passes && next_service() != never; ++n) {
-            static_cast<void>(receive(ignored));
-            service(now);
-        }
-    }
+    /// this. Takes some milliseconds at most for each frame. What arrives meanwhile is dropped. False: not
+    /// all went out, or nobody acknowledged it.
+    virtual bool finish(Time now) noexcept TAPPET_REALTIME = 0;
     /// When service() has something to do even if nothing arrives: the next time-out of a frame, or never.
     [[nodiscard]] virtual Time next_service() const noexcept TAPPET_REALTIME = 0;
 
@@ -130,7 +123,6 @@ public:
     virtual void set_listener(Listener ready, void* context) noexcept = 0;
 
 protected:
-    static constexpr int most_passes = 4096;
     OneActivity belongs_to_; ///< checked by every call that belongs to the activity
 };
 

@@ -241,20 +241,21 @@ void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
     hand_over(now);
 }
 
-void SocketCan::finish(Time now) noexcept TAPPET_REALTIME {
+bool SocketCan::finish(Time now) noexcept TAPPET_REALTIME {
     constexpr Duration longest_pause = 20ms, longest = 200ms;
     const Time begin = read(CLOCK_MONOTONIC);
     std::uint64_t sent = controller_.count.sent;
     Frame ignored;
     service(now);
-    for (Time at = begin, last = begin;
-         controller_.has_unsent() && at - last < longest_pause && at - begin < longest;
+    for (Time at = begin, last = begin; !controller_.all_is_sent() && !faulted(controller_.state()) &&
+                                        at - last < longest_pause && at - begin < longest;
          at = read(CLOCK_MONOTONIC)) {
         static_cast<void>(receive(ignored));
         hand_over(now);
         if (controller_.count.sent != sent) last = at;
         sent = controller_.count.sent;
     }
+    return controller_.all_is_sent();
 }
 
 void SocketCan::hand_over(Time now) noexcept TAPPET_REALTIME {

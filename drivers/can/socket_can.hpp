@@ -32,7 +32,7 @@ public:
     Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
     /// While frames are confirmed at least every 20 ms, and for 200 ms at most.
-    void finish(Time now) noexcept TAPPET_REALTIME override;
+    bool finish(Time now) noexcept TAPPET_REALTIME override;
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
         return controller_.next_timeout();
     }

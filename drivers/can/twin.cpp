@@ -107,11 +107,14 @@ bool Twin::put_out(const Frame& frame, Time now) noexcept TAPPET_REALTIME {
     return true;
 }
 
-void Twin::finish(Time now) noexcept TAPPET_REALTIME {
-    service(now);
+bool Twin::finish(Time now) noexcept TAPPET_REALTIME {
     Frame frame;
-    while (controller_.take_waiting(frame) && put_out(frame, now)) {
-    }
+    // What befell the bus since its owner looked last is known before anything leaves.
+    for (std::size_t n = 0; n < inbox && inbox_.front() != nullptr; ++n) static_cast<void>(receive(frame));
+    service(now);
+    while (controller_.take_waiting(frame))
+        if (!put_out(frame, now)) return false;
+    return !faulted(controller_.state());
 }
 
 Restart Twin::restart() noexcept {

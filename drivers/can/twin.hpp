@@ -27,7 +27,7 @@ public:
     Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
     /// At once, however many may be in flight: who stops under virtual time waits for no confirmation.
-    void finish(Time now) noexcept TAPPET_REALTIME override;
+    bool finish(Time now) noexcept TAPPET_REALTIME override;
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
         return controller_.next_timeout();
     }

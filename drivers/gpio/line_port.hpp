@@ -120,9 +120,12 @@ template <const auto& map> struct LinePort {
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         stopped_ = true;
         drive(outputs, safe_values);
+        if (refused_ != 0) drive(outputs, safe_values); // nobody tries again while it stands
         // Lines that nobody drives cannot be relied on, though the chip be well.
         if (!faulted_) line_fault.emit();
     }
+
+    [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return !stopped_ || refused_ == 0; }
 
     template <std::size_t line> void set() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, true); }
     template <std::size_t line> void clear() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, false); }

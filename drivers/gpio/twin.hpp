@@ -57,6 +57,10 @@ public:
         removed_.store(removed, std::memory_order_release);
         arrived_ |= removed;
     }
+    /// Fault: the chip refuses the machine's next calls, so many of them.
+    void refuse(std::uint32_t calls) noexcept TAPPET_REALTIME {
+        refusals_.store(calls, std::memory_order_release);
+    }
     /// No change or edge waits for its time.
     [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME {
         return changes_.empty() && late_.empty() && raw_ == inputs_.load(std::memory_order_relaxed);
@@ -81,9 +85,11 @@ private:
     };
     /// True, and counted, when the chip refuses the machine's call.
     [[nodiscard]] bool refuses() noexcept TAPPET_REALTIME {
-        const bool removed = removed_.load(std::memory_order_acquire);
-        count_.failures += removed ? 1u : 0u;
-        return removed;
+        const std::uint32_t left = refusals_.load(std::memory_order_acquire);
+        if (left != 0) refusals_.store(left - 1, std::memory_order_release);
+        const bool refused = left != 0 || removed_.load(std::memory_order_acquire);
+        count_.failures += refused ? 1u : 0u;
+        return refused;
     }
     void change_raw(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
     bool schedule(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
@@ -98,6 +104,7 @@ private:
     twin::Ring<Edge, event_buffer> edges_{};
     std::atomic<Mask> inputs_{0};
     std::atomic<Mask> driven_{0};
+    std::atomic<std::uint32_t> refusals_{0};
     std::atomic<bool> removed_{false};
     EdgeSequence sequence_{}; // the machine's
     Counters count_{};        // the machine's

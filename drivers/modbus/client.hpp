@@ -94,6 +94,8 @@ template <const auto& map> struct Client {
         was_stopped_ = true;
     }
 
+    [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return stopped_safely_; }
+
     [[nodiscard]] Counters counters() const noexcept { return session_->counters(); }
 
     static constexpr auto interface() {
@@ -146,7 +148,9 @@ private:
         for (std::size_t v = 0; v < count; ++v)
             if (is_written(v) && map.registers[v].says_safe)
                 static_cast<void>(session_->set(v, map.registers[v].safe_value, cycle.now)); // it is in range
-        session_->finish(cycle.now);
+        const bool was_asked = session_->counters().requests != 0;
+        const bool is_safe = session_->finish(cycle.now);
+        stopped_safely_ = is_safe || (!was_asked && stopped_safely_); // who was never asked was not driven
     }
     void take_wanted(const Cycle& cycle) noexcept {
         for (std::size_t v = 0; v < count; ++v) {
@@ -184,7 +188,7 @@ private:
         return none;
     }();
     std::array<bool, count> is_set_{}; ///< in the client, since start
-    bool was_lost_ = false, was_stopped_ = false;
+    bool was_lost_ = false, was_stopped_ = false, stopped_safely_ = true;
     Trouble told_{};
 };
 

@@ -75,13 +75,15 @@ public:
 
     /// The last writing: each written row whose values were set, due or not, one after the other, and once
     /// more what gets no answer or an exception. A server that was lost just now is asked again; one that is
-    /// silent for longer would only hold its caller up.
-    void finish(Time now) noexcept {
-        if (outage_ && wait_ > 2 * backoff_.first) return;
+    /// silent for longer would only hold its caller up. False: not each safe value of the map was confirmed.
+    bool finish(Time now) noexcept {
+        if (outage_ && wait_ > 2 * backoff_.first) return map_->safe_count == 0;
+        bool all = true;
         Time at = outage_ ? now : std::max(now, busy_until_);
         int unanswered = 0;
-        for (std::size_t r = 0; r < R && unanswered < 2; ++r) {
+        for (std::size_t r = 0; r < R; ++r) {
             const Row& row = map_->rows[r];
+            const std::uint64_t answers = count_.answers;
             // None grows old while the ones before it are written.
             for (std::size_t v = row.first; v < row.first + row.registers; ++v)
                 if (values_[v].stamp == now) values_[v].stamp = at;
@@ -91,7 +93,10 @@ public:
                 if (!outage_ && exception_[r] == 0) break;
                 if (outage_) ++unanswered;
             }
+            const bool is_written = count_.answers != answers && !outage_ && exception_[r] == 0;
+            if (!is_written && has_safe_value(row) && was_set(row)) all = false;
         }
+        return all;
     }
 
     /// The value by its index in the map; its stamp tells its age.
@@ -183,6 +188,15 @@ private:
         }
         connected_ = transport_->recover();
         return lose(done, {r, answer.outcome});
+    }
+    [[nodiscard]] bool has_safe_value(const Row& row) const noexcept {
+        return std::ranges::any_of(std::span{map_->registers}.subspan(row.first, row.registers),
+                                   &Register::says_safe);
+    }
+    /// Each of its values; else it was never sent.
+    [[nodiscard]] bool was_set(const Row& row) const noexcept {
+        return std::ranges::none_of(std::span{values_}.subspan(row.first, row.registers),
+                                    [](const Value& each) { return each.stamp == Time::min(); });
     }
     /// False, and the change forgotten, when the row's values were never set or are too old to be sent.
     bool fresh(std::size_t r, Time now) noexcept {

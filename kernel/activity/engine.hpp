@@ -50,6 +50,7 @@ struct EnginePart : GatedComponent {
     Time ends_at = never;
     LifeTicket ending{};
     LifeChange wanted{};
+    std::atomic<bool> left_unsafe{false}; ///< a driver: its last stop() did not reach its device
 };
 
 struct EngineTimer {
@@ -238,6 +239,9 @@ public:
     }
     /// All drivers among its components run: whoever waits for it listens to its devices.
     [[nodiscard]] bool heeds_devices() const noexcept TAPPET_REALTIME;
+    /// The first part whose last stop() did not reach its device; the number of parts: there is none. Any
+    /// thread.
+    [[nodiscard]] std::size_t left_unsafe() const noexcept TAPPET_REALTIME;
 
     /// A connection row that wakes this engine has a value that an edge or a frame set off: the cycle that
     /// follows is counted as what the row led to. Of several rows the last. Real-time, any thread.

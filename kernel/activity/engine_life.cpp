@@ -92,6 +92,10 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     }
     active_.store(true, std::memory_order_release);
     awaiting_ = 0;
+    // All of them first: what the first one tells in its start() reaches those behind it.
+    for (EnginePart& part : plan_.parts)
+        if (part.state.load(std::memory_order_relaxed) != ComponentState::failed)
+            part.state.store(ComponentState::starting, std::memory_order_release);
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if (plan_.parts[i].state.load(std::memory_order_relaxed) == ComponentState::failed) continue;
         if (rests(i)) {
@@ -99,7 +103,7 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
         } else if (check_inputs(i, Rule::with_the_machine).refusal == LifeRefusal::none) {
             start_part(i);
         } else {
-            plan_.parts[i].state.store(ComponentState::starting, std::memory_order_release);
+            plan_.parts[i].state.store(ComponentState::waiting, std::memory_order_release);
             ++awaiting_;
         }
     }
@@ -236,6 +240,8 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     commands_.fail(i);
     open_outputs(part); // it may never have started
     if (part.type->stop != nullptr) part.type->stop(part.component_, cycle_);
+    if (part.type->stopped_safely != nullptr)
+        part.left_unsafe.store(!part.type->stopped_safely(part.component_), std::memory_order_relaxed);
     say_at_rest(part);
     end_forces(part, FacetKind::output);
     close_outputs(part);
@@ -346,15 +352,17 @@ LifeAnswer Engine::change(std::uint32_t i, LifeChange wanted) noexcept TAPPET_RE
     if (state == ComponentState::failed)
         return {LifeOutcome::refused, LifeRefusal::not_initialised, static_cast<std::uint8_t>(i), 0};
     if (wanted != LifeChange::start) {
-        if (state == ComponentState::starting) --awaiting_;
+        if (state == ComponentState::waiting) --awaiting_;
         stop_part(i);
     }
+    if (wanted == LifeChange::stop && part.left_unsafe.load(std::memory_order_relaxed))
+        return {LifeOutcome::refused, LifeRefusal::left_unsafe, static_cast<std::uint8_t>(i), 0};
     if (wanted == LifeChange::stop || is_running(part.state)) return done;
     if (rests(i))
         return {LifeOutcome::refused, LifeRefusal::waits_for_its_turn, static_cast<std::uint8_t>(i), 0};
     if (const LifeAnswer inputs = check_inputs(i, Rule::alone); inputs.refusal != LifeRefusal::none)
         return inputs;
-    if (part.state.load(std::memory_order_relaxed) == ComponentState::starting) --awaiting_;
+    if (part.state.load(std::memory_order_relaxed) == ComponentState::waiting) --awaiting_;
     start_part(i);
     start_behaviours(i);
     return done;
@@ -400,7 +408,7 @@ void Engine::leave(Parts leaving) noexcept TAPPET_REALTIME {
 
 void Engine::start_awaiting() noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
-        if (plan_.parts[i].state.load(std::memory_order_relaxed) != ComponentState::starting ||
+        if (plan_.parts[i].state.load(std::memory_order_relaxed) != ComponentState::waiting ||
             check_inputs(i, Rule::with_the_machine).refusal != LifeRefusal::none)
             continue;
         --awaiting_;
@@ -411,6 +419,12 @@ void Engine::start_awaiting() noexcept TAPPET_REALTIME {
 
 void Engine::mark_failed() noexcept TAPPET_REALTIME {
     for (EnginePart& part : plan_.parts) part.state.store(ComponentState::failed, std::memory_order_release);
+}
+
+std::size_t Engine::left_unsafe() const noexcept TAPPET_REALTIME {
+    std::size_t i = 0;
+    while (i < plan_.parts.size() && !plan_.parts[i].left_unsafe.load(std::memory_order_relaxed)) ++i;
+    return i;
 }
 
 bool Engine::heeds_devices() const noexcept TAPPET_REALTIME {

@@ -32,6 +32,7 @@ struct LineFunctions; ///< kernel/machine/instance/line_functions.hpp
 ///     void loop(LoopControl&)                             instead of step: decides itself when it runs; alone in its activity
 ///     void break_loop()                                   lets loop() return although it blocks; on a thread for that alone
 ///     void stop(const Cycle&) noexcept TAPPET_REALTIME    leaves safe values behind; also when an input kept it from its start
+///     bool stopped_safely() const noexcept TAPPET_REALTIME   of a driver: false after a stop() whose safe values did not reach the device
 ///     void finalise()                                     after its activity stopped, on the makers' thread; not real-time
 // clang-format on
 struct ComponentType {
@@ -69,6 +70,7 @@ struct ComponentType {
     void (*loop)(void* component, LoopControl&) = nullptr;
     void (*break_loop)(void* component) = nullptr;
     void (*stop)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr;
+    bool (*stopped_safely)(const void* component) noexcept TAPPET_REALTIME = nullptr;
     Sentence (*accepts)(const void* component, const Proposal&) noexcept TAPPET_REALTIME = nullptr;
     void (*changed)(void* component) noexcept TAPPET_REALTIME = nullptr;
     void (*control)(void* component, const Controlled&) = nullptr; ///< before its properties are set
@@ -137,6 +139,9 @@ constexpr ComponentType describe() {
     if constexpr (life_stop<T>)
         type.stop = [](void* c, const Cycle& cycle) noexcept
             TAPPET_REALTIME { static_cast<T*>(c)->stop(cycle); };
+    if constexpr (life_stopped_safely<T>)
+        type.stopped_safely = [](const void* c) noexcept
+            TAPPET_REALTIME { return static_cast<const T*>(c)->stopped_safely(); };
     if constexpr (life_accepts<T>)
         type.accepts = [](const void* c, const Proposal& proposal) noexcept
             TAPPET_REALTIME { return static_cast<const T*>(c)->accepts(proposal); };

@@ -14,7 +14,8 @@ namespace tappet {
 /// thread.
 enum class ComponentState : std::uint8_t {
     inactive, ///< constructed, perhaps configured; its activity never ran
-    starting, ///< it may not run yet: start() runs, or an input that it needs has no valid value
+    waiting,  ///< its activity has started; an input that it needs has no valid value yet
+    starting, ///< start() runs, or is about to, behind that of others of its activity
     running,  ///< it is stepped, and messages reach it
     stopping, ///< stop() leaves the safe values
     stopped,  ///< its outputs hold the safe values; it does nothing, and from here on nothing reaches it
@@ -24,6 +25,7 @@ enum class ComponentState : std::uint8_t {
 constexpr std::string_view to_text(ComponentState state) noexcept {
     switch (state) {
     case ComponentState::inactive: return "inactive";
+    case ComponentState::waiting: return "waiting";
     case ComponentState::starting: return "starting";
     case ComponentState::running: return "running";
     case ComponentState::stopping: return "stopping";
@@ -34,8 +36,8 @@ constexpr std::string_view to_text(ComponentState state) noexcept {
 }
 
 template <>
-inline constexpr auto names_of<ComponentState> =
-    std::array<std::string_view, 6>{"inactive", "starting", "running", "stopping", "stopped", "failed"};
+inline constexpr auto names_of<ComponentState> = std::array<std::string_view, 7>{
+    "inactive", "waiting", "starting", "running", "stopping", "stopped", "failed"};
 
 using AtomicComponentState = std::atomic<ComponentState>;
 static_assert(AtomicComponentState::is_always_lock_free);
@@ -47,8 +49,7 @@ inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTI
 
 /// How a call comes to a component.
 enum class Entry : std::uint8_t {
-    at_once, ///< in the caller's thread: also into one that has not begun, starts or stops just now, or waits
-             ///< for its turn
+    at_once, ///< in the caller's thread: while it runs, starts or stops just now, or waits for its turn
     queued,  ///< by a message: only while it runs
     always   ///< a const method, or properties: its own outputs are shut while it stands
 };
@@ -70,7 +71,8 @@ public:
         const ComponentState now = state.load(std::memory_order_acquire);
         switch (entry) {
         case Entry::at_once:
-            return now < ComponentState::stopped || waits_for_its_turn.load(std::memory_order_relaxed);
+            return (now >= ComponentState::starting && now <= ComponentState::stopping) ||
+                   waits_for_its_turn.load(std::memory_order_relaxed);
         case Entry::queued: return now == ComponentState::running;
         case Entry::always: break;
         }
@@ -108,10 +110,11 @@ enum class LifeRefusal : std::uint8_t {
     none,
     input_never_written,
     input_stale,
-    not_initialised,   ///< initialise() refused, or nobody called it since the failure
-    activity_stopped,  ///< the activity that runs it does not run
-    thread_lost,       ///< its thread hangs or broke a contract
-    waits_for_its_turn ///< it runs by turns with others, and one of those runs now
+    not_initialised,    ///< initialise() refused, or nobody called it since the failure
+    activity_stopped,   ///< the activity that runs it does not run
+    thread_lost,        ///< its thread hangs or broke a contract
+    waits_for_its_turn, ///< it runs by turns with others, and one of those runs now
+    left_unsafe         ///< it has stopped, but its safe values did not reach its device
 };
 
 /// The answer to a request: the refusal, and where it lies.

@@ -34,6 +34,7 @@ struct NeverRun {
     X(loop,       (T & t, LoopControl& l),         { t.loop(l) } -> std::same_as<void>,                 "void loop(LoopControl&)") \
     X(break_loop, (T & t),                         { t.break_loop() } -> std::same_as<void>,            "void break_loop()") \
     X(stop,       (T & t, const Cycle& c),         { t.stop(c) } noexcept -> std::same_as<void>,        "void stop(const Cycle&) noexcept TAPPET_REALTIME") \
+    X(stopped_safely, (const T& t),                { t.stopped_safely() } noexcept -> std::same_as<bool>, "bool stopped_safely() const noexcept TAPPET_REALTIME") \
     X(finalise,   (T & t),                         { t.finalise() } -> std::same_as<void>,              "void finalise()")
 
 /// Names that mean nothing else: two characters exchanged, one left out or written twice, or the same word in

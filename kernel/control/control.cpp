@@ -174,7 +174,7 @@ std::uint32_t Turns::failed_part(Engine::Parts among) const noexcept TAPPET_REAL
     for (std::uint32_t i = 0; i < parts.size(); ++i) {
         if ((among & bit(i)) == 0) continue;
         const ComponentState state = parts[i].state.load(std::memory_order_acquire);
-        if (state != ComponentState::running && state != ComponentState::starting) return i;
+        if (state < ComponentState::waiting || state > ComponentState::running) return i;
     }
     for (const WatchedInput& each : watched)
         if ((among & bit(each.part)) != 0 && each.port->flow(each.input) == Flow::stale) return each.part;

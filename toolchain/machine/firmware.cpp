@@ -203,12 +203,13 @@ private:
             report.passed("guardian", Sentence{"it could act now"});
     }
 
-    /// Of a thread that broke a contract the guardian makes sure; one that hangs it ends, and the process
-    /// with it.
-    static os::Guard::Outputs outputs_of(const RealWorld& world) {
-        return world.hung() != 0   ? os::Guard::Outputs::unsafe
-               : world.lost() != 0 ? os::Guard::Outputs::not_sure
-                                   : os::Guard::Outputs::safe;
+    /// Of a thread that broke a contract, and of a device that took no safe values, the guardian makes sure;
+    /// a thread that hangs it ends, and the process with it.
+    static os::Guard::Outputs outputs_of(MachineInstance& instance, const RealWorld& world) {
+        const bool is_sure = world.lost() == 0 && instance.life().left_unsafe().empty();
+        return world.hung() != 0 ? os::Guard::Outputs::unsafe
+               : is_sure         ? os::Guard::Outputs::safe
+                                 : os::Guard::Outputs::not_sure;
     }
 
     /// True when it ended because its time was over.
@@ -277,11 +278,13 @@ private:
         const bool as_asked = !unguarded &&
                               (time_is_over || instance.stop_request().reason == StopReason::requested) &&
                               world.breaches() == 0;
-        const Sentence fault =
-            world.hung() == 0 ? reason
-                              : Sentence{reason, "; activity \"", world.first_hung(), "\" does not stop"};
+        Sentence fault = reason;
+        if (world.hung() != 0) fault.add("; activity \"").add(world.first_hung()).add("\" does not stop");
+        if (const std::string_view driver = instance.life().left_unsafe(); !driver.empty())
+            fault.add("; the safe values of \"").add(driver).add("\" did not reach its device");
         say("stopped: ", fault);
-        guard_.end(outputs_of(world), as_asked && world.hung() == 0 ? Sentence{} : fault);
+        const auto outputs = outputs_of(instance, world);
+        guard_.end(outputs, as_asked && outputs == os::Guard::Outputs::safe ? Sentence{} : fault);
         static_cast<void>(world.stop()); // finalises
         if (!world.unfinished().empty()) say(world.unfinished());
         if (!world.refusal().empty()) return fail(Ending::stopped_by_fault, world.refusal());

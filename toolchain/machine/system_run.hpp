@@ -32,7 +32,7 @@ public:
     can::Receive receive(can::Frame& frame) noexcept TAPPET_REALTIME override;
     can::Send send(const can::Frame& frame, can::Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override { twin_.service(clock_.true_time(now)); }
-    void finish(Time now) noexcept TAPPET_REALTIME override { twin_.finish(clock_.true_time(now)); }
+    bool finish(Time now) noexcept TAPPET_REALTIME override { return twin_.finish(clock_.true_time(now)); }
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override;
     [[nodiscard]] can::State state() const noexcept TAPPET_REALTIME override { return twin_.state(); }
     [[nodiscard]] can::Counters counters() const noexcept TAPPET_REALTIME override {

@@ -42,6 +42,7 @@ struct LedCamera {
         }
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {}
+    [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return true; } // it drives nothing
 
     static constexpr auto interface() {
         return facets(output<&LedCamera::leds>("leds", "m", "at the time of their exposure"),

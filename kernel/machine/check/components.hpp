@@ -71,6 +71,15 @@ constexpr Sentence check_says_at_rest(const ComponentRow& row) {
     return {};
 }
 
+/// By its map a guardian could act: the driver says whether it has to.
+constexpr Sentence check_says_stopped_safely(const ComponentRow& row) {
+    if (row.type->device_map == nullptr || row.type->stop == nullptr || row.type->stopped_safely != nullptr)
+        return {};
+    return of_component(row.name, " drives a ", row.type->device_kind,
+                        " device and does not say whether its stop() reached it; write bool stopped_safely() "
+                        "const noexcept TAPPET_REALTIME, true where nothing is driven");
+}
+
 /// Fills the list by name.
 constexpr Sentence check_components(const MachineView& m, const TableIndexView& r) {
     if (m.components.empty())
@@ -91,6 +100,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         if (row.type->device_kind.empty() && !row.device.empty())
             return of_component(row.name, " drives no device; remove device(\"", row.device, "\")");
         if (Sentence fault = check_says_at_rest(row); !fault.empty()) return fault;
+        if (Sentence fault = check_says_stopped_safely(row); !fault.empty()) return fault;
     }
     if (Sentence fault = check_recorders(m); !fault.empty()) return fault;
     sort_by_name(m, r.by_name);

@@ -54,6 +54,10 @@ Sentence MachineLife::describe(std::size_t activity, LifeAnswer answer) const {
         return Sentence{"component \"", part.name,
                         "\" is not started: it runs by turns with others of activity \"", plan.name,
                         "\", and one of those runs; ask the component that hands over between them"};
+    case LifeRefusal::left_unsafe:
+        return Sentence{"component \"", part.name,
+                        "\" has stopped, but its safe values did not reach its device; see that the device "
+                        "answers, then start and stop it, or stop the machine: its guardian writes them too"};
     case LifeRefusal::input_never_written:
     case LifeRefusal::input_stale: break;
     }
@@ -192,6 +196,9 @@ void MachineLife::progress(std::size_t a, const ActivityControl& control) {
             end_refused(a, {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::thread_lost});
         } else if (change.phase == Phase::stopping) {
             change.phase = Phase::waiting_for_makers;
+        } else if (const std::size_t part = placed_.engines()[a].left_unsafe();
+                   change.wanted == LifeChange::stop && part < placed_.engines()[a].plan().parts.size()) {
+            end_refused(a, {LifeOutcome::refused, LifeRefusal::left_unsafe, static_cast<std::uint8_t>(part)});
         } else if (change.phase == Phase::starting || change.wanted == LifeChange::stop) {
             end_change(a, {});
         } else if (makers_answer_.outcome == LifeOutcome::refused) {
@@ -231,6 +238,13 @@ void MachineLife::give_up_changes() {
                                                               .refusal = LifeRefusal::activity_stopped});
         changes_[a].phase = Phase::none;
     }
+}
+
+std::string_view MachineLife::left_unsafe() const noexcept {
+    for (const Engine& engine : placed_.engines())
+        if (const std::size_t part = engine.left_unsafe(); part < engine.plan().parts.size())
+            return engine.plan().parts[part].name;
+    return {};
 }
 
 bool MachineLife::stands() const noexcept {

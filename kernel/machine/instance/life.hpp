@@ -77,6 +77,9 @@ public:
     void lose(std::size_t activity) noexcept { thread_lost_[activity] = true; }
     /// No activity runs, no thread of one was given up while it hung, and nobody initialises or finalises.
     [[nodiscard]] bool stands() const noexcept;
+    /// The first driver whose last stop() did not reach its device; empty: there is none. Real-time, any
+    /// thread.
+    [[nodiscard]] std::string_view left_unsafe() const noexcept;
 
 private:
     enum class Phase : std::uint8_t { none, stopping, waiting_for_makers, makers, starting };

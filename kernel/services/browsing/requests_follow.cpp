@@ -94,15 +94,17 @@ bool BrowserService::look_at_life(Pending& place) {
                                   : machine_->life().answer_of_activity(call.activity, call.ticket);
     switch (answer.outcome) {
     case LifeOutcome::pending: return false;
-    case LifeOutcome::done:
-        // Places for what is released come back in time, unless every one waits for another's.
-        return (call.change == LifeChange::start || release_readers_of(call) || place.is_told) &&
-               answer_good(place);
+    case LifeOutcome::done: break;
     case LifeOutcome::superseded:
         return answer_bad(place, Refusal::not_now,
                           Sentence{"somebody asked for something else meanwhile; look at its state"});
-    case LifeOutcome::refused: break;
+    case LifeOutcome::refused:
+        if (answer.refusal == LifeRefusal::left_unsafe) break;
+        return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));
     }
+    // Places for what is released come back in time, unless every one waits for another's.
+    if (call.change != LifeChange::start && !release_readers_of(call) && !place.is_told) return false;
+    if (answer.outcome == LifeOutcome::done) return answer_good(place);
     return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));
 }
 

@@ -44,6 +44,12 @@ struct Trusted {
                       output<&Trusted::connected>("connected", "", "somebody answers"));
     }
 };
+struct Unsure {
+    static constexpr std::string_view device_kind = "can";
+    static constexpr int device_map = 0;
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
 struct SlowBus {
     static constexpr std::string_view device_kind = "can";
     static constexpr Sentence analyse(const DeviceUse& use, std::span<TrafficRow>) {
@@ -278,6 +284,9 @@ constexpr Fault device_faults[] = {
     {"device_trusted_while_it_stands",
      [](Table& m) { m.put(component<Trusted>("encoder", device("main_encoder"))); },
      R"(loom: component "encoder" is a driver, and its output "connected" does not say what it is while the driver is stopped; write while_stopped(false), while_stopped(true) or as_it_was behind its doc)"},
+    {"device_left_as_it_may_be",
+     [](Table& m) { m.put(component<Unsure>("encoder", device("main_encoder"))); },
+     R"(loom: component "encoder" drives a can device and does not say whether its stop() reached it; write bool stopped_safely() const noexcept TAPPET_REALTIME, true where nothing is driven)"},
     {"device_shared_with_nobody",
      [](Table& m) {
          m.add(component<Restarter>("restarter", device("spare_encoder")));

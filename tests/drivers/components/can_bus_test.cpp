@@ -281,6 +281,7 @@ TEST_F(CanBus, sends_the_safe_values_of_its_map_at_stop_whatever_their_writer_le
     EXPECT_EQ(target_rpm(heard[0]), 0.0);
     EXPECT_TRUE(master->was_faulted) << "nobody serves it";
     EXPECT_EQ(master->faults, 1);
+    EXPECT_EQ(instance.life().left_unsafe(), "");
 }
 
 TEST_F(CanBus, sends_its_safe_values_at_a_stop_between_a_restart_and_its_look_at_it) {
@@ -380,7 +381,7 @@ TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {
     wire.bus_off(twin);
     run_until(25ms);
     ASSERT_EQ(master->faults, 1);
-    change(0, LifeChange::stop);
+    stop_unheard();
     run_until(30ms);
     change(0, LifeChange::start);
     run_until(35ms);
@@ -412,6 +413,10 @@ public:
         }
         sent += waiting_;
         waiting_ = 0;
+    }
+    bool finish(Time now) noexcept TAPPET_REALTIME override {
+        service(now);
+        return waiting_ == 0;
     }
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override { return wants_service; }
     [[nodiscard]] can::State state() const noexcept TAPPET_REALTIME override { return can::State::active; }

@@ -150,6 +150,15 @@ struct Lines : testing::Test {
         const Sentence refusal = world.change_activity(0, change);
         EXPECT_TRUE(refusal.empty()) << refusal.view();
     }
+    /// Its stop() does not reach the device, and whoever asked is told.
+    void stop_unheard() {
+        const Sentence answer = world.change_activity(0, LifeChange::stop);
+        EXPECT_EQ(
+            answer.view(),
+            "component \"io\" has stopped, but its safe values did not reach its device; see that the "
+            "device answers, then start and stop it, or stop the machine: its guardian writes them too");
+        EXPECT_EQ(instance.life().left_unsafe(), "io");
+    }
     [[nodiscard]] std::uint64_t io_cycles() const { return instance.engines()[0].statistics().cycles; }
     [[nodiscard]] bool driven(std::size_t line) const { return (twin.outputs() & at(line)) != 0; }
 
@@ -353,7 +362,7 @@ TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes)
     EXPECT_TRUE(listener->faulted.get());
     run_until(2s);
     EXPECT_EQ(listener->faults, 1);
-    change_io(LifeChange::stop);
+    stop_unheard();
     run_until(2s + 5ms);
     EXPECT_EQ(listener->faults, 1) << "it is known already";
     EXPECT_TRUE(listener->faulted.get());
@@ -408,7 +417,7 @@ TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_st
     listener->opens = true;
     run_until(3ms);
     twin.set_removed(true);
-    change_io(LifeChange::stop);
+    stop_unheard();
     run_until(5ms);
     EXPECT_TRUE(listener->faulted.get());
     EXPECT_EQ(listener->faults, 1);
@@ -418,6 +427,21 @@ TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_st
     run_until(8ms);
     EXPECT_EQ(twin.outputs(), at(brake));
     EXPECT_FALSE(listener->faulted.get());
+    change_io(LifeChange::stop);
+    run_until(9ms);
+    EXPECT_EQ(instance.life().left_unsafe(), "");
+}
+
+TEST_F(Lines, leave_safe_values_behind_though_the_chip_refuses_them_once) {
+    run_until(1ms);
+    listener->opens = true;
+    run_until(3ms);
+    ASSERT_TRUE(driven(valve));
+    twin.refuse(1);
+    change_io(LifeChange::stop);
+    run_until(5ms);
+    EXPECT_EQ(twin.outputs(), at(brake));
+    EXPECT_EQ(instance.life().left_unsafe(), "");
 }
 
 TEST_F(Lines, refuse_to_start_without_their_chip) {

@@ -91,6 +91,15 @@ struct Utility : testing::Test {
         const Sentence refusal = world.change_activity(0, change);
         EXPECT_TRUE(refusal.empty()) << refusal.view();
     }
+    /// Its stop() does not reach the device, and whoever asked is told.
+    void stop_unheard() {
+        const Sentence answer = world.change_activity(0, LifeChange::stop);
+        EXPECT_EQ(
+            answer.view(),
+            "component \"server\" has stopped, but its safe values did not reach its device; see that the "
+            "device answers, then start and stop it, or stop the machine: its guardian writes them too");
+        EXPECT_EQ(instance.life().left_unsafe(), "server");
+    }
     [[nodiscard]] bool pump_runs() const { return twin.get(modbus::Table::coils, 0) != 0; }
 
     os::Clock clock{os::Clock::Kind::virtual_time};
@@ -372,6 +381,26 @@ TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
     const auto before = server->counters();
     world.stop();
     EXPECT_EQ(server->counters(), before);
+    EXPECT_EQ(instance.life().left_unsafe(), "server");
+}
+
+TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reaches_it) {
+    run_until(1s);
+    reader->pump_next = 1;
+    run_until(2s);
+    for (const modbus::Fault fault : {modbus::Fault::down, modbus::Fault::silent, modbus::Fault::exception}) {
+        twin.set_exception(6);
+        SCOPED_TRACE(static_cast<int>(fault));
+        twin.inject(fault);
+        stop_unheard();
+        twin.inject(modbus::Fault::none);
+        change_server(LifeChange::restart);
+        run_until(clock.now().time_since_epoch() + 3s);
+        change_server(LifeChange::stop);
+        EXPECT_EQ(instance.life().left_unsafe(), "");
+        change_server(LifeChange::start);
+        run_until(clock.now().time_since_epoch() + 3s);
+    }
 }
 
 } // namespace

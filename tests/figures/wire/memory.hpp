@@ -24,6 +24,7 @@ public:
         return can::Send::queued;
     }
     void service(Time) noexcept TAPPET_REALTIME override {}
+    bool finish(Time) noexcept TAPPET_REALTIME override { return true; } // what is sent has left
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override { return never; }
     [[nodiscard]] can::State state() const noexcept TAPPET_REALTIME override { return can::State::active; }
     [[nodiscard]] can::Counters counters() const noexcept TAPPET_REALTIME override { return {}; }

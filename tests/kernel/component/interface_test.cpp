@@ -137,7 +137,7 @@ TEST(Interface, takes_functions_that_can_be_called_as_those_of_its_life_and_leav
 
 TEST(Operation, runs_on_packed_arguments_of_any_sizes) {
     Probe probe;
-    GatedComponent gate{&probe};
+    GatedComponent gate{&probe, ComponentState::running};
     const auto run = [&](std::string_view name, const std::byte* arguments) {
         return facet(name).operation->run(gate, Entry::at_once, arguments);
     };

@@ -67,8 +67,8 @@ TEST(Turns, begin_with_the_fallback_and_the_others_wait) {
 TEST(Turns, begin_when_every_input_has_a_valid_value_and_not_with_a_zero) {
     Rig rig{false};
     EXPECT_TRUE(rig.run(5ms));
-    EXPECT_EQ(rig.state("standing"), ComponentState::starting);
-    EXPECT_EQ(rig.state("limiter"), ComponentState::starting);
+    EXPECT_EQ(rig.state("standing"), ComponentState::waiting);
+    EXPECT_EQ(rig.state("limiter"), ComponentState::waiting);
     EXPECT_EQ(rig.part<Limiter>("limiter").cycles, 0u);
     EXPECT_FALSE(rig.instance.stop_asked()) << "who waits has not failed";
     rig.part<Slide>("slide").is_silent = false;

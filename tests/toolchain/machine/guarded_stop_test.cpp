@@ -26,6 +26,7 @@ enum class Ill : int {
     initialises_long,
     works_for_ever,
     finalises_long,
+    device_takes_nothing,
     supervisor_sleeps,
     supervisor_sleeps_in_stop
 };
@@ -53,7 +54,12 @@ struct Valve {
     Property<std::int64_t> unused{0};
     void start(const Cycle&) noexcept TAPPET_REALTIME { page->wire = 1; }
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { TAPPET_ESCAPE("a test's note", page->be_safe()); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        if (stopped_safely()) TAPPET_ESCAPE("a test's note", page->be_safe());
+    }
+    [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME {
+        return page->ill != Ill::device_takes_nothing;
+    }
     static constexpr auto interface() {
         return facets(property<&Valve::unused>("unused", "", "a component has a facet", range(0, 0)));
     }
@@ -200,6 +206,14 @@ TEST_F(AFirmware, whose_finalising_takes_long_is_safe_before_it) {
     EXPECT_LT(until_safe(), bound);
     EXPECT_EQ(exit_code(), 0);
     EXPECT_EQ(page->by_guardian, 0);
+}
+
+TEST_F(AFirmware, whose_device_took_no_safe_values_is_made_safe_by_its_guardian_after_its_orderly_end) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::device_takes_nothing));
+    ask();
+    EXPECT_LT(until_safe(), bound);
+    EXPECT_EQ(exit_code(), 0);
+    EXPECT_GT(page->by_guardian, 0);
 }
 
 TEST_F(AFirmware, of_which_an_activity_hangs_is_ended_by_its_guardian_and_stays_safe) {

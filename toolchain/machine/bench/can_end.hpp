@@ -24,6 +24,7 @@ public:
     can::Receive receive(can::Frame& frame) noexcept TAPPET_REALTIME override;
     can::Send send(const can::Frame& frame, can::Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time) noexcept TAPPET_REALTIME override {}
+    bool finish(Time) noexcept TAPPET_REALTIME override { return true; } // what is sent has left
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override { return never; }
     [[nodiscard]] can::State state() const noexcept TAPPET_REALTIME override { return can::State::active; }
     [[nodiscard]] can::Counters counters() const noexcept TAPPET_REALTIME override { return count_; }

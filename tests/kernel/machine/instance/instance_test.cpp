@@ -260,7 +260,7 @@ TEST_F(LifeOfAComponent, waits_with_the_whole_machine_for_an_input_that_it_needs
     the<Sensor>("sensor").silent = true;
     start();
     run(50ms);
-    EXPECT_EQ(state(careful), ComponentState::starting);
+    EXPECT_EQ(state(careful), ComponentState::waiting);
     EXPECT_EQ(the<Careful>("careful").first_angle, -1.0);
     EXPECT_EQ(state(axis), ComponentState::running); // which did not say so
     the<Sensor>("sensor").silent = false;

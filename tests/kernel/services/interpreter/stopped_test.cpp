@@ -53,24 +53,39 @@ struct Valve {
     }
 };
 
+/// It begins when there is air.
+struct Spare {
+    Input<bool> air;
+    bool open() noexcept TAPPET_REALTIME { return true; }
+    static constexpr auto interface() {
+        return facets(input<&Spare::air>("air", "", "there is some", valid_to_start),
+                      method<&Spare::open>("open", "opens it"));
+    }
+};
+
 /// Asks the valve in each step once it is told to.
 struct Panel {
-    MethodCall<bool()> open;
+    Output<bool> air;
+    MethodCall<bool()> open, open_spare;
     CommandCall<> go;
     Event<> called, told;
-    bool asks = false;
-    std::int64_t answers = 0, refusals = 0;
+    bool asks = false, has_air = false;
+    std::int64_t answers = 0, refusals = 0, answers_of_spare = 0;
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (has_air) air.write(true);
         if (!asks) return;
+        if (open_spare().given()) ++answers_of_spare;
         open().given() ? ++answers : ++refusals;
         called.emit();
         told.emit();
         static_cast<void>(go.send());
     }
     static constexpr auto interface() {
-        return facets(calls<&Panel::open>("open", "the valve"), sends<&Panel::go>("go", "the valve"),
-                      event<&Panel::called>("called", "at once"),
+        return facets(output<&Panel::air>("air", "", "there is some"),
+                      calls<&Panel::open>("open", "the valve"),
+                      calls<&Panel::open_spare>("open_spare", "the one that waits for air"),
+                      sends<&Panel::go>("go", "the valve"), event<&Panel::called>("called", "at once"),
                       event<&Panel::told>("told", "by a message"));
     }
 };
@@ -96,14 +111,14 @@ struct Feeder {
 
 // clang-format off
 constexpr auto table = machine("plant",
-    components(component<Valve>("valve"), component<Panel>("panel"), component<Feeder>("feeder"), component<Wire>("wire"),
+    components(component<Valve>("valve"), component<Spare>("spare"), component<Panel>("panel"), component<Feeder>("feeder"), component<Wire>("wire"),
                component<BrowserService>("browser", set("log", false)), component<CommandInterpreter>("interpreter")),
     activities(
-        activity("motion",  every(1ms), budget(50us), runs("valve", "panel", "feeder")),
+        activity("motion",  every(1ms), budget(50us), runs("valve", "spare", "panel", "feeder")),
         activity("io",      every(1ms), budget(50us), runs("wire")),
         activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser", "interpreter"))),
-    connections(data("valve.coil", "wire.level")),
-    reactions(uses("panel.open", "valve.open"), uses("panel.go", "valve.go"),
+    connections(data("valve.coil", "wire.level"), data("panel.air", "spare.air")),
+    reactions(uses("panel.open", "valve.open"), uses("panel.open_spare", "spare.open"), uses("panel.go", "valve.go"),
               when("panel.called", call("valve.on")), when("panel.told", tell("valve.on"))),
     behaviours(behaviour("feeder", slot(nodes(60), data_bytes(512), depth(3), command_slots(2), timers(2), text_bytes(2000),
                                         peers("valve"), operations("valve.on", "valve.open", "valve.count"), trial(2)), at_most(30))));
@@ -186,6 +201,18 @@ TEST_F(AStoppedComponent, gives_no_answer_to_a_method_call_and_runs_no_reaction)
     panel().asks = true;
     run(5ms);
     EXPECT_GT(panel().answers, 3) << "it runs again";
+    panel().asks = false;
+    stop_valve();
+}
+
+TEST_F(AStoppedComponent, is_not_called_either_before_it_has_begun) {
+    panel().asks = true;
+    run(20ms);
+    EXPECT_EQ(panel().answers_of_spare, 0) << "it waits for air";
+    EXPECT_THAT(ask({"1 call spare.open"}), HasSubstr("does not run"));
+    panel().has_air = true;
+    run(20ms);
+    EXPECT_GT(panel().answers_of_spare, 0);
     panel().asks = false;
     stop_valve();
 }
