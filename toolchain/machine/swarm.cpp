@@ -297,7 +297,10 @@ void SwarmRun::stop() {
     judge_saved(true);
     kept_ = kept_values();
     rest(stopped_within);
-    if (const Sentence unsafe = wires_.broken_at_rest(asked); !unsafe.empty()) deny(unsafe);
+    if (!run_.instance().life().left_unsafe().empty())
+        let_guardian_act();
+    else if (const Sentence unsafe = wires_.broken_at_rest(false); !unsafe.empty())
+        deny(unsafe);
     rest(at_rest - stopped_within);
     ++verdict_.restarts;
 }
@@ -309,6 +312,17 @@ void SwarmRun::rest(Duration time) {
         run_.devices().advance(run_.now());
         judge(run_.now());
     }
+}
+
+void SwarmRun::let_guardian_act() {
+    is_gone_ = true; // what it promised is its guardian's
+    rest(Duration{random_.between(0, 10'000'000)});
+    run_.devices().write_safe_lines();
+    rest(Duration{random_.between(0, 10'000'000)});
+    run_.devices().send_safe_frames(run_.now());
+    run_.devices().write_safe_registers();
+    rest(25ms);
+    if (const Sentence unsafe = wires_.broken_at_rest(true); !unsafe.empty()) deny(unsafe);
 }
 
 /// In order; or its process is gone in the middle of its work, and its guardian leaves the outputs safe.
@@ -325,16 +339,8 @@ void SwarmRun::restart(bool orderly) {
         // As the kernel does with the descriptors of a process.
         if (service_ != nowhere)
             run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->finalise();
-        is_gone_ = true; // what it promised is its guardian's
         kept_.clear();
-        rest(Duration{random_.between(0, 10'000'000)});
-        run_.devices().write_safe_lines();
-        rest(Duration{random_.between(0, 10'000'000)});
-        run_.devices().send_safe_frames(run_.now());
-        run_.devices().write_safe_registers();
-        rest(25ms);
-        if (const Sentence unsafe = wires_.broken_at_rest(SwarmWires::by_guardian); !unsafe.empty())
-            deny(unsafe);
+        let_guardian_act();
         rest(Duration{random_.between(100'000'000, 3'000'000'000)});
         ++verdict_.restarts;
     }

@@ -93,6 +93,7 @@ private:
     void note_responses();
     void stop();
     void restart(bool orderly);
+    void let_guardian_act();
     void leave();
     void rest(Duration time);
     bool mend(Duration limit);

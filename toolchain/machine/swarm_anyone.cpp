@@ -107,7 +107,11 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
     if (request.starts_with("force ")) wires_.excuse_axes(run_.now() + longest_force);
     const bool reads = request.starts_with("get ");
     const std::string name = reads ? request.substr(4) : std::string{};
-    by.ask(std::move(request), run_.now(), [this, name](std::string_view answer) {
+    const bool is_alone = &by == &browser_ && by.waits_for() == 0; // of the engineers
+    by.ask(std::move(request), run_.now(), [this, name, is_alone](std::string_view answer) {
+        if (is_alone && field_of(answer, "error").starts_with("too many requests"))
+            deny(Sentence{
+                "an engineer who asks for one thing is not served: people of lower roles have every place"});
         if (!name.empty() && is_good(answer)) judge_shown(name, answer);
     });
 }

@@ -38,6 +38,8 @@ public:
     void tell_by(std::function<void(std::string_view packet)> tell) { tell_ = std::move(tell); }
     /// Whose answer has been outstanding longest; null: nobody's.
     [[nodiscard]] const Asked* oldest() const { return asked_.empty() ? nullptr : &asked_.begin()->second; }
+    /// How many answers are outstanding.
+    [[nodiscard]] std::size_t waits_for() const { return asked_.size(); }
     /// Rises with each connection.
     [[nodiscard]] std::uint64_t connections() const { return connections_; }
 

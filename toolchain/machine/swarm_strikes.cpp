@@ -148,7 +148,7 @@ void SwarmRun::strike_chip(std::size_t c, Duration lasts) {
     gpio::Twin& chip = run_.devices().lines(row.device);
     const auto& map = *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map);
     Sentence text{"lines \"", row.device, "\": "};
-    const std::uint64_t what = random_.below(6);
+    const std::uint64_t what = random_.below(7);
     std::vector<std::size_t> inputs;
     for (std::size_t i = 0; i < map.size(); ++i)
         if (map[i].line.role == gpio::Role::input) inputs.push_back(i);
@@ -157,22 +157,28 @@ void SwarmRun::strike_chip(std::size_t c, Duration lasts) {
         return begin("chip removed", text.add("the chip is gone"), lasts, components_on(row.device),
                      [&chip] { return chip.set_removed(false), true; });
     }
+    if (what == 1) {
+        const auto calls = static_cast<std::uint32_t>(random_.between(1, 3));
+        chip.refuse(calls);
+        return begin("chip refuses", text.add("the chip refuses ").add(calls).add(" calls"), lasts,
+                     components_on(row.device), [&chip] { return chip.refuse(0), true; });
+    }
     const std::size_t line = inputs[random_.below(inputs.size())];
     gpio::LineFaults& faults = chip.faults(line);
     const auto many = static_cast<std::uint32_t>(random_.between(1, 4));
     text.add("\"").add(map[line].line.name).add("\" ");
     const auto heal = [&faults] { return faults = {}, true; };
     switch (what) {
-    case 1:
+    case 2:
         faults.lose_next = many;
         return begin("line loses edges", text.add("loses ").add(many).add(" edges"), lasts, {}, heal);
-    case 2:
+    case 3:
         faults.lose_one_in = many;
         return begin("line loses edges", text.add("loses one edge in ").add(many), lasts, {}, heal);
-    case 3:
+    case 4:
         faults.bounces = many;
         return begin("line bounces", text.add("bounces ").add(many).add(" times"), lasts, {}, heal);
-    case 4:
+    case 5:
         faults.delay = Duration{random_.between(1'000, 10'000'000)};
         return begin("line is late", text.add("is ").add(faults.delay / 1us).add(" us late"), lasts, {},
                      heal);

@@ -120,7 +120,9 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
         axis.is_enabled = (can::extract(frame.data, *axis.word) & enabled_bits) == enabled;
     if (identifier != axis.frame) return;
     const std::string_view state = state_of(axis);
-    if (state != "Disabled" && state != "Standstill")
+    // A drive that the machine cannot reach is its own time-out's.
+    const bool is_reached = !can::faulted(devices_.controller(device).state());
+    if (!is_reached || (state != "Disabled" && state != "Standstill"))
         axis.rests_since = never;
     else if (axis.rests_since == never)
         axis.rests_since = frame.stamp;
@@ -205,10 +207,7 @@ void SwarmWires::add_registers(std::size_t c) {
                 for (unsigned w = 0; w < width; ++w) all = all << 16 | word(w);
                 return all;
             };
-            Output output{.driver = c,
-                          .is_switch = one.kind == modbus::Kind::bit,
-                          .settles = request.every,
-                          .comes_back = modbus::Backoff{}.most};
+            Output output{.driver = c, .is_switch = one.kind == modbus::Kind::bit, .settles = request.every};
             if (one.says_safe)
                 output.safe = whole(
                     [words = modbus::to_words(one, one.safe_value)](unsigned w) { return words.words[w]; });
@@ -253,7 +252,6 @@ void SwarmWires::add(Output output, std::string_view facet, std::string_view oth
                 operation == driver + "." + std::string{other_facet})
                 write(find_component(table, row.component));
     output.settles += usual_settling + oldest;
-    if (!output.is_line) output.comes_back += output.settles;
     output.name = driver + "." + output.name;
     outputs_.push_back(std::move(output));
 }
@@ -371,15 +369,15 @@ Sentence SwarmWires::broken(Time now) {
     return {};
 }
 
-Sentence SwarmWires::broken_at_rest(Time asked) const {
-    const bool orderly = asked != by_guardian;
+Sentence SwarmWires::broken_at_rest(bool by_guardian) const {
     for (const Output& each : outputs_) {
         // What nobody could be told just then, its receiver notices.
-        const Duration whole = struck_.whole_for(each.driver, asked);
-        if (!each.safe || whole < (orderly ? each.comes_back : Duration{})) continue;
+        if (!each.safe || struck_.whole_for(each.driver, never) < Duration{}) continue;
         if (const auto value = each.read(); value && *value != *each.safe)
             return told(each, *value)
-                .add(orderly ? ", though the machine has stopped" : ", though its guardian has left it safe");
+                .add(by_guardian ? ", though its guardian has left it safe"
+                                 : ", though the machine has stopped, and says of no device that it was not "
+                                   "reached");
     }
     return {};
 }

@@ -39,9 +39,8 @@ public:
     void excuse_axes(Time until);
     /// The first rule that is broken at this moment; empty: none.
     [[nodiscard]] Sentence broken(Time now);
-    /// All of it is over: in order, as it was asked for at `asked`, or by the guardian.
-    [[nodiscard]] Sentence broken_at_rest(Time asked) const;
-    static constexpr Time by_guardian = never;
+    /// All of it is over: in order, and no driver said that its device was not reached, or by the guardian.
+    [[nodiscard]] Sentence broken_at_rest(bool by_guardian) const;
 
     // ---- to see what is left behind
 
@@ -62,8 +61,7 @@ private:
         std::optional<std::uint64_t> safe{};
         bool is_switch = false; ///< one bit
         bool is_line = false;
-        Duration settles{};    ///< longer than anything takes from a writer to the wire
-        Duration comes_back{}; ///< its wire, after the last fault of it
+        Duration settles{}; ///< longer than anything takes from a writer to the wire
         std::function<std::optional<std::uint64_t>()> read{};
         // Of this machine.
         std::optional<std::uint64_t> before{}, left{}; ///< while a writer ran; when all had stopped

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// The adversary in real time: seed after seed a firmware in its two processes, whose makers' functions take
+// their time while people restart its activities and something asks for the stop. Rules judge from outside.
+#include "kernel/base/random.hpp"
+#include "kernel/os/arming.hpp"
+#include "kernel/os/terminal.hpp"
+#include "tests/adversary/stops/machine.hpp"
+#include "toolchain/command_line.hpp"
+#include "toolchain/machine/firmware.hpp"
+
+#include <new>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+
+namespace tappet::stops {
+namespace {
+
+constexpr std::array options{
+    Option{.name = "--working",
+           .value = "N",
+           .help = "so many seconds (default 60)",
+           .is_number = true,
+           .least = 1},
+    Option{.name = "--findings",
+           .value = "N",
+           .help = "ends after so many broken seeds (default 10)",
+           .is_number = true,
+           .least = 1},
+    Option{.name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true},
+    Option{.name = "--step",
+           .value = "N",
+           .help = "from one seed to the next (default 1)",
+           .is_number = true,
+           .least = 1},
+    Option{.name = "--seed", .value = "SEED", .help = "this one only", .is_number = true},
+    Option{"--help", "", "this text"}};
+enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
+
+constexpr std::array<std::string_view, functions> function_names{
+    "initialise", "finalise", "start", "work", "stop", "loop", "break_loop"};
+constexpr std::array<std::string_view, causes> cause_names{"SIGTERM",
+                                                           "somebody asks",
+                                                           "a contract breaks",
+                                                           "a deadline is missed",
+                                                           "a row grows stale",
+                                                           "a real-time activity hangs",
+                                                           "an activity that is restarted hangs",
+                                                           "the drivers are stopped alone"};
+
+Draw draw_of(std::uint64_t seed) {
+    Random random{seed};
+    Draw draw;
+    constexpr int longest_start = 350; // RealWorld::patience_ms, on a busy host
+    for (auto& component : draw.takes)
+        for (std::size_t f = 0; f < functions; ++f)
+            if (random.one_in(5))
+                component[f] = static_cast<int>(random.between(
+                    20, f == static_cast<std::size_t>(Function::start) ? longest_start : 2500));
+    for (Draw::Ask& each : draw.asks)
+        each = {static_cast<int>(random.between(0, 600)), random.one_in(2) ? look : receive,
+                random.one_in(3)   ? LifeChange::stop
+                : random.one_in(2) ? LifeChange::start
+                                   : LifeChange::restart};
+    draw.cause = static_cast<Cause>(random.below(causes));
+    draw.cause_at = static_cast<int>(random.between(150, 700));
+    return draw;
+}
+
+Sentence described(const Draw& draw) {
+    Sentence text{cause_names[static_cast<std::size_t>(draw.cause)], " after ", std::int64_t{draw.cause_at},
+                  " ms"};
+    for (std::size_t who = 0; who < 2; ++who)
+        for (std::size_t f = 0; f < functions; ++f)
+            if (draw.takes[who][f] != 0)
+                text.add(who == camera ? "; camera " : "; receiver ")
+                    .add(function_names[f])
+                    .add(" takes ")
+                    .add(std::int64_t{draw.takes[who][f]});
+    return text;
+}
+
+/// From the cause to the moment in which somebody knows of it, at most.
+Duration noticed_within(Cause cause) {
+    switch (cause) {
+    case Cause::contract: return 100ms; // a period of the drivers
+    case Cause::deadline: return 250ms; // and the cycle that takes long
+    case Cause::stale:
+    case Cause::hang: return 110ms;       // the row's age
+    case Cause::hang_alone: return 600ms; // RealWorld::patience_ms
+    case Cause::termination:
+    case Cause::somebody:
+    case Cause::valve_alone: break;
+    }
+    return {};
+}
+
+/// No thread of an activity was held up, and none broke a contract: the machine sees to its stop itself.
+bool is_for_machine(const Draw& draw) {
+    if (draw.cause == Cause::contract || draw.cause == Cause::hang || draw.cause == Cause::hang_alone)
+        return false;
+    for (const auto& component : draw.takes)
+        for (const Function f :
+             {Function::start, Function::work, Function::stop, Function::loop, Function::break_loop})
+            if (component[static_cast<std::size_t>(f)] != 0) return false;
+    return true;
+}
+
+template <class Condition> bool becomes(Condition condition, Duration within) {
+    const Time end = os::Clock::monotonic() + within;
+    bool is_so = condition();
+    for (; !is_so && os::Clock::monotonic() < end; is_so = condition()) os::sleep_for(1ms);
+    return is_so;
+}
+
+[[noreturn]] void be_firmware() {
+    ::setpgid(0, 0);
+    const int nowhere_to_print = ::open("/dev/null", O_WRONLY);
+    ::dup2(nowhere_to_print, 1);
+    if (::getenv("SHOW_FIRMWARE") == nullptr) ::dup2(nowhere_to_print, 2);
+    static Wires wires;
+    char name[] = "stops";
+    char* words[] = {name};
+    const FirmwareHooks hooks{.configured = [](MachineInstance& configured) { instance = &configured; }};
+    std::_Exit(run_firmware(Firmware<table, board>::machine(), wires, 1, words, hooks));
+}
+
+/// Empty: all rules held.
+Sentence judge(pid_t guardian, const Draw& draw) {
+    constexpr Duration busy_host = 250ms, longest_makers = 20s;
+    if (!becomes([] { return page->asked != 0; }, longest_makers))
+        return Sentence{"its people do not come to their turn"};
+    const Duration bound = noticed_within(draw.cause) + board.stop_within + busy_host;
+    const bool was_safe = becomes([] { return page->wire == 0; }, bound + longest_makers);
+    const Duration took = at_ns(page->safe_since) - at_ns(page->asked);
+    if (draw.cause == Cause::valve_alone && was_safe && took <= bound) ::kill(guardian, SIGTERM);
+    if (!was_safe || took > bound)
+        return Sentence{"its outputs were safe ", took / 1ms, " ms after the cause of the stop, and ",
+                        bound / 1ms, " ms are allowed"};
+    int status = 0;
+    if (!becomes([&] { return ::waitpid(guardian, &status, WNOHANG) == guardian; }, longest_makers))
+        return Sentence{"it does not come to its end"};
+    if (page->wire != 0) return Sentence{"its outputs did not stay safe"};
+    if (const int ran = page->on_supervisor; ran >= 0)
+        return Sentence{function_names[static_cast<std::size_t>(ran)],
+                        "() of a component ran on the thread that executes stops"};
+    if (!is_for_machine(draw)) return {};
+    if (page->by_guardian != 0)
+        return Sentence{"its guardian had to act, though no thread of an activity was held up"};
+    for (std::size_t who = 0; who < 2; ++who)
+        if (page->initialised[who] != page->finalised[who])
+            return Sentence{"what was initialised was not finalised"};
+    return {};
+}
+
+Sentence run(std::uint64_t seed) {
+    page = new (page) Page;
+    page->draw = draw_of(seed);
+    const pid_t guardian = ::fork();
+    if (guardian == 0) be_firmware();
+    ::setpgid(guardian, guardian);
+    const Sentence broken = judge(guardian, page->draw);
+    ::kill(-guardian, SIGKILL);
+    int status = 0;
+    ::waitpid(guardian, &status, 0); // none, when the judge has seen its end
+    return broken;
+}
+
+int hunt(int count, char** words) {
+    const std::vector<std::string_view> all(words + 1, words + count);
+    const auto given = read_command_line(options, all, Others::refused);
+    if (!given) {
+        static_cast<void>(os::write_all(2, Sentence{"stops swarm: ", given.error(), "\n"}.view()));
+        return wrong_words;
+    }
+    if (given->has("--help")) {
+        os::print("a machine whose makers' functions take their time while it is stopped, in real time\n");
+        os::print(usage_of(options));
+        return none_broken;
+    }
+    if (os::observe_process(board.highest_priority).fifo_error != 0) {
+        static_cast<void>(os::write_all(2, "stops swarm: SCHED_FIFO is not granted here; run as root\n"));
+        return wrong_words;
+    }
+    page = static_cast<Page*>(
+        ::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+    const Time end = os::Clock::monotonic() + given->number("--working", 60) * Duration{1s};
+    std::uint64_t seed = given->number(given->has("--seed") ? "--seed" : "--from", 1), seeds = 0, broken = 0;
+    do {
+        if (const Sentence what = run(seed); !what.empty()) {
+            ++broken;
+            os::print(Sentence{"stops: seed ", seed, " at ", to_ns(os::Clock::monotonic()) / 1000,
+                               " us: ", what, " (", described(page->draw), "); replay it: ", words[0],
+                               " --seed ", seed, "\n"}
+                          .view());
+        }
+        ++seeds;
+        seed += given->number("--step", 1);
+    } while (!given->has("--seed") && os::Clock::monotonic() < end &&
+             broken < given->number("--findings", 10));
+    os::print(Sentence{"stops: ", seeds, " seeds, ", broken, " broken\n"}.view());
+    return broken == 0 ? none_broken : one_broken;
+}
+
+} // namespace
+} // namespace tappet::stops
+
+int main(int count, char** words) { return tappet::stops::hunt(count, words); }
