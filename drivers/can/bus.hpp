@@ -348,7 +348,8 @@ private:
     struct Reading {
         bool usable = true; ///< each was written, none is stale
         bool fresh = false; ///< one was written since the last reading
-        bool agreed = true; ///< all are of the same time
+        bool agreed = true; ///< all are of the same time,
+        Time at{};          ///< which is this
     };
 
     /// By the values of multiplexors that were read before it.
@@ -361,7 +362,6 @@ private:
     Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         Reading found;
         const FrameRow& row = map.frames[f];
-        Time first{};
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
             if (!is_selected(row, s)) continue;
             const bool integer = is_integer(map.signals[s]);
@@ -369,8 +369,8 @@ private:
             const Time stamp = integer ? integer_in[s].stamp() : physical_in[s].stamp();
             found.usable &= flow == Flow::fresh || flow == Flow::old;
             found.fresh |= flow == Flow::fresh;
-            if (s == row.first) first = stamp;
-            found.agreed &= stamp == first;
+            if (s == row.first) found.at = stamp;
+            found.agreed &= stamp == found.at;
         }
         return found;
     }
@@ -410,6 +410,8 @@ private:
             demanded_[f] |= found.fresh;
             if (!demanded_[f] || !found.usable || !found.agreed) continue;
             demanded_[f] = false;
+            if (found.at <= demanded_at_[f]) continue; // sent before: a force has ended, and shows it again
+            demanded_at_[f] = found.at;
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
             if (!keep_inputs(f)) continue;
@@ -476,6 +478,11 @@ private:
     std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
     std::array<Time, frame_count> may_follow_{}; // on demand
+    std::array<Time, frame_count> demanded_at_ = [] {
+        std::array<Time, frame_count> none{};
+        none.fill(Time::min());
+        return none;
+    }();
     std::array<bool, frame_count> demanded_{};   // written since it was last sent
     std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
     Device* device_ = nullptr;

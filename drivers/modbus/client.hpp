@@ -144,7 +144,7 @@ private:
     }
 
     void write_last(const Cycle& cycle) noexcept {
-        take_wanted(cycle);
+        take_wanted();
         for (std::size_t v = 0; v < count; ++v)
             if (is_written(v) && map.registers[v].says_safe)
                 static_cast<void>(session_->set(v, map.registers[v].safe_value, cycle.now)); // it is in range
@@ -152,19 +152,17 @@ private:
         const bool is_safe = session_->finish(cycle.now);
         stopped_safely_ = is_safe || (!was_asked && stopped_safely_); // who was never asked was not driven
     }
-    void take_wanted(const Cycle& cycle) noexcept {
+    void take_wanted() noexcept {
         for (std::size_t v = 0; v < count; ++v) {
             if (!is_written(v)) continue;
             double value = 0;
             const Flow flow = wanted[v].read(value);
-            if (flow == Flow::fresh || (flow == Flow::old && !is_set_[v])) {
-                const Time since = flow == Flow::fresh ? cycle.now : wanted[v].stamp();
-                is_set_[v] = session_->set(v, value, since);
-            }
+            if (flow == Flow::fresh || (flow == Flow::old && !is_set_[v]))
+                is_set_[v] = session_->set(v, value, wanted[v].stamp());
         }
     }
     void exchange(const Cycle& cycle) noexcept {
-        take_wanted(cycle);
+        take_wanted();
         // The client says when a request ended; the next one begins then.
         Time at = cycle.now;
         for (std::size_t n = 0; n <= map.rows.size(); ++n) {

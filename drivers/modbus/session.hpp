@@ -80,15 +80,17 @@ public:
         if (outage_ && wait_ > 2 * backoff_.first) return map_->safe_count == 0;
         bool all = true;
         Time at = outage_ ? now : std::max(now, busy_until_);
-        int unanswered = 0;
+        int unanswered = outage_ ? 1 : 0; // two time-outs in all, with that of the cycle before
         for (std::size_t r = 0; r < R; ++r) {
             const Row& row = map_->rows[r];
             const std::uint64_t answers = count_.answers;
-            // None grows old while the ones before it are written.
-            for (std::size_t v = row.first; v < row.first + row.registers; ++v)
-                if (values_[v].stamp == now) values_[v].stamp = at;
+            Time stamp = now;
             for (int tries = 0; row.write && tries < 2 && unanswered < 2; ++tries) {
                 if (!connected_) at = connect(at);
+                // None grows old while the ones before it are written, or this one in vain.
+                for (std::size_t v = row.first; v < row.first + row.registers; ++v)
+                    if (values_[v].stamp == stamp) values_[v].stamp = at;
+                stamp = at;
                 if (connected_) at = request(r, at);
                 if (!outage_ && exception_[r] == 0) break;
                 if (outage_) ++unanswered;

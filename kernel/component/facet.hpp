@@ -65,7 +65,7 @@ struct PortOperations {
     std::uint64_t (*written)(const void* shared) noexcept TAPPET_REALTIME;
     PortPlaces (*places)(const void* port, bool is_input) noexcept TAPPET_REALTIME;
     /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
-    void (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
+    bool (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
     /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
     /// `looks`: what is fresh there stays fresh.
@@ -266,8 +266,8 @@ struct PortAccess {
             [](void* port, bool is_input, const std::byte* bytes) noexcept TAPPET_REALTIME {
                 T value = default_value<T>();
                 std::memcpy(static_cast<void*>(std::addressof(value)), bytes, sizeof value);
-                is_input ? static_cast<Input<T>*>(port)->force(value)
-                         : static_cast<Output<T>*>(port)->force(value);
+                return is_input ? static_cast<Input<T>*>(port)->force(value)
+                                : static_cast<Output<T>*>(port)->force(value);
             },
         .release =
             [](void* port, bool is_input) noexcept TAPPET_REALTIME {

@@ -133,10 +133,12 @@ private:
     }
     void store(const T& value, Time stamp) noexcept TAPPET_REALTIME {
         last_.stamp = stamp;
-        if (forced_) [[unlikely]]
+        if (forced_) [[unlikely]] {
             hidden_ = value;
-        else
+            hidden_stamp_ = stamp;
+        } else {
             copy_value(value, last_.value);
+        }
         publish();
     }
     /// After each change of what a write has to look at.
@@ -149,20 +151,26 @@ private:
         if (shared_ != nullptr) shared_->write(last_);
         waker_();
     }
-    /// In the port's own activity, between two steps.
-    void force(const T& value) noexcept TAPPET_REALTIME {
-        if (!forced_) hidden_ = last_.value;
+    /// In the port's own activity, between two steps. False, and nothing is forced: its component never wrote
+    /// it, so that a release would have to make a value up.
+    bool force(const T& value) noexcept TAPPET_REALTIME {
+        if (generation_ == 0) return false;
+        if (!forced_) {
+            hidden_ = last_.value;
+            hidden_stamp_ = last_.stamp;
+        }
         forced_ = true;
         settle();
         last_ = {value, *now_};
         publish();
+        return true;
     }
-    /// What the component wrote last, be it before or meanwhile, is published again.
+    /// What the component wrote last, be it before or meanwhile, is published again, of the time that it has.
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         forced_ = false;
         settle();
-        last_ = {hidden_, *now_};
+        last_ = {hidden_, hidden_stamp_};
         publish();
     }
 
@@ -177,6 +185,7 @@ private:
     DroppedWrites* dropped_ = nullptr;
     alignas(place_alignment<T>) T hidden_ =
         default_value<T>(); ///< of a forced port: what its component wrote
+    Time hidden_stamp_{};   ///< and when it was true
 
     static constexpr Time detail_epoch{};
 };
@@ -204,9 +213,9 @@ public:
         seen_ = local_->generation_;
         return local_->last_.value;
     }
-    /// When the value read last was true.
+    /// When the value read last was true; a forced one always is.
     [[nodiscard]] Time stamp() const noexcept TAPPET_REALTIME {
-        return local_ != nullptr && !forced_ ? local_->last_.stamp : cache_.stamp;
+        return forced_ ? *now_ : local_ != nullptr ? local_->last_.stamp : cache_.stamp;
     }
     /// Tells what the value is, without copying it out; a fresh value stays fresh for read().
     [[nodiscard]] Flow flow() noexcept TAPPET_REALTIME {
@@ -288,11 +297,12 @@ private:
     }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes: fresh
     /// once, never stale.
-    void force(const T& value) noexcept TAPPET_REALTIME {
+    bool force(const T& value) noexcept TAPPET_REALTIME {
         cache_ = {value, *now_};
         seen_ = 0;
         forced_ = true;
         settle();
+        return true;
     }
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;

@@ -21,8 +21,11 @@ public:
     /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
-    /// Of those, for who has a higher role: nobody keeps a higher one from being served.
-    static constexpr std::size_t kept_from_observers = 8, kept_from_operators = 4;
+    /// Half of all places are for those who are more than observers, a quarter for engineers: nobody keeps a
+    /// higher role from being served.
+    static constexpr bool has_room(Role role, std::size_t free, std::size_t of) noexcept {
+        return free > (role == Role::observer ? of / 2 : role == Role::machine_operator ? of / 4 : 0);
+    }
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 

@@ -33,8 +33,9 @@ struct FacetCall {
     MachineInstance* machine = nullptr;
     End end{};
     const Facet* facet = nullptr;
-    void* place = nullptr; ///< of the port, or the component
-    bool refused = false;  ///< the engine's: the component had stopped by then
+    void* place = nullptr;      ///< of the port, or the component
+    bool refused = false;       ///< the engine's: the component had stopped by then
+    bool never_written = false; ///< likewise: an output that nobody wrote cannot be forced
     alignas(
         16) std::array<std::byte, max_value_bytes> value{}; ///< of a method: the result after the arguments
 };

@@ -31,9 +31,11 @@ void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     const Entry entry = is_input(*call.facet) ? Entry::at_once : Entry::queued;
     call.refused = !call.machine->gate_of(call.end.component)->admits(entry);
     if (call.refused) return;
+    const bool was_forced = is_forced(call);
+    call.never_written = !call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
     // The count is for observers: nobody decides by it, so its sum is not used here.
-    if (!is_forced(call)) call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);
-    call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
+    if (!was_forced && !call.never_written)
+        call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);
     step_again(call);
 }
 
@@ -212,6 +214,13 @@ bool BrowserService::look_at_facet(Pending& place) {
                           Sentence{"component \"",
                                    machine_->machine().table.components[call.end.component].name,
                                    "\" does not run; start it first"});
+    if (call.never_written)
+        return answer_bad(
+            place, Refusal::not_now,
+            Sentence{"\"", machine_->machine().table.components[call.end.component].name, ".",
+                     call.facet->name,
+                     "\" was not written yet: a release would have nothing to go back to; force the "
+                     "inputs that read it"});
     const MethodOperations* method = call.facet->method;
     if (method == nullptr || method->result_bytes == 0) return answer_good(place);
     if (Client* client = who_waits(place)) {

@@ -9,12 +9,9 @@ using browsing::Asker;
 
 BrowserService::Pending* BrowserService::free_place(Role role) noexcept {
     const auto is_free = [](const Pending& each) { return each.look == nullptr; };
-    const std::size_t kept = role == Role::observer           ? kept_from_observers
-                             : role == Role::machine_operator ? kept_from_operators
-                                                              : 0;
     const auto first = std::ranges::find_if(pending_, is_free);
     const auto count = static_cast<std::size_t>(std::ranges::count_if(pending_, is_free));
-    return count > kept ? &*first : nullptr;
+    return has_room(role, count, max_pending) ? &*first : nullptr;
 }
 
 BrowserService::Verdict BrowserService::no_place() noexcept {

@@ -14,13 +14,15 @@ BrowserService::Verdict BrowserService::subscribe(Client& client, const Request&
     const Sentence unknown = browsing::find_facet(table, request.arguments[0], {FacetKind::event}, event);
     if (!unknown.empty()) return {Refusal::unknown, unknown};
     Subscribed* place = nullptr;
+    std::size_t free = 0;
     for (Subscribed& each : subscribed_) {
         if (!each.taken) place = &each;
+        free += each.taken ? 0u : 1u;
         if (each.taken && each.asker.client == client.serial && each.event == event)
             return {Refusal::not_now, Sentence{"\"", request.arguments[0], "\" is subscribed to already"}};
     }
-    if (place == nullptr)
-        return {Refusal::not_now, Sentence{"all ", max_subscriptions, " subscriptions are taken; end one"}};
+    if (!has_room(client.role, free, max_subscriptions))
+        return {Refusal::not_now, Sentence{"all subscriptions that your role may have are taken; end one"}};
     const EventHandle handle = machine_->observation().observe_event(event.component, event.facet);
     if (!handle.valid())
         return {Refusal::unsupported,

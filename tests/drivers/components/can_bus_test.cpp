@@ -393,6 +393,32 @@ TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {
     EXPECT_FALSE(master->was_faulted);
 }
 
+TEST_F(CanBus, repeats_no_demand_when_a_force_ends_or_the_machine_stops_meanwhile) {
+    demand(1, 3);
+    run_until(20ms);
+    ASSERT_EQ(heard_of(0x000).size(), 1u);
+    heard.clear();
+    End node;
+    ASSERT_TRUE(resolve(instance.machine().table, "can.nmt.node", FacetKind::input, node).empty());
+    const PortOperations& port = *facet_at(instance.machine().table, node).port;
+    const std::int64_t three = 3;
+    const auto force = [&] {
+        port.force(instance.place_of(node), true, reinterpret_cast<const std::byte*>(&three));
+        instance.engines()[0].waiter().wake();
+    };
+    force();
+    run_until(40ms);
+    port.release(instance.place_of(node), true);
+    instance.engines()[0].waiter().wake();
+    run_until(60ms);
+    EXPECT_TRUE(heard_of(0x000).empty());
+    force();
+    run_until(80ms);
+    world.stop();
+    carry(clock.now() + 1ms);
+    EXPECT_TRUE(heard_of(0x000).empty());
+}
+
 /// A controller that asks for service in the past, or has no room for a while.
 class DifficultDevice final : public can::Device {
 public:

@@ -384,6 +384,22 @@ TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
     EXPECT_EQ(instance.life().left_unsafe(), "server");
 }
 
+TEST_F(Utility, writes_nothing_old_when_a_force_ends) {
+    run_until(1s);
+    reader->pump_next = 1; // once; its row says for how long that holds
+    run_until(20s);
+    End on;
+    ASSERT_TRUE(resolve(instance.machine().table, "server.pump.on", FacetKind::input, on).empty());
+    const PortOperations& port = *facet_at(instance.machine().table, on).port;
+    const double off = 0;
+    port.force(instance.place_of(on), true, reinterpret_cast<const std::byte*>(&off));
+    run_until(30s);
+    ASSERT_FALSE(pump_runs());
+    port.release(instance.place_of(on), true);
+    run_until(31s);
+    EXPECT_FALSE(pump_runs());
+}
+
 TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reaches_it) {
     run_until(1s);
     reader->pump_next = 1;
@@ -393,6 +409,7 @@ TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reache
         SCOPED_TRACE(static_cast<int>(fault));
         twin.inject(fault);
         stop_unheard();
+        stop_unheard(); // and is told so again
         twin.inject(modbus::Fault::none);
         change_server(LifeChange::restart);
         run_until(clock.now().time_since_epoch() + 3s);

@@ -66,6 +66,33 @@ TEST_P(Forcing, releasing_an_output_publishes_what_its_component_wrote_last) {
     EXPECT_EQ(input.get(), 3.0);
 }
 
+TEST_P(Forcing, an_output_that_its_component_never_wrote_is_not_forced) {
+    const double to = 9.0;
+    EXPECT_FALSE(port.force(&output, false, reinterpret_cast<const std::byte*>(&to)));
+    EXPECT_EQ(input.read(value), Flow::never_written);
+    port.release(&output, false);
+    EXPECT_EQ(input.read(value), Flow::never_written);
+}
+
+TEST_P(Forcing, releasing_an_output_makes_no_old_value_new) {
+    port.set_policy(&input, {.max_age = 4ms});
+    output.write(1.0);
+    now += 1h;
+    force_output(9.0);
+    EXPECT_EQ(input.read(value), Flow::fresh);
+    port.release(&output, false);
+    EXPECT_EQ(input.read(value), Flow::stale) << "written before";
+    EXPECT_EQ(input.stamp(), at_ns(0));
+    force_output(9.0);
+    output.write(2.0);
+    now += 2ms;
+    port.release(&output, false);
+    EXPECT_EQ(input.read(value), Flow::fresh) << "written meanwhile";
+    EXPECT_EQ(value, 2.0);
+    now += 3ms;
+    EXPECT_EQ(input.read(value), Flow::stale);
+}
+
 TEST_P(Forcing, an_input_reads_the_forced_value_fresh_once_and_never_stale) {
     port.set_policy(
         &input,

@@ -252,6 +252,7 @@ TEST_F(Map, leads_to_the_figures_that_the_framework_keeps) {
 }
 
 TEST_F(Map, shows_a_forced_port) {
+    static_cast<void>(world.run_until(at_ns(0) + 50ms)); // what nobody wrote is not forced
     const End angle{0, 0};
     const double forced = 90;
     facet_at(instance.machine().table, angle)

@@ -6,6 +6,7 @@
 #include "kernel/services/browsing/access.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace tappet::press {
 namespace {
@@ -50,6 +51,24 @@ TEST(Access, an_observer_may_look_an_operator_act_and_an_engineer_change) {
                                    : Role::engineer)
             << row.name;
     }
+}
+
+TEST_F(Press, observers_leave_subscriptions_for_who_has_a_higher_role) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    std::vector<std::unique_ptr<Talker>> observers;
+    std::size_t taken = 0, refused = 0;
+    for (int n = 0; n < 6; ++n) {
+        ASSERT_EQ(seteuid(65534), 0);
+        observers.push_back(std::make_unique<Talker>(path()));
+        ASSERT_EQ(seteuid(0), 0);
+        for (const char* request :
+             {"1 subscribe ram.arrived", "2 subscribe table.scanned", "3 subscribe shelf.scanned"})
+            ++(has(ask(*observers.back(), request), R"("ok": true)") ? taken : refused);
+    }
+    EXPECT_EQ(taken, BrowserService::max_subscriptions / 2);
+    EXPECT_GT(refused, 0u);
+    Talker engineer{path()};
+    EXPECT_TRUE(has(ask(engineer, "4 subscribe ram.arrived"), R"("ok": true)"));
 }
 
 TEST_F(Press, who_has_not_the_role_is_refused_clearly_and_nothing_happens) {
