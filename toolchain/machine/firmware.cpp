@@ -116,6 +116,12 @@ Options parse(int count, char** words, bool has_own) {
     return options;
 }
 
+/// What the supervisor does while it waits.
+struct GuardLook {
+    os::Guard& guard;
+    MachineInstance& instance;
+};
+
 /// One run of the firmware, with its name before whatever it says.
 class Run {
 public:
@@ -179,8 +185,13 @@ private:
             return Ending::refused_to_arm;
         }
         const Duration start_to_armed = machine_clock.now() - begun;
-        world.show_life_by(
-            &guard_, [](void* guard) { static_cast<os::Guard*>(guard)->be_back_within(away_while_running); });
+        // Also while it starts, when nobody else looks whether the guardian is there.
+        GuardLook look{guard_, instance};
+        world.show_life_by(&look, [](void* self) {
+            auto& both = *static_cast<GuardLook*>(self);
+            both.guard.be_back_within(away_while_running);
+            if (both.guard.guardian_is_lost()) both.instance.ask_stop(StopReason::requested, 0, nullptr);
+        });
         guard_.be_back_within(away_while_running);
         guard_.let_activities_be_watched(true);
         if (!world.start(*armed)) return end(instance, world, properties, start_to_armed, false);

@@ -10,6 +10,7 @@
 #include "kernel/os/terminal.hpp"
 #include "kernel/os/watchdog.hpp"
 #include "toolchain/machine/black_box.hpp"
+#include "toolchain/machine/firmware.hpp"
 #include "toolchain/machine/safe_ending.hpp"
 
 #include <algorithm>
@@ -69,8 +70,9 @@ public:
         for (;;) {
             const Look look = watch();
             if (look.must_act) {
-                act(look.reason);
-                return code_handed_on(exit_code());
+                const bool was_reached = act(look.reason);
+                const int code = code_handed_on(exit_code());
+                return code == 0 && !was_reached ? static_cast<int>(Ending::stopped_by_fault) : code;
             }
             if (!look.ended) {
                 const Time now = os::Clock::monotonic();
@@ -152,7 +154,8 @@ private:
                           : Sentence{"it ended with code ", code, " in the middle of its work"};
     }
 
-    void act(Sentence reason) {
+    /// False: not each device took its safe values, or said so.
+    bool act(Sentence reason) {
         const SafeEnding done = end_safely(process_, devices_, outputs_, watchdog_);
         stand_down(); // or the box's reset is the end of it
         if (guard_.block().crash.is_complete())
@@ -174,6 +177,7 @@ private:
         if (done.servers != 0) said.add("; servers that did not answer: ").add(done.servers);
         static_cast<void>(os::write_all(2, Sentence{said, "\n"}.view()));
         keep(reason, said);
+        return done.outputs_are_safe() && done.frames == 0 && done.servers == 0;
     }
 
     void keep(const Sentence& reason, const Sentence& done) {

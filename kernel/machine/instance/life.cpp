@@ -97,7 +97,9 @@ void MachineLife::begin(std::size_t a, const ActivityControl& control) {
     } else if (change.wanted != LifeChange::start && engine.is_active()) {
         change.phase = Phase::stopping;
         control.stop(control.world, a);
-    } else if (change.wanted == LifeChange::stop || engine.is_active()) {
+    } else if (change.wanted == LifeChange::stop) {
+        end_stop(a);
+    } else if (engine.is_active()) {
         end_change(a, {});
     } else {
         change.phase = Phase::waiting_for_makers;
@@ -161,6 +163,14 @@ void MachineLife::end_change(std::size_t a, const Sentence& refusal) {
         refusal_ = refusal;
 }
 
+void MachineLife::end_stop(std::size_t a) {
+    const Engine& engine = placed_.engines()[a];
+    if (const std::size_t part = engine.left_unsafe(); part < engine.plan().parts.size())
+        end_refused(a, {LifeOutcome::refused, LifeRefusal::left_unsafe, static_cast<std::uint8_t>(part)});
+    else
+        end_change(a, {});
+}
+
 void MachineLife::progress(const ActivityControl& control) {
     bool moved = true;
     while (moved) { // the end of one lets the makers work for the next
@@ -196,10 +206,9 @@ void MachineLife::progress(std::size_t a, const ActivityControl& control) {
             end_refused(a, {.outcome = LifeOutcome::refused, .refusal = LifeRefusal::thread_lost});
         } else if (change.phase == Phase::stopping) {
             change.phase = Phase::waiting_for_makers;
-        } else if (const std::size_t part = placed_.engines()[a].left_unsafe();
-                   change.wanted == LifeChange::stop && part < placed_.engines()[a].plan().parts.size()) {
-            end_refused(a, {LifeOutcome::refused, LifeRefusal::left_unsafe, static_cast<std::uint8_t>(part)});
-        } else if (change.phase == Phase::starting || change.wanted == LifeChange::stop) {
+        } else if (change.wanted == LifeChange::stop) {
+            end_stop(a);
+        } else if (change.phase == Phase::starting) {
             end_change(a, {});
         } else if (makers_answer_.outcome == LifeOutcome::refused) {
             change.answer = makers_answer_;

@@ -95,6 +95,7 @@ private:
     void progress(std::size_t index, const ActivityControl& control);
     void let_makers_work(const ActivityControl& control);
     void end_change(std::size_t index, const Sentence& refusal);
+    void end_stop(std::size_t index);
     void end_refused(std::size_t index, LifeAnswer answer) {
         changes_[index].answer = answer;
         end_change(index, describe(index, answer));

@@ -279,8 +279,10 @@ int RealWorld::make_safe() {
         const Duration left = std::max(grace - now(), Duration::zero());
         if (!activities_[a].is_stopped_within(static_cast<int>(left / 1ms))) static_cast<void>(late.push(a));
     }
+    // All of them were asked: they have what is left, but for the least that giving them up takes.
     for (const std::size_t a : late) {
-        if (!activities_[a].is_stopped_within(patience()))
+        const auto rest = static_cast<int>((due - now()) / 1ms) - least_patience_ms;
+        if (!activities_[a].is_stopped_within(std::max(rest, least_patience_ms)))
             give_up(a);
         else if (reaches_others(a)) // whose drivers had stopped by then
             count_hung(a);

@@ -3,6 +3,7 @@
 // bound, by the machine or, where something of it hangs, by its guardian.
 #include "kernel/machine/firmware.hpp"
 #include "kernel/os/arming.hpp"
+#include "kernel/os/guard.hpp"
 #include "kernel/os/sleep.hpp"
 #include "toolchain/machine/firmware.hpp"
 
@@ -27,6 +28,7 @@ enum class Ill : int {
     works_for_ever,
     finalises_long,
     device_takes_nothing,
+    device_is_gone, ///< for its guardian as well
     supervisor_sleeps,
     supervisor_sleeps_in_stop
 };
@@ -58,7 +60,7 @@ struct Valve {
         if (stopped_safely()) TAPPET_ESCAPE("a test's note", page->be_safe());
     }
     [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME {
-        return page->ill != Ill::device_takes_nothing;
+        return page->ill != Ill::device_takes_nothing && page->ill != Ill::device_is_gone;
     }
     static constexpr auto interface() {
         return facets(property<&Valve::unused>("unused", "", "a component has a facet", range(0, 0)));
@@ -127,6 +129,7 @@ public:
     std::expected<void, Sentence> prepare_safe_ending() override { return {}; }
     std::size_t write_safe_lines() noexcept override {
         ++page->by_guardian;
+        if (page->ill == Ill::device_is_gone && page->asked != 0) return 1;
         page->be_safe();
         return 0;
     }
@@ -214,6 +217,23 @@ TEST_F(AFirmware, whose_device_took_no_safe_values_is_made_safe_by_its_guardian_
     EXPECT_LT(until_safe(), bound);
     EXPECT_EQ(exit_code(), 0);
     EXPECT_GT(page->by_guardian, 0);
+}
+
+TEST_F(AFirmware, whose_device_nobody_reaches_does_not_end_as_if_all_were_well) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::device_is_gone));
+    ask();
+    EXPECT_EQ(exit_code(), static_cast<int>(Ending::stopped_by_fault));
+    EXPECT_EQ(page->wire, 1);
+    EXPECT_GT(page->by_guardian, 0);
+}
+
+TEST_F(AFirmware, whose_guardian_hangs_while_it_starts_stops_itself) {
+    ASSERT_NO_FATAL_FAILURE(run(Ill::initialises_long));
+    page->asked = to_ns(os::Clock::monotonic());
+    ::kill(guardian, SIGSTOP);
+    EXPECT_LT(until_safe(), os::Guard::guardian_within + bound);
+    ::kill(guardian, SIGCONT);
+    EXPECT_EQ(exit_code(), static_cast<int>(Ending::stopped_by_fault));
 }
 
 TEST_F(AFirmware, of_which_an_activity_hangs_is_ended_by_its_guardian_and_stays_safe) {
