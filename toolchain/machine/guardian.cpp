@@ -70,9 +70,9 @@ public:
         for (;;) {
             const Look look = watch();
             if (look.must_act) {
-                const bool was_reached = act(look.reason);
+                const bool is_safe = act(look.reason);
                 const int code = code_handed_on(exit_code());
-                return code == 0 && !was_reached ? static_cast<int>(Ending::stopped_by_fault) : code;
+                return code == 0 && !is_safe ? static_cast<int>(Ending::stopped_by_fault) : code;
             }
             if (!look.ended) {
                 const Time now = os::Clock::monotonic();
@@ -154,7 +154,7 @@ private:
                           : Sentence{"it ended with code ", code, " in the middle of its work"};
     }
 
-    /// False: not each device took its safe values, or said so.
+    /// False: a line is not safe.
     bool act(Sentence reason) {
         const SafeEnding done = end_safely(process_, devices_, outputs_, watchdog_);
         stand_down(); // or the box's reset is the end of it
@@ -177,7 +177,7 @@ private:
         if (done.servers != 0) said.add("; servers that did not answer: ").add(done.servers);
         static_cast<void>(os::write_all(2, Sentence{said, "\n"}.view()));
         keep(reason, said);
-        return done.outputs_are_safe() && done.frames == 0 && done.servers == 0;
+        return done.outputs_are_safe();
     }
 
     void keep(const Sentence& reason, const Sentence& done) {

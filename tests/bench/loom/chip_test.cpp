@@ -32,7 +32,7 @@ TEST(LoomChip, that_is_removed_while_it_weaves_is_an_emergency_and_spins_nothing
     std::this_thread::sleep_for(2s);
     EXPECT_LT(processor_ticks(*loom.machine) - before, 100) << "half of two seconds, at 100 ticks a second";
     EXPECT_TRUE(loom.machine->runs());
-    EXPECT_EQ(loom.end(), 0) << loom.machine->output();
+    EXPECT_EQ(loom.end(), 4) << "nobody makes its lines safe; " << loom.machine->output();
     listener.signal(SIGINT);
     listener.wait();
     const auto frames = frames_of(listener.output());
