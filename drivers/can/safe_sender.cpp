@@ -66,8 +66,7 @@ void SafeSender::send(Purpose purpose) noexcept {
         if ((confirmed_ >> i & 1u) != 0) continue;
         canfd_frame raw;
         wire::encode(frames_[i], raw);
-        // What the kernel does not take now goes out at the next repetition, and what is behind it as well:
-        // the last ones may end what the ones before them need.
+        // The kernel takes no more now. The rest waits for the next repetition: frames keep their order.
         if (::write(fd_, &raw, purpose == Purpose::earnest ? wire::bytes_of(frames_[i]) : 0) < 0 &&
             purpose == Purpose::earnest)
             return;

@@ -109,7 +109,7 @@ bool Twin::put_out(const Frame& frame, Time now) noexcept TAPPET_REALTIME {
 
 bool Twin::finish(Time now) noexcept TAPPET_REALTIME {
     Frame frame;
-    // What befell the bus since its owner looked last is known before anything leaves.
+    // The owner first learns of the faults that came since it looked last.
     for (std::size_t n = 0; n < inbox && inbox_.front() != nullptr; ++n) static_cast<void>(receive(frame));
     service(now);
     while (controller_.take_waiting(frame))

@@ -165,7 +165,7 @@ private:
         publish();
         return true;
     }
-    /// What the component wrote last, be it before or meanwhile, is published again, of the time that it has.
+    /// Publishes what the component wrote last, before the force or meanwhile, with its own time stamp.
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         forced_ = false;

@@ -214,8 +214,8 @@ private:
             report.passed("guardian", Sentence{"it could act now"});
     }
 
-    /// Of a thread that broke a contract, and of a device that took no safe values, the guardian makes sure;
-    /// a thread that hangs it ends, and the process with it.
+    /// The guardian makes sure when a thread broke a contract, or a device took no safe values. It ends a
+    /// thread that hangs, and the process with it.
     static os::Guard::Outputs outputs_of(MachineInstance& instance, const RealWorld& world) {
         const bool is_sure = world.lost() == 0 && instance.life().left_unsafe().empty();
         return world.hung() != 0 ? os::Guard::Outputs::unsafe

@@ -2,8 +2,8 @@
 #include "kernel/base/contract.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/terminal.hpp"
-#include "toolchain/command_line.hpp"
 #include "toolchain/machine/swarm.hpp"
+#include "toolchain/machine/swarm_options.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,17 +31,9 @@ constexpr std::array options{
            .help = "so many seconds of this processor instead",
            .is_number = true,
            .least = 1},
-    Option{.name = "--findings",
-           .value = "N",
-           .help = "ends after so many broken seeds (default 10)",
-           .is_number = true,
-           .least = 1},
-    Option{.name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true},
-    Option{.name = "--step",
-           .value = "N",
-           .help = "from one seed to the next (default 1)",
-           .is_number = true,
-           .least = 1},
+    swarm_options::findings,
+    swarm_options::from,
+    swarm_options::step,
     Option{.name = "--bit-rate",
            .value = "N",
            .help = "cycles take times drawn up to their budgets, frames theirs at so many bit/s (no time)",
@@ -62,9 +54,8 @@ constexpr std::array options{
            .value = "SEED",
            .help = "this one only, and tells what happens",
            .is_number = true},
-    Option{"--help", "", "this text"}};
+    swarm_options::help};
 enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
-constexpr std::uint64_t usual_findings = 10; // then the rest would say the same again
 
 constexpr unsigned longest_seed = 300; // s of real time
 
@@ -190,7 +181,7 @@ int run_swarm(SwarmOf of, int count, char** words) {
     totals.responses = totals.usual;
     if (given->has("--anyone")) of.rules = {};
     const Duration working = given->number("--working", 0) * Duration{1s};
-    const std::uint64_t most_broken = given->number("--findings", usual_findings);
+    const std::uint64_t most_broken = given->number("--findings", swarm_options::usual_findings);
     const auto is_enough = [&] {
         return working > Duration{} ? os::processor_time_of_this_thread() - began >= working
                                     : totals.time >= wanted;

@@ -3,11 +3,11 @@
 // activities; and the memory in which its judge sees it from another process.
 #pragma once
 
-#include "drivers/hardware/devices.hpp"
 #include "kernel/component/loop.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/os/sleep.hpp"
+#include "tests/toolchain/machine/firmware_on_host.hpp"
 
 #include <array>
 #include <atomic>
@@ -33,7 +33,7 @@ enum class Cause : std::uint8_t {
 inline constexpr std::size_t causes = 8;
 enum Slow : std::uint8_t { camera, receiver };
 
-/// What a seed chose. Times in ms; those of people from their first cycle on.
+/// What a seed chose. Times are in ms. Those of people count from their first cycle.
 struct Draw {
     std::array<std::array<int, functions>, 2> takes{}; ///< Slow, Function
     struct Ask {
@@ -46,15 +46,10 @@ struct Draw {
     int cause_at = 0;
 };
 
-/// Memory of the judge, the machine and its guardian. The wire stands for all outputs: 1 is not safe.
-struct Page {
+struct Page : test::WirePage {
     Draw draw{};
-    std::atomic<std::int64_t> wire{0}, safe_since{0}, asked{0}, by_guardian{0};
     std::atomic<int> on_supervisor{-1}; ///< the Function that ran there
     std::array<std::atomic<int>, 2> initialised{}, finalised{};
-    void be_safe() {
-        if (wire.exchange(0) != 0) safe_since = to_ns(os::Clock::monotonic());
-    }
 };
 inline Page* page = nullptr;
 inline MachineInstance* instance = nullptr;
@@ -189,27 +184,7 @@ inline constexpr auto table = machine("stops",
         activity("look",    every(10ms),  not_real_time, runs("camera"))),
     connections(data("pulse.beat", "valve.beat", stale_after(100ms), stop_machine)),
     reactions(), behaviours());
-inline constexpr Board board{
-    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .heap_bytes = 256 * 1024, .highest_priority = 40,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 // clang-format on
-
-/// The guardian's way to the wire.
-class Wires final : public GuardedDevices {
-public:
-    std::expected<void, Sentence> open(const AcceptedMachine&) override { return {}; }
-    [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return {}; }
-    void report(os::ArmingReport&) override {}
-    [[nodiscard]] WireCounters counters() const noexcept override { return {}; }
-    [[nodiscard]] Bounded<int, 16> kept_by_guardian() const noexcept override { return {}; }
-    std::expected<void, Sentence> prepare_safe_ending() override { return {}; }
-    std::size_t write_safe_lines() noexcept override {
-        ++page->by_guardian;
-        page->be_safe();
-        return 0;
-    }
-    std::size_t send_safe_frames(Duration) noexcept override { return 0; }
-    std::size_t write_safe_registers(Duration, const Meanwhile&) noexcept override { return 0; }
-};
+inline constexpr const Board& board = test::board_of_host;
 
 } // namespace tappet::stops

@@ -5,13 +5,10 @@
 #include "kernel/os/arming.hpp"
 #include "kernel/os/terminal.hpp"
 #include "tests/adversary/stops/machine.hpp"
-#include "toolchain/command_line.hpp"
-#include "toolchain/machine/firmware.hpp"
+#include "toolchain/machine/swarm_options.hpp"
 
 #include <new>
 
-#include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 
 namespace tappet::stops {
@@ -23,19 +20,11 @@ constexpr std::array options{
            .help = "so many seconds (default 60)",
            .is_number = true,
            .least = 1},
-    Option{.name = "--findings",
-           .value = "N",
-           .help = "ends after so many broken seeds (default 10)",
-           .is_number = true,
-           .least = 1},
-    Option{.name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true},
-    Option{.name = "--step",
-           .value = "N",
-           .help = "from one seed to the next (default 1)",
-           .is_number = true,
-           .least = 1},
+    swarm_options::findings,
+    swarm_options::from,
+    swarm_options::step,
     Option{.name = "--seed", .value = "SEED", .help = "this one only", .is_number = true},
-    Option{"--help", "", "this text"}};
+    swarm_options::help};
 enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
 
 constexpr std::array<std::string_view, functions> function_names{
@@ -114,18 +103,6 @@ template <class Condition> bool becomes(Condition condition, Duration within) {
     return is_so;
 }
 
-[[noreturn]] void be_firmware() {
-    ::setpgid(0, 0);
-    const int nowhere_to_print = ::open("/dev/null", O_WRONLY);
-    ::dup2(nowhere_to_print, 1);
-    if (::getenv("SHOW_FIRMWARE") == nullptr) ::dup2(nowhere_to_print, 2);
-    static Wires wires;
-    char name[] = "stops";
-    char* words[] = {name};
-    const FirmwareHooks hooks{.configured = [](MachineInstance& configured) { instance = &configured; }};
-    std::_Exit(run_firmware(Firmware<table, board>::machine(), wires, 1, words, hooks));
-}
-
 /// Empty: all rules held.
 Sentence judge(pid_t guardian, const Draw& draw) {
     constexpr Duration busy_host = 250ms, longest_makers = 20s;
@@ -158,7 +135,11 @@ Sentence run(std::uint64_t seed) {
     page = new (page) Page;
     page->draw = draw_of(seed);
     const pid_t guardian = ::fork();
-    if (guardian == 0) be_firmware();
+    if (guardian == 0) {
+        ::setpgid(0, 0);
+        test::be_firmware(Firmware<table, test::board_of_host>::machine(), *page,
+                          {.configured = [](MachineInstance& configured) { instance = &configured; }});
+    }
     ::setpgid(guardian, guardian);
     const Sentence broken = judge(guardian, page->draw);
     ::kill(-guardian, SIGKILL);
@@ -183,8 +164,7 @@ int hunt(int count, char** words) {
         static_cast<void>(os::write_all(2, "stops swarm: SCHED_FIFO is not granted here; run as root\n"));
         return wrong_words;
     }
-    page = static_cast<Page*>(
-        ::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+    page = test::shared_page<Page>();
     const Time end = os::Clock::monotonic() + given->number("--working", 60) * Duration{1s};
     std::uint64_t seed = given->number(given->has("--seed") ? "--seed" : "--from", 1), seeds = 0, broken = 0;
     do {
@@ -198,7 +178,7 @@ int hunt(int count, char** words) {
         ++seeds;
         seed += given->number("--step", 1);
     } while (!given->has("--seed") && os::Clock::monotonic() < end &&
-             broken < given->number("--findings", 10));
+             broken < given->number("--findings", swarm_options::usual_findings));
     os::print(Sentence{"stops: ", seeds, " seeds, ", broken, " broken\n"}.view());
     return broken == 0 ? none_broken : one_broken;
 }

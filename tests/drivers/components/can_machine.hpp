@@ -8,6 +8,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
+#include "tests/drivers/components/unheard.hpp"
 
 #include <gtest/gtest.h>
 
@@ -219,15 +220,7 @@ struct CanMachine : testing::Test {
         const Sentence refusal = world.change_activity(activity, change);
         EXPECT_TRUE(refusal.empty()) << refusal.view();
     }
-    /// Its stop() does not reach the device, and whoever asked is told.
-    void stop_unheard() {
-        const Sentence answer = world.change_activity(0, LifeChange::stop);
-        EXPECT_EQ(
-            answer.view(),
-            "component \"can\" has stopped, but its safe values did not reach its device; see that the "
-            "device answers, then start and stop it, or stop the machine: its guardian writes them too");
-        EXPECT_EQ(instance.life().left_unsafe(), "can");
-    }
+    void stop_unheard() { test::stop_unheard(world, instance, "can"); }
     [[nodiscard]] std::uint64_t bus_cycles() const { return instance.engines()[0].statistics().cycles; }
 
     os::Clock clock{os::Clock::Kind::virtual_time};

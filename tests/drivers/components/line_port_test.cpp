@@ -4,6 +4,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
+#include "tests/drivers/components/unheard.hpp"
 
 #include <gtest/gtest.h>
 
@@ -150,15 +151,7 @@ struct Lines : testing::Test {
         const Sentence refusal = world.change_activity(0, change);
         EXPECT_TRUE(refusal.empty()) << refusal.view();
     }
-    /// Its stop() does not reach the device, and whoever asked is told.
-    void stop_unheard() {
-        const Sentence answer = world.change_activity(0, LifeChange::stop);
-        EXPECT_EQ(
-            answer.view(),
-            "component \"io\" has stopped, but its safe values did not reach its device; see that the "
-            "device answers, then start and stop it, or stop the machine: its guardian writes them too");
-        EXPECT_EQ(instance.life().left_unsafe(), "io");
-    }
+    void stop_unheard() { test::stop_unheard(world, instance, "io"); }
     [[nodiscard]] std::uint64_t io_cycles() const { return instance.engines()[0].statistics().cycles; }
     [[nodiscard]] bool driven(std::size_t line) const { return (twin.outputs() & at(line)) != 0; }
 

@@ -5,7 +5,7 @@
 #include "kernel/os/arming.hpp"
 #include "kernel/os/guard.hpp"
 #include "kernel/os/sleep.hpp"
-#include "toolchain/machine/firmware.hpp"
+#include "tests/toolchain/machine/firmware_on_host.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,15 +33,9 @@ enum class Ill : int {
     supervisor_sleeps_in_stop
 };
 
-/// Memory of the test, the machine and its guardian. The wire stands for all outputs: 1 is not safe.
-struct Page {
-    std::atomic<std::int64_t> wire{0}, safe_since{0}, asked{0};
-    std::atomic<int> by_guardian{0};
+struct Page : test::WirePage {
     std::atomic<bool> runs{false}, is_ill{false};
     std::atomic<Ill> ill{Ill::nothing};
-    void be_safe() {
-        if (wire.exchange(0) != 0) safe_since = to_ns(os::Clock::monotonic());
-    }
 };
 Page* page = nullptr;
 MachineInstance* the_instance = nullptr;
@@ -114,28 +108,8 @@ constexpr auto table = machine("guarded",
         activity("drivers", every(5ms),  runs("valve"),  budget(50us)),
         activity("heat",    every(10ms), runs("heater"), not_real_time)),
     connections(), reactions(), behaviours());
-constexpr Board board{
-    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .heap_bytes = 256 * 1024, .highest_priority = 40,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 // clang-format on
-
-class Wires : public GuardedDevices {
-public:
-    std::expected<void, Sentence> open(const AcceptedMachine&) override { return {}; }
-    [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return {}; }
-    void report(os::ArmingReport&) override {}
-    [[nodiscard]] WireCounters counters() const noexcept override { return {}; }
-    [[nodiscard]] Bounded<int, 16> kept_by_guardian() const noexcept override { return {}; }
-    std::expected<void, Sentence> prepare_safe_ending() override { return {}; }
-    std::size_t write_safe_lines() noexcept override {
-        ++page->by_guardian;
-        if (page->ill == Ill::device_is_gone && page->asked != 0) return 1;
-        page->be_safe();
-        return 0;
-    }
-    std::size_t send_safe_frames(Duration) noexcept override { return 0; }
-    std::size_t write_safe_registers(Duration, const Meanwhile&) noexcept override { return 0; }
-};
+constexpr const Board& board = test::board_of_host;
 
 struct AFirmware : testing::Test {
     pid_t guardian = -1;
@@ -143,25 +117,18 @@ struct AFirmware : testing::Test {
     void SetUp() override {
         if (os::observe_process(board.highest_priority).fifo_error != 0)
             GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
-        page = new (::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))
-            Page;
+        page = test::shared_page<Page>();
     }
     void run(Ill ill) {
         page->ill = ill;
         guardian = ::fork();
-        if (guardian == 0) {
-            const int nowhere = ::open("/dev/null", O_WRONLY);
-            ::dup2(nowhere, 1);
-            if (::getenv("SHOW_FIRMWARE") == nullptr) ::dup2(nowhere, 2);
-            static Wires wires;
-            char name[] = "guarded";
-            char* words[] = {name};
-            const FirmwareHooks hooks{.configured = [](MachineInstance& instance) {
-                the_instance = &instance;
-                ::signal(SIGRTMIN, [](int) { sleep_long(); }); // instead of asking for the stop
-            }};
-            std::_Exit(run_firmware(Firmware<table, board>::machine(), wires, 1, words, hooks));
-        }
+        if (guardian == 0)
+            test::be_firmware(Firmware<table, test::board_of_host>::machine(), *page,
+                              {.configured = [](MachineInstance& instance) {
+                                  the_instance = &instance;
+                                  ::signal(SIGRTMIN,
+                                           [](int) { sleep_long(); }); // instead of asking for the stop
+                              }});
         ASSERT_TRUE(becomes([] { return page->runs && page->wire == 1; }));
     }
     template <class Condition> static bool becomes(Condition condition) {
@@ -169,6 +136,7 @@ struct AFirmware : testing::Test {
         return condition();
     }
     void ask() {
+        page->is_gone = page->ill == Ill::device_is_gone;
         page->asked = to_ns(os::Clock::monotonic());
         ::kill(guardian, SIGTERM); // which hands it on
     }

@@ -1,0 +1,23 @@
+// What every program that hunts by seeds is told.
+#pragma once
+
+#include "toolchain/command_line.hpp"
+
+namespace tappet::swarm_options {
+
+inline constexpr Option findings{.name = "--findings",
+                                 .value = "N",
+                                 .help = "ends after so many broken seeds (default 10)",
+                                 .is_number = true,
+                                 .least = 1};
+inline constexpr std::uint64_t usual_findings = 10; // then the rest would say the same again
+inline constexpr Option from{
+    .name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true};
+inline constexpr Option step{.name = "--step",
+                             .value = "N",
+                             .help = "from one seed to the next (default 1)",
+                             .is_number = true,
+                             .least = 1};
+inline constexpr Option help{"--help", "", "this text"};
+
+} // namespace tappet::swarm_options
