@@ -51,6 +51,7 @@ struct EnginePart : GatedComponent {
     LifeTicket ending{};
     LifeChange wanted{};
     std::atomic<bool> left_unsafe{false}; ///< a driver: its last stop() did not reach its device
+    std::atomic<bool> has_stopped{false}; ///< since somebody looked at who is forced to read what it left
 };
 
 struct EngineTimer {

@@ -233,6 +233,7 @@ void Engine::cancel_timers(std::uint32_t part) noexcept TAPPET_REALTIME {
 void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     const ComponentState state = part.state.load(std::memory_order_relaxed);
+    part.has_stopped.store(true, std::memory_order_release);
     end_forces(part, FacetKind::input);
     if (state == ComponentState::stopped || state == ComponentState::failed)
         return end_forces(part, FacetKind::output);

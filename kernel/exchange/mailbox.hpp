@@ -79,6 +79,11 @@ public:
         return true;
     }
 
+    /// The sending activity's thread only, real-time: its messages that were not taken yet.
+    [[nodiscard]] std::size_t waiting(std::size_t sender) const noexcept TAPPET_REALTIME {
+        return mailboxes_[sender].size();
+    }
+
     /// Any thread, real-time: whether serve() would find something.
     [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME {
         return pending_.load(std::memory_order_seq_cst) != 0; // inbox.pending

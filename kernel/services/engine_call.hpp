@@ -20,8 +20,9 @@ inline bool is_alive(MachineInstance& machine, std::size_t activity) noexcept {
 /// Wait-free for both: one exchange decides whether it runs or was withdrawn.
 class EngineCall {
 public:
-    /// False: that engine has no room for it. Only when is_over().
-    [[nodiscard]] bool post(MachineInstance& machine, std::size_t activity, const Message& call) noexcept {
+    /// False: that engine has no room for somebody of this role. Only when is_over().
+    [[nodiscard]] bool post(MachineInstance& machine, std::size_t activity, const Message& call,
+                            Role role) noexcept {
         call_ = call;
         turn_ += states;
         state_.store(turn_ | posted, std::memory_order_release);
@@ -29,7 +30,7 @@ public:
         message.run = &run;
         message.object = this;
         message.epoch = turn_;
-        if (machine.requests().post(activity, message)) return true;
+        if (machine.requests().post(activity, message, role)) return true;
         state_.store(turn_ | over, std::memory_order_relaxed);
         return false;
     }

@@ -37,8 +37,8 @@ struct LineFunctions {
     const LineEnd* (*end)(void* self) = nullptr;
     /// Whoever began it has seen its end, or wants it no longer: then it is broken off.
     void (*let_go)(void* self) = nullptr;
-    /// False: none is at work.
-    bool (*break_off)(void* self) = nullptr;
+    /// not_now: none is at work. denied: it belongs to somebody of a higher role.
+    LineRefusal (*break_off)(void* self, Role role) = nullptr;
 };
 
 } // namespace tappet

@@ -5,10 +5,14 @@
 
 namespace tappet {
 
-bool MachineRequests::post(std::size_t activity, const Message& message) noexcept TAPPET_REALTIME {
+bool MachineRequests::post(std::size_t activity, const Message& message, Role role) noexcept TAPPET_REALTIME {
     const MailPlan& mail = machine_.plan.requests[activity];
-    // The index of a mailbox that was not planned is another's.
-    if (mail.capacity == 0 || !placed_.engines()[activity].inbox().post(mail.sender_index, message))
+    Inbox& inbox = placed_.engines()[activity].inbox();
+    // The index of a mailbox that was not planned is another's. What was withdrawn lies there, too, until the
+    // engine comes to it.
+    if (mail.capacity == 0 ||
+        inbox.waiting(mail.sender_index) + kept_from(role, mail.capacity) >= mail.capacity ||
+        !inbox.post(mail.sender_index, message))
         return false;
     placed_.post_waker_of(activity)();
     return true;

@@ -15,9 +15,10 @@ public:
     explicit MachineRequests(PlacedMachine& placed) noexcept : placed_{placed}, machine_{placed.machine()} {}
 
     /// Runs a call in the engine of an activity, between two of its steps; `message.id` is the part it is
-    /// timed as. False: there are `requests_waiting` of them there already, and the receiver did not get this
-    /// one. Real-time.
-    [[nodiscard]] bool post(std::size_t activity, const Message& message) noexcept TAPPET_REALTIME;
+    /// timed as. False, and the receiver did not get it: of `requests_waiting` places so few are free that
+    /// they are kept for those who are more than `role`. Real-time.
+    [[nodiscard]] bool post(std::size_t activity, const Message& message, Role role = Role::engineer) noexcept
+        TAPPET_REALTIME;
     /// Lets the slot carry out the change that was asked of it in its engine. False: as for post().
     /// Real-time.
     [[nodiscard]] bool post_change(BehaviourSlot& slot) noexcept TAPPET_REALTIME;

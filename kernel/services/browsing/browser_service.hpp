@@ -21,11 +21,6 @@ public:
     /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
-    /// Half of all places are for those who are more than observers, a quarter for engineers: nobody keeps a
-    /// higher role from being served.
-    static constexpr bool has_room(Role role, std::size_t free, std::size_t of) noexcept {
-        return free > (role == Role::observer ? of / 2 : role == Role::machine_operator ? of / 4 : 0);
-    }
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 
@@ -82,7 +77,7 @@ private:
     /// As BrowsingAnswerer.
     static std::size_t answer_for_nobody(void* self, std::string_view request, std::span<char> into);
     [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {
-        return {client.serial, request.number, now_};
+        return {client.serial, request.number, now_, client.role};
     }
 
     // What waits for an answer; requests_pending.cpp
@@ -115,7 +110,8 @@ private:
     browsing::FacetCall& prepare(Pending& place, End end) const noexcept;
     Verdict reach(Pending& place, const browsing::Asker& asker, End end, Message::Run act);
     [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
-    [[nodiscard]] bool release_readers_of(const browsing::FollowedLife& stopped);
+    [[nodiscard]] bool follow_stops();
+    [[nodiscard]] bool release_readers_of(std::size_t component);
     bool look_at_facet(Pending& place);
     bool look_at_change(Pending& place);
 

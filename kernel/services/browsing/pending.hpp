@@ -24,6 +24,7 @@ struct Asker {
     std::uint64_t client = 0; ///< serial
     std::uint32_t number = 0; ///< of the request
     Time since{};
+    Role role = Role::engineer;
 };
 
 /// A port that is forced or released, an operation or a method that is called.

@@ -127,21 +127,33 @@ BrowserService::Verdict BrowserService::release(Client& client, const Request& r
     return reach(*place, asker(client, request), end, &release_port);
 }
 
-// Its own forces ended with it; a forced input of another activity would still hide its safe value from
-// there. False: not all could be asked for in this cycle.
-bool BrowserService::release_readers_of(const browsing::FollowedLife& stopped) {
+// A component's own forces end with it; a forced input of another activity would still hide its safe value
+// from there, whoever asked for the stop. False: not all could be asked for in this cycle.
+bool BrowserService::follow_stops() {
+    const AcceptedMachine& machine = machine_->machine();
+    bool all = true;
+    for (std::size_t c = 0; c < machine.table.components.size(); ++c) {
+        std::atomic<bool>& has_stopped =
+            machine_->engines()[machine.index.activity[c]].plan().parts[machine.plan.part_of[c]].has_stopped;
+        if (!has_stopped.load(std::memory_order_acquire)) continue;
+        has_stopped.store(false, std::memory_order_relaxed); // first: it may stop once more meanwhile
+        if (release_readers_of(c)) continue;
+        has_stopped.store(true, std::memory_order_relaxed);
+        all = false;
+    }
+    return all;
+}
+
+bool BrowserService::release_readers_of(std::size_t component) {
     const AcceptedMachine& machine = machine_->machine();
     const auto view = map::View::open(machine_->observation().shared_memory());
     if (!view) return true;
     for (std::size_t x = 0; x < machine.table.connections.size(); ++x) {
         const Link& link = machine.index.connections[x];
-        const bool meant = stopped.component != nowhere
-                               ? link.from.component == stopped.component
-                               : machine.index.activity[link.from.component] == stopped.activity;
         const map::Facet& record =
             view->facets()[view->components()[link.to.component].first_facet + link.to.facet];
-        if (!meant || record.forced_at == 0 || view->word<std::uint8_t>(record.forced_at) == 0 ||
-            !check_alive(link.to.component).good())
+        if (link.from.component != component || record.forced_at == 0 ||
+            view->word<std::uint8_t>(record.forced_at) == 0 || !check_alive(link.to.component).good())
             continue;
         Pending* place = free_place(Role::engineer);
         if (place == nullptr) return false;

@@ -103,7 +103,7 @@ bool BrowserService::look_at_life(Pending& place) {
         return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));
     }
     // Places for what is released come back in time, unless every one waits for another's.
-    if (call.change != LifeChange::start && !release_readers_of(call) && !place.is_told) return false;
+    if (call.change != LifeChange::start && !follow_stops() && !place.is_told) return false;
     if (answer.outcome == LifeOutcome::done) return answer_good(place);
     return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));
 }

@@ -83,8 +83,14 @@ bool BrowserService::look_at_line(Pending& place) {
 BrowserService::Verdict BrowserService::break_off(Client& client, const Request& request) {
     const FollowedLine line = find_interpreter_of_lines();
     if (line.functions == nullptr) return no_interpreter();
-    if (!line.functions->break_off(line.interpreter))
+    switch (line.functions->break_off(line.interpreter, client.role)) {
+    case LineRefusal::not_now:
         return {Refusal::not_now, Sentence{"no line is at work; there is nothing to break off"}};
+    case LineRefusal::denied:
+        return {Refusal::denied, Sentence{"the line at work is of somebody of a higher role than an ",
+                                          to_text(client.role), "; ask them to break it off"}};
+    default: break;
+    }
     Reply reply{request.number, true};
     finish(client, reply);
     return {};

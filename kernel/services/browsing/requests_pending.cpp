@@ -11,7 +11,7 @@ BrowserService::Pending* BrowserService::free_place(Role role) noexcept {
     const auto is_free = [](const Pending& each) { return each.look == nullptr; };
     const auto first = std::ranges::find_if(pending_, is_free);
     const auto count = static_cast<std::size_t>(std::ranges::count_if(pending_, is_free));
-    return has_room(role, count, max_pending) ? &*first : nullptr;
+    return count > kept_from(role, max_pending) ? &*first : nullptr;
 }
 
 BrowserService::Verdict BrowserService::no_place() noexcept {
@@ -33,7 +33,7 @@ BrowserService::Verdict BrowserService::await_engine(Pending& place, const Asker
     if (Verdict alive = check_alive(component); !alive.good()) return alive;
     Message message = call;
     message.id = machine.plan.part_of[component];
-    if (!place.call.post(*machine_, machine.index.activity[component], message))
+    if (!place.call.post(*machine_, machine.index.activity[component], message, asker.role))
         return {Refusal::not_now, Sentence{"that engine has too many requests to serve; ask again"}};
     return await(place, asker, look);
 }

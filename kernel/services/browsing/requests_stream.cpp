@@ -21,7 +21,7 @@ BrowserService::Verdict BrowserService::subscribe(Client& client, const Request&
         if (each.taken && each.asker.client == client.serial && each.event == event)
             return {Refusal::not_now, Sentence{"\"", request.arguments[0], "\" is subscribed to already"}};
     }
-    if (!has_room(client.role, free, max_subscriptions))
+    if (free <= kept_from(client.role, max_subscriptions))
         return {Refusal::not_now, Sentence{"all subscriptions that your role may have are taken; end one"}};
     const EventHandle handle = machine_->observation().observe_event(event.component, event.facet);
     if (!handle.valid())

@@ -44,7 +44,8 @@ void PropertySaving::ask(std::size_t component) noexcept {
     const std::size_t activity = machine.index.activity[component];
     if (activity == activity_)
         copy_.capture();
-    else if (!call_.post(*machine_, activity, copy_.capture_message(machine.plan.part_of[component])))
+    else if (!call_.post(*machine_, activity, copy_.capture_message(machine.plan.part_of[component]),
+                         Role::engineer))
         return; // its engine has much to do: again in the next step
     asked_at_ = machine_->clock().now();
     asked_ = true;

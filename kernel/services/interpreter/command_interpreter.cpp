@@ -33,9 +33,8 @@ Bounded<std::size_t, most_homes> homes_of(std::string_view text, const AcceptedM
     return homes;
 }
 
-bool is_expression(const ScriptUnit& unit) noexcept {
-    const auto variables = unit.types[0].tables.variables;
-    return !variables.empty() && variables[0].kind == VariableKind::result;
+bool is_expression(const ProgramTables& line) noexcept {
+    return !line.variables.empty() && line.variables[0].kind == VariableKind::result;
 }
 
 } // namespace
@@ -56,10 +55,12 @@ constexpr LineFunctions CommandInterpreter::line_functions{
             own.asker_ = Asker::none;
         },
     .break_off =
-        [](void* self) {
+        [](void* self, Role role) {
             auto& own = *static_cast<CommandInterpreter*>(self);
+            if (!own.is_at_work()) return LineRefusal::not_now;
+            if (role < own.bank_->role) return LineRefusal::denied;
             own.break_off();
-            return own.is_broken_off_;
+            return LineRefusal::none;
         }};
 
 Sentence CommandInterpreter::configure(Setup& setup) {
@@ -86,8 +87,17 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
     refusal = LineRefusal::not_now;
     if (machine_->life().state_of(own_) != ComponentState::running)
         return refuse(Sentence{"the component that executes lines does not run; start it first"});
-    if (asker_ != Asker::none)
-        return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
+    const Time now = machine_->clock().now();
+    if (asker_ != Asker::none) {
+        if (role <= bank_->role || !is_expression(bank_->unit.parts()[0].type->tables))
+            return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
+        break_off();
+        kept_for_ = role;
+        kept_until_ = now + patience;
+        return refuse(Sentence{"an ", to_text(bank_->role), "'s line gives way to yours; ask again"});
+    }
+    if (role < kept_for_ && now < kept_until_)
+        return refuse(Sentence{"an ", to_text(kept_for_), " is served first; ask again"});
     Bank* const free = std::ranges::find_if(banks_, &Bank::is_free);
     if (free == banks_.end())
         return refuse(
@@ -95,10 +105,12 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
                      "or stop their components"});
     if (const Sentence fault = prepare(text, role, *free, refusal); !fault.empty()) return refuse(fault);
     refusal = LineRefusal::none;
+    kept_for_ = Role::observer;
     bank_ = free;
+    bank_->role = role;
     asker_ = asker;
     is_broken_off_ = false;
-    since_ = machine_->clock().now();
+    since_ = now;
     end_ = {.state = CommandState::executing};
     executed.write(executed.last() + 1);
     post(*free);
@@ -171,7 +183,7 @@ Sentence CommandInterpreter::check_role(const ScriptUnit& unit, Role role) const
                         to_text(role),
                         "; ask for it in the board's list of roles"};
     }
-    if (role >= Role::machine_operator || is_expression(unit)) return {};
+    if (role >= Role::machine_operator || is_expression(tables)) return {};
     return Sentence{"statements need the role of an ", to_text(Role::machine_operator), ", you are an ",
                     to_text(role), "; write an expression, or ask for it in the board's list of roles"};
 }
@@ -203,7 +215,7 @@ void CommandInterpreter::post(Bank& bank) noexcept {
     message.object = &bank;
     message.id = machine.plan.part_of[bank.home];
     posted_ = machine_->clock().now();
-    static_cast<void>(bank.call.post(*machine_, machine.index.activity[bank.home], message));
+    static_cast<void>(bank.call.post(*machine_, machine.index.activity[bank.home], message, bank.role));
 }
 
 void CommandInterpreter::work(const Cycle& cycle) {
@@ -233,7 +245,7 @@ void CommandInterpreter::finish_good() {
     end_.values = part.type->tables.variables;
     end_.data = part.data;
     value_ = {};
-    if (!end_.values.empty() && end_.values[0].kind == VariableKind::result) {
+    if (is_expression(part.type->tables)) {
         const VariableRow& row = end_.values[0];
         alignas(data_alignment) std::array<std::byte, interpreter::line_sizes.data> value{};
         std::copy_n(end_.data + row.at, std::min(row.type->size, value.size()), value.data());

@@ -13,7 +13,8 @@ namespace tappet {
 /// compiler. A line is one expression, which changes nothing and whose value is the answer, or statements:
 /// these may wait, and commands that they send are followed to their ends. It may name ports, properties and
 /// methods of components of one activity, whose engine steps it between two cycles as often as the
-/// interpreter's own runs, and commands of all. One line at a time.
+/// interpreter's own runs, and commands of all. One line at a time: an expression gives way to a line of a
+/// higher role, and nobody breaks off a line of one.
 ///     component<CommandInterpreter>("interpreter")
 /// A peer sends it `execute` with a line and where its value goes: rejected when it is no good line, of which
 /// `said` tells why.
@@ -78,6 +79,8 @@ private:
     interpreter::Bank* bank_ = nullptr; ///< of the line at work, or that ended last
     Asker asker_ = Asker::none;         ///< who has not let go of it
     bool is_broken_off_ = false;
+    Role kept_for_ = Role::observer; ///< somebody of a higher role, for whom a line gave way, is next,
+    Time kept_until_{};              ///< if they ask until then
     Time since_{};
     Time posted_{};
     LineEnd end_{};

@@ -44,6 +44,7 @@ struct Bank {
     const Engine* engine = nullptr; ///< of the activity it runs in
     std::size_t home = nowhere;     ///< a component there
     bool has_begun = false;
+    Role role = Role::engineer; ///< of who wrote the line
 
     /// No engine comes to it any more, and no command of it is on its way.
     [[nodiscard]] bool is_free() const noexcept { return call.is_over() && unit.is_quiet(); }

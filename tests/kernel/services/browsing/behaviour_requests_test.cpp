@@ -152,6 +152,29 @@ TEST_F(Behaviours, observers_who_ask_without_end_keep_nobody_of_a_higher_role_wa
     EXPECT_THAT(answers, HasSubstr("too many requests are under way"));
 }
 
+TEST_F(Behaviours, observers_who_ask_for_what_nobody_comes_to_leave_room_in_its_mailbox) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    Engine& engine = instance.engines()[0];
+    engine.stop(clock.now());
+    engine.plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
+    ASSERT_EQ(seteuid(65534), 0);
+    Talker observer{directory + "/press.socket"};
+    ASSERT_EQ(seteuid(0), 0);
+    std::string answers;
+    for (std::size_t n = 0; n < 2 * requests_waiting; ++n) {
+        ASSERT_TRUE(observer.send("1 why ram.held"));
+        run(n % 4 == 3 ? BrowserService::patience + 100ms : 30ms); // what is taken back lies there still
+        for (std::string one = observer.receive(); !one.empty(); one = observer.receive()) answers += one;
+    }
+    EXPECT_THAT(answers, HasSubstr("that engine has too many requests to serve"));
+    ASSERT_TRUE(talker->send("2 force ram.place 7"));
+    run(100ms);
+    EXPECT_EQ(talker->receive(), "") << "it waits for its engine";
+    engine.start(clock.now());
+    run(100ms);
+    EXPECT_THAT(talker->receive(), HasSubstr("\"id\": 2, \"ok\": true"));
+}
+
 TEST_F(Behaviours, why_of_a_misspelt_name_is_told_the_nearest) {
     EXPECT_THAT(ask("why ram.hold"), HasSubstr(R"(has a state \"hold\"; did you mean \"held\"?)"));
     EXPECT_THAT(ask("why rum.held"), HasSubstr(R"(no state machine of \"rum\"; did you mean \"ram\"?)"));

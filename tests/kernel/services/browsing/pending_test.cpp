@@ -96,7 +96,7 @@ struct AnEngineCall : Press {
             ++test.runs;
             if (test.takes_itself_back) test.was_taken_back = test.call.withdraw();
         };
-        ASSERT_TRUE(call.post(instance, motion, message));
+        ASSERT_TRUE(call.post(instance, motion, message, Role::engineer));
     }
 };
 

@@ -113,6 +113,20 @@ TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_those_that_read_it) 
     EXPECT_EQ(ram().limit.get(), 50.0);
 }
 
+TEST_F(Press, a_stop_that_no_browser_asked_for_ends_what_is_forced_of_those_that_read_it) {
+    Talker talker{path()};
+    const std::size_t table = find_component(instance.machine().table, "table");
+    for (const LifeChange change : {LifeChange::stop, LifeChange::restart}) {
+        EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
+        static_cast<void>(instance.life().ask_component(table, change));
+        run(60ms);
+        EXPECT_EQ(ram().limit.get(), 50.0);
+        EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
+        static_cast<void>(instance.life().ask_component(table, LifeChange::start));
+        run(60ms);
+    }
+}
+
 TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had_stopped_before) {
     Talker talker{path()};
     EXPECT_TRUE(has(ask(talker, "1 force ram.place 33"), R"("ok": true)"));

@@ -106,6 +106,38 @@ TEST_F(Lines, one_is_at_work_at_a_time_and_is_broken_off_by_whoever_asks) {
     EXPECT_THAT(execute("1"), is_value("1"));
 }
 
+TEST_F(Lines, an_expression_gives_way_to_a_higher_role_which_is_served_next) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    ASSERT_EQ(seteuid(65534), 0);
+    Talker observer{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    instance.engines()[0].stop(clock.now());
+    instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
+    EXPECT_THAT(ask(observer, request("gauge.target")), HasSubstr("sent"));
+    EXPECT_THAT(execute("table.height"),
+                AllOf(HasSubstr("not_now"), HasSubstr("an observer's line gives way to yours")));
+    EXPECT_THAT(next(observer), has_failed("it was broken off"));
+    EXPECT_THAT(ask(observer, request("1")), HasSubstr("an engineer is served first; ask again"));
+    EXPECT_THAT(execute("table.height"), is_value("50"));
+    EXPECT_THAT(ask(observer, request("1")), HasSubstr("sent"));
+    EXPECT_THAT(next(observer), is_value("1"));
+}
+
+TEST_F(Lines, what_is_half_done_gives_way_to_nobody_and_is_broken_off_by_no_lower_role) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    ASSERT_EQ(seteuid(1001), 0);
+    Talker worker{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("sent"));
+    EXPECT_THAT(execute("1"), HasSubstr("another line is at work"));
+    EXPECT_THAT(ask("3 break_off"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(next(worker), has_failed("it was broken off"));
+    EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
+    EXPECT_THAT(ask(worker, "4 break_off"),
+                AllOf(HasSubstr("denied"), HasSubstr("of a higher role than an operator")));
+    EXPECT_THAT(ask("5 break_off"), HasSubstr("\"ok\": true"));
+}
+
 TEST_F(Lines, one_whose_client_leaves_is_broken_off) {
     auto guest = std::make_unique<Talker>(path());
     EXPECT_THAT(ask(*guest, request("while true { do gauge.zero(); yield; }")), HasSubstr("sent"));
