@@ -3,12 +3,16 @@
 #include "board/box/voice.hpp"
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tappet::box {
@@ -30,6 +34,24 @@ double uptime_s() {
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
+namespace {
+
+/// In the writer: until the other end is closed. A disk that is full keeps no more of it.
+[[noreturn]] void write_down(int from, int disk) {
+    constexpr int in = 0, out = 1;
+    ::dup2(from, in);
+    ::dup2(disk, out);
+    ::close_range(out + 1, ~0U, 0); // what else init has open is none of its business
+    ::prctl(PR_SET_NAME, "log");
+    std::array<char, 4096> piece{};
+    for (ssize_t count = 0; (count = ::read(in, piece.data(), piece.size())) > 0;) {
+        [[maybe_unused]] const auto written = ::write(out, piece.data(), static_cast<std::size_t>(count));
+    }
+    ::_exit(0);
+}
+
+} // namespace
+
 void Voice::open(const std::string& console) {
     const std::string path = "/dev/" + console.substr(0, console.find(','));
     if (const int descriptor = ::open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -47,9 +69,9 @@ void Voice::say(std::string_view sentence) const {
 
 void Voice::keep(std::string_view line) const {
     if (file_ < 0 && said_before_.size() < most_kept_bytes) said_before_ += line;
-    // A disk that is full keeps no more of it, and the machine goes on.
+    // A writer whose disk does not answer has no room for it, and the machine goes on.
     if (file_ >= 0) [[maybe_unused]]
-        const auto written = ::write(file_, line.data(), line.size());
+        const auto sent = ::send(file_, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 init::Done Voice::keep_in(const std::string& file) {
@@ -57,15 +79,29 @@ init::Done Voice::keep_in(const std::string& file) {
     if (::stat(file.c_str(), &facts) == 0 && facts.st_size > most_kept_bytes)
         ::rename(file.c_str(), (file + ".before").c_str());
     // Through to the disk: the last line before a reset is the one that tells.
-    file_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_DSYNC | O_CLOEXEC, 0644);
-    if (file_ < 0) return init::failed("open " + file);
+    const int disk = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_DSYNC | O_CLOEXEC, 0644);
+    if (disk < 0) return init::failed("open " + file);
+    int ends[2] = {-1, -1};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0) writer_ = ::fork();
+    if (writer_ == 0) write_down(ends[0], disk);
+    ::close(disk);
+    if (ends[0] >= 0) ::close(ends[0]);
+    if (writer_ < 0) {
+        if (ends[1] >= 0) ::close(ends[1]);
+        return init::failed("begin to write " + file);
+    }
+    file_ = ends[1];
     keep(std::exchange(said_before_, {}));
     return {};
 }
 
 void Voice::let_go() {
-    if (file_ >= 0) ::close(file_);
+    if (file_ < 0) return;
+    ::close(file_);
     file_ = -1;
+    for (const double given_up_s = uptime_s() + 1.0;
+         ::waitpid(writer_, nullptr, WNOHANG) == 0 && uptime_s() < given_up_s;)
+        init::pause_for(std::chrono::milliseconds{1});
 }
 
 void Voice::pass_on(std::string_view text) const {

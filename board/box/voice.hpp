@@ -16,10 +16,11 @@ public:
     void open(const std::string& console);
     /// One line with the time since the power came.
     void say(std::string_view sentence) const;
-    /// What is said, and was said before, is kept in that file too: who comes later reads why. The error: a
-    /// sentence.
+    /// What is said, and was said before, is kept in that file too: who comes later reads why. A process of
+    /// its own writes it, through to the disk: nobody waits for a disk that does not answer, and what such a
+    /// one leaves over is lost. The error: a sentence.
     [[nodiscard]] init::Done keep_in(const std::string& file);
-    /// The file's disk is about to go.
+    /// The file's disk is about to go: what was said is there, or is given up after a second.
     void let_go();
     /// As it comes. A console that takes nothing more (Ctrl-S, a slow line) loses it: nobody waits for it.
     void pass_on(std::string_view text) const;
@@ -28,7 +29,8 @@ private:
     void keep(std::string_view line) const;
 
     std::vector<int> consoles_;
-    int file_ = -1;
+    int file_ = -1; ///< a socket to the writer
+    pid_t writer_ = -1;
     mutable std::string said_before_{}; ///< while there is no file
 };
 

@@ -5,6 +5,9 @@
 #include "kernel/component/component.hpp"
 #include "kernel/pieces/changed.hpp"
 
+#include <array>
+#include <cstdint>
+
 namespace tappet::canopen {
 
 /// Effector: Axis<"mm">; velocities are in that unit each second. All real-time, each cycle of a periodic
@@ -74,28 +77,26 @@ template <text unit> struct Axis {
         return cyclic >= 8 && cyclic <= 10 &&
                motion_.synchronize(OperationMode{static_cast<std::int8_t>(cyclic)}).has_value();
     }
-    bool home() noexcept TAPPET_REALTIME { return motion_.home().has_value(); }
+    bool home() noexcept TAPPET_REALTIME { return takes(home_, motion_.home(), {}); }
     bool move_to(double place, double at) noexcept TAPPET_REALTIME {
-        return motion_.move_to(place, at).has_value();
+        return takes(move_to_, motion_.move_to(place, at), {place, at});
     }
     bool move_at(double at) noexcept TAPPET_REALTIME { return motion_.move_at(at).has_value(); }
     bool superimpose(double distance, double at, double acceleration) noexcept TAPPET_REALTIME {
-        return motion_.superimpose(distance, at, acceleration).has_value();
+        return takes(superimpose_, motion_.superimpose(distance, at, acceleration),
+                     {distance, at, acceleration});
     }
-    bool halt() noexcept TAPPET_REALTIME { return motion_.halt().has_value(); }
+    bool halt() noexcept TAPPET_REALTIME { return takes(halt_, motion_.halt(), {}); }
     bool stop_axis() noexcept TAPPET_REALTIME { return motion_.stop().has_value(); }
-    [[nodiscard]] CommandProgress homed() noexcept TAPPET_REALTIME { return until(AxisMode::homing); }
-    [[nodiscard]] CommandProgress moved(double, double) noexcept TAPPET_REALTIME {
-        return until(AxisMode::discrete_motion);
+    [[nodiscard]] CommandProgress homed() noexcept TAPPET_REALTIME { return progress_of(home_, {}); }
+    [[nodiscard]] CommandProgress moved(double place, double at) noexcept TAPPET_REALTIME {
+        return progress_of(move_to_, {place, at});
     }
-    [[nodiscard]] CommandProgress superimposed(double, double, double) noexcept TAPPET_REALTIME {
-        if (motion_.superimposes()) return CommandProgress::executing;
-        if (motion_.state() != AxisMode::synchronized_motion) return until(AxisMode::discrete_motion);
-        return CommandProgress::done;
+    [[nodiscard]] CommandProgress superimposed(double distance, double at, double acceleration) noexcept
+        TAPPET_REALTIME {
+        return progress_of(superimpose_, {distance, at, acceleration});
     }
-    [[nodiscard]] CommandProgress halted() noexcept TAPPET_REALTIME {
-        return until(AxisMode::discrete_motion);
-    }
+    [[nodiscard]] CommandProgress halted() noexcept TAPPET_REALTIME { return progress_of(halt_, {}); }
     /// It stands, and is still held.
     [[nodiscard]] CommandProgress is_stopped() noexcept TAPPET_REALTIME {
         if (motion_.state() != AxisMode::stopping) return CommandProgress::failed;
@@ -149,12 +150,27 @@ private:
         lags_.write(lags, motion_.lags());
         limited_.write(limited, motion_.is_limited());
     }
-    [[nodiscard]] CommandProgress until(AxisMode under_way) const noexcept TAPPET_REALTIME {
-        if (motion_.state() == under_way) return CommandProgress::executing;
-        return motion_.state() == AxisMode::standstill ? CommandProgress::done : CommandProgress::failed;
+    /// The last motion that a command began, and with which arguments: who asked for others has been
+    /// replaced.
+    struct Begun {
+        std::uint32_t number = 0;
+        std::array<double, 3> with{};
+    };
+    bool takes(Begun& begun, const DriveMotion::Asked& asked, std::array<double, 3> with) noexcept
+        TAPPET_REALTIME {
+        if (asked) begun = {motion_.number(), with};
+        return asked.has_value();
+    }
+    /// Done only if this motion came to its end: the axis may stand since it was halted, or at another's.
+    [[nodiscard]] CommandProgress progress_of(const Begun& begun, std::array<double, 3> with) const noexcept
+        TAPPET_REALTIME {
+        if (with != begun.with) return CommandProgress::failed;
+        if (motion_.reached() == begun.number) return CommandProgress::done;
+        return motion_.number() == begun.number ? CommandProgress::executing : CommandProgress::failed;
     }
 
     DriveMotion motion_{};
+    Begun home_{}, move_to_{}, superimpose_{}, halt_{};
     Changed<AxisMode> state_{};
     Changed<bool> follows_{}, lags_{}, limited_{};
 };

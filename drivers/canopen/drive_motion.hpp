@@ -6,6 +6,7 @@
 #include "kernel/motion/axis_mode.hpp"
 #include "kernel/motion/trajectory.hpp"
 
+#include <cstdint>
 #include <expected>
 
 namespace tappet::canopen {
@@ -42,10 +43,17 @@ public:
         return gate_.leads(OperationMode::cyclic_position) && gate_.superimposes();
     }
 
+    /// Of the motion, or the halt, that was asked for last: the next one, and whatever ends it before its
+    /// end, has another number.
+    [[nodiscard]] std::uint32_t number() const noexcept TAPPET_REALTIME { return number_; }
+    /// The last one that came to its own end.
+    [[nodiscard]] std::uint32_t reached() const noexcept TAPPET_REALTIME { return reached_; }
+
     /// MC_Power.
     void power(bool on) noexcept TAPPET_REALTIME {
         wants_power_ = on;
         if (on) return;
+        ++number_;
         off_seen_ = false;
         gate_.rest();
         static_cast<void>(ask(AxisCommand::power_off));
@@ -76,7 +84,10 @@ public:
         const auto planned = motion::trapezoid(from, from.position + distance, {velocity, acceleration});
         if (!planned) return std::unexpected(planned.error());
         const Asked asked = ask(AxisCommand::superimpose);
-        if (asked) gate_.superimpose(*planned);
+        if (!asked) return asked;
+        ++number_;
+        adds_ = true;
+        gate_.superimpose(*planned);
         return asked;
     }
     /// Its set points come each cycle from now on, by follow(). Into cyclic position it comes to a stand
@@ -94,7 +105,7 @@ public:
     }
     /// MC_Halt: comes to rest, and takes a new motion meanwhile.
     Asked halt() noexcept TAPPET_REALTIME { return rest(AxisCommand::halt); }
-    /// MC_Stop: comes to rest, and takes none before release().
+    /// MC_Stop: comes to rest, and takes none before release(), also when it was without power meanwhile.
     Asked stop() noexcept TAPPET_REALTIME {
         const Asked asked = rest(AxisCommand::stop);
         if (asked) is_held_ = true;
@@ -141,13 +152,20 @@ private:
             return std::unexpected(motion::Refused{motion::Refusal::not_a_number});
         if (profile_velocity <= 0)
             return std::unexpected(motion::Refused{motion::Refusal::limit_not_positive});
+        if (is_held_) return std::unexpected(wrong_state);
         const Asked asked = ask(command);
-        if (asked) gate_.lead(mode, target, profile_velocity);
+        if (!asked) return asked;
+        ++number_;
+        adds_ = false;
+        gate_.lead(mode, target, profile_velocity);
         return asked;
     }
     Asked rest(AxisCommand command) noexcept TAPPET_REALTIME {
         const Asked asked = ask(command);
-        if (asked) gate_.rest();
+        if (!asked) return asked;
+        ++number_;
+        adds_ = false;
+        gate_.rest();
         return asked;
     }
 
@@ -190,6 +208,7 @@ private:
     }
     void fail() noexcept TAPPET_REALTIME {
         static_cast<void>(ask(AxisCommand::error));
+        ++number_;
         gate_.rest();
         off_seen_ = resets_ = false;
     }
@@ -198,11 +217,13 @@ private:
         if (gate_.is_lost() || gate_.progress() == Progress::failed) return fail();
         if (gate_.progress() == Progress::done) {
             static_cast<void>(ask(AxisCommand::done));
+            reached_ = number_;
             gate_.rest();
         } else if (gate_.stands() &&
                    (axis_ == AxisMode::discrete_motion || (axis_ == AxisMode::stopping && !is_held_))) {
             static_cast<void>(ask(AxisCommand::done));
         }
+        if (adds_ ? !superimposes() : gate_.stands() && axis_ == AxisMode::standstill) reached_ = number_;
     }
 
     DriveControl control_{};
@@ -211,6 +232,8 @@ private:
     DriveFeedback seen_{};
     bool wants_power_ = false, resets_ = false, is_held_ = false;
     int enable_cycles_ = 0, steady_cycles_ = 0;
+    std::uint32_t number_ = 0, reached_ = 0;
+    bool adds_ = false;     ///< that of number_ is a superimposed one
     bool off_seen_ = false; ///< the drive was seen without power since that was last asked for
 };
 

@@ -349,7 +349,8 @@ private:
     [[nodiscard]] bool rests(std::uint32_t part) const noexcept TAPPET_REALTIME {
         return (resting_ >> part & 1) != 0;
     }
-    [[nodiscard]] LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
+    [[nodiscard]] [[nodiscard]] bool may_wait(std::uint32_t part) const noexcept TAPPET_REALTIME;
+    LifeAnswer check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_REALTIME;
     void start_part(std::uint32_t part) noexcept TAPPET_REALTIME;
     void stop_part(std::uint32_t part) noexcept TAPPET_REALTIME;
     /// Asks those of a running component for their ends. Of them all: whether they have come there.

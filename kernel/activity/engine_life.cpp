@@ -92,20 +92,20 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     }
     active_.store(true, std::memory_order_release);
     awaiting_ = 0;
-    // All of them first: what the first one tells in its start() reaches those behind it.
-    for (EnginePart& part : plan_.parts)
-        if (part.state.load(std::memory_order_relaxed) != ComponentState::failed)
-            part.state.store(ComponentState::starting, std::memory_order_release);
+    // All of them first: what the first one tells in its start() reaches those behind it that are sure to
+    // start.
+    for (std::uint32_t i = 0; i < plan_.parts.size(); ++i)
+        if (plan_.parts[i].state.load(std::memory_order_relaxed) != ComponentState::failed)
+            plan_.parts[i].state.store(may_wait(i) ? ComponentState::waiting : ComponentState::starting,
+                                       std::memory_order_release);
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if (plan_.parts[i].state.load(std::memory_order_relaxed) == ComponentState::failed) continue;
-        if (rests(i)) {
+        if (rests(i))
             plan_.parts[i].state.store(ComponentState::stopped, std::memory_order_release);
-        } else if (check_inputs(i, Rule::with_the_machine).refusal == LifeRefusal::none) {
+        else if (check_inputs(i, Rule::with_the_machine).refusal == LifeRefusal::none)
             start_part(i);
-        } else {
-            plan_.parts[i].state.store(ComponentState::waiting, std::memory_order_release);
+        else
             ++awaiting_;
-        }
     }
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) start_behaviours(i);
     if (!plan_.periodic)
@@ -262,6 +262,12 @@ LifeAnswer Engine::check_inputs(std::uint32_t part, Rule rule) noexcept TAPPET_R
             return {LifeOutcome::refused, refusal, static_cast<std::uint8_t>(part), each.facet};
     }
     return {LifeOutcome::done, LifeRefusal::none, static_cast<std::uint8_t>(part), 0};
+}
+
+bool Engine::may_wait(std::uint32_t part) const noexcept TAPPET_REALTIME {
+    for (const NeededInput& each : plan_.inputs)
+        if (each.part == part && each.valid_to_start) return true;
+    return false;
 }
 
 // Its own components have not written yet: only what other activities give can be judged.

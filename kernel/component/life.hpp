@@ -17,7 +17,7 @@ enum class ComponentState : std::uint8_t {
     waiting,  ///< its activity has started; an input that it needs has no valid value yet
     starting, ///< start() runs, or is about to, behind that of others of its activity
     running,  ///< it is stepped, and messages reach it
-    stopping, ///< stop() leaves the safe values
+    stopping, ///< stop() leaves the safe values, and nothing else reaches it
     stopped,  ///< its outputs hold the safe values; it does nothing, and from here on nothing reaches it
     failed    ///< it could not be initialised, or its thread broke a contract: it is not started again
 };
@@ -71,7 +71,7 @@ public:
         const ComponentState now = state.load(std::memory_order_acquire);
         switch (entry) {
         case Entry::at_once:
-            return (now >= ComponentState::starting && now <= ComponentState::stopping) ||
+            return now == ComponentState::starting || now == ComponentState::running ||
                    waits_for_its_turn.load(std::memory_order_relaxed);
         case Entry::queued: return now == ComponentState::running;
         case Entry::always: break;

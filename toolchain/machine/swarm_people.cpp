@@ -85,7 +85,12 @@ void SwarmRun::watch() {
     const SubscriptionCounts counts = run_.instance().observation().counts_of(index);
     ask("subscribe " + std::string{row.name} + "." + std::string{row.type->facets[event.facet].name},
         [this, index, before = counts.served - counts.outdated - counts.dropped](std::string_view answer) {
-            if (is_good(answer)) watched_ = {.index = index, .before = before, .looked = run_.now()};
+            if (!is_good(answer)) return;
+            const SubscriptionCounts now = run_.instance().observation().counts_of(index);
+            watched_ = {.index = index,
+                        .before = before,
+                        .lost_before = now.lost + now.dropped,
+                        .looked = run_.now()};
         });
 }
 
@@ -102,7 +107,7 @@ void SwarmRun::judge_watched() {
         deny(Sentence{"a browser was told of more emissions than there were"});
     if (std::exchange(watched_.was_told, false) && watched_.lost < watched_.known_lost)
         deny(Sentence{"emissions were lost, and who watched them was told of fewer"});
-    const std::uint64_t lost = counts.lost + counts.dropped,
+    const std::uint64_t lost = counts.lost + counts.dropped - watched_.lost_before,
                         unseen = watched_.lost - std::min(watched_.lost, lost);
     watched_.known_lost = lost;
     if (run_.now() - watched_.looked < told_within) return;

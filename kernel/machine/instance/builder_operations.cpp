@@ -39,13 +39,14 @@ void MachineBuilder::place_command_processors() {
         for (std::size_t sender = 0; sender < n; ++sender)
             place(machine_.plan.command_mail[sender * n + receiver]);
         place(machine_.plan.command_requests[receiver]);
-        if (find_interpreter(machine_.table) != nowhere)
-            place(line_mail(machine_.plan.command_requests[receiver]));
+        const MailPlan& requests = machine_.plan.command_requests[receiver];
+        const bool has_lines = find_interpreter(machine_.table) != nowhere;
+        if (has_lines) place(line_mail(requests));
         auto* followed = instance_.at<CommandSlot*>(plan.followed_at);
         for (std::size_t i = 0; i < plan.followed_count; ++i) new (followed + i) CommandSlot* {nullptr};
         instance_.engines()[receiver].commands().place({mailboxes, plan.command_sender_count},
                                                        {followed, plan.followed_count},
-                                                       machine_.plan.command_requests[receiver].capacity);
+                                                       requests.capacity + (has_lines ? line_commands : 0));
     }
 }
 

@@ -9,8 +9,8 @@ namespace tappet {
 /// So many requests of the components that see the machine wait at one engine, and so many of their commands.
 inline constexpr std::uint32_t requests_waiting = 16;
 
-/// So many commands of lines that people typed may be on their way.
-inline constexpr std::uint32_t line_commands = 8;
+/// So many commands of lines that people typed may be on their way: four of each of three lines.
+inline constexpr std::uint32_t line_commands = 12;
 
 /// Their mailbox at a receiver: it stands after that of the requests. Whichever activity a line runs in posts
 /// there: one line is at work at a time, and the next begins after it.
@@ -78,7 +78,9 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
             place(p.command_requests[receiver]);
             activity.followed_count += requests_waiting;
         }
+        // Beside those of browsers, whose places have shares by role: lines would take the others'.
         if (has_lines) {
+            activity.followed_count += line_commands;
             ++activity.command_sender_count;
             layout.take(CommandMailbox::bytes_for(line_commands), CommandMailbox::alignment);
         }

@@ -60,6 +60,7 @@ private:
         End event{};
         std::size_t index = nowhere; ///< in the plan's subscriptions
         EventHandle handle{};
+        std::int64_t lost = 0; ///< in this service, less what others had lost before
     };
     /// An emission, caught between two cycles.
     struct Seen {
@@ -128,6 +129,7 @@ private:
         TAPPET_REALTIME;
     void tell_events();
     void drop(Subscribed& subscribed) noexcept;
+    [[nodiscard]] std::int64_t lost_of(const Subscribed& subscribed) const noexcept;
 
     // Behaviours; requests_behaviour.cpp
     struct FoundBehaviour {
@@ -199,7 +201,6 @@ private:
     alignas(value_alignment) std::array<std::byte, max_events * sizeof(Message::arguments)> seen_bytes_{};
     std::size_t seen_count_ = 0;
     std::size_t seen_bytes_used_ = 0;
-    std::uint64_t unseen_ = 0; ///< emissions beyond max_events, or beyond the bytes of so many
     Upload upload_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
     std::span<char> for_nobody_{}; ///< where the answer goes, and what is left there; empty: to the client

@@ -28,8 +28,10 @@ void step_again(const FacetCall& call) noexcept TAPPET_REALTIME {
 // forced before its component runs: it may wait for just that value.
 void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     FacetCall& call = call_of(self);
-    const Entry entry = is_input(*call.facet) ? Entry::at_once : Entry::queued;
-    call.refused = !call.machine->gate_of(call.end.component)->admits(entry);
+    const GatedComponent& gate = *call.machine->gate_of(call.end.component);
+    const bool waits = gate.state.load(std::memory_order_acquire) == ComponentState::waiting;
+    call.refused =
+        is_input(*call.facet) ? !waits && !gate.admits(Entry::at_once) : !gate.admits(Entry::queued);
     if (call.refused) return;
     const bool was_forced = is_forced(call);
     call.never_written = !call.facet->port->force(call.place, is_input(*call.facet), call.value.data());

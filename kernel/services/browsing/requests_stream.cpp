@@ -31,6 +31,7 @@ BrowserService::Verdict BrowserService::subscribe(Client& client, const Request&
                          " that browsers are told; read its component's ports instead"}};
     *place = {asker(client, request), true, event, machine_->observation().observed_index(event), handle};
     handle.connect();
+    place->lost = -lost_of(*place); // from now on
     Reply reply{request.number, true};
     finish(client, reply);
     return {};
@@ -59,6 +60,12 @@ void BrowserService::drop(Subscribed& subscribed) noexcept {
     subscribed.handle.disconnect();
 }
 
+/// On the way here, of all who subscribed to it.
+std::int64_t BrowserService::lost_of(const Subscribed& subscribed) const noexcept {
+    const SubscriptionCounts counts = machine_->observation().counts_of(subscribed.index);
+    return static_cast<std::int64_t>(counts.lost + counts.dropped);
+}
+
 /// In this engine, between two cycles.
 void BrowserService::observe(void* self, std::size_t index, const std::byte* arguments, Time now) noexcept
     TAPPET_REALTIME {
@@ -66,8 +73,12 @@ void BrowserService::observe(void* self, std::size_t index, const std::byte* arg
     const AcceptedMachine& machine = service.machine_->machine();
     const std::size_t bytes = facet_at(machine.table, machine.plan.subscriptions[index].event).type->size;
     const std::size_t begin = service.seen_bytes_used_;
-    if (service.seen_count_ == max_events || begin + bytes > service.seen_bytes_.size()) {
-        ++service.unseen_;
+    Role role = Role::observer;
+    for (const Subscribed& each : service.subscribed_)
+        if (each.taken && each.index == index) role = std::max(role, each.asker.role);
+    if (service.seen_count_ + kept_from(role, max_events) >= max_events ||
+        begin + bytes + kept_from(role, service.seen_bytes_.size()) > service.seen_bytes_.size()) {
+        for (Subscribed& each : service.subscribed_) each.lost += each.taken && each.index == index ? 1 : 0;
         return;
     }
     service.seen_[service.seen_count_++] = {index, now, begin};
@@ -88,8 +99,7 @@ void BrowserService::tell_events() {
             Reply reply{each.asker.number};
             reply.json().field("event", name.view()).field("time_ns", to_ns(seen_[i].at)).key("arguments");
             reply.value(*facet.type, seen_bytes_.data() + seen_[i].arguments);
-            const SubscriptionCounts counts = machine_->observation().counts_of(each.index);
-            reply.json().field("lost", counts.lost + counts.dropped + unseen_);
+            reply.json().field("lost", each.lost + lost_of(each));
             finish(*client, reply);
         }
     seen_count_ = seen_bytes_used_ = 0;

@@ -2,6 +2,7 @@
 #include "kernel/services/interpreter/command_interpreter.hpp"
 
 #include "kernel/base/value_text.hpp"
+#include "kernel/machine/plan/operations.hpp"
 #include "kernel/script/load.hpp"
 #include "kernel/script/token.hpp"
 
@@ -59,9 +60,13 @@ constexpr LineFunctions CommandInterpreter::line_functions{
             auto& own = *static_cast<CommandInterpreter*>(self);
             if (!own.is_at_work()) return LineRefusal::not_now;
             if (role < own.bank_->role) return LineRefusal::denied;
+            if (role > own.bank_->role) own.keep_for(role, own.machine_->clock().now());
             own.break_off();
             return LineRefusal::none;
         }};
+
+static_assert(std::size_t{interpreter::line_sizes.command_slots} * CommandInterpreter::lines_at_most ==
+              line_commands);
 
 Sentence CommandInterpreter::configure(Setup& setup) {
     machine_ = setup.machine;
@@ -89,17 +94,17 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
         return refuse(Sentence{"the component that executes lines does not run; start it first"});
     const Time now = machine_->clock().now();
     if (asker_ != Asker::none) {
-        if (role <= bank_->role || !is_expression(bank_->unit.parts()[0].type->tables))
-            return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
+        const bool is_higher = role > bank_->role;
+        const bool gives_way = is_higher && is_expression(bank_->unit.parts()[0].type->tables);
+        if (is_higher) keep_for(role, now);
+        if (!gives_way) return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
         break_off();
-        kept_for_ = role;
-        kept_until_ = now + patience;
         return refuse(Sentence{"an ", to_text(bank_->role), "'s line gives way to yours; ask again"});
     }
     if (role < kept_for_ && now < kept_until_)
         return refuse(Sentence{"an ", to_text(kept_for_), " is served first; ask again"});
     Bank* const free = std::ranges::find_if(banks_, &Bank::is_free);
-    if (free == banks_.end())
+    if (std::ranges::count_if(banks_, &Bank::is_free) <= (role < Role::engineer ? banks_of_engineers : 0))
         return refuse(
             Sentence{"commands of earlier lines are still on their way; wait until they have ended, "
                      "or stop their components"});

@@ -22,6 +22,8 @@ class CommandInterpreter {
 public:
     static constexpr bool sees_machine = true;
     static constexpr std::size_t max_characters = 480;
+    /// At work, or with commands that are on their way still; one of them is for engineers.
+    static constexpr std::size_t lines_at_most = 3;
     /// Of a line its engine executes so many between two steps: it belongs to other work.
     static constexpr std::uint32_t statements_between_steps = 64;
     /// An engine that does not come to a line for so long hangs, or stands.
@@ -64,6 +66,11 @@ private:
     [[nodiscard]] bool is_at_work() const noexcept TAPPET_REALTIME {
         return asker_ != Asker::none && in_flight(end_.state);
     }
+    /// Somebody of a higher role waits for the end of the line at work: nobody of a lower one is next.
+    void keep_for(Role role, Time now) noexcept {
+        kept_for_ = role;
+        kept_until_ = now + patience;
+    }
     void post(interpreter::Bank& bank) noexcept;
     void finish(CommandState state, const Sentence& why) noexcept TAPPET_REALTIME;
     void finish_good();
@@ -74,13 +81,14 @@ private:
     std::size_t own_ = nowhere;
     /// Number 0 is nobody: a line drives no component.
     std::array<Reachable, max_line_components + 1> reach_{};
-    /// A command of a line that was broken off may keep one while the next line runs.
-    std::array<interpreter::Bank, 2> banks_{};
+    /// A command of a line that was broken off may keep one for ever, while the next line runs.
+    static constexpr std::ptrdiff_t banks_of_engineers = 1;
+    std::array<interpreter::Bank, lines_at_most> banks_{};
     interpreter::Bank* bank_ = nullptr; ///< of the line at work, or that ended last
     Asker asker_ = Asker::none;         ///< who has not let go of it
     bool is_broken_off_ = false;
-    Role kept_for_ = Role::observer; ///< somebody of a higher role, for whom a line gave way, is next,
-    Time kept_until_{};              ///< if they ask until then
+    Role kept_for_ = Role::observer; ///< no line of a lower role is next,
+    Time kept_until_{};              ///< until then
     Time since_{};
     Time posted_{};
     LineEnd end_{};

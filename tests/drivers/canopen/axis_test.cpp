@@ -183,6 +183,54 @@ struct ServoAxis : testing::Test, WireRig<servo_machine, Bus> {
     Client* client = instance.find<Client>("client");
 };
 
+TEST_F(ServoAxis, says_done_of_no_motion_that_was_halted) {
+    power();
+    ASSERT_TRUE(client->move_to.send(100.0, 20.0));
+    run(1s);
+    ASSERT_TRUE(client->halt.send());
+    EXPECT_TRUE(ends(client->halt));
+    EXPECT_EQ(client->move_to.state(), CommandState::failed);
+    client->move_to.reset();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    ASSERT_TRUE(client->superimpose.send(50.0, 10.0, 500.0));
+    run(500ms);
+    client->halt.reset();
+    ASSERT_TRUE(client->halt.send());
+    EXPECT_TRUE(ends(client->halt));
+    EXPECT_EQ(client->superimpose.state(), CommandState::failed);
+}
+
+TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
+    power();
+    ASSERT_TRUE(client->superimpose.send(5.0, 20.0, 100.0)); // from a stand, a relative move
+    run(100ms);
+    ASSERT_TRUE(client->move_to.send(-50.0, 80.0));
+    EXPECT_TRUE(ends(client->move_to));
+    EXPECT_EQ(client->superimpose.state(), CommandState::failed);
+    client->superimpose.reset();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    ASSERT_TRUE(client->superimpose.send(50.0, 10.0, 500.0));
+    run(500ms);
+    client->synchronize.reset();
+    ASSERT_TRUE(client->synchronize.send(9));
+    ASSERT_TRUE(until([&] { return !in_flight(client->superimpose.state()); }));
+    EXPECT_EQ(client->superimpose.state(), CommandState::failed);
+}
+
+TEST_F(ServoAxis, is_held_after_a_stop_until_it_is_released_also_without_power_in_between) {
+    power();
+    ASSERT_TRUE(client->come_to_stop.send());
+    EXPECT_TRUE(ends(client->come_to_stop));
+    client->power_off.emit();
+    run(200ms);
+    power();
+    ASSERT_TRUE(client->move_to.send(10.0, 20.0));
+    ASSERT_TRUE(until([&] { return !in_flight(client->move_to.state()); }));
+    EXPECT_EQ(client->move_to.state(), CommandState::rejected);
+}
+
 TEST_F(ServoAxis, goes_home_to_places_and_at_speeds_by_commands) {
     servo.set_home(3);
     power();

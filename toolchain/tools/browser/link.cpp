@@ -12,10 +12,12 @@
 #include <sstream>
 #include <utility>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -41,7 +43,9 @@ std::string why_not_connected(const std::string& path, int error) {
     case EPERM:
         return "you may not open " + socket +
                "; its file mode and group say who may: ask whoever runs the box";
-    case EAGAIN: return "the machine has as many browsers as it serves; end one of them";
+    case EAGAIN:
+        return "the machine let nobody in for 5 s; look whether its browser's activity runs, or end other "
+               "browsers";
     case EPROTOTYPE: return socket + " is a socket of another kind; name the machine's with --socket";
     default: return "cannot connect to " + socket + ": " + std::strerror(error);
     }
@@ -81,10 +85,13 @@ Result<Link> Link::connect(const std::string& path) {
     std::ranges::copy(path, address.sun_path);
     Link link;
     link.path_ = path;
-    // Not blocking: a machine whose queue is full is said to be busy, not waited for.
-    link.socket_ = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    // It stands in the queue for a while, beside whoever tries to get in again and again.
+    constexpr timeval in_queue{.tv_sec = 5, .tv_usec = 0};
+    link.socket_ = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
     if (link.socket_ < 0 ||
-        ::connect(link.socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        ::setsockopt(link.socket_, SOL_SOCKET, SO_SNDTIMEO, &in_queue, sizeof in_queue) != 0 ||
+        ::connect(link.socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+        ::fcntl(link.socket_, F_SETFL, O_NONBLOCK) != 0)
         return failure(Fault::no_machine, why_not_connected(path, errno));
     return link;
 }

@@ -123,6 +123,46 @@ TEST_F(Lines, an_expression_gives_way_to_a_higher_role_which_is_served_next) {
     EXPECT_THAT(next(observer), is_value("1"));
 }
 
+TEST_F(Lines, whoever_broke_one_off_is_next_before_those_of_a_lower_role) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    ASSERT_EQ(seteuid(1001), 0);
+    Talker worker{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("sent"));
+    EXPECT_THAT(ask("3 break_off"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(next(worker), has_failed("it was broken off"));
+    EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("an engineer is served first; ask again"));
+    EXPECT_THAT(execute("1"), is_value("1"));
+    EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("sent"));
+    EXPECT_THAT(execute("1"), HasSubstr("another line is at work"));
+    EXPECT_THAT(ask(worker, "4 break_off"), HasSubstr("\"ok\": true")) << "its own";
+    EXPECT_THAT(next(worker), has_failed("it was broken off"));
+    EXPECT_THAT(ask(worker, request("1")), HasSubstr("an engineer is served first"));
+    run(CommandInterpreter::patience);
+    EXPECT_THAT(ask(worker, request("1")), HasSubstr("sent")) << "who does not come is not waited for";
+    EXPECT_THAT(next(worker), is_value("1"));
+}
+
+TEST_F(Lines, commands_that_operators_left_behind_leave_engineers_a_line) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    ASSERT_EQ(seteuid(1001), 0);
+    Talker worker{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    ram().speed.set(0.001);
+    for (const double to : {49.0, 48.0, 47.0}) {
+        const std::string answer =
+            ask(worker, request("var int n; do ram.move_to(" + std::to_string(to) + ", n)"));
+        if (answer.find("sent") == std::string::npos) {
+            EXPECT_THAT(answer, HasSubstr("commands of earlier lines are still on their way"));
+        }
+        static_cast<void>(ask(worker, "8 break_off"));
+        static_cast<void>(next(worker));
+    }
+    EXPECT_THAT(ask(worker, request("1")), HasSubstr("commands of earlier lines are still on their way"));
+    run(CommandInterpreter::patience);
+    EXPECT_THAT(execute("1"), is_value("1"));
+}
+
 TEST_F(Lines, what_is_half_done_gives_way_to_nobody_and_is_broken_off_by_no_lower_role) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     ASSERT_EQ(seteuid(1001), 0);
@@ -158,7 +198,7 @@ TEST_F(Lines, one_takes_no_longer_than_lines_may) {
 
 TEST_F(Lines, a_command_that_was_left_goes_on_and_the_next_line_has_room_beside_it) {
     ram().speed.set(0.1);
-    for (const double to : {49.0, 48.0}) {
+    for (const double to : {49.0, 48.5, 48.0}) {
         EXPECT_THAT(ask(request("var int n; do ram.move_to(" + std::to_string(to) + ", n)")),
                     HasSubstr("sent"));
         EXPECT_THAT(ask("8 break_off"), HasSubstr("\"ok\": true"));

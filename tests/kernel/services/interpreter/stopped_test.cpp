@@ -21,10 +21,14 @@ struct Valve {
     Output<bool> coil;
     BufferOutput<std::int64_t> strokes;
     Property<double> pressure{1.0};
+    Event<> closed;
     std::int64_t changes = 0;
 
     void start(const Cycle&) noexcept TAPPET_REALTIME { coil.write(false); }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { coil.write(false); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        coil.write(false);
+        closed.emit();
+    }
     void changed() noexcept TAPPET_REALTIME {
         ++changes;
         coil.write(true);
@@ -46,6 +50,7 @@ struct Valve {
     static constexpr auto interface() {
         return facets(output<&Valve::coil>("coil", "", "true: it flows"),
                       output<&Valve::strokes>("strokes", "", "that were made"),
+                      event<&Valve::closed>("closed", "it has stopped"),
                       property<&Valve::pressure>("pressure", "bar", "wanted", range(0, 10)),
                       operation<&Valve::on>("on", "opens it"), method<&Valve::open>("open", "opens it"),
                       method<&Valve::count>("count", "opens it and counts"),
@@ -69,9 +74,15 @@ struct Panel {
     MethodCall<bool()> open, open_spare;
     CommandCall<> go;
     Event<> called, told;
-    bool asks = false, has_air = false;
+    bool asks = false, asks_back = false, has_air = false;
     std::int64_t answers = 0, refusals = 0, answers_of_spare = 0;
 
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        if (open_spare().given()) ++answers_of_spare; // which is behind it, and may come to wait
+    }
+    void on_closed() noexcept TAPPET_REALTIME {
+        if (asks_back) open().given() ? ++answers : ++refusals;
+    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         if (has_air) air.write(true);
         if (!asks) return;
@@ -86,7 +97,8 @@ struct Panel {
                       calls<&Panel::open>("open", "the valve"),
                       calls<&Panel::open_spare>("open_spare", "the one that waits for air"),
                       sends<&Panel::go>("go", "the valve"), event<&Panel::called>("called", "at once"),
-                      event<&Panel::told>("told", "by a message"));
+                      event<&Panel::told>("told", "by a message"),
+                      operation<&Panel::on_closed>("on_closed", "the valve has stopped"));
     }
 };
 
@@ -114,12 +126,13 @@ constexpr auto table = machine("plant",
     components(component<Valve>("valve"), component<Spare>("spare"), component<Panel>("panel"), component<Feeder>("feeder"), component<Wire>("wire"),
                component<BrowserService>("browser", set("log", false)), component<CommandInterpreter>("interpreter")),
     activities(
-        activity("motion",  every(1ms), budget(50us), runs("valve", "spare", "panel", "feeder")),
+        activity("motion",  every(1ms), budget(50us), runs("valve", "panel", "spare", "feeder")),
         activity("io",      every(1ms), budget(50us), runs("wire")),
         activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser", "interpreter"))),
     connections(data("valve.coil", "wire.level"), data("panel.air", "spare.air")),
     reactions(uses("panel.open", "valve.open"), uses("panel.open_spare", "spare.open"), uses("panel.go", "valve.go"),
-              when("panel.called", call("valve.on")), when("panel.told", tell("valve.on"))),
+              when("panel.called", call("valve.on")), when("panel.told", tell("valve.on")),
+              when("valve.closed", call("panel.on_closed"))),
     behaviours(behaviour("feeder", slot(nodes(60), data_bytes(512), depth(3), command_slots(2), timers(2), text_bytes(2000),
                                         peers("valve"), operations("valve.on", "valve.open", "valve.count"), trial(2)), at_most(30))));
 // clang-format on
@@ -201,6 +214,27 @@ TEST_F(AStoppedComponent, gives_no_answer_to_a_method_call_and_runs_no_reaction)
     panel().asks = true;
     run(5ms);
     EXPECT_GT(panel().answers, 3) << "it runs again";
+    panel().asks = false;
+    stop_valve();
+}
+
+TEST_F(AStoppedComponent, is_called_back_by_nobody_whom_its_stop_tells_something) {
+    panel().asks_back = true;
+    stop_valve();
+    EXPECT_EQ(panel().answers, 0);
+    EXPECT_EQ(panel().refusals, 1);
+    EXPECT_THAT(ask({"1 start valve"}), HasSubstr(R"("ok": true)"));
+    world.stop();
+    EXPECT_EQ(panel().answers, 0) << "nor when the whole machine stops";
+    EXPECT_FALSE(valve().coil.last());
+    wire().was_on = false;
+}
+
+TEST_F(AStoppedComponent, may_be_given_by_hand_what_it_waits_for) {
+    EXPECT_THAT(ask({"1 force spare.air true"}), HasSubstr(R"("ok": true)"));
+    panel().asks = true;
+    run(20ms);
+    EXPECT_GT(panel().answers_of_spare, 0) << "it has begun";
     panel().asks = false;
     stop_valve();
 }

@@ -1,0 +1,55 @@
+// What init says, and the file that keeps it.
+#include "board/box/voice.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace tappet::box {
+namespace {
+
+struct AVoice : testing::Test {
+    std::string folder = testing::TempDir() + "tappet-voice-" + std::to_string(::getpid());
+    std::string file = folder + "/box.log";
+    void SetUp() override { std::filesystem::create_directory(folder); }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+    std::string kept() const {
+        std::ifstream text{file};
+        return {std::istreambuf_iterator<char>{text}, {}};
+    }
+};
+
+TEST_F(AVoice, keeps_what_was_said_before_there_was_a_file_and_since) {
+    Voice voice;
+    voice.say("first");
+    ASSERT_TRUE(voice.keep_in(file));
+    voice.say("second");
+    voice.let_go();
+    EXPECT_THAT(kept(), testing::MatchesRegex("init: .*first\ninit: .*second\n"));
+    voice.say("nobody keeps this");
+}
+
+TEST_F(AVoice, waits_for_no_disk_that_does_not_answer) {
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0); // nobody reads it: when it is full its writer stands
+    const int reader = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    Voice voice;
+    ASSERT_TRUE(voice.keep_in(file));
+    const auto began = std::chrono::steady_clock::now();
+    for (int i = 0; i < 20'000; ++i)
+        voice.say("the power button ends it, and the machine is to stop before this is kept");
+    voice.let_go();
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds{60})
+        << "but it would wait for ever";
+    ::close(reader);
+}
+
+} // namespace
+} // namespace tappet::box

@@ -1,0 +1,81 @@
+// Events that are told to browsers: what one client asks for costs no other of a higher role its own.
+#include "tests/kernel/services/browsing/press_rig.hpp"
+
+#include <gmock/gmock.h>
+
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+using press::Talker;
+
+/// Much that happens all the time, and something that is rare.
+struct Ticker {
+    Event<> a, b, c, d, e, f;
+    Event<std::int64_t> alarm;
+    std::int64_t steps = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        for (int i = 0; i < 3; ++i)
+            for (Event<>* const each : {&a, &b, &c, &d, &e, &f}) each->emit();
+        if (++steps % 100 == 0) alarm.emit(steps / 100);
+    }
+    static constexpr auto interface() {
+        return facets(event<&Ticker::a>("a", "ticks"), event<&Ticker::b>("b", "ticks"),
+                      event<&Ticker::c>("c", "ticks"), event<&Ticker::d>("d", "ticks"),
+                      event<&Ticker::e>("e", "ticks"), event<&Ticker::f>("f", "ticks"),
+                      event<&Ticker::alarm>("alarm", "its number"));
+    }
+};
+
+// clang-format off
+constexpr auto table = machine("ticking",
+    components(component<Ticker>("ticker"), component<BrowserService>("browser", set("log", false))),
+    activities(activity("motion",  every(1ms), budget(50us), runs("ticker")),
+               activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser"))),
+    connections(), reactions(), behaviours());
+// clang-format on
+
+TEST(Subscriptions, of_observers_cost_nobody_of_a_higher_role_an_event_and_count_in_nobodys_losses) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    const std::string directory = testing::TempDir() + "tappet-ticking-" + std::to_string(getpid());
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, press::board>::machine(), clock};
+    VirtualWorld world{instance};
+    instance.browse_in(directory);
+    ASSERT_TRUE(instance.configure({}));
+    world.start();
+    const auto run = [&](Duration time) { static_cast<void>(world.run_until(clock.now() + time)); };
+    /// How many it is told in two seconds, in which twenty come.
+    const auto alarms_of = [&](Talker& who) {
+        int told = 0;
+        for (int i = 0; i < 100; ++i) {
+            run(20ms);
+            for (std::string each = who.receive(); !each.empty(); each = who.receive()) {
+                if (each.find("ticker.alarm") == std::string::npos) continue;
+                EXPECT_THAT(each, testing::HasSubstr(R"("lost": 0)"));
+                ++told;
+            }
+        }
+        return told;
+    };
+    const std::string path = directory + "/ticking.socket";
+    Talker engineer{path};
+    ASSERT_TRUE(engineer.send("1 subscribe ticker.alarm"));
+    run(60ms);
+    ASSERT_EQ(seteuid(65534), 0);
+    Talker observer{path};
+    ASSERT_EQ(seteuid(0), 0);
+    for (const char* each : {"a", "b", "c", "d", "e", "f"})
+        ASSERT_TRUE(observer.send(std::string{"2 subscribe ticker."} + each));
+    EXPECT_NEAR(alarms_of(engineer), 20, 1);
+    Talker late{path};
+    ASSERT_TRUE(late.send("3 subscribe ticker.alarm"));
+    run(60ms);
+    EXPECT_NEAR(alarms_of(late), 20, 1);
+    instance.find<BrowserService>("browser")->finalise();
+    std::filesystem::remove_all(directory);
+}
+
+} // namespace
+} // namespace tappet
