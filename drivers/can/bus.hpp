@@ -24,7 +24,8 @@ namespace tappet::can {
 /// A frame on demand goes out once for each writing; all of its signals are written in one cycle of one
 /// writer, so that no command leaves with the arguments of another. A row that wakes makes it leave at once.
 /// A frame with an input that was never written, is stale by its row, or is no number does not go out: the
-/// receiver's own time-out notices. Of a multiplexed frame what its multiplexors select is written, read and
+/// receiver's own time-out notices. A signal that arrives and is no number is not written but counted: its
+/// output grows stale. Of a multiplexed frame what its multiplexors select is written, read and
 /// sent; the other signals stay as they are.
 ///
 /// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
@@ -82,6 +83,8 @@ struct Bus {
     Output<std::int64_t> frames_received{};
     Output<std::int64_t> wrong_lengths{};
     Output<std::int64_t> sent_too_often{};
+    Output<std::int64_t> no_numbers{};
+    Output<std::int64_t> out_of_range{};
     Event<> bus_fault{};
     Event<> bus_recovered{};
     [[no_unique_address]] ServicePort<protocol.any, BufferOutput<Frame>> services{};
@@ -201,6 +204,13 @@ struct Bus {
                  output<&Bus::sent_too_often>(
                      "sent_too_often", "",
                      "frames on demand that followed sooner than the map says; written on change"),
+                 output<&Bus::no_numbers>(
+                     "no_numbers", "",
+                     "signals that arrived and are no number, since its start; written on change"),
+                 output<&Bus::out_of_range>("out_of_range", "",
+                                            "values to be sent that their signal does not hold: its nearest "
+                                            "end is sent, or, of what is no "
+                                            "number, nothing; written on change"),
                  tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
                  tappet::event<&Bus::bus_recovered>("bus_recovered",
                                                     "the bus works again, with empty queues"),
@@ -219,7 +229,7 @@ struct Bus {
     }
 
 private:
-    static constexpr std::size_t fixed_facets = 11;
+    static constexpr std::size_t fixed_facets = 13;
     // At start: the kernel's buffer holds fewer frames.
     static constexpr int max_passes = 4096;
 
@@ -299,8 +309,10 @@ private:
             if (!store_.is_in(row, s, frame)) continue;
             if (is_integer(map.signals[s]))
                 integer_out[s].write(store_.integer(s), frame.stamp);
+            else if (const double value = store_.physical(s); is_number(value))
+                physical_out[s].write(value, frame.stamp);
             else
-                physical_out[s].write(store_.physical(s), frame.stamp);
+                no_numbers.write(no_numbers.last() + 1);
         }
         frame_received[f].emit();
     }
@@ -322,6 +334,8 @@ private:
         frames_received.write(static_cast<std::int64_t>(status_.taken));
         wrong_lengths.write(static_cast<std::int64_t>(store_.count.wrong_lengths));
         sent_too_often.write(too_often_);
+        no_numbers.write(0);
+        out_of_range.write(static_cast<std::int64_t>(store_.count.refused + store_.count.saturated));
     }
 
     void tell_state(Time now) noexcept TAPPET_REALTIME {
@@ -386,7 +400,12 @@ private:
             else
                 store_.set_physical(s, physical_[s]);
         }
+        tell_out_of_range();
         return store_.count.refused == refused;
+    }
+    void tell_out_of_range() noexcept TAPPET_REALTIME {
+        const auto now = static_cast<std::int64_t>(store_.count.refused + store_.count.saturated);
+        if (now != out_of_range.last()) out_of_range.write(now);
     }
 
     void send(std::size_t f, Time now) noexcept TAPPET_REALTIME {

@@ -4,6 +4,7 @@
 #include "drivers/can/frame.hpp"
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/nearest.hpp"
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/text.hpp"
 
@@ -61,6 +62,7 @@ struct Signal {
         0; ///< of what is transmitted: sent when the bus stops or the machine's process is no more
     bool says_safe = false;
     std::string_view safe_name{}; ///< instead of `safe_value`, which the map takes from `names`
+    bool is_bits = false;         ///< no number: a control word, a set of switches
     bool has_range = false;       ///< of physical values, as they are sent: `least` and `most`
     double least = 0;
     double most = 0;
@@ -74,6 +76,12 @@ struct Signal {
     constexpr Signal as_signed() const noexcept {
         Signal copy = *this;
         copy.kind = Kind::signed_integer;
+        return copy;
+    }
+    /// Of an integer that is written: what is beyond the width is cut, instead of its nearest end taken.
+    constexpr Signal as_bits() const noexcept {
+        Signal copy = *this;
+        copy.is_bits = true;
         return copy;
     }
     constexpr Signal as_float() const noexcept {
@@ -298,13 +306,13 @@ struct Raw {
     std::uint64_t bits = 0;
     bool saturated =
         false; ///< the value was out of range, and its nearest end was taken: never a wrapped value
-    bool refused = false; ///< not a number
+    bool refused = false; ///< not a number, or infinite
 };
 
 namespace detail {
 constexpr Raw to_any_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
     const double number = (physical - s.offset) / s.factor;
-    if (number != number) return {.refused = true};
+    if (!is_number(number)) return {.refused = true};
     if (s.kind == Kind::float64) return {.bits = std::bit_cast<std::uint64_t>(number)};
     if (s.kind == Kind::float32) {
         constexpr double most = 3.4028234663852886e38;
@@ -337,12 +345,19 @@ constexpr Raw to_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME 
     return {.bits = detail::to_any_raw(s, physical < s.least ? s.least : s.most).bits, .saturated = true};
 }
 
-/// Likewise of a signal without factor and offset. Without a range it is a set of bits, of which those beyond
-/// its width are cut.
+/// Likewise of a signal without factor and offset, exactly. Of one that is_bits what is beyond its width is
+/// cut.
 constexpr Raw to_raw_integer(const Signal& s, std::int64_t value) noexcept TAPPET_REALTIME {
+    const std::uint64_t mask = detail::mask_of(s);
+    if (s.is_bits) return {.bits = static_cast<std::uint64_t>(value) & mask};
     if (s.has_range && s.bits < 64)
         if (const Raw raw = to_raw(s, static_cast<double>(value)); raw.saturated) return raw;
-    return {.bits = static_cast<std::uint64_t>(value) & detail::mask_of(s)};
+    const bool is_signed = s.kind == Kind::signed_integer;
+    const auto most = static_cast<std::int64_t>((is_signed ? mask : mask & ~(std::uint64_t{1} << 63)) >>
+                                                (is_signed ? 1 : 0));
+    const std::int64_t least = is_signed ? -most - 1 : 0;
+    const std::int64_t kept = std::clamp(value, least, most);
+    return {.bits = static_cast<std::uint64_t>(kept) & mask, .saturated = kept != value};
 }
 
 /// The first value that is called so; null: none.

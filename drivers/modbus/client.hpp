@@ -40,6 +40,8 @@ template <const auto& map> struct Client {
     Output<bool> connected{};
     Output<std::int64_t> outages{};
     Output<std::int64_t> outages_survived{};
+    Output<std::int64_t> no_numbers{};
+    Output<std::int64_t> out_of_range{};
     Output<Text<200>> reason{};
     Event<> lost{};
     Event<> back{};
@@ -61,6 +63,8 @@ template <const auto& map> struct Client {
         connected.write(false);
         outages.write(0);
         outages_survived.write(0);
+        no_numbers.write(0);
+        out_of_range.write(0);
     }
 
     void work(const Cycle& cycle) {
@@ -74,6 +78,8 @@ template <const auto& map> struct Client {
         connected.write(session_->connected());
         outages.write(static_cast<std::int64_t>(session_->counters().outages));
         outages_survived.write(static_cast<std::int64_t>(session_->counters().outages_survived));
+        no_numbers.write(static_cast<std::int64_t>(session_->counters().no_numbers));
+        out_of_range.write(static_cast<std::int64_t>(session_->counters().saturated));
         tell_trouble();
         if (was_stopped_ && session_->connected()) {
             was_stopped_ = false;
@@ -99,7 +105,7 @@ template <const auto& map> struct Client {
     [[nodiscard]] Counters counters() const noexcept { return session_->counters(); }
 
     static constexpr auto interface() {
-        std::array<Facet, count + 6> list{};
+        std::array<Facet, count + 8> list{};
         std::size_t n = 0;
         for (std::size_t v = 0; v < count; ++v) {
             const bool sent = is_written(v);
@@ -124,6 +130,13 @@ template <const auto& map> struct Client {
         list[n++] = output<&Client::connected>("connected", "", "the server answers", while_stopped(false));
         list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");
         list[n++] = output<&Client::outages_survived>("outages_survived", "", "times it came back");
+        list[n++] = output<&Client::no_numbers>(
+            "no_numbers", "",
+            "registers that were read and are no number, since start; their outputs grow stale");
+        list[n++] = output<&Client::out_of_range>("out_of_range", "",
+                                                  "values to write that their register does not hold, since "
+                                                  "start: its nearest end is written, or, of what is "
+                                                  "no number, nothing");
         list[n++] = output<&Client::reason>(
             "reason", "", "why it is lost, or which row it refuses, and the cure; written on change");
         list[n++] = event<&Client::lost>("lost", "the server does not answer");

@@ -1,6 +1,8 @@
 // One value in a Modbus server's tables: which words or bit it takes, and what they mean.
 #pragma once
 
+#include "kernel/base/number.hpp"
+
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -139,7 +141,7 @@ struct Encoded {
 
 constexpr Encoded to_words(const Register& r, double physical) noexcept {
     const double number = (physical - r.offset) / r.factor;
-    if (number != number) return {.refused = true};
+    if (!is_number(number)) return {.refused = true};
     double low = 0, high = 1;
     switch (r.kind) {
     case Kind::bit: break;

@@ -13,6 +13,7 @@ enum class Quality : std::uint8_t {
     never, ///< nothing was read yet
     good,
     exception, ///< the server refuses this row; the value is the last good one
+    no_number, ///< the server's answer is none; the value is the last good one
 };
 
 struct Value {
@@ -33,7 +34,8 @@ struct Counters {
     std::uint64_t outages = 0;          ///< times the server was lost
     std::uint64_t outages_survived = 0; ///< and answered again
     std::uint64_t dropped_stale = 0;    ///< values to write that grew too old before they could be sent
-    std::uint64_t saturated = 0;
+    std::uint64_t saturated = 0;        ///< values to write that their register does not hold
+    std::uint64_t no_numbers = 0;       ///< registers that were read
     bool operator==(const Counters&) const = default;
 };
 
@@ -112,6 +114,7 @@ public:
         TAPPET_CONTRACT(v < V, Contract::index_out_of_range, v, V);
         const std::size_t r = map_->row_of[v];
         const Encoded encoded = to_words(map_->registers[v], physical);
+        if (encoded.refused) ++count_.saturated;
         if (encoded.refused || !map_->rows[r].write) return false;
         if (encoded.saturated) ++count_.saturated;
         if (values_[v].stamp == Time::min() || words_[v] != encoded.words)
@@ -222,7 +225,12 @@ private:
         for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
             const Register& one = map_->registers[v];
             for (unsigned i = 0; i < one.width(); ++i) words_[v][i] = buffer_[one.at + i];
-            values_[v] = {to_physical(one, words_[v]), stamp, Quality::good, 0};
+            if (const double value = to_physical(one, words_[v]); is_number(value)) {
+                values_[v] = {value, stamp, Quality::good, 0};
+            } else {
+                values_[v].quality = Quality::no_number;
+                ++count_.no_numbers;
+            }
         }
     }
     void answered() noexcept {

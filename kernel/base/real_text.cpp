@@ -95,13 +95,6 @@ std::size_t count_digits(std::string_view text) noexcept {
     return n;
 }
 
-bool equals_word(std::string_view text, std::string_view word) noexcept {
-    if (text.size() != word.size()) return false;
-    for (std::size_t i = 0; i < text.size(); ++i)
-        if ((text[i] | 0x20) != word[i]) return false;
-    return true;
-}
-
 /// What stands before the exponent, without zeros at its beginning, and the exponent that makes it whole.
 struct Written {
     static constexpr std::size_t most = 800; // more never decide how a double is rounded
@@ -156,22 +149,16 @@ RealTextFault read(std::string_view text, Real& into) noexcept {
     const bool negative = text.starts_with('-');
     const std::string_view size = text.substr(negative ? 1 : 0);
     Real value = 0;
-    if (equals_word(size, "inf") || equals_word(size, "infinity")) {
-        value = static_cast<Real>(INFINITY);
-    } else if (equals_word(size, "nan")) {
-        value = static_cast<Real>(NAN);
-    } else {
-        Written written;
-        if (!take_apart(size, written)) return RealTextFault::not_a_number;
-        if (written.count != 0) {
-            const double_conversion::Vector<const char> digits{written.digits.data(),
-                                                               static_cast<int>(written.count)};
-            if constexpr (sizeof(Real) == sizeof(double))
-                value = double_conversion::Strtod(digits, written.exponent);
-            else
-                value = double_conversion::Strtof(digits, written.exponent);
-            if (!std::isfinite(value) || value == 0) return RealTextFault::out_of_range;
-        }
+    Written written;
+    if (!take_apart(size, written)) return RealTextFault::not_a_number;
+    if (written.count != 0) {
+        const double_conversion::Vector<const char> digits{written.digits.data(),
+                                                           static_cast<int>(written.count)};
+        if constexpr (sizeof(Real) == sizeof(double))
+            value = double_conversion::Strtod(digits, written.exponent);
+        else
+            value = double_conversion::Strtof(digits, written.exponent);
+        if (!std::isfinite(value) || value == 0) return RealTextFault::out_of_range;
     }
     into = negative ? -value : value;
     return RealTextFault::none;

@@ -20,9 +20,9 @@ std::size_t write_rounded(char* into, double value, int digits) noexcept;
 
 enum class RealTextFault : unsigned char { none, not_a_number, out_of_range };
 
-/// Reads "-12", "0.5", ".5", "2e-3", "inf", "nan", the whole of it; no spaces, no plus sign. Correctly
-/// rounded. A number too large, or too small to differ from zero, is out of range and leaves `into` alone. No
-/// heap.
+/// Reads "-12", "0.5", ".5", "2e-3", the whole of it; no spaces, no plus sign; "inf" and "nan" are no
+/// numbers. Correctly rounded. A number too large, or too small to differ from zero, is out of range. A fault
+/// leaves `into` alone. No heap.
 RealTextFault read_real_text(std::string_view text, double& into) noexcept;
 RealTextFault read_real_text(std::string_view text, float& into) noexcept;
 

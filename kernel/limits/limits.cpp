@@ -2,6 +2,7 @@
 #include "kernel/limits/limits.hpp"
 
 #include "kernel/base/decimal.hpp"
+#include "kernel/base/number.hpp"
 
 #include <cstring>
 #include <new>
@@ -33,14 +34,21 @@ Conversion conversion_of(const TypeTag& type) noexcept {
     return is_signed ? conversion<std::int32_t> : conversion<std::uint32_t>;
 }
 
-/// The nearest value to `wanted` that a row allows. What is no number is none that is allowed.
+/// What goes out in the place of what is no number.
+double without_number(const LimitRow& row, const Limited& port) noexcept TAPPET_REALTIME {
+    if (port.has_last) return port.last;
+    if (row.is_rate) return 0.0;
+    return is_number(row.low) ? row.low : is_number(row.high) ? row.high : 0.0;
+}
+
+/// The nearest value to `wanted` that a row allows: always a number.
 double allowed(const LimitRow& row, const Limited& port, double wanted, Time stamp) noexcept TAPPET_REALTIME {
     if (!row.is_rate) {
-        if (wanted >= row.low && wanted <= row.high) return wanted;
         if (wanted > row.high) return row.high;
-        return wanted < row.low || !port.has_last ? row.low : port.last;
+        if (wanted < row.low) return row.low;
+        return is_number(wanted) ? wanted : without_number(row, port);
     }
-    if (!port.has_last) return wanted;
+    if (!port.has_last) return is_number(wanted) ? wanted : without_number(row, port);
     const double step =
         row.per_second * static_cast<double>(std::max(stamp - port.at, Duration{}).count()) * 1e-9;
     if (std::abs(wanted - port.last) <= step) return wanted;
@@ -52,7 +60,8 @@ void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
     auto& port = static_cast<Limited&>(self);
     double number = port.convert.read(value);
     // What a component leaves behind when it stops is safe, whatever the rows say of its values at work.
-    if (port.machine->life().state_of(port.component) != ComponentState::running) {
+    const ComponentState state = port.machine->life().state_of(port.component);
+    if (state != ComponentState::running && state != ComponentState::starting) {
         port.has_last = false;
         return;
     }
@@ -67,13 +76,13 @@ void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
         if (good == number) continue;
         port.count_of(i).fetch_add(1, std::memory_order_relaxed);
         if (row.on_breach == OnBreach::stop) port.machine->ask_section_stop(port.section, i, port.engine);
-        if (row.on_breach == OnBreach::count) continue;
+        if (row.on_breach == OnBreach::count && is_number(number)) continue;
         number = good;
         changed = true;
     }
     port.last = number;
     port.at = stamp;
-    port.has_last = number == number;
+    port.has_last = is_number(number);
     if (changed) port.convert.write(value, number);
 }
 

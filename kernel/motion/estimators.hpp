@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <expected>
@@ -55,6 +56,8 @@ public:
             return;
         }
         const double h = to_seconds(at - at_);
+        // Not by h alone: the noise of a value that comes at almost the time of the last one is no speed.
+        usual_s_ = samples_ < 2 ? h : std::max(h, usual_s_ / 2.0);
         if (samples_ == 0) {
             value_ = value;
         } else if (samples_ == 1) { // two values have no more to say
@@ -63,10 +66,14 @@ public:
         } else {
             const double expected = value_ + velocity_ * h;
             value_ = expected + gains_.alpha * (value - expected);
-            velocity_ += gains_.beta * (value - expected) / h;
+            velocity_ += gains_.beta * (value - expected) / usual_s_;
         }
         at_ = at;
         if (samples_ < 2) ++samples_;
+        if (is_number(value_) && is_number(velocity_)) return;
+        velocity_ = 0.0; // begins anew
+        value_ = value;
+        samples_ = 1;
     }
     /// Both of them know nothing before the second sample.
     [[nodiscard]] constexpr bool good() const noexcept TAPPET_REALTIME { return samples_ == 2; }
@@ -85,6 +92,7 @@ private:
     AlphaBetaGains gains_;
     double value_ = 0.0;
     double velocity_ = 0.0;
+    double usual_s_ = 0.0; ///< from sample to sample
     Time at_{};
     int samples_ = 0;
     std::uint32_t refused_ = 0;

@@ -13,7 +13,8 @@
 namespace tappet::motion {
 
 /// First order, 1 / (1 + T s), by the backward difference: for any step that is not negative. The first value
-/// is taken as it is; what is no number is left out. T of nought or less is no filter. Real-time.
+/// is taken as it is; what is no number is left out. A sum that becomes none begins anew with the value. T of
+/// nought or less is no filter. Real-time.
 class LowPass {
 public:
     explicit constexpr LowPass(Duration time_constant) noexcept : constant_s_{to_seconds(time_constant)} {}
@@ -21,6 +22,7 @@ public:
         if (!is_number(value)) return value_;
         const double h = to_seconds(step);
         value_ = !known_ || !(constant_s_ > 0.0) ? value : value_ + (value - value_) * h / (constant_s_ + h);
+        if (!is_number(value_)) value_ = value;
         known_ = true;
         return value_;
     }
@@ -33,7 +35,8 @@ private:
 };
 
 /// (1 + T1 s) / (1 + T2 s), by Tustin's rule: T1 above T2 leads, below it lags. The first value is taken as
-/// one that has been there for long; what is no number is left out. Real-time.
+/// one that has been there for long; what is no number is left out, and a sum that becomes none begins anew.
+/// Real-time.
 class LeadLag {
 public:
     /// Contract: `lag` is positive, `lead` is not negative.
@@ -49,6 +52,7 @@ public:
         const double h = to_seconds(step);
         value_ = ((2.0 * lead_s_ + h) * value + (h - 2.0 * lead_s_) * before_ - (h - 2.0 * lag_s_) * value_) /
                  (2.0 * lag_s_ + h);
+        if (!is_number(value_)) value_ = value;
         before_ = value;
         return value_;
     }
@@ -64,7 +68,7 @@ private:
 
 /// Second order at a fixed sampling period, by Tustin's rule with the corner where it is wanted (transposed
 /// direct form II). The first value is taken as one that has been there for long; what is no number is left
-/// out.
+/// out, and behind a sum that becomes none the next value begins anew.
 class Biquad {
 public:
     /// -3 dB at the corner with the usual damping of sqrt(1/2) (Butterworth).
@@ -100,10 +104,11 @@ public:
             second_ = (b2_ - a2_) * value;
             first_ = (b1_ - a1_) * value + second_;
         }
-        known_ = true;
         value_ = b0_ * value + first_;
         first_ = b1_ * value - a1_ * value_ + second_;
         second_ = b2_ * value - a2_ * value_;
+        if (!is_number(value_)) value_ = value;
+        known_ = is_number(first_) && is_number(second_);
         return value_;
     }
     constexpr void reset() noexcept TAPPET_REALTIME { known_ = false; }

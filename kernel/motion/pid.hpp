@@ -54,7 +54,8 @@ public:
     explicit constexpr Pid(const PidGains& gains) noexcept TAPPET_REALTIME { tune(gains); }
 
     /// One step of the loop: what to put out, with what is known beforehand added. What is no number leaves
-    /// everything as it was and counts, as does a step that is not positive. Real-time.
+    /// everything as it was and counts, as does a step that is not positive. Between two limits nothing moves
+    /// the integral or the derivative by more than their distance in one step. Real-time.
     constexpr double operator()(double set_point, double measured, Duration step,
                                 double feed_forward = 0.0) noexcept TAPPET_REALTIME {
         const double h = to_seconds(step);
@@ -65,14 +66,19 @@ public:
         const double error = beyond_dead_band(set_point - measured);
         derive(set_point, measured, h);
         const double wanted = proportional(set_point, measured) + integral_ + derivative_ + feed_forward;
+        if (!is_number(wanted)) { // of numbers that are no more when they are added
+            reset();
+            return output_ = std::clamp(0.0, gains_.lowest, gains_.highest);
+        }
         output_ = std::clamp(wanted, gains_.lowest, gains_.highest);
-        const double grows = gains_.integral * error * h;
-        const double cut = output_ - wanted;
+        const double grows = within_span(gains_.integral * error * h);
+        const double cut = within_span(output_ - wanted);
+        const bool is_far = cut != output_ - wanted, winds_up = cut * grows < 0.0;
         step_s_ = h;
         if (gains_.tracking_s > 0.0)
-            integral_ += grows + cut * share();
-        else if (!(cut * grows < 0.0))
-            integral_ += grows;
+            add((is_far && winds_up ? 0.0 : grows) + cut * share());
+        else if (!winds_up)
+            add(grows);
         return output_;
     }
     /// What the actuator did with the last output, when limits behind this one cut it. Needs tracking_s.
@@ -81,7 +87,7 @@ public:
         if (!is_number(actual))
             ++refused_;
         else if (gains_.tracking_s > 0.0)
-            integral_ += (actual - output_) * share();
+            add(within_span(actual - output_) * share());
     }
     /// Somebody else drives, with `actual`: the next step goes on from there without a bump. Real-time.
     constexpr void track(double set_point, double measured, double actual, double feed_forward = 0.0) noexcept
@@ -120,6 +126,14 @@ private:
         TAPPET_REALTIME {
         return gains_.proportional * beyond_dead_band(gains_.set_point_weight * set_point - measured);
     }
+    /// What is no number is nothing.
+    [[nodiscard]] constexpr double within_span(double value) const noexcept TAPPET_REALTIME {
+        const double span = gains_.highest - gains_.lowest;
+        return value != value ? 0.0 : std::clamp(value, -span, span);
+    }
+    constexpr void add(double to_integral) noexcept TAPPET_REALTIME {
+        if (const double sum = integral_ + to_integral; is_number(sum)) integral_ = sum;
+    }
     [[nodiscard]] constexpr double share() const noexcept TAPPET_REALTIME {
         return std::min(1.0, step_s_ / gains_.tracking_s);
     }
@@ -128,7 +142,7 @@ private:
         const double now = gains_.derivative_weight * set_point - measured;
         const double filter = gains_.derivative_filter_s;
         const double moved = has_seen_ ? now - seen_ : 0.0;
-        derivative_ = (filter * derivative_ + gains_.derivative * moved) / (filter + h);
+        derivative_ = within_span((filter * derivative_ + gains_.derivative * moved) / (filter + h));
         seen_ = now;
         has_seen_ = true;
     }

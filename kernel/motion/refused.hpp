@@ -1,6 +1,7 @@
 // Why something of this room could not be computed: an error of operation, as a value.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/text.hpp"
 
@@ -58,6 +59,6 @@ inline Sentence describe(const Refused& refused) noexcept {
     return Sentence{"element ", refused.element, ": ", to_text(refused.why)};
 }
 
-constexpr bool is_number(double value) noexcept TAPPET_REALTIME { return value - value == 0.0; }
+using tappet::is_number;
 
 } // namespace tappet::motion

@@ -1,6 +1,7 @@
 // The integral over time of a value that is sampled: litres from litres a second.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 
@@ -15,14 +16,14 @@ public:
     constexpr Integrator(double low, double high) noexcept : low_{low}, high_{high} {}
 
     /// A value a second that was true at `at`. The first one, one that is no number and one that is older
-    /// than the last one begin anew and add nothing.
+    /// than the last one begin anew and add nothing; nor does what would make the sum no number.
     constexpr double operator()(double per_s, Time at) noexcept TAPPET_REALTIME {
-        const bool is_number = per_s - per_s == 0.0;
-        if (known_ && is_number && at > at_) {
-            value_ += 0.5 * (per_s + before_) * to_seconds(at - at_);
-            value_ = value_ < low_ ? low_ : value_ > high_ ? high_ : value_;
+        const bool is_good = is_number(per_s);
+        if (known_ && is_good && at > at_) {
+            const double sum = value_ + (0.5 * per_s + 0.5 * before_) * to_seconds(at - at_);
+            if (is_number(sum)) value_ = sum < low_ ? low_ : sum > high_ ? high_ : sum;
         }
-        known_ = is_number;
+        known_ = is_good;
         before_ = per_s;
         at_ = at;
         return value_;

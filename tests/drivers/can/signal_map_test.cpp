@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace tappet::can {
@@ -106,6 +107,39 @@ TEST(Signals, apply_the_sign_before_factor_and_offset) {
     const Signal s = signal("t", 0, 8).as_signed().times(0.5).plus(10);
     EXPECT_EQ(to_physical(s, 0xFF), 9.5);
     EXPECT_EQ(to_raw(s, 9.5).bits, 0xFFu);
+}
+
+TEST(Signals, that_are_whole_take_their_nearest_end_and_only_bits_are_cut) {
+    const Signal number = signal("speed", 16, 16).as_signed().in("rpm"), natural = signal("n", 0, 16),
+                 bits = signal("word", 0, 16).as_bits(), wide = signal("w", 0, 64),
+                 wide_signed = wide.as_signed();
+    constexpr auto least = std::numeric_limits<std::int64_t>::min(),
+                   most = std::numeric_limits<std::int64_t>::max();
+    const struct {
+        const Signal& of;
+        std::int64_t value;
+        std::uint64_t bits;
+        bool saturated;
+    } cases[] = {{number, 40000, 0x7FFF, true},
+                 {number, -40000, 0x8000, true},
+                 {number, -1, 0xFFFF, false},
+                 {natural, -1, 0, true},
+                 {natural, 65535, 65535, false},
+                 {natural, 65536, 65535, true},
+                 {bits, -1, 0xFFFF, false},
+                 {bits, 0x1F0F0, 0xF0F0, false},
+                 {wide, most, 0x7FFF'FFFF'FFFF'FFFF, false},
+                 {wide, -1, 0, true},
+                 {wide_signed, least, 0x8000'0000'0000'0000, false},
+                 {wide_signed, -1, ~std::uint64_t{0}, false}};
+    for (const auto& each : cases) {
+        const Raw raw = to_raw_integer(each.of, each.value);
+        EXPECT_EQ(raw.bits, each.bits) << each.of.name << " " << each.value;
+        EXPECT_EQ(raw.saturated, each.saturated) << each.of.name << " " << each.value;
+    }
+    for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+        for (const Signal& of : {natural, signal("f", 0, 32).as_float(), signal("d", 0, 64).as_float()})
+            EXPECT_TRUE(to_raw(of, none).refused);
 }
 
 TEST(Signals, carry_floats) {

@@ -143,6 +143,20 @@ TEST_F(CanBus, holds_a_stale_frame_back_and_resumes_on_its_grid) {
     EXPECT_EQ(resumed->stamp, Time{62ms});
 }
 
+TEST_F(CanBus, writes_no_signal_that_is_no_number) {
+    const auto& force = bus->physical_out[signals.signals.size() - 1];
+    run_until(10ms);
+    send(0x182, 4, {0x00, 0x00, 0x20, 0x40});
+    run_until(20ms);
+    EXPECT_EQ(force.last(), 2.5);
+    send(0x182, 4, {0x00, 0x00, 0xc0, 0x7f});
+    run_until(30ms);
+    send(0x182, 4, {0x00, 0x00, 0x80, 0xff}); // less than any number
+    run_until(40ms);
+    EXPECT_EQ(force.last(), 2.5) << "and it grows stale";
+    EXPECT_EQ(bus->no_numbers.last(), 2);
+}
+
 TEST_F(CanBus, sends_nothing_in_place_of_a_value_that_is_no_number) {
     run_until(20ms);
     master->rpm = std::numeric_limits<double>::quiet_NaN();

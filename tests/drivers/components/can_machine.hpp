@@ -28,7 +28,9 @@ inline constexpr auto signals =
                         .safe_by_silence(),
                     can::transmit(can::standard(0x080), "sync", can::bytes(1), can::on_demand(10ms),
                                   can::signal("count", 0, 8))
-                        .safe_by_silence());
+                        .safe_by_silence(),
+                    can::receive(can::standard(0x182), "cell", can::bytes(4), can::every(2ms),
+                                 can::signal("force", 0, 32).as_float().in("N")));
 
 /// Does in each cycle what the test has set.
 struct Master {
@@ -147,9 +149,10 @@ inline constexpr auto can_machine = machine("can-machine",
 struct CanMachine : testing::Test {
     static constexpr std::array machine_sends{can::standard(0x201), can::standard(0x000),
                                               can::standard(0x080)};
-    static constexpr std::array machine_hears{can::standard(0x181),
+    static constexpr std::array machine_hears{can::standard(0x181), can::standard(0x182),
                                               can::standard(0x555)}; // one more than its map
-    static constexpr std::array far_end_sends{can::standard(0x181), can::standard(0x555)};
+    static constexpr std::array far_end_sends{can::standard(0x181), can::standard(0x182),
+                                              can::standard(0x555)};
     static constexpr Duration tick = 50us;
 
     CanMachine() {

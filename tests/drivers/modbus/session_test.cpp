@@ -54,6 +54,32 @@ TEST_F(ModbusSession, knows_what_is_wrong_and_that_a_lost_server_is_worse_than_a
     EXPECT_EQ(session.trouble(), Trouble{});
 }
 
+TEST(ModbusSessionOfRealNumbers, keeps_the_last_good_value_in_place_of_what_is_no_number) {
+    static constexpr auto meter =
+        register_map(read("meter", input_registers(0, 2), every(100ms), float_word("flow", 0)));
+    Twin server{300ms};
+    Session<1, 1> session{meter, server};
+    Time now{};
+    const auto run = [&](Duration time) {
+        for (const Time end = now + time; now < end;) now = session.step(now);
+    };
+    server.set(Table::input_registers, 0, 0x4020);
+    run(1s);
+    EXPECT_EQ(session.value(0).value, 2.5);
+    const Time good = session.value(0).stamp;
+    for (const unsigned word : {0x7FC0u, 0x7F80u, 0xFF80u}) {
+        server.set(Table::input_registers, 0, static_cast<std::uint16_t>(word));
+        run(1s);
+        EXPECT_EQ(session.value(0).value, 2.5);
+        EXPECT_EQ(session.value(0).quality, Quality::no_number);
+    }
+    EXPECT_LT(session.value(0).stamp - good, 200ms) << "it grows old";
+    EXPECT_GT(session.counters().no_numbers, 20u);
+    server.set(Table::input_registers, 0, 0x4020);
+    run(1s);
+    EXPECT_EQ(session.value(0).quality, Quality::good);
+}
+
 TEST_F(ModbusSession, polls_its_rows_at_their_periods) {
     EXPECT_EQ(session.value(temperature).quality, Quality::never);
     run_until(Time{10s});

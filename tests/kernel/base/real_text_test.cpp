@@ -79,8 +79,9 @@ TEST(RealText, TheLayoutIsThatOfTheStandardLibrary) {
 
 TEST(RealText, WhatIsNoNumberIsSaidSo) {
     double value = 7;
-    for (const char* text : {"", "-", ".", "e5", "1e", "1e+", "+1", " 1", "1 ", "1.2.3", "0x10", "1,5", "1f",
-                             "--1", "nanx", "in"})
+    for (const char* text :
+         {"",    "-",  ".",   "e5",   "1e", "1e+", "+1",  " 1",  "1 ",   "1.2.3",    "0x10",
+          "1,5", "1f", "--1", "nanx", "in", "nan", "NaN", "inf", "-inf", "-Infinity"})
         EXPECT_EQ(read_real_text(text, value), RealTextFault::not_a_number) << text;
     for (const char* text : {"1e400", "-1e400", "1e-400", "1e999999999999999999"})
         EXPECT_EQ(read_real_text(text, value), RealTextFault::out_of_range) << text;
@@ -95,18 +96,8 @@ TEST(RealText, EachSpellingOfANumberIsTaken) {
     const struct {
         const char* text;
         double value;
-    } cases[] = {{"12", 12},
-                 {"-12", -12},
-                 {".5", 0.5},
-                 {"5.", 5},
-                 {"2e3", 2000},
-                 {"2E-3", 2e-3},
-                 {"2e+3", 2e3},
-                 {"0e999", 0},
-                 {"007", 7},
-                 {"inf", INFINITY},
-                 {"-Infinity", -INFINITY},
-                 {"0.1", 0.1}};
+    } cases[] = {{"12", 12},     {"-12", -12},  {".5", 0.5},  {"5.", 5},  {"2e3", 2000},
+                 {"2E-3", 2e-3}, {"2e+3", 2e3}, {"0e999", 0}, {"007", 7}, {"0.1", 0.1}};
     for (const auto& each : cases) {
         double value = 1;
         ASSERT_EQ(read_real_text(each.text, value), RealTextFault::none) << each.text;
@@ -124,8 +115,6 @@ TEST(RealText, EachSpellingOfANumberIsTaken) {
     sevens += "e-1999";
     ASSERT_EQ(read_real_text(sevens, value), RealTextFault::none);
     EXPECT_EQ(value, 7.777777777777778);
-    ASSERT_EQ(read_real_text("NaN", value), RealTextFault::none);
-    EXPECT_TRUE(std::isnan(value));
 }
 
 } // namespace

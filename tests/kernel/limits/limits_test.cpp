@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace tappet {
 namespace {
@@ -18,12 +19,16 @@ using testing::HasSubstr;
 /// Writes what the test wants, each millisecond.
 struct Source {
     double speed_wanted = 0.0;
+    bool writes_at_start = false;
     std::int32_t place_wanted = 0;
     Output<double> speed;
     Output<std::int32_t> place;
     Output<std::int64_t> turns;
     Output<bool> on;
     BufferOutput<double> samples;
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        if (writes_at_start) speed.write(speed_wanted);
+    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         speed.write(speed_wanted);
         place.write(place_wanted);
@@ -119,6 +124,44 @@ TEST(Limits, hold_the_last_value_in_place_of_what_is_no_number) {
     EXPECT_TRUE(rig.run(5ms));
     EXPECT_EQ(rig.sink->speed_seen, 12.0);
     EXPECT_EQ(rig.breaches(0), 5u);
+}
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr auto half_open = machine_with(limits(limit("source.speed", -infinite, 40.0)));
+constexpr auto open_rate = machine_with(limits(rate("source.speed", 500.0)));
+constexpr auto counted_only = machine_with(limits(limit("source.speed", -10.0, 40.0, count_on_breach)));
+
+template <const auto& table>
+void expect_numbers_only(double later) {
+    for (const double first : {std::nan(""), infinite, -infinite, 1.0}) {
+        Rig<table> rig;
+        rig.source->speed_wanted = first;
+        EXPECT_TRUE(rig.world.start().empty());
+        for (const double wanted : {first, infinite, std::nan(""), -infinite}) {
+            rig.source->speed_wanted = wanted;
+            EXPECT_TRUE(rig.run(4ms));
+            EXPECT_TRUE(std::isfinite(rig.sink->speed_seen)) << first << " then " << wanted;
+        }
+        rig.source->speed_wanted = later;
+        EXPECT_TRUE(rig.run(10s));
+        EXPECT_EQ(rig.sink->speed_seen, later) << first;
+    }
+}
+
+TEST(Limits, let_nothing_out_that_is_no_number_whichever_ends_they_have) {
+    expect_numbers_only<clamped>(10.0);
+    expect_numbers_only<half_open>(10.0);
+    expect_numbers_only<open_rate>(10.0);
+    expect_numbers_only<counted_only>(10.0);
+}
+
+TEST(Limits, hold_for_what_a_start_writes) {
+    Rig<clamped> rig;
+    rig.source->writes_at_start = true;
+    rig.source->speed_wanted = 999.0;
+    EXPECT_TRUE(rig.world.start().empty());
+    EXPECT_EQ(rig.source->speed.last(), 40.0);
+    EXPECT_EQ(rig.breaches(0), 1u);
 }
 
 TEST(Limits, of_a_rate_lead_a_whole_number_to_its_end_by_and_by) {
