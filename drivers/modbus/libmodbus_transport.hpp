@@ -3,6 +3,7 @@
 
 #include "drivers/modbus/transport.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/base/time.hpp"
 
 #include <expected>
 #include <memory>
@@ -33,6 +34,10 @@ struct TransportSettings {
     Duration answer_within = 300ms;
 };
 
+/// On a serial line nothing in an answer tells which question it belongs to. So each request waits for the
+/// silence of 3.5 characters (Modbus over serial line V1.02, 2.5.1.1), and after an answer that did not come,
+/// or was garbled, for once more the time that it had; what arrives meanwhile is thrown away. A server that
+/// answers later still, twice as late as `answer_within`, is not told apart.
 class LibmodbusTransport final : public Transport {
 public:
     LibmodbusTransport() = default;
@@ -52,11 +57,17 @@ public:
     Answer write(Table table, std::uint16_t address, std::span<const std::uint16_t> values) noexcept override;
 
 private:
+    /// Before each request.
+    void settle() noexcept;
+    Answer end(int result, int expected, int error, Time began) noexcept;
     struct Free {
         void operator()(_modbus* context) const noexcept;
     };
     std::unique_ptr<_modbus, Free> context_{};
     Duration answer_within_{};
+    Duration limit_{};   ///< of a call, at most answer_within_
+    Duration silence_{}; ///< of 3.5 characters; none: no serial line
+    Time quiet_until_{};
     bool is_serial_ = false;
     bool connected_ = false;
 };

@@ -29,6 +29,7 @@ enum class Manner {
     late, ///< the answer waits until the test calls let_go()
     close,
     wrong_checksum,
+    stray,  ///< a byte of noise before the answer
     drip,   ///< half of the answer, and no more
     dribble ///< all of it, a byte every 50 ms
 };
@@ -103,6 +104,7 @@ public:
         const unsigned before = answered_;
         let_go_ = true;
         while (answered_ == before) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        let_go_ = false;
     }
     std::atomic<Manner> manner{Manner::right};
 
@@ -182,6 +184,7 @@ private:
         }
         while (how == Manner::late && !let_go_ && !stop_)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        if (how == Manner::stray) answer.insert(answer.begin(), 0x55);
         if (how == Manner::drip) answer.resize(answer.size() / 2);
         const std::size_t at_once = how == Manner::dribble ? 1 : answer.size();
         for (std::size_t i = 0; i < answer.size() && !stop_ && put(answer.data() + i, at_once); i += at_once)
