@@ -65,6 +65,7 @@ public:
     }
 
     Faults faults{};
+    void restart() { cycle_ = 0; } ///< it counts its exposures anew
 
     static constexpr Duration exposed_every = 20ms, least_latency = 60ms, jitter = 4ms;
 

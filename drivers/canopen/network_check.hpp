@@ -207,6 +207,9 @@ constexpr Sentence parameter_fault(const NodeRow& node, const ParameterRow& row)
     return {};
 }
 
+/// Object 1016h, by which a node waits for three and a half heartbeats of the manager, has 16 bits of ms.
+inline constexpr std::int64_t most_beats_ms = 65535 * 2 / 7;
+
 constexpr Sentence node_fault(const ManagerRow& manager, const NodeRow& node) noexcept {
     const Sentence subject = who(node);
     if (node.id == 0 || node.id > most_nodes)
@@ -251,6 +254,10 @@ constexpr Sentence network_fault(const can::SignalMap<F, S>& signals, const Netw
     const ManagerRow& manager = map.manager;
     if (manager.id == 0 || manager.id > most_nodes)
         return Sentence{"manager(", unsigned{manager.id}, "): its identifier is from 1 to 127; give it one"};
+    if (manager.beats < Duration{} || manager.beats % 1ms != Duration{} ||
+        manager.beats / 1ms > most_beats_ms)
+        return Sentence{"manager: its heartbeat is a count of ms up to ", most_beats_ms,
+                        ", since its nodes wait for three and a half of them; shorten it"};
     if (manager.sync_overflow == 1 || manager.sync_overflow > 240)
         return Sentence{"manager: SYNC counts to ", unsigned{manager.sync_overflow},
                         "; the standard allows 2 to 240"};

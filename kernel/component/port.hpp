@@ -20,6 +20,14 @@ namespace tappet {
 /// What reading an input tells about the value.
 enum class Flow : std::uint8_t { never_written, old, fresh, stale };
 
+/// Whoever reads may be in the middle of a long cycle, and what was written since has a later time than the
+/// cycle's. What lies further ahead is the time of no clock of this machine, and would stay fresh for as
+/// long.
+inline constexpr Duration ahead_at_most = 1s;
+constexpr bool is_older(Duration age, Duration most) noexcept TAPPET_REALTIME {
+    return age > most || age < -ahead_at_most;
+}
+
 /// What a stale value means for the reader: keep it, use the row's substitute, or stop the machine.
 enum class WhenStale : std::uint8_t { hold, substitute, stop };
 
@@ -281,7 +289,7 @@ private:
         }
         const std::uint64_t generation = local_ != nullptr ? local_->generation_ : cached_generation_;
         if (generation == 0) return Flow::never_written;
-        if (max_age_ > Duration::zero() && *now_ - stamp() > max_age_) return Flow::stale;
+        if (max_age_ > Duration::zero() && is_older(*now_ - stamp(), max_age_)) return Flow::stale;
         if (generation == seen_) return Flow::old;
         seen_ = generation;
         return Flow::fresh;

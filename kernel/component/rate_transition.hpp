@@ -14,7 +14,8 @@ enum class RateTransition : std::uint8_t {
     unsaid,      ///< as hold
     hold,        ///< the last value: steps, without delay
     interpolate, ///< a line to the last value, in one period of the writer: no steps, late by that period
-    extrapolate  ///< the line through the last two, for one period: neither, and beyond what was written
+    extrapolate  ///< the line on from the last two, for one period and by no more than their distance:
+                 ///< neither, and beyond what was written
 };
 
 /// Of one floating input. Real-time, in its activity.
@@ -40,7 +41,11 @@ private:
             slope_ = (written - from_) / seconds;
             began_ = now;
         } else {
-            slope_ = is_first_ || stamp <= began_ ? 0.0 : (written - from_) / to_seconds(stamp - began_);
+            // Not by the distance of two stamps that lie closer than a period: what is measured twice at
+            // almost one time would lead anywhere.
+            slope_ = is_first_ || stamp <= began_
+                         ? 0.0
+                         : (written - from_) / to_seconds(std::max(stamp - began_, period_));
             from_ = written;
             began_ = stamp;
         }

@@ -13,8 +13,9 @@ namespace tappet {
 /// activity only. Real-time.
 class Timer {
 public:
-    /// Once, at `when`; a time that is past fires at the engine's next look. Arming again moves it. One that
-    /// no engine serves would never fire: that breaks a contract.
+    /// Once, at `when`; a time that is past fires at the engine's next look. Arming again moves it. Whoever
+    /// goes on in its firing takes Cycle::after(). One that no engine serves would never fire: that breaks a
+    /// contract.
     void arm(Time when) noexcept TAPPET_REALTIME {
         TAPPET_CONTRACT(is_served_, Contract::timer_unserved, to_ns(when), running_activity());
         when_ = when;

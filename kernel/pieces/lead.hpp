@@ -2,25 +2,34 @@
 // to be driven so that it acts at a place. For a shaft's angles there is kernel/cam.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 
+#include <algorithm>
+
 namespace tappet {
 
-/// Straight on from the last two samples, and no further than `farthest` from the last one. Real-time.
+/// Straight on from the last two samples, and no further than `farthest` from the last one. Samples that lie
+/// much closer than those before them count as one: what their noise says over so short a time is no speed.
+/// Real-time.
 class Lead {
 public:
     constexpr explicit Lead(Duration farthest) noexcept : farthest_{farthest} {}
 
     /// A value that was true at `at`. One that is no number, or older than the last one, begins anew.
     constexpr void sample(double value, Time at) noexcept TAPPET_REALTIME {
-        const bool is_number = value - value == 0.0;
-        if (samples_ > 0 && is_number && at > at_) {
-            per_s_ = (value - value_) / to_seconds(at - at_);
-            samples_ = 2;
-        } else if (samples_ == 0 || !is_number || at < at_) {
-            samples_ = is_number ? 1 : 0;
+        const bool is_good = is_number(value);
+        if (samples_ > 0 && is_good && at > at_) {
+            const Duration apart = at - at_;
+            if (2 * apart >= usual_) from_ = value_, from_at_ = at_;
+            usual_ = std::max(apart, usual_ / 2);
+            per_s_ = (value - from_) / to_seconds(at - from_at_);
+            samples_ = is_number(per_s_) ? 2 : 1;
+        } else if (samples_ == 0 || !is_good || at < at_) {
+            samples_ = is_good ? 1 : 0;
             per_s_ = 0.0;
+            usual_ = {};
         }
         value_ = value;
         at_ = at;
@@ -49,6 +58,9 @@ private:
     Duration farthest_;
     double value_ = 0.0, per_s_ = 0.0;
     Time at_{};
+    double from_ = 0.0; ///< where the line begins, and when
+    Time from_at_{};
+    Duration usual_{}; ///< from sample to sample
     int samples_ = 0;
 };
 

@@ -12,7 +12,8 @@ namespace two_robots {
 
 /// Packets that are lost leave a gap, those that come after a later one are left out; both are counted. The
 /// camera exposes evenly, so that the packets which came soonest tell when all were: one that was held up on
-/// its way was not exposed later. Real-time.
+/// its way was not exposed later. A camera that restarts counts anew: it is believed when several packets in
+/// turn are late by all that is known. Real-time.
 struct LedCamera {
     static constexpr std::string_view device_kind = "udp";
     static constexpr udp::Longest device_map{led_packet::most};
@@ -58,7 +59,9 @@ struct LedCamera {
 
 private:
     static constexpr int most_in_a_step = 4;
-    static constexpr Duration drift = 5us; ///< in a period: so much slower than ours its clock may go
+    static constexpr int held_up = 10;        ///< periods that a packet may be held up on its way
+    static constexpr int restarted_after = 8; ///< late packets, one after the other in their order
+    static constexpr Duration drift = 5us;    ///< in a period: so much slower than ours its clock may go
 
     void take(std::span<const std::byte> packet, Time now) noexcept TAPPET_REALTIME {
         Leds seen;
@@ -69,10 +72,17 @@ private:
         const auto ahead = static_cast<std::int16_t>(seen.cycle - cycle_);
         if (has_seen_ && ahead <= 0) {
             late.write(late.last() + 1);
+            // Those that only come late are never so many in their order.
+            late_in_order_ = seen.cycle == static_cast<std::uint16_t>(late_ + 1) ? late_in_order_ + 1 : 0;
+            late_ = seen.cycle;
+            if (late_in_order_ == restarted_after) has_seen_ = false;
             return;
         }
+        late_in_order_ = 0;
         if (has_seen_ && ahead > 1) lost.write(lost.last() + ahead - 1);
-        even_ = has_seen_ ? std::min(even_ + ahead * (period.get() + drift), now) : now;
+        even_ = has_seen_
+                    ? std::clamp(even_ + ahead * (period.get() + drift), now - held_up * period.get(), now)
+                    : now;
         cycle_ = seen.cycle;
         has_seen_ = true;
         received.write(received.last() + 1);
@@ -83,6 +93,8 @@ private:
     std::uint16_t cycle_ = 0;
     Time even_{}; ///< when the last one came, had it not been held up
     bool has_seen_ = false;
+    std::uint16_t late_ = 0; ///< the last one that came late
+    int late_in_order_ = 0;
 };
 
 } // namespace two_robots

@@ -38,7 +38,8 @@ void BehaviourSlot::obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME 
     self.asked_.store(false, std::memory_order_release);
 }
 
-/// An angle is passed upwards once a turn: from below it to it or beyond it.
+/// An angle is passed upwards once a turn: from below it to it or beyond it, by less than half a turn in one
+/// step. One that goes back passes nothing.
 bool BehaviourSlot::is_due() noexcept TAPPET_REALTIME {
     switch (moment_.kind) {
     case SlotMoment::Kind::now: return true;
@@ -48,7 +49,7 @@ bool BehaviourSlot::is_due() noexcept TAPPET_REALTIME {
     // From the wanted angle on, 0 to 360: a value that is smaller than the last one came round.
     double beyond = place_.angle->last() - moment_.angle_deg;
     beyond -= full_turn_deg * std::floor(beyond / full_turn_deg);
-    const bool passed = last_angle_ >= 0 && beyond < last_angle_;
+    const bool passed = last_angle_ - beyond > full_turn_deg / 2;
     last_angle_ = beyond;
     return passed;
 }

@@ -115,6 +115,8 @@ public:
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
     void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
 
+    /// Rises with each place(): what was found in it before holds no longer.
+    [[nodiscard]] std::uint32_t placed() const noexcept TAPPET_REALTIME { return placed_; }
     /// Steps that left statements over, since place().
     [[nodiscard]] std::uint64_t steps_left_over() const noexcept TAPPET_REALTIME { return left_over_; }
     /// What failed last: instance, program and line. Not real-time.
@@ -134,6 +136,7 @@ private:
     std::size_t driven_ = 0;
     std::span<UnitPart> parts_{};
     std::uint64_t left_over_ = 0;
+    std::uint32_t placed_ = 0;
     Time stepped_at_{};
     struct {
         InstanceIndex instance = no_instance;

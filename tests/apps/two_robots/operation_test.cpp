@@ -193,6 +193,20 @@ TEST_P(Operation, knows_where_the_body_is) {
     EXPECT_GT(camera.invalid.last() + camera.late.last(), 0);
 }
 
+TEST_P(Operation, believes_a_camera_that_restarts_soon_and_its_times_at_once) {
+    ASSERT_TRUE(comes_to("Operating")) << state();
+    plant.camera.restart();
+    run.run_for(1s);
+    const auto& camera = of<LedCamera>("camera");
+    const std::int64_t late = camera.late.last();
+    run.run_for(2s);
+    EXPECT_LE(camera.late.last() - late, 4) << "some are held up on their way, as before";
+    for (int i = 0; i < 100; ++i) {
+        run.run_for(20ms);
+        EXPECT_LT((of<BodyEstimator>("body").model.last().frame.position - plant.now().body).norm(), 0.5e-3);
+    }
+}
+
 TEST_P(Operation, goes_on_while_one_led_is_hidden) {
     ASSERT_TRUE(comes_to("Operating")) << state();
     plant.camera.faults.hidden_led = static_cast<int>(GetParam() % 6);

@@ -128,6 +128,15 @@ template <class Frame> std::string of_frame(const Frame& frame, const NodeRow& r
     return fault_of(can::signal_map(frame), boss, row);
 }
 
+TEST(NetworkTable, refuses_a_heartbeat_of_the_manager_that_no_node_can_wait_for) {
+    for (const Duration beats : {Duration{20s}, Duration{18725ms}, Duration{1500us}, Duration{-1ms}})
+        EXPECT_EQ(
+            fault_of(map, manager(127).sync(10ms).heartbeat(beats), node(5, "drive", drive).heartbeat(100ms)),
+            "manager: its heartbeat is a count of ms up to 18724, since its nodes wait for three and a half "
+            "of "
+            "them; shorten it");
+}
+
 TEST(NetworkTable, refuses_nodes_that_are_not_told_apart_or_not_watched) {
     EXPECT_EQ(of_row(node(0, "drive", drive)),
               "node 0 \"drive\" has no identifier from 1 to 127; give it one");

@@ -73,6 +73,21 @@ TEST_F(ExecutionEngine, runs_a_timer_between_two_periods_and_no_component_with_i
     EXPECT_EQ(engine.next_wake(), at_ns(0) + period) << "a one-shot timer";
 }
 
+TEST_F(ExecutionEngine, makes_up_for_no_turns_of_a_timer_that_were_missed) {
+    plan.periodic = false;
+    begin();
+    workers[0].rings_every = 300us;
+    workers[0].timer.arm(at_ns(0) + 300us);
+    next_cycle();
+    EXPECT_EQ(engine.next_wake(), at_ns(0) + 600us) << "on its grid";
+    log.lines.clear();
+    clock.advance_to(at_ns(0) + 150ms);
+    const Time late = clock.now();
+    while (engine.next_wake() <= clock.now()) engine.run(false);
+    EXPECT_EQ(log.lines, (Lines{"a rings"}));
+    EXPECT_EQ(engine.next_wake(), late + 300us);
+}
+
 TEST_F(ExecutionEngine, serves_a_message_that_wakes_a_periodic_activity_without_stepping_its_components) {
     begin();
     tell(1);

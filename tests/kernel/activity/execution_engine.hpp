@@ -27,6 +27,7 @@ struct Worker {
     Duration load{};
     Duration reaction_load{};
     Timer timer;
+    Duration rings_every{}; ///< in turns; none: once
     Cycle last{};
     const Engine* observed = nullptr;
     std::vector<std::string> unguarded; ///< what it did while observers took its values for whole
@@ -45,6 +46,7 @@ struct Worker {
     void ring(const Cycle& cycle) noexcept TAPPET_REALTIME {
         last = cycle;
         note("rings");
+        if (rings_every > Duration{}) timer.arm(cycle.after(rings_every));
     }
     void hear() noexcept TAPPET_REALTIME {
         note("hears");

@@ -98,6 +98,16 @@ TEST_P(Ports, hold_a_stale_value_and_say_so) {
     EXPECT_EQ(value, 7.0);
 }
 
+TEST_P(Ports, call_a_value_stale_that_is_of_a_far_future) {
+    link.port.set_policy(&link.input, {.max_age = 4ms});
+    link.output.write(7.0, at_ns(0) + 900ms);
+    EXPECT_EQ(link.input.read(value), Flow::fresh) << "a cycle of the reader may be a long one";
+    link.output.write(8.0, at_ns(0) + 1h);
+    EXPECT_EQ(link.input.read(value), Flow::stale);
+    link.output.write(9.0, never);
+    EXPECT_EQ(link.input.read(value), Flow::stale);
+}
+
 RowValue number(double value) { return {.given = true, .number = value}; }
 
 TEST_P(Ports, give_the_substitute_for_a_stale_or_a_never_written_value) {

@@ -42,6 +42,16 @@ TEST(RateTransitions, extrapolate_without_delay) {
     }
 }
 
+TEST(RateTransitions, of_two_values_of_almost_one_time_lead_no_further_than_from_one_to_the_other) {
+    BetweenValues between{RateTransition::extrapolate, 4ms};
+    const Time second = at_ns(0) + 4ms, third = second + 10us;
+    static_cast<void>(between.at(at_ns(0), true, 10.0, at_ns(0)));
+    EXPECT_NEAR(between.at(second, true, 10.0, second), 10.0, 1e-12);
+    EXPECT_NEAR(between.at(third, true, 10.5, third), 10.5, 1e-12);
+    for (Duration later{}; later < 20ms; later += 1ms)
+        EXPECT_LE(between.at(third + later, false, 10.5, third), 11.0);
+}
+
 TEST(RateTransitions, begin_anew_when_nobody_read_for_a_while) {
     for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
         Reader reader{how};

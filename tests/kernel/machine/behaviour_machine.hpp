@@ -27,6 +27,7 @@ struct Oven {
     std::vector<std::int64_t> told{};
     std::uint64_t steps = 0;
     double from_deg = 0;
+    bool trembles = false; ///< about where it is, and does not turn
     os::Clock* clock = nullptr;
 
     Sentence configure(Setup& setup) {
@@ -35,7 +36,9 @@ struct Oven {
     }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         ++steps;
-        angle_deg.write(from_deg + static_cast<double>(steps % 36 * 10));
+        const double goes =
+            trembles ? static_cast<double>(steps % 2) * 0.01 : static_cast<double>(steps % 36 * 10);
+        angle_deg.write(from_deg + goes);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { angle_deg.write(0); }
     /// False for what no oven does.

@@ -75,6 +75,19 @@ TEST(Lead, says_where_something_will_be_and_when_to_drive_an_actuator) {
     EXPECT_FALSE(belt.good(at(111ms)));
 }
 
+TEST(Lead, takes_no_speed_from_two_samples_at_almost_one_time) {
+    Lead belt{100ms};
+    for (int i = 0; i < 5; ++i) {
+        belt.sample(i, at(i * 10ms));
+        belt.sample(i + 0.01, at(i * 10ms + 1us)); // measured twice, with some noise
+        if (i > 0) {
+            EXPECT_NEAR(belt.at(at(i * 10ms + 20ms)), i + 2.0, 0.05) << i;
+        }
+    }
+    for (int i = 0; i < 20; ++i) belt.sample(5.0 + 0.5 * i, at(50ms + i * 1ms));
+    EXPECT_NEAR(belt.per_s(), 500.0, 1e-6) << "samples that come faster from now on are believed soon";
+}
+
 TEST(Lead, begins_anew_after_what_is_no_number_or_older) {
     Lead belt{100ms};
     belt.sample(0.0, at(0ms));

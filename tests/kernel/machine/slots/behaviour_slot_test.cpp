@@ -164,6 +164,18 @@ TEST_F(BehaviourSlotTest, it_takes_over_when_its_angle_is_passed_upwards) {
     }
 }
 
+TEST_F(BehaviourSlotTest, it_does_not_take_over_while_the_angle_trembles_somewhere_else) {
+    oven().trembles = true;
+    oven().from_deg = 70.0;
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(numbered(2), "180"), "");
+    run(50ms);
+    EXPECT_EQ(slot.phase(), SlotPhase::waiting);
+    oven().from_deg = 190.0;
+    run(2ms);
+    EXPECT_NE(slot.phase(), SlotPhase::waiting);
+}
+
 TEST_F(BehaviourSlotTest, an_angle_of_any_size_takes_no_longer_to_look_at) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2), "85"), "");
@@ -184,7 +196,7 @@ TEST_F(BehaviourSlotTest, a_moment_that_is_none_is_refused_with_the_nearest) {
                 HasSubstr("did you mean \"door.moved\"?"));
     EXPECT_THAT(std::string{slot.parse_moment("360", moment).view()}, HasSubstr("between 0 and 360"));
     EXPECT_THAT(std::string{slot.parse_moment("-1", moment).view()}, HasSubstr("between 0 and 360"));
-    EXPECT_THAT(std::string{slot.parse_moment("nan", moment).view()}, HasSubstr("between 0 and 360"));
+    EXPECT_THAT(std::string{slot.parse_moment("nan", moment).view()}, HasSubstr("has no event \"nan\""));
 }
 
 TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for) {
