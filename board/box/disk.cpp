@@ -3,6 +3,7 @@
 #include "board/box/disk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -114,6 +115,45 @@ init::Done make_anew(const std::string& device, const std::function<void()>& mea
     return done ? init::Done{} : init::failed("write " + device);
 }
 
+/// Of ext4, by its layout: a magic number, and a sum where the file system carries sums.
+enum class Head : std::uint8_t { none, whole, unreadable };
+
+std::uint32_t crc32c(const std::uint8_t* bytes, std::size_t count) {
+    std::uint32_t rest = ~std::uint32_t{0};
+    for (std::size_t i = 0; i < count; ++i) {
+        rest ^= bytes[i];
+        for (int bit = 0; bit < 8; ++bit) rest = (rest & 1) != 0 ? rest >> 1 ^ 0x82F63B78u : rest >> 1;
+    }
+    return rest;
+}
+
+Head look_at_head(int disk, off_t at) {
+    constexpr std::size_t magic = 0x38, features = 0x64, sum = 0x3FC;
+    constexpr std::uint32_t has_sums = 0x400;
+    std::array<std::uint8_t, 1024> head{};
+    if (::pread(disk, head.data(), head.size(), at) != static_cast<ssize_t>(head.size()))
+        return Head::unreadable;
+    const auto word = [&](std::size_t place) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, head.data() + place, sizeof value);
+        return value;
+    };
+    if ((word(magic) & 0xFFFF) != 0xEF53) return Head::none;
+    return (word(features) & has_sums) == 0 || word(sum) == crc32c(head.data(), sum) ? Head::whole
+                                                                                     : Head::none;
+}
+
+/// e2fsck says with one code that there is no file system, that the disk cannot be read and that it had no
+/// memory. Only the first is a reason to make one: neither head is one, and both can be read.
+bool has_no_file_system(const std::string& device) {
+    constexpr off_t first = 1024, second = 8193 * 1024;
+    const int disk = ::open(device.c_str(), O_RDONLY | O_CLOEXEC);
+    if (disk < 0) return false;
+    const bool none = look_at_head(disk, first) == Head::none && look_at_head(disk, second) == Head::none;
+    ::close(disk);
+    return none;
+}
+
 bool mount_it(const std::string& device, const std::string& folder) {
     init::make_folder(folder);
     return ::mount(device.c_str(), folder.c_str(), "ext4", MS_NOSUID | MS_NODEV | MS_NOEXEC | MS_NOATIME,
@@ -125,7 +165,8 @@ bool mount_it(const std::string& device, const std::string& folder) {
 std::expected<std::string, std::string> mount_data(const std::string& device, const std::string& folder,
                                                    const std::function<void()>& meanwhile) {
     constexpr int mended = 1;     // above: what only a guess would mend
-    constexpr int not_begun = 16; // from here on it has judged nothing
+    constexpr int failed = 8;     // from here on it could not do its work
+    constexpr int not_begun = 16; // and from here on it has judged nothing
     Checked checked = check(device, {}, meanwhile);
     bool is_mounted = checked.code <= mended && mount_it(device, folder);
     // A power cut may tear the head, of which the sum is then wrong; and of one that calls itself clean it
@@ -139,6 +180,10 @@ std::expected<std::string, std::string> mount_data(const std::string& device, co
         return checked.code == mended ? "the data partition is mended: " + checked.said : std::string{};
     if (checked.code <= mended) return init::failed("mount " + device + " at " + folder);
     if (checked.code >= not_begun) return std::unexpected("e2fsck does not run: " + checked.said);
+    if (checked.code >= failed && !has_no_file_system(device))
+        return std::unexpected(
+            device + " has a file system that could not be checked; look at the disk: e2fsck said \"" +
+            checked.said + "\"");
     if (const auto made = make_anew(device, meanwhile); !made)
         return std::unexpected(device + " is damaged, and takes no new file system: " + made.error());
     if (!mount_it(device, folder)) return init::failed("mount " + device + " at " + folder);

@@ -91,6 +91,16 @@ private:
     int socket_;
 };
 
+/// Of what was offered before; 0: nothing was.
+std::uint32_t waiting_version() {
+    std::string header(update_header_bytes, '\0');
+    std::FILE* const file = std::fopen(offered_update, "rb");
+    if (file == nullptr) return 0;
+    header.resize(std::fread(header.data(), 1, header.size(), file));
+    std::fclose(file);
+    return claimed_bytes(header) == 0 ? 0 : manifest_of(header).version;
+}
+
 /// What is offered appears whole, or not at all; the next one replaces it.
 bool keep(const char* name, std::string_view bytes) {
     const std::string part = std::string{name} + ".part";
@@ -112,8 +122,12 @@ std::string take_update(Client& client, const ServiceFacts& facts) {
     if (claimed == 0) return "refused\nit is no update; send the update.tap beside an image\n";
     if (claimed > most_update_bytes) return "refused\nit says that it has more bytes than a slot\n";
     // Before all of it is sent.
-    if (const std::string why = refusal_of(manifest_of(bytes), facts.own); !why.empty())
-        return "refused\n" + why + "\n";
+    const Manifest offered = manifest_of(bytes);
+    if (const std::string why = refusal_of(offered, facts.own); !why.empty()) return "refused\n" + why + "\n";
+    // Older ones are signed, too: somebody could keep a newer one from ever being taken.
+    if (const auto waiting = waiting_version(); offered.version < waiting)
+        return "refused\nit is version " + std::to_string(offered.version) + ", and version " +
+               std::to_string(waiting) + " waits for the power button\n";
     bytes += client.read(claimed - bytes.size(), until);
     const auto update = decode(bytes, *facts.key);
     if (!update) return "refused\n" + update.error() + "\n";

@@ -100,6 +100,7 @@ bool CanReplay::read_line() {
         if (text_.ends_with('\r')) text_.pop_back();
     } while (text_.empty());
     const auto read = can::candump::read(text_);
+    if (!read && file_.eof()) return counts_.is_cut = true, false;
     if (!read) return refuse(read.error().column, read.error().what);
     read_ = *read;
     if (interface_.empty()) {
@@ -195,6 +196,7 @@ Sentence CanReplay::report() const {
         told.add(c.played).add(" frames of ").add(path_).add(" replayed");
     else
         told.add(path_).add(" replayed up to its line ").add(line_);
+    if (c.is_cut) told.add("; its last line is cut off, and left out");
     told.add("; left out ")
         .add(c.unknown)
         .add(" of other identifiers, ")

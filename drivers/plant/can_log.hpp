@@ -57,6 +57,7 @@ public:
         Time first_different = never;           ///< when the machine sent it
         /// The machine has not sent them; nor does the log have these of the identifiers that it has.
         std::uint64_t only_in_log = 0, only_sent = 0;
+        bool is_cut = false; ///< its last line has no end: whoever wrote it was ended there
     };
     [[nodiscard]] Counts counts() const;
     /// The counts, for people.

@@ -46,47 +46,61 @@ constexpr Sentence find_value(const MachineView& m, std::string_view path, End& 
                     "\""};
 }
 
-/// The steps of the Controller's period by which a row makes a value late.
-constexpr std::size_t steps_late(const MachineView& m, const TableIndexView& r, std::size_t x,
-                                 Duration period) {
+/// Steps of the Controller's period, and how many of them come and go from step to step.
+struct Delay {
+    std::size_t steps = 0, varying = 0;
+};
+
+constexpr std::size_t in_steps_of(Duration period, Duration late) {
+    return static_cast<std::size_t>((late + period - 1ns) / period);
+}
+
+/// By how much a row makes a value late. What was written in another activity is as old as that activity's
+/// period and response just before the next value comes; what is written for one waits for its next cycle.
+constexpr Delay delay_of(const MachineView& m, const TableIndexView& r, std::size_t x, bool along,
+                         Duration period) {
     const ConnectionRow& row = m.connections[x];
     const std::size_t from = r.activity[r.connections[x].from.component];
     const std::size_t into = r.activity[r.connections[x].to.component];
-    Duration late = row.delayed_step ? m.activities[into].period : Duration::zero();
-    if (from != into) late += m.activities[into].period; // it waits for the reader's next cycle
-    if (row.transition == RateTransition::interpolate) late += m.activities[from].period;
-    return static_cast<std::size_t>((late + period - 1ns) / period);
+    Duration always = row.delayed_step ? m.activities[into].period : Duration::zero();
+    if (row.transition == RateTransition::interpolate) always += m.activities[from].period;
+    Duration varying{};
+    if (from != into)
+        varying = m.activities[along ? into : from].period + Duration{r.worst_response_ns[from]};
+    return {in_steps_of(period, always + varying), in_steps_of(period, varying)};
 }
 
 /// Of all ways from a Controller against the flow to Sensors, or along it to Effectors, of any level: the
 /// most steps by which rows make values late.
-constexpr std::size_t most_delayed(const MachineView& m, const TableIndexView& r, const Seats& seats,
-                                   std::size_t component, bool along, Duration period,
-                                   std::size_t depth = 0) {
-    if (depth > 8) return 0;
+constexpr Delay most_delayed(const MachineView& m, const TableIndexView& r, const Seats& seats,
+                             std::size_t component, bool along, Duration period, std::size_t depth = 0) {
+    if (depth > 8) return {};
     const RowsByComponent& rows = along ? r.connections_from : r.connections_into;
-    std::size_t most = 0;
+    Delay most;
     for (std::size_t x = rows.first[component]; x != nowhere; x = rows.next[x]) {
         const Link& link = r.connections[x];
         const DataPath* path = path_between(seats, link.from.component, link.to.component);
         // What was sent, set points and the model of outputs close other loops.
         if (path == nullptr || path->of_last_step || (!along && path->from == ControlRole::generator))
             continue;
-        std::size_t steps = steps_late(m, r, x, period);
-        if (path->to != ControlRole::effector && path->from != ControlRole::sensor)
-            steps += most_delayed(m, r, seats, along ? link.to.component : link.from.component, along, period,
-                                  depth + 1);
-        most = std::max(most, steps);
+        Delay late = delay_of(m, r, x, along, period);
+        if (path->to != ControlRole::effector && path->from != ControlRole::sensor) {
+            const Delay beyond = most_delayed(m, r, seats, along ? link.to.component : link.from.component,
+                                              along, period, depth + 1);
+            late = {late.steps + beyond.steps, late.varying + beyond.varying};
+        }
+        most = {std::max(most.steps, late.steps), std::max(most.varying, late.varying)};
     }
     return most;
 }
 
 /// The dead time in steps beyond the one that sampling takes: rows that delay, and what the wires take.
-constexpr std::size_t dead_samples(const LoopRow& row, const MachineView& m, const TableIndexView& r,
-                                   const Seats& seats, std::size_t component, Duration period) {
-    return most_delayed(m, r, seats, component, false, period) +
-           most_delayed(m, r, seats, component, true, period) +
-           static_cast<std::size_t>((row.transport + period - 1ns) / period);
+constexpr Delay dead_samples(const LoopRow& row, const MachineView& m, const TableIndexView& r,
+                             const Seats& seats, std::size_t component, Duration period) {
+    const Delay before = most_delayed(m, r, seats, component, false, period);
+    const Delay behind = most_delayed(m, r, seats, component, true, period);
+    return {before.steps + behind.steps + in_steps_of(period, row.transport),
+            before.varying + behind.varying};
 }
 
 constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const TableIndexView& r,
@@ -119,7 +133,7 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
             row, "its gains, stiffness and transport are to be positive; a loop that feeds back with the "
                  "other sign turns it round in the Sensor");
     const ActivityRow& activity = m.activities[r.activity[component]];
-    const std::size_t dead = dead_samples(row, m, r, seats, component, activity.period);
+    const auto [dead, varying] = dead_samples(row, m, r, seats, component, activity.period);
     if (dead > max_dead_samples)
         return of_loop(row, "its transport is more than ", max_dead_samples, " periods; sample more slowly");
     // A step that begins late by all of its response makes one period so much longer.
@@ -127,17 +141,20 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
         std::max<std::int64_t>(0, r.worst_response_ns[r.activity[component]] - activity.budget_each.count())};
     const double period = to_seconds(activity.period), longest = to_seconds(activity.period + jitter);
     const auto with = [&](double seconds) {
-        return SampledLoop{gain * row.factor * seconds, integral * row.factor * seconds * seconds, dead};
+        return SampledLoop{gain * row.factor * seconds, integral * row.factor * seconds * seconds, dead,
+                           varying};
     };
     const auto say = [&](double bound, std::string_view what, std::string_view otherwise) {
         return of_loop(row, "gain times period is ", in_digits(with(longest).proportional),
                        jitter == Duration::zero() ? "" : " in the longest period", ", and ", what, " with ",
-                       dead, dead == 1 ? " step" : " steps", " of delay is ", in_digits(bound), "; set ",
+                       dead, dead == 1 ? " step" : " steps",
+                       varying != 0 ? " of varying delay is " : " of delay is ", in_digits(bound), "; set ",
                        row.gain, " below ", in_digits(bound / (row.factor * longest)), otherwise);
     };
+    const double bound = varying != 0 ? most_stable_at_any_delay(dead) : most_stable(dead);
     if (!is_stable(with(longest)) || !is_stable(with(period))) {
-        if (with(longest).proportional >= most_stable(dead))
-            return say(most_stable(dead), "the most that is stable", ", or shorten the delay");
+        if (with(longest).proportional >= bound)
+            return say(bound, "the most that is stable", ", or shorten the delay");
         return of_loop(row, "it is not stable with an integral gain of ", in_digits(integral), "; set ",
                        row.integral, " lower");
     }
@@ -151,14 +168,15 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     // A properties file, a script and people set them within their ranges while the machine runs.
     for (const double kp : {by_hand.low, by_hand.high})
         for (const double ki : {integral_by_hand.low, integral_by_hand.high}) {
-            const SampledLoop extreme{kp * row.factor * longest, ki * row.factor * longest * longest, dead};
+            const SampledLoop extreme{kp * row.factor * longest, ki * row.factor * longest * longest, dead,
+                                      varying};
             if ((kp == 0.0 && ki == 0.0) || (kp > 0.0 && is_stable(extreme))) continue;
             return of_loop(row, "people may set ", row.gain, kp < infinity ? " to " : " to anything",
                            kp < infinity ? in_digits(kp) : Sentence{}, row.integral.empty() ? "" : " beside ",
                            row.integral.empty() ? Sentence{} : Sentence{in_digits(ki), " of ", row.integral},
                            " while it runs, which is not stable; give ",
                            row.integral.empty() ? "it a range" : "both a range", " of gains that are, below ",
-                           in_digits(most_stable(dead) / (row.factor * longest)));
+                           in_digits(bound / (row.factor * longest)));
         }
     return {};
 }

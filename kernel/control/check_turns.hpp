@@ -184,6 +184,26 @@ constexpr Sentence check_shared_inputs(const ExclusiveRow& row, const MachineVie
     return {};
 }
 
+/// What is tracked is what one of the Controller's own outputs would have been, in the same unit: rows see to
+/// it that the Effector's unit is that of the input.
+constexpr Sentence check_tracked_unit(const Seat& seat, const ControlView& c, const ComponentRow& own,
+                                      std::size_t facet) {
+    const Facet& tracked = own.type->facets[facet];
+    if (tracked.unit.empty()) return {};
+    const Facet* other = nullptr;
+    for (const Facet& each : own.type->facets) {
+        if (each.kind != FacetKind::output || each.type != tracked.type) continue;
+        if (each.unit.empty() || each.unit == tracked.unit) return {};
+        const checks::Unit a = checks::parse_unit(tracked.unit), b = checks::parse_unit(each.unit);
+        if (checks::converts(a, b) && a.same(b)) return {};
+        other = &each;
+    }
+    if (other == nullptr) return {};
+    return of_level(c.levels[seat.level], "\"", own.name, ".", tracked.name, "\" tracks in ", tracked.unit,
+                    ", and \"", own.name, ".", other->name, "\" writes in ", other->unit,
+                    "; give both the unit of what is sent");
+}
+
 /// A Controller that takes over begins with what the Effector sent last. Of Estimators that take turns each
 /// tells of the same world: what they write is no reason to begin anew.
 constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const MachineView& m,
@@ -218,7 +238,7 @@ constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const 
         if (r.connections[x].to.facet != facet) continue;
         for (const Seat& each : seats)
             if (each.component == r.connections[x].from.component && each.role == ControlRole::effector)
-                return {};
+                return check_tracked_unit(seat, c, own, facet);
     }
     return of_level(
         c.levels[seat.level], "what \"", own.name, ".", seat.tracked,

@@ -15,13 +15,59 @@ inline constexpr std::size_t max_dead_samples = 32;
 struct SampledLoop {
     double proportional = 0.0;
     double integral = 0.0;
-    std::size_t dead_samples = 0;
+    std::size_t dead_samples = 0;    ///< at most
+    std::size_t varying_samples = 0; ///< of them: these come and go, in any order
 };
 
+namespace stability_detail {
+
+struct Complex {
+    double re = 0.0, im = 0.0;
+    friend constexpr Complex operator*(Complex a, Complex b) noexcept {
+        return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+    }
+    friend constexpr Complex operator+(Complex a, Complex b) noexcept { return {a.re + b.re, a.im + b.im}; }
+    friend constexpr Complex operator*(double a, Complex b) noexcept { return {a * b.re, a * b.im}; }
+    [[nodiscard]] constexpr double square() const noexcept { return re * re + im * im; }
+};
+
+/// With an integral: whatever the delay does between d and d + N samples, |T(z)| N |z - 1| < 1 on the unit
+/// circle keeps the loop stable, where T is the closed loop at d (Kao and Lincoln, Simple stability criteria
+/// for systems with time-varying delays, Automatica 40, 2004).
+constexpr bool is_stable_at_any_delay(const SampledLoop& loop) noexcept {
+    constexpr Complex turn{0.99998117528260111, 0.0061358846491544753}; // a 512th of half a circle
+    const auto most = static_cast<double>(loop.varying_samples);
+    Complex z{1.0, 0.0};
+    for (int i = 0; i < 512; ++i) {
+        z = z * turn;
+        Complex shift{1.0, 0.0};
+        for (std::size_t d = loop.varying_samples; d < loop.dead_samples; ++d) shift = shift * z;
+        const Complex moved = z + Complex{-1.0, 0.0};
+        const Complex acts = loop.proportional * moved + loop.integral * z;
+        const Complex closed = shift * moved * moved + acts;
+        if (acts.square() * most * most * moved.square() >= closed.square()) return false;
+    }
+    return true;
+}
+
+} // namespace stability_detail
+
+/// The largest proportional gain times period that is stable, without an integral, whatever the delay does
+/// between none and so many samples: 2, 0.875, 0.556, .. (Erbe, Xia and Yu 1995).
+constexpr double most_stable_at_any_delay(std::size_t dead_samples) noexcept {
+    const auto n = static_cast<double>(dead_samples + 1);
+    return (1.5 + 0.5 / n) / n;
+}
+
 /// Jury's test of z^d (z-1) + L, and with an integral of z^d (z-1)(z-1) + L (z-1) + Li z: all roots inside
-/// the unit circle.
+/// the unit circle. It proves nothing of a delay that varies, for which there are the two above.
 constexpr bool is_stable(const SampledLoop& loop) noexcept {
     if (loop.dead_samples > max_dead_samples) return false;
+    if (loop.varying_samples != 0 && loop.integral == 0.0 &&
+        !(loop.proportional < most_stable_at_any_delay(loop.dead_samples)))
+        return false;
+    if (loop.varying_samples != 0 && loop.integral != 0.0 && !stability_detail::is_stable_at_any_delay(loop))
+        return false;
     std::array<double, max_dead_samples + 3> a{}; // of z to the power of its place
     const std::size_t d = loop.dead_samples;
     std::size_t degree = d + 1;
@@ -48,7 +94,8 @@ constexpr bool is_stable(const SampledLoop& loop) noexcept {
     return true;
 }
 
-/// The largest proportional gain times period that is stable, without an integral: 2, 1, 0.618, 0.445, ..
+/// The largest proportional gain times period that is stable, without an integral and at this delay: 2, 1,
+/// 0.618, 0.445, ..
 constexpr double most_stable(std::size_t dead_samples) noexcept {
     double low = 0.0, high = 2.0;
     for (int i = 0; i < 40; ++i) {

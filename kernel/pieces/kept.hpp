@@ -39,16 +39,14 @@ private:
     Time last_ = never;
 };
 
-/// Adds up a count that begins anew at each start of the machine: pieces, strokes, stops. Real-time.
+/// Adds up a count that begins anew at each start of who counts: pieces, strokes, stops. What is counted
+/// while this component stands it adds when it runs again. Real-time.
 struct Total {
     Input<std::int64_t> count;
     Output<std::int64_t> sum;
     Property<std::int64_t> total{0};
 
-    void start(const Cycle&) noexcept TAPPET_REALTIME {
-        counted_ = 0;
-        sum.write(total.get());
-    }
+    void start(const Cycle&) noexcept TAPPET_REALTIME { sum.write(total.get()); }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         std::int64_t now = 0;
         if (count.read(now) != Flow::fresh) return;
@@ -67,7 +65,7 @@ struct Total {
     }
 
 private:
-    std::int64_t counted_ = 0;
+    std::int64_t counted_ = 0; ///< not of this start alone: the other may have gone on
 };
 
 } // namespace tappet

@@ -56,7 +56,9 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
                               const BehaviourOptions& options, std::span<std::byte> memory,
                               std::span<const std::string_view> events, MachineInstance& machine,
                               std::size_t driven) {
+    const std::uint32_t placed = placed_ + 1;
     *this = {};
+    placed_ = placed;
     unit_ = unit;
     options_ = options;
     machine_ = &machine;

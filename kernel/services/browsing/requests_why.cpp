@@ -15,7 +15,7 @@ constexpr std::size_t shown_characters = 64;
 /// In the engine that runs the behaviour.
 void ask_guards(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     auto& order = *static_cast<WhyOrder*>(self);
-    if (order.slot != nullptr && order.slot->active() != order.unit) return;
+    if (!order.holds()) return;
     StateMachineExecution& machine = *order.unit->parts()[order.part].machine;
     for (std::size_t i = 0; i < order.transitions.size(); ++i)
         order.looks[i] = machine.look(order.transitions[i], order.engine->now());
@@ -89,6 +89,7 @@ Sentence BrowserService::find_state(std::string_view name, WhyOrder& order) {
             order.wanted = state_named(part.binding.machine, state, nearest);
             if (order.wanted == no_state) continue;
             order.unit = unit;
+            order.placed = unit->placed();
             order.slot = machine_->slot_of_row(b);
             order.row = b;
             order.part = i;
@@ -135,7 +136,7 @@ BrowserService::Verdict BrowserService::why(Client& client, const Request& reque
 bool BrowserService::look_at_why(Pending& place) {
     if (!place.call.is_over()) return false;
     const auto& order = std::get<WhyOrder>(place.work);
-    if (!order.done)
+    if (!order.done || !order.holds())
         return answer_bad(place, Refusal::not_now, Sentence{"another script took over; ask again"});
     Client* client = who_waits(place);
     if (client == nullptr) return true;

@@ -10,6 +10,7 @@ struct WhyOrder {
 
     BehaviourUnit* unit = nullptr;
     BehaviourSlot* slot = nullptr; ///< that holds the unit; null: a row's own
+    std::uint32_t placed = 0;      ///< of the unit: another script in the same memory has other states
     const Engine* engine = nullptr;
     std::size_t row = 0;
     std::size_t part = 0;
@@ -18,6 +19,11 @@ struct WhyOrder {
     Bounded<TransitionIndex, most> transitions{};
     std::array<StateMachineExecution::Look, most> looks{};
     bool done = false;
+
+    /// Whether the unit still holds what was found in it.
+    [[nodiscard]] bool holds() const noexcept TAPPET_REALTIME {
+        return (slot == nullptr || slot->active() == unit) && unit->placed() == placed;
+    }
 };
 
 } // namespace tappet::browsing

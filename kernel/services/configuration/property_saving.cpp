@@ -12,6 +12,7 @@ void PropertySaving::begin(MachineInstance& machine, std::size_t activity, std::
     fault_ = Sentence{};
     busy_ = true;
     asked_ = gave_up_ = false;
+    asked_at_ = machine.clock().now();
 }
 
 bool PropertySaving::step() noexcept {
@@ -26,14 +27,27 @@ bool PropertySaving::step() noexcept {
         else
             write();
         asked_ = false;
+        asked_at_ = machine_->clock().now();
+        ++next_;
+    } else if (next_ < end_ && machine_->clock().now() - asked_at_ > patience) {
+        give_up(); // there was no room to ask
+        asked_at_ = machine_->clock().now();
         ++next_;
     }
-    while (next_ < end_ && !components[next_].has_properties_file) ++next_;
+    while (next_ < end_ && (!components[next_].has_properties_file || !is_reached())) ++next_;
     if (next_ == end_)
         busy_ = false;
     else
         ask(next_);
     return busy_;
+}
+
+/// False: its engine does not come to anything, and this is told.
+bool PropertySaving::is_reached() noexcept {
+    const std::size_t activity = machine_->machine().index.activity[next_];
+    if (is_alive(*machine_, activity)) return true;
+    give_up();
+    return false;
 }
 
 void PropertySaving::ask(std::size_t component) noexcept {
@@ -46,7 +60,7 @@ void PropertySaving::ask(std::size_t component) noexcept {
         copy_.capture();
     else if (!call_.post(*machine_, activity, copy_.capture_message(machine.plan.part_of[component]),
                          Role::engineer))
-        return; // its engine has much to do: again in the next step
+        return; // its engine has much to do: again in the next step, for a while
     asked_at_ = machine_->clock().now();
     asked_ = true;
 }

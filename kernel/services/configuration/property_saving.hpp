@@ -28,6 +28,7 @@ public:
 private:
     void ask(std::size_t component) noexcept;
     void give_up() noexcept;
+    [[nodiscard]] bool is_reached() noexcept;
     void write() noexcept;
 
     MachineInstance* machine_ = nullptr;
@@ -40,7 +41,7 @@ private:
     Sentence fault_{};
     PropertyTransaction copy_{};
     EngineCall call_{}; ///< that copies
-    Time asked_at_{};
+    Time asked_at_{};   ///< or when its turn came
 };
 
 } // namespace tappet

@@ -15,6 +15,17 @@ struct Asking {
     MethodCall<double()> ask;
     static constexpr auto interface() { return facets(calls<&Asking::ask>("ask", "how far")); }
 };
+/// What was sent it takes in another size than it writes.
+struct Misread : Follower {
+    static constexpr auto interface() {
+        return facets(
+            input<&Misread::target>("target", "m", "the next place"),
+            input<&Misread::measured>("measured", "m", "the place"),
+            input<&Misread::sent>("sent", "mm/s", "in the step before"),
+            output<&Misread::velocity>("velocity", "m/s", "wanted"),
+            property<&Misread::kp>("kp", "1/s", "speed for each unit of the error", range(0.0, 999.9)));
+    }
+};
 void answer_by_turns(Table& m, const ExclusiveRow& row) {
     m.add(component<ChainSwitch>("gauge"));
     m.put(activity(
@@ -133,6 +144,12 @@ constexpr Fault turn_faults[] = {
     {"tracks_something_else",
      [](Table& m) { m.control.levels[0].roles[4] = controller("gentle", tracks("measured")); },
      R"(axis: level "axis": what "gentle.measured" tracks does not come from an Effector, which alone knows what was sent; connect it there)"},
+    {"tracks_in_another_unit",
+     [](Table& m) {
+         m.components[6] = component<Misread>("gentle");
+         m.put(data("limiter.sent", "gentle.sent", delayed, converted));
+     },
+     R"(axis: level "axis": "gentle.sent" tracks in mm/s, and "gentle.velocity" writes in m/s; give both the unit of what is sent)"},
 };
 INSTANTIATE_TEST_SUITE_P(control_turns, Refusal, testing::ValuesIn(planted_into(axis, turn_faults)), name_of);
 

@@ -231,6 +231,14 @@ TEST_F(CanLog, waits_no_longer_than_a_microsecond_for_a_machine_that_does_not_as
     EXPECT_TRUE(replay.is_over());
 }
 
+TEST_F(CanLog, leaves_out_a_last_line_that_is_cut_off_and_says_so) {
+    ASSERT_TRUE(open("(1.0) can0 181#01\n(1.001) can0 181#0203\n(1.002) can0 181#0").empty());
+    for (const Duration at : {0us, 1000us, 2000us}) move(Time{at});
+    EXPECT_EQ(arrived(machine).size(), 2u);
+    EXPECT_TRUE(replay.is_over());
+    EXPECT_NE(replay.report().view().find("its last line is cut off, and left out"), std::string_view::npos);
+}
+
 TEST_F(CanLog, refuses_a_file_with_line_column_and_cure) {
     EXPECT_EQ(refusal(""), "a.log: there is no frame in it; name a log of candump -L or -l");
     EXPECT_EQ(refusal("(1.0) can0 181#01\n(1.1) can0 181#1\n"),

@@ -1,10 +1,12 @@
 // Loops: what the compiler says of gain times period times delay agrees with the closed form and with the
 // axis itself; and the contact with a stiff surface behaves as computed.
+#include "kernel/base/random.hpp"
 #include "tests/kernel/control/axis.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace tappet {
@@ -64,6 +66,60 @@ TEST(Loops, overshoot_above_that_bound_and_not_below) {
         EXPECT_LE(simulate({0.999 * most_without_overshoot(d), 0.0, d}).largest, 1.0 + 1e-9) << d;
         EXPECT_GT(simulate({1.2 * most_without_overshoot(d), 0.0, d}).largest, 1.0 + 1e-6) << d;
     }
+}
+
+/// The loop with a delay that is another one in each step, from a pattern or by chance.
+bool diverges(const SampledLoop& loop, Random& random) {
+    std::array<double, 64> seen{};
+    double x = 1.0, sum = 0.0;
+    const std::size_t least = loop.dead_samples - loop.varying_samples;
+    const std::uint64_t pattern = random.next(), length = 2 + random.below(40);
+    const bool by_chance = random.one_in(2);
+    for (std::size_t k = 0; k < 6000; ++k) {
+        seen[k % 64] = x;
+        const std::uint64_t way = by_chance ? random.next() : pattern >> k % length;
+        const std::size_t late =
+            least + (loop.varying_samples == 1 ? way % 2 : way % (loop.varying_samples + 1));
+        const double error = -seen[(k + 64 - std::min(late, k)) % 64];
+        sum += error;
+        x += loop.proportional * error + loop.integral * sum;
+        if (!(std::abs(x) < 1e9)) return true;
+    }
+    return false;
+}
+
+TEST(Loops, are_stable_below_the_bound_whatever_their_delay_does) {
+    Random random{7};
+    for (std::size_t d = 1; d <= 6; ++d)
+        for (int i = 0; i < 200; ++i) {
+            const SampledLoop loop{0.99 * control_detail::most_stable_at_any_delay(d), 0.0, d, d};
+            EXPECT_TRUE(is_stable(loop));
+            EXPECT_FALSE(diverges(loop, random)) << d;
+        }
+    EXPECT_TRUE(is_stable({0.60, 0.0, 2})) << "at a delay that stays";
+    EXPECT_FALSE(is_stable({0.60, 0.0, 2, 1})) << "there is a pattern by which it grows";
+}
+
+TEST(Loops, with_an_integral_that_are_accepted_never_diverge_and_most_that_do_not_are_accepted) {
+    Random random{11};
+    int accepted = 0, refused = 0, refused_well = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const std::size_t d = random.below(5), varying = d == 0 ? 0 : 1 + random.below(d);
+        const double gain = random.unit();
+        const SampledLoop loop{gain, gain * gain * random.unit() * 0.25, d, varying};
+        bool grows = false;
+        for (int k = 0; k < 8 && !grows; ++k) grows = diverges(loop, random);
+        if (is_stable(loop)) {
+            ++accepted;
+            EXPECT_FALSE(grows) << loop.proportional << ' ' << loop.integral << ' ' << d << ' ' << varying;
+        } else {
+            ++refused;
+            refused_well += grows ? 1 : 0;
+        }
+    }
+    std::printf("%d accepted, %d refused, of which %d grew by a delay that was tried\n", accepted, refused,
+                refused_well);
+    EXPECT_GT(accepted, 500);
 }
 
 // ---- the contact: an axis that is moved by the force it lacks meets a surface of 1e5 N/m, 20 N are wanted;

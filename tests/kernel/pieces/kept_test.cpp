@@ -40,13 +40,17 @@ inline constexpr Board board{.name = "host",
 inline constexpr auto table = machine("press",
     components(component<Press>("press"), component<HourMeter>("hours", properties_file("hours.cpf", optional)),
                component<Total>("strokes", properties_file("strokes.cpf", optional)),
+               component<Total>("spare", properties_file("spare.cpf", optional)),
                component<PropertyKeeper>("keeper", set("every", 60s))),
     activities(activity("main", every(10ms), budget(50us), runs("press", "hours", "strokes")),
+               activity("aside", every(10ms), budget(50us), runs("spare")),
                activity("keeper", every(100ms), not_real_time, runs("keeper"))),
     connections(data("press.runs", "hours.runs", stale_after(1s), hold),
-                data("press.strokes", "strokes.count")),
+                data("press.strokes", "strokes.count"), data("press.strokes", "spare.count", stale_after(1s), hold)),
     reactions(), behaviours());
 // clang-format on
+
+constexpr std::size_t aside = 1; ///< the activity
 
 /// One life of the machine, which ends without a word, as by the main switch.
 struct Life {
@@ -98,6 +102,36 @@ TEST_F(Kept, hours_and_totals_go_on_where_the_keeper_last_saved_them) {
     life.part<Press>("press").count = 1;
     life.run(1s);
     EXPECT_EQ(life.part<Total>("strokes").sum.last(), 10) << "a smaller count began anew";
+}
+
+TEST_F(Kept, a_total_that_is_restarted_counts_nothing_twice) {
+    Life life{directory};
+    life.part<Press>("press").count = 10'000;
+    life.run(1s);
+    const std::size_t strokes = find_component(life.instance.machine().table, "strokes");
+    for (const LifeChange change : {LifeChange::stop, LifeChange::start, LifeChange::restart}) {
+        static_cast<void>(life.instance.life().ask_component(strokes, change));
+        life.run(100ms);
+        life.part<Press>("press").count += 5;
+        life.run(100ms);
+    }
+    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 10'015);
+}
+
+TEST_F(Kept, an_activity_that_is_stopped_keeps_no_other_from_being_saved) {
+    Life life{directory};
+    life.part<Press>("press").count = 7;
+    life.run(1s);
+    testing::internal::CaptureStdout();
+    static_cast<void>(life.instance.life().ask_activity(aside, LifeChange::stop));
+    life.run(30min);
+    const std::string said = testing::internal::GetCapturedStdout();
+    EXPECT_NE(said.find("component \"spare\": its properties are not saved"), std::string::npos) << said;
+    EXPECT_TRUE(std::filesystem::exists(directory + "/strokes.cpf"));
+    life.part<Press>("press").count = 8;
+    life.run(61s);
+    Life next{directory};
+    EXPECT_EQ(next.part<Total>("strokes").total.get(), 8);
 }
 
 TEST_F(Kept, time_is_counted_only_while_it_runs) {

@@ -124,6 +124,9 @@ Result<void> stop_recording(const std::string& name) {
     const bool asked = ::fcntl(descriptor, F_GETLK, &lock) == 0;
     ::close(descriptor);
     if (!asked || lock.l_type == F_UNLCK) return wrong("nobody records into '" + name + "'");
+    if (lock.l_pid <=
+        1) // of a lock that belongs to no process: as a number for kill() it would mean all of them
+        return wrong("'" + name + "' is locked by something that is no 'report start'; end that instead");
     if (::kill(lock.l_pid, SIGTERM) != 0)
         return wrong("process " + std::to_string(lock.l_pid) + ", which records into '" + name +
                      "', cannot be asked to end: " + std::strerror(errno));

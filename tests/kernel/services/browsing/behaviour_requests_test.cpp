@@ -133,6 +133,36 @@ TEST_F(Behaviours, one_says_why_it_is_not_in_a_state) {
     EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "down")")) << "asking takes nothing";
 }
 
+TEST_F(Behaviours, why_of_a_script_that_is_replaced_meanwhile_is_not_answered_from_the_new_one) {
+    const std::string large{"StateMachine Pressing {\n"
+                            "    initial state Waiting { transition ram.arrived() select A }\n"
+                            "    state A { transition ram.arrived() select B }\n"
+                            "    state B { transition ram.arrived() select C }\n"
+                            "    state C { transition ram.arrived() select Far }\n"
+                            "    state Far { transition ram.arrived() select Waiting }\n"
+                            "    final state Safe { }\n"
+                            "}\n"};
+    EXPECT_THAT(load(large), HasSubstr("\"ok\": true"));
+    run(5ms);
+    // All in one cycle of the service: asked of the one, and answered when another stands in its memory.
+    for (int round = 0; round < 20; ++round) {
+        ASSERT_TRUE(talker->send("2 why ram.Far"));
+        run(round % 3 == 0 ? 5ms : 0ms);
+        for (const std::string_view next : {script, std::string_view{large}}) {
+            ASSERT_TRUE(talker->send("3 unload ram"));
+            ASSERT_TRUE(talker->send("4 script ram 0 " + in_quotes(next)));
+            ASSERT_TRUE(talker->send("5 load ram pressing.tappet"));
+        }
+        run(60ms);
+        for (std::string one = talker->receive(); !one.empty(); one = talker->receive())
+            if (one.find("\"id\": 2,") != std::string::npos) {
+                EXPECT_THAT(one,
+                            testing::AnyOf(HasSubstr("\"ok\": true"), HasSubstr("another script took over"),
+                                           HasSubstr("has a state")));
+            }
+    }
+}
+
 TEST_F(Behaviours, observers_who_ask_without_end_keep_nobody_of_a_higher_role_waiting) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     instance.engines()[0].stop(clock.now());
