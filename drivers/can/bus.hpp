@@ -24,9 +24,8 @@ namespace tappet::can {
 /// A frame on demand goes out once for each writing; all of its signals are written in one cycle of one
 /// writer, so that no command leaves with the arguments of another. A row that wakes makes it leave at once.
 /// A frame with an input that was never written, is stale by its row, or is no number does not go out: the
-/// receiver's own time-out notices. A signal that arrives and is no number is not written but counted: its
-/// output grows stale. Of a multiplexed frame what its multiplexors select is written, read and
-/// sent; the other signals stay as they are.
+/// receiver's own time-out notices. What arrives and is no number is counted: its output grows stale. Of a
+/// multiplexed frame what its multiplexors select is written, read and sent; the other signals stay.
 ///
 /// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
 /// what is written after it leaves. It looks for that restart every now and then and rests in between.
@@ -44,19 +43,8 @@ struct Bus {
     static constexpr std::string_view device_kind = "can";
     static constexpr Identifiers device_map = AllFrames<map, protocol>::value;
     static constexpr Sentence analyse_traffic(const DeviceUse& use, std::span<TrafficRow> into) {
-        if (protocol.bit_rate != 0 && protocol.bit_rate != use.bit_rate)
-            return Sentence{"it runs at ", use.bit_rate, " bit/s, but what crosses it was proven for ",
-                            protocol.bit_rate, "; correct one of them"};
-        if (protocol.data_bit_rate != 0 && protocol.data_bit_rate != use.data_bit_rate)
-            return Sentence{"its data phase runs at ",
-                            use.data_bit_rate,
-                            " bit/s, but what crosses it was proven for ",
-                            protocol.data_bit_rate,
-                            "; write bit_rate(",
-                            protocol.bit_rate,
-                            ", ",
-                            protocol.data_bit_rate,
-                            ") at the device, or correct the wire"};
+        const ProvenRates proven{protocol.bit_rate, protocol.data_bit_rate};
+        if (const Sentence fault = bit_rate_fault(proven, use); !fault.empty()) return fault;
         return bus_traffic(AllFrames<map, protocol>::traffic, use, into);
     }
     static Duration longest_seen(const void* bus, std::string_view frame) {
@@ -204,13 +192,9 @@ struct Bus {
                  output<&Bus::sent_too_often>(
                      "sent_too_often", "",
                      "frames on demand that followed sooner than the map says; written on change"),
-                 output<&Bus::no_numbers>(
-                     "no_numbers", "",
-                     "signals that arrived and are no number, since its start; written on change"),
+                 output<&Bus::no_numbers>("no_numbers", "", "signals that came and are none, since start"),
                  output<&Bus::out_of_range>("out_of_range", "",
-                                            "values to be sent that their signal does not hold: its nearest "
-                                            "end is sent, or, of what is no "
-                                            "number, nothing; written on change"),
+                                            "values sent as their signal's end, or, of none, held back"),
                  tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
                  tappet::event<&Bus::bus_recovered>("bus_recovered",
                                                     "the bus works again, with empty queues"),
@@ -335,7 +319,7 @@ private:
         wrong_lengths.write(static_cast<std::int64_t>(store_.count.wrong_lengths));
         sent_too_often.write(too_often_);
         no_numbers.write(0);
-        out_of_range.write(static_cast<std::int64_t>(store_.count.refused + store_.count.saturated));
+        out_of_range.write(0);
     }
 
     void tell_state(Time now) noexcept TAPPET_REALTIME {
@@ -343,6 +327,8 @@ private:
         status_ = status_now();
         if (status_.lost != before.lost) frames_lost.write(static_cast<std::int64_t>(status_.lost));
         if (status_.taken != before.taken) frames_received.write(static_cast<std::int64_t>(status_.taken));
+        const auto beyond = static_cast<std::int64_t>(store_.count.refused + store_.count.saturated);
+        if (beyond != out_of_range.last()) out_of_range.write(beyond);
         if (status_.state != before.state) bus_state.write(static_cast<std::int64_t>(status_.state));
         const bool bad = faulted(status_.state);
         if (bad == was_faulted_) return;
@@ -400,12 +386,7 @@ private:
             else
                 store_.set_physical(s, physical_[s]);
         }
-        tell_out_of_range();
         return store_.count.refused == refused;
-    }
-    void tell_out_of_range() noexcept TAPPET_REALTIME {
-        const auto now = static_cast<std::int64_t>(store_.count.refused + store_.count.saturated);
-        if (now != out_of_range.last()) out_of_range.write(now);
     }
 
     void send(std::size_t f, Time now) noexcept TAPPET_REALTIME {

@@ -49,6 +49,27 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
 
 } // namespace detail
 
+/// The rates that something on a bus was proven for; 0: any. Empty: those of the bus.
+struct ProvenRates {
+    std::uint32_t nominal = 0, data = 0;
+};
+constexpr Sentence bit_rate_fault(const ProvenRates& proven, const DeviceUse& use) {
+    if (proven.nominal != 0 && proven.nominal != use.bit_rate)
+        return Sentence{"it runs at ", use.bit_rate, " bit/s, but what crosses it was proven for ",
+                        proven.nominal, "; correct one of them"};
+    if (proven.data != 0 && proven.data != use.data_bit_rate)
+        return Sentence{"its data phase runs at ",
+                        use.data_bit_rate,
+                        " bit/s, but what crosses it was proven for ",
+                        proven.data,
+                        "; write bit_rate(",
+                        proven.nominal,
+                        ", ",
+                        proven.data,
+                        ") at the device, or correct the wire"};
+    return {};
+}
+
 /// Of the frames of a map without a fault, and of what else crosses its bus.
 template <std::size_t F>
 constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const DeviceUse& use,

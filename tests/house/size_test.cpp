@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         627},
     {"kernel/services",       5861},
     {"kernel/system",         2065},
-    {"drivers",               18067},
+    {"drivers",               18074},
     {"board",                 4338},
     {"apps/carpet_loom",      6325},
     {"apps/bearing_press",    763},
