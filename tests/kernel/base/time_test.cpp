@@ -29,7 +29,7 @@ TEST(TimeSums, keep_their_sign_in_a_difference) {
     EXPECT_EQ(never - at_ns(-1), Duration::max());
     EXPECT_EQ(Time::min() - at_ns(1), Duration::min());
     EXPECT_EQ(at_ns(1) - Time::min(), Duration::max());
-    static_assert(never - Time::min() == Duration::max() && never + 1s == never, "at compile time, too");
+    static_assert(never - Time::min() == Duration::max(), "at compile time, too");
 }
 
 } // namespace
