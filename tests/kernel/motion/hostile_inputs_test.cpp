@@ -44,8 +44,12 @@ TEST_P(OneSample, is_forgotten_by_filters_of_second_order) {
     for (Biquad filter : {*Biquad::low_pass(20.0, step), *Biquad::notch(50.0, 20.0, step)}) {
         EXPECT_NEAR(filter(1.0), 1.0, 1e-12);
         EXPECT_TRUE(is_number(filter(GetParam())));
+        Biquad untouched = filter;
+        untouched.reset();
         for (int n = 0; n < 4 * settles; ++n) ASSERT_TRUE(is_number(filter(1.0))) << n;
         EXPECT_NEAR(filter(1.0), 1.0, 1e-9);
+        EXPECT_NEAR(untouched(1.0), 1.0, 1e-9);
+        for (int n = 0; n < 20; ++n) EXPECT_NEAR(filter(2.0), untouched(2.0), 1e-9) << "it filters";
     }
 }
 

@@ -12,19 +12,20 @@ using press::Talker;
 
 /// Much that happens all the time, and something that is rare.
 struct Ticker {
-    Event<> a, b, c, d, e, f;
+    Event<> a, b, c, d, e, f, g, h, i, j;
     Event<std::int64_t> alarm;
     std::int64_t steps = 0;
     void step(const Cycle&) noexcept TAPPET_REALTIME {
-        for (int i = 0; i < 3; ++i)
-            for (Event<>* const each : {&a, &b, &c, &d, &e, &f}) each->emit();
+        for (int n = 0; n < 3; ++n)
+            for (Event<>* const each : {&a, &b, &c, &d, &e, &f, &g, &h, &i, &j}) each->emit();
         if (++steps % 100 == 0) alarm.emit(steps / 100);
     }
     static constexpr auto interface() {
-        return facets(event<&Ticker::a>("a", "ticks"), event<&Ticker::b>("b", "ticks"),
-                      event<&Ticker::c>("c", "ticks"), event<&Ticker::d>("d", "ticks"),
-                      event<&Ticker::e>("e", "ticks"), event<&Ticker::f>("f", "ticks"),
-                      event<&Ticker::alarm>("alarm", "its number"));
+        return facets(
+            event<&Ticker::a>("a", "ticks"), event<&Ticker::b>("b", "ticks"), event<&Ticker::c>("c", "ticks"),
+            event<&Ticker::d>("d", "ticks"), event<&Ticker::e>("e", "ticks"), event<&Ticker::f>("f", "ticks"),
+            event<&Ticker::g>("g", "ticks"), event<&Ticker::h>("h", "ticks"), event<&Ticker::i>("i", "ticks"),
+            event<&Ticker::j>("j", "ticks"), event<&Ticker::alarm>("alarm", "its number"));
     }
 };
 
@@ -66,7 +67,7 @@ TEST(Subscriptions, of_observers_cost_nobody_of_a_higher_role_an_event_and_count
     ASSERT_EQ(seteuid(65534), 0);
     Talker observer{path};
     ASSERT_EQ(seteuid(0), 0);
-    for (const char* each : {"a", "b", "c", "d", "e", "f"})
+    for (const char* each : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"})
         ASSERT_TRUE(observer.send(std::string{"2 subscribe ticker."} + each));
     EXPECT_NEAR(alarms_of(engineer), 20, 1);
     Talker late{path};
