@@ -115,7 +115,7 @@ init::Done make_anew(const std::string& device, const std::function<void()>& mea
     return done ? init::Done{} : init::failed("write " + device);
 }
 
-/// Of ext4, by its layout: a magic number, and a sum where the file system carries sums.
+/// A head of ext4 is whole when its magic number is there and its checksum, if it has one, is right.
 enum class Head : std::uint8_t { none, whole, unreadable };
 
 std::uint32_t crc32c(const std::uint8_t* bytes, std::size_t count) {

@@ -91,7 +91,7 @@ private:
     int socket_;
 };
 
-/// Of what was offered before; 0: nothing was.
+/// The version of the update that waits for the power button. 0: none waits.
 std::uint32_t waiting_version() {
     std::string header(update_header_bytes, '\0');
     std::FILE* const file = std::fopen(offered_update, "rb");

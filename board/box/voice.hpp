@@ -16,9 +16,9 @@ public:
     void open(const std::string& console);
     /// One line with the time since the power came.
     void say(std::string_view sentence) const;
-    /// What is said, and was said before, is kept in that file too: who comes later reads why. A process of
-    /// its own writes it, through to the disk: nobody waits for a disk that does not answer, and what such a
-    /// one leaves over is lost. The error: a sentence.
+    /// Writes to that file what was said before and what is said from now on. A process of its own writes it
+    /// through to the disk, so that nobody waits for a disk that does not answer. Such a disk loses what does
+    /// not fit the socket to that process. The error: a sentence.
     [[nodiscard]] init::Done keep_in(const std::string& file);
     /// The file's disk is about to go: what was said is there, or is given up after a second.
     void let_go();

@@ -78,7 +78,7 @@ struct Signal {
         copy.kind = Kind::signed_integer;
         return copy;
     }
-    /// Of an integer that is written: what is beyond the width is cut, instead of its nearest end taken.
+    /// For a written integer that is a set of bits: bits beyond the width are cut. Other integers saturate.
     constexpr Signal as_bits() const noexcept {
         Signal copy = *this;
         copy.is_bits = true;
@@ -345,8 +345,7 @@ constexpr Raw to_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME 
     return {.bits = detail::to_any_raw(s, physical < s.least ? s.least : s.most).bits, .saturated = true};
 }
 
-/// Likewise of a signal without factor and offset, exactly. Of one that is_bits what is beyond its width is
-/// cut.
+/// For a signal without factor and offset. It saturates exactly; a set of bits (as_bits) is cut to its width.
 constexpr Raw to_raw_integer(const Signal& s, std::int64_t value) noexcept TAPPET_REALTIME {
     const std::uint64_t mask = detail::mask_of(s);
     if (s.is_bits) return {.bits = static_cast<std::uint64_t>(value) & mask};

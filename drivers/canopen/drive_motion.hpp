@@ -43,8 +43,7 @@ public:
         return gate_.leads(OperationMode::cyclic_position) && gate_.superimposes();
     }
 
-    /// Of the motion, or the halt, that was asked for last: the next one, and whatever ends it before its
-    /// end, has another number.
+    /// Each motion and each halt has a number. A failure and the end of power take the next one, too.
     [[nodiscard]] std::uint32_t number() const noexcept TAPPET_REALTIME { return number_; }
     /// The last one that came to its own end.
     [[nodiscard]] std::uint32_t reached() const noexcept TAPPET_REALTIME { return reached_; }
@@ -53,7 +52,7 @@ public:
     void power(bool on) noexcept TAPPET_REALTIME {
         wants_power_ = on;
         if (on) return;
-        ++number_;
+        count_motion();
         off_seen_ = false;
         gate_.rest();
         static_cast<void>(ask(AxisCommand::power_off));
@@ -85,8 +84,7 @@ public:
         if (!planned) return std::unexpected(planned.error());
         const Asked asked = ask(AxisCommand::superimpose);
         if (!asked) return asked;
-        ++number_;
-        adds_ = true;
+        count_motion(true);
         gate_.superimpose(*planned);
         return asked;
     }
@@ -146,6 +144,10 @@ private:
         axis_ = *next;
         return {};
     }
+    void count_motion(bool is_superimposed = false) noexcept TAPPET_REALTIME {
+        ++number_;
+        adds_ = is_superimposed;
+    }
     Asked begin(AxisCommand command, OperationMode mode, double target, double profile_velocity = 1) noexcept
         TAPPET_REALTIME {
         if (!motion::is_number(target) || !motion::is_number(profile_velocity))
@@ -155,16 +157,14 @@ private:
         if (is_held_) return std::unexpected(wrong_state);
         const Asked asked = ask(command);
         if (!asked) return asked;
-        ++number_;
-        adds_ = false;
+        count_motion();
         gate_.lead(mode, target, profile_velocity);
         return asked;
     }
     Asked rest(AxisCommand command) noexcept TAPPET_REALTIME {
         const Asked asked = ask(command);
         if (!asked) return asked;
-        ++number_;
-        adds_ = false;
+        count_motion();
         gate_.rest();
         return asked;
     }
@@ -208,7 +208,7 @@ private:
     }
     void fail() noexcept TAPPET_REALTIME {
         static_cast<void>(ask(AxisCommand::error));
-        ++number_;
+        count_motion();
         gate_.rest();
         off_seen_ = resets_ = false;
     }

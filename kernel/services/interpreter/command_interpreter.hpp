@@ -68,6 +68,7 @@ private:
     }
     /// Somebody of a higher role waits for the end of the line at work: nobody of a lower one is next.
     void keep_for(Role role, Time now) noexcept {
+        if (role < kept_for_ && now < kept_until_) return; // somebody of a role above theirs waits already
         kept_for_ = role;
         kept_until_ = now + patience;
     }

@@ -143,6 +143,26 @@ TEST_F(Lines, whoever_broke_one_off_is_next_before_those_of_a_lower_role) {
     EXPECT_THAT(next(worker), is_value("1"));
 }
 
+TEST_F(Lines, whoever_waits_is_not_passed_by_somebody_of_a_role_between) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    ASSERT_EQ(seteuid(1001), 0);
+    Talker worker{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    ASSERT_EQ(seteuid(65534), 0);
+    Talker observer{path()};
+    ASSERT_EQ(seteuid(0), 0);
+    instance.engines()[0].stop(clock.now());
+    instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
+    EXPECT_THAT(ask(observer, request("gauge.target")), HasSubstr("sent"));
+    ASSERT_TRUE(talker->send(request("table.height")));
+    ASSERT_TRUE(worker.send(request("1"))); // in the same cycle, behind it
+    EXPECT_THAT(next(*talker), HasSubstr("gives way to yours"));
+    static_cast<void>(next(worker));
+    static_cast<void>(next(observer));
+    EXPECT_THAT(ask(worker, request("1")), HasSubstr("an engineer is served first"));
+    EXPECT_THAT(execute("table.height"), is_value("50"));
+}
+
 TEST_F(Lines, commands_that_operators_left_behind_leave_engineers_a_line) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     ASSERT_EQ(seteuid(1001), 0);
