@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <random>
+#include <thread>
 
 namespace tappet::bench {
 namespace {
@@ -95,19 +96,22 @@ TEST_F(ModbusLine, stands_while_the_device_is_silent_and_runs_when_it_is_back) {
 
 TEST_F(ModbusLine, takes_no_value_from_a_line_that_is_disturbed_and_recovers) {
     const double before = browser.value_of("unit.outages");
+    const int line = ::open(theirs, O_WRONLY | O_NOCTTY);
+    ASSERT_GE(line, 0);
     {
-        std::mt19937 any{1};
-        const int line = ::open(theirs, O_WRONLY | O_NOCTTY);
-        ASSERT_GE(line, 0);
-        const auto disturb = [&] {
-            std::array<std::uint8_t, 7> bytes{};
-            for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(any());
-            EXPECT_EQ(::write(line, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
-            return shown("unit.reason").find("no answer to it") != std::string::npos;
-        };
-        EXPECT_TRUE(soon(disturb, patience)) << shown("unit.reason");
-        ::close(line);
+        // All the time: bytes between two requests are drained and disturb nobody.
+        const std::jthread disturber{[line](const std::stop_token& end) {
+            std::mt19937 any{1};
+            while (!end.stop_requested()) {
+                std::array<std::uint8_t, 7> bytes{};
+                for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(any());
+                EXPECT_EQ(::write(line, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+                std::this_thread::sleep_for(5ms);
+            }
+        }};
+        EXPECT_TRUE(shows("unit.reason", "no answer to it")) << shown("unit.reason");
     }
+    ::close(line);
     EXPECT_TRUE(shows("unit.reason", "the server refuses it")) << shown("unit.reason");
     EXPECT_TRUE(shows("pump.runs", "true"));
     EXPECT_GT(browser.value_of("unit.outages"), before);

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <vector>
 
@@ -421,8 +422,9 @@ TEST(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cycle
     const Office& office = *instance.find<Office>("office");
     ASSERT_FALSE(office.silences.empty());
     EXPECT_GE(office.silences[0], 20ms);
-    EXPECT_EQ(office.revivals.size(), office.silences.size());
-    EXPECT_GE(office.revivals[0], 150ms);
+    ASSERT_EQ(office.revivals.size(), office.silences.size());
+    // Not the first: a busy host may have held the worker up before.
+    EXPECT_GE(*std::ranges::max_element(office.revivals), 150ms);
 }
 
 } // namespace
