@@ -10,9 +10,11 @@
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 namespace tappet::can {
 
@@ -410,11 +412,14 @@ private:
             demanded_[f] |= found.fresh;
             if (!demanded_[f] || !found.usable || !found.agreed) continue;
             demanded_[f] = false;
-            if (found.at <= demanded_at_[f]) continue; // sent before: a force has ended, and shows it again
-            demanded_at_[f] = found.at;
+            const Frame before = store_.encode(f, now);
+            const bool is_new = found.at > demanded_at_[f];
+            if (!keep_inputs(f)) continue;
+            // What was sent before is no demand: a force has ended, and shows it again.
+            if (!is_new && store_.encode(f, now).data == before.data) continue;
+            demanded_at_[f] = found.at > now + ahead_at_most ? now : found.at;
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
-            if (!keep_inputs(f)) continue;
             static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
             sent = true;
         }
@@ -464,12 +469,10 @@ private:
         Time next = never;
         for (const Time due : due_) next = due < next ? due : next;
         next_send.arm(next);
-        Time service = device_->next_service();
-        if (service < now + shortest_wait) service = now + shortest_wait;
+        Time service = std::max(device_->next_service(), now + shortest_wait);
         // A frame that found no room has no confirmation to wait for: only time brings it out.
-        const std::uint64_t pressed = device_->counters().back_pressure;
-        if (pressed != pressed_ && service > now + retry_after) service = now + retry_after;
-        pressed_ = pressed;
+        const std::uint64_t before = std::exchange(pressed_, device_->counters().back_pressure);
+        if (pressed_ != before) service = std::min(service, now + retry_after);
         next_service.arm(service);
     }
 
@@ -487,14 +490,10 @@ private:
     std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
-    std::uint64_t lost_ = 0;
-    std::uint64_t taken_ = 0;
-    std::uint64_t pressed_ = 0;
+    std::uint64_t lost_ = 0, taken_ = 0, pressed_ = 0;
     std::int64_t too_often_ = 0;
     Status status_{};
-    bool was_faulted_ = false;
-    bool was_stopped_ = false;
-    bool stopped_safely_ = true;
+    bool was_faulted_ = false, was_stopped_ = false, stopped_safely_ = true;
 };
 
 } // namespace tappet::can

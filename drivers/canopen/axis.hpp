@@ -43,11 +43,7 @@ template <text unit> struct Axis {
     }
     void changed() noexcept TAPPET_REALTIME { standing_changed(); }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        double wanted = 0;
-        const Flow flow = set_point.read(wanted);
-        // What the row gives for a stale velocity or torque counts; a place that is stale leads nowhere.
-        const bool is_place = mode.last() == static_cast<std::int64_t>(OperationMode::cyclic_position);
-        if (flow == Flow::fresh || (flow == Flow::stale && !is_place)) motion_.follow(wanted);
+        follow(cycle.now);
         const AxisMode before = motion_.state();
         const bool heard = statusword.good() && mode_display.good() && position.good() && velocity.good();
         const DriveOrder order =
@@ -74,8 +70,11 @@ template <text unit> struct Axis {
     void release() noexcept TAPPET_REALTIME { motion_.release(); }
     /// 8 positions, 9 velocities, 10 torques.
     bool synchronize(std::int64_t cyclic) noexcept TAPPET_REALTIME {
-        return cyclic >= 8 && cyclic <= 10 &&
-               motion_.synchronize(OperationMode{static_cast<std::int8_t>(cyclic)}).has_value();
+        if (cyclic < 8 || cyclic > 10 ||
+            !motion_.synchronize(OperationMode{static_cast<std::int8_t>(cyclic)}))
+            return false;
+        begins_ = true;
+        return true;
     }
     bool home() noexcept TAPPET_REALTIME { return takes(home_, motion_.home(), {}); }
     bool move_to(double place, double at) noexcept TAPPET_REALTIME {
@@ -110,7 +109,7 @@ template <text unit> struct Axis {
             input<&Axis::mode_display>("mode_display", "", "6061h"),
             input<&Axis::position>("position", unit.view(), "6064h, as it is"),
             input<&Axis::velocity>("velocity", speed_unit.view(), "606Ch, as it is"),
-            input<&Axis::set_point>("set_point", "", "of the cyclic mode that it is in; positions count once it follows", optional),
+            input<&Axis::set_point>("set_point", "", "of the cyclic mode that it is in, written since; positions count once it follows", optional),
             output<&Axis::controlword>("controlword", "", "6040h"),
             output<&Axis::mode>("mode", "", "6060h"),
             output<&Axis::target_position>("target_position", unit.view(), "607Ah"),
@@ -138,6 +137,22 @@ template <text unit> struct Axis {
     // clang-format on
 
 private:
+    /// It is led by what was written since it was told to follow, and by nothing of before.
+    void follow(Time now) noexcept TAPPET_REALTIME {
+        double wanted = 0;
+        const Flow flow = set_point.read(wanted);
+        if (std::exchange(begins_, false)) is_led_ = false, led_at_ = now;
+        const bool is_place = mode.last() == static_cast<std::int64_t>(OperationMode::cyclic_position);
+        // What the row gives for a stale velocity or torque ends one; a place that is stale leads nowhere.
+        if (flow != Flow::fresh && (flow != Flow::stale || is_place || !is_led_)) return;
+        if (set_point.stamp() < led_at_) { // it stood behind a force that has ended, or is of before
+            if (!is_place) motion_.follow(0);
+            return;
+        }
+        led_at_ = set_point.stamp();
+        is_led_ = true;
+        motion_.follow(wanted);
+    }
     void standing_changed() noexcept TAPPET_REALTIME { motion_.set_standing(standing.get()); }
     void write_speeds(const DriveOrder& order) noexcept TAPPET_REALTIME {
         profile_velocity.write(order.profile_velocity);
@@ -170,6 +185,8 @@ private:
     }
 
     DriveMotion motion_{};
+    Time led_at_{}; ///< when the set point that it follows was true
+    bool begins_ = false, is_led_ = false;
     Begun home_{}, move_to_{}, superimpose_{}, halt_{};
     Changed<AxisMode> state_{};
     Changed<bool> follows_{}, lags_{}, limited_{};

@@ -252,7 +252,7 @@ private:
     }
     void emit(std::size_t i, Contents payload) noexcept TAPPET_REALTIME {
         std::array<std::byte, 56> packed{};
-        on_wire::hear(payload, 8 * contents, Rows::index(i).value, packed.data());
+        if (!on_wire::hear(payload, 8 * contents, Rows::index(i).value, packed.data())) return tell_loss(i);
         Rows::facet_from(i).event->emit(storage_.data() + Rows::rows[i].event_at, packed.data());
     }
     void begin_command(std::size_t i, std::uint8_t number, Contents payload) noexcept TAPPET_REALTIME {
@@ -262,10 +262,11 @@ private:
             row.refuses = true, row.refused = number;
             return;
         }
-        row.serves = true, row.serving = number;
+        row.serving = number;
         call.values = {};
-        on_wire::hear(payload, 8 * contents, Rows::index(i).value, call.values.data());
-        if (!call.slot.send()) row.serves = false, row.refuses = true, row.refused = number;
+        row.serves = on_wire::hear(payload, 8 * contents, Rows::index(i).value, call.values.data()) &&
+                     call.slot.send();
+        if (!row.serves) row.refuses = true, row.refused = number;
     }
     /// Of a command that was sent from here.
     void take_reply(std::size_t i, bool serves, Contents payload) noexcept TAPPET_REALTIME {
@@ -274,13 +275,10 @@ private:
         // A reply that is lost may have been this one's.
         if (serves && (payload[contents] >> 3) != (row.asked & 31u)) return;
         const auto how = static_cast<CommandState>(payload[contents] & 7u);
-        if (serves && how == CommandState::done) {
-            on_wire::hear(payload, 8 * contents + 8, Rows::index(i).result,
-                          row.values.data() + Rows::index(i).value.bytes);
-            row.call = Call::done;
-        } else {
-            row.call = Call::failed; // rejected, failed, or the reply was lost
-        }
+        const bool is_done = serves && how == CommandState::done &&
+                             on_wire::hear(payload, 8 * contents + 8, Rows::index(i).result,
+                                           row.values.data() + Rows::index(i).value.bytes);
+        row.call = is_done ? Call::done : Call::failed; // rejected, failed, or the reply was lost
     }
 
     // ---- what goes
@@ -363,8 +361,14 @@ private:
         Time& may_offer = state_[i].may_offer;
         may_offer = std::max(may_offer, now - system.wire.service.deadline) + Rows::crossing(i).at_most_per;
         const WireValue& as = Rows::index(i).value;
-        if (on_wire::tell(packed, as, arguments, 0) != on_wire::Told::well) beyond.write(++beyond_);
+        const on_wire::Told told = on_wire::tell(packed, as, arguments, 0);
+        if (told != on_wire::Told::well) beyond.write(++beyond_);
+        if (told == on_wire::Told::no_number) return give_up(i);
         state_[i].sender.offer(std::span{arguments}.first((as.bits + 7u) / 8u), now);
+    }
+    void give_up(std::size_t i) noexcept TAPPET_REALTIME {
+        if (Rows::sends_events(i)) tell_loss(i);
+        if (state_[i].call == Call::offered) state_[i].call = Call::failed;
     }
     void tell_loss(std::size_t i) noexcept TAPPET_REALTIME {
         events_lost.write(++lost_events_);
@@ -384,12 +388,12 @@ private:
     }
     void reply(std::size_t i, CommandState how, std::uint8_t number, Time now) noexcept TAPPET_REALTIME {
         Room payload{};
-        static_assert(static_cast<unsigned>(CommandState::done) < 8,
-                      "a state has three bits, the number the others");
-        payload[0] = static_cast<std::uint8_t>(static_cast<unsigned>(how) | unsigned{number} << 3);
+        static_assert(static_cast<unsigned>(CommandState::done) < 8, "a state has three bits");
         const CrossingIndex& index = Rows::index(i);
-        static_cast<void>(
-            on_wire::tell(calls[i].values.data() + index.value.bytes, index.result, payload, 8));
+        if (on_wire::tell(calls[i].values.data() + index.value.bytes, index.result, payload, 8) ==
+            on_wire::Told::no_number)
+            how = CommandState::failed;
+        payload[0] = static_cast<std::uint8_t>(static_cast<unsigned>(how) | unsigned{number} << 3);
         state_[i].sender.offer(std::span{payload}.first(1 + (index.result.bits + 7u) / 8u), now);
     }
     void send_channel(std::size_t i, Time now) noexcept TAPPET_REALTIME {
@@ -398,10 +402,7 @@ private:
         const bool was_sending = row.sender.state() == ChannelSender::State::sends;
         ChannelSender::Frame frame;
         const bool has_frame = row.sender.due(now, frame);
-        if (was_sending && row.sender.state() == ChannelSender::State::gives_up) {
-            if (Rows::sends_events(i)) tell_loss(i);
-            if (row.call == Call::offered) row.call = Call::failed;
-        }
+        if (was_sending && row.sender.state() == ChannelSender::State::gives_up) give_up(i);
         if (!has_frame) return;
         Room payload{};
         put_head(shape, payload,

@@ -18,15 +18,14 @@ struct LinkValues {
             if (port.is_input || port.frame != f || !link.state_[port.row].agreed) continue;
             if (port.bit + port.value.bits_in_frame() > 8u * frame.length) continue;
             void* const output = link.storage_.data() + port.at;
-            const bool is_valid = on_wire::take_bits(frame.data, port.bit, 1) != 0;
+            std::array<std::byte, 56> value{};
+            const bool is_valid = on_wire::take_bits(frame.data, port.bit, 1) != 0 &&
+                                  on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
             bool& was_valid = link.state_[port.row].was_valid;
             if (!is_valid && (!was_valid || port.max_age == Duration::zero())) continue;
             Duration age = is_valid ? Duration::zero() : port.max_age + 1ns;
             if (is_valid && port.value.has_time && !has_age(link, port, frame, age)) continue;
-            std::array<std::byte, 56> value{};
-            if (is_valid)
-                on_wire::hear(frame.data, port.bit + 1u, port.value, value.data());
-            else // what was old when it was told is so here
+            if (!is_valid) // what was old when it was told is so here
                 static_cast<void>(port.facet->port->read(output, false, false, value.data()));
             port.facet->port->write_at(output, value.data(), frame.stamp - age);
             was_valid = is_valid;

@@ -2,6 +2,7 @@
 // sender packs several of them into one frame, bit after bit, little end first.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/type_tag.hpp"
 #include "kernel/system/rows.hpp"
 
@@ -16,6 +17,7 @@ struct WireValue {
     ValueKind kind = ValueKind::opaque; ///< boolean: one bit; opaque: as it is
     std::uint8_t bytes = 0;             ///< of the value in the machine
     bool is_signed = true;
+    bool is_real = false;  ///< and as it is
     bool has_time = false; ///< behind it stands when it was true
     double step = 1;
     constexpr bool operator==(const WireValue&) const = default;
@@ -50,6 +52,7 @@ constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& 
     }
     if (encoding.bits == 0) {
         if (type->kind == ValueKind::boolean) value.kind = ValueKind::boolean, value.bits = 1;
+        value.is_real = type->kind == ValueKind::real;
         return value;
     }
     const bool is_number = (type->kind == ValueKind::integer || type->kind == ValueKind::natural ||
@@ -95,13 +98,24 @@ constexpr void put_bits(std::span<std::uint8_t> into, std::size_t at, std::size_
     }
 }
 
-/// What telling a value found.
+/// What telling a value found; what is no number is not told.
 enum class Told : std::uint8_t { well, beyond, no_number };
+
+inline double real_at(const std::byte* value, const WireValue& as) noexcept TAPPET_REALTIME {
+    double number = 0;
+    float single = 0;
+    if (as.bytes == sizeof single) {
+        std::memcpy(&single, value, sizeof single);
+        return static_cast<double>(single);
+    }
+    std::memcpy(&number, value, sizeof number);
+    return number;
+}
 
 /// The whole number nearest to value / step that the bits can hold.
 inline Told to_steps(double value, const WireValue& as, std::int64_t& steps) noexcept TAPPET_REALTIME {
+    if (!is_number(value)) return Told::no_number;
     const double wanted = value / as.step;
-    if (!(wanted == wanted)) return Told::no_number;
     const std::int64_t most = (std::int64_t{1} << (as.bits - (as.is_signed ? 1 : 0))) - 1;
     const std::int64_t least = as.is_signed ? -most - 1 : 0;
     if (wanted >= static_cast<double>(most) + 0.5) return steps = most, Told::beyond;
@@ -120,6 +134,7 @@ inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uin
         return Told::well;
     }
     if (as.kind == ValueKind::opaque) {
+        if (as.is_real && !is_number(real_at(value, as))) return Told::no_number;
         for (std::size_t i = 0; i < as.bytes; ++i)
             put_bits(into, at + 8 * i, 8, std::to_integer<std::uint64_t>(value[i]));
         return Told::well;
@@ -127,15 +142,7 @@ inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uin
     std::int64_t steps = 0;
     Told told = Told::well;
     if (as.kind == ValueKind::real) {
-        double number = 0;
-        if (as.bytes == sizeof(float)) {
-            float single = 0;
-            std::memcpy(&single, value, sizeof single);
-            number = static_cast<double>(single);
-        } else {
-            std::memcpy(&number, value, sizeof number);
-        }
-        told = to_steps(number, as, steps);
+        told = to_steps(real_at(value, as), as, steps);
     } else {
         std::int64_t whole = 0;
         if (as.bytes == 4 && as.kind == ValueKind::integer) {
@@ -174,18 +181,18 @@ constexpr bool age_of_time(std::uint64_t told, Time now, Duration clocks_differ,
     return Duration{(turn - steps) * time_step_ns} <= clocks_differ + Duration{2 * time_step_ns};
 }
 
-/// The way back.
-inline void hear(std::span<const std::uint8_t> from, std::size_t at, const WireValue& as,
+/// The way back. False: it is no number.
+inline bool hear(std::span<const std::uint8_t> from, std::size_t at, const WireValue& as,
                  std::byte* value) noexcept TAPPET_REALTIME {
     if (as.kind == ValueKind::boolean) {
         const bool truth = take_bits(from, at, 1) != 0;
         std::memcpy(value, &truth, sizeof truth);
-        return;
+        return true;
     }
     if (as.kind == ValueKind::opaque) {
         for (std::size_t i = 0; i < as.bytes; ++i)
             value[i] = static_cast<std::byte>(take_bits(from, at + 8 * i, 8));
-        return;
+        return !as.is_real || is_number(real_at(value, as));
     }
     auto steps = static_cast<std::int64_t>(take_bits(from, at, as.bits));
     if (as.is_signed && (steps >> (as.bits - 1) & 1) != 0) steps -= std::int64_t{1} << as.bits;
@@ -197,12 +204,13 @@ inline void hear(std::span<const std::uint8_t> from, std::size_t at, const WireV
         } else {
             std::memcpy(value, &number, sizeof number);
         }
-        return;
+        return true;
     }
     const std::int64_t whole =
         as.step == 1 ? steps
                      : static_cast<std::int64_t>(std::floor(static_cast<double>(steps) * as.step + 0.5));
     std::memcpy(value, &whole, as.bytes); // little end first, as the machine has it
+    return true;
 }
 
 } // namespace on_wire

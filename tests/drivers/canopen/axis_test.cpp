@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace tappet::test {
 namespace {
@@ -53,6 +55,7 @@ struct Client {
     Event<> power_on, power_off, reset, release;
     Output<double> set_point;
     bool oscillates = false;
+    std::optional<double> once{};
     int errors = 0;
     double worst_lag = 0;
     Input<double> position;
@@ -62,6 +65,7 @@ struct Client {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         if (!oscillates) {
             began = cycle.now;
+            if (once) set_point.write(*std::exchange(once, {}));
             return;
         }
         const double wanted = 10.0 * std::sin(6.283185307179586 * to_seconds(cycle.now - began));
@@ -274,6 +278,59 @@ TEST_F(ServoAxis, takes_what_the_row_gives_for_a_velocity_that_grew_stale) {
     run(100ms);
     EXPECT_EQ(axis->target_velocity.last(), 0.0);
     EXPECT_NEAR(servo.velocity(), 0.0, 1e-6);
+}
+
+TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    client->once = 1;
+    run(500ms);
+    ASSERT_NEAR(servo.position(), 1, 0.1);
+    ASSERT_TRUE(client->synchronize.send(9));
+    run(500ms);
+    EXPECT_NEAR(servo.velocity(), 0, 1e-6) << "a place is no velocity, and it is stale";
+    client->once = 30;
+    run(10ms);
+    EXPECT_EQ(axis->target_velocity.last(), 30);
+}
+
+/// Its set point is forced meanwhile.
+struct ForcedAxis : ServoAxis {
+    void force(double value) {
+        ASSERT_TRUE(resolve(instance.machine().table, "axis.set_point", FacetKind::input, end).empty());
+        EXPECT_TRUE(port().force(instance.place_of(end), true, reinterpret_cast<const std::byte*>(&value)));
+        run(200ms);
+    }
+    void release() {
+        port().release(instance.place_of(end), true);
+        run(200ms);
+    }
+    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
+    End end;
+};
+
+TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    client->once = 1;
+    run(10ms);
+    force(1.5);
+    ASSERT_NEAR(axis->target_position.last(), 1.5, 1e-9);
+    release();
+    EXPECT_NEAR(axis->target_position.last(), 1.5, 1e-9);
+}
+
+TEST_F(ForcedAxis, comes_to_rest_when_the_force_of_its_velocity_ends) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    client->once = 30;
+    run(10ms);
+    force(20);
+    ASSERT_EQ(axis->target_velocity.last(), 20);
+    release();
+    EXPECT_EQ(axis->target_velocity.last(), 0);
 }
 
 TEST_F(ServoAxis, stays_where_it_was_turned_without_power) {

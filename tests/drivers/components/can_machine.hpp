@@ -57,7 +57,8 @@ struct Master {
     double rpm = 100;
     Bounded<Demand, 16> demands{}; // one a cycle
     Bounded<std::int64_t, 4> commands_alone{};
-    int sync_next = -1; // written in the next cycle
+    int sync_next = -1;         // written in the next cycle
+    Time sync_at = Time::min(); // and true then; min: in that cycle
     Duration overrun{};
     os::Clock* clock = nullptr;
     bool was_faulted = false;
@@ -84,7 +85,8 @@ struct Master {
         }
         for (const std::int64_t each : commands_alone) command.write(each);
         commands_alone.clear();
-        if (sync_next >= 0) sync.write(sync_next);
+        if (sync_next >= 0 && sync_at != Time::min()) sync.write(sync_next, sync_at);
+        if (sync_next >= 0 && sync_at == Time::min()) sync.write(sync_next);
         sync_next = -1;
         if (overrun > 0ns) clock->consume(overrun);
         overrun = 0ns;

@@ -413,5 +413,38 @@ TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reache
     }
 }
 
+/// What the pump is told, forced at one end.
+struct ForcedPump : Utility {
+    void begin(std::string_view name, FacetKind kind) {
+        run_until(1s);
+        reader->pump_next = 0; // off, and that is all that its component says
+        run_until(20s);
+        ASSERT_TRUE(resolve(instance.machine().table, name, kind, end).empty());
+        is_input = kind == FacetKind::input;
+        const double yes = 1;
+        ASSERT_TRUE(port().force(instance.place_of(end), is_input, reinterpret_cast<const std::byte*>(&yes)));
+        run_until(22s);
+        ASSERT_TRUE(pump_runs());
+    }
+    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
+    End end;
+    bool is_input = false;
+};
+
+TEST_F(ForcedPump, is_told_what_stood_behind_the_force_however_old_that_is) {
+    begin("server.pump.on", FacetKind::input);
+    port().release(instance.place_of(end), is_input);
+    run_until(24s);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(ForcedPump, is_told_so_too_when_its_writer_stops) {
+    reader->leaves_safe = false;
+    begin("reader.pump", FacetKind::output);
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    run_until(24s);
+    EXPECT_FALSE(pump_runs());
+}
+
 } // namespace
 } // namespace tappet::test
