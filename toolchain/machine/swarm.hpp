@@ -189,8 +189,9 @@ private:
         kept_{}; ///< of properties in files, at the halt in order before this start
     std::uint64_t sets_ = 0, sets_open_ = 0; ///< asked for; of these not answered yet
     bool sends_script_ = false;
-    bool is_gone_ = false; ///< the machine's process
-    Sentence refusal_{};   ///< why a part did not start again, the last
+    bool is_gone_ = false;    ///< the machine's process
+    Sentence refusal_{};      ///< why a part did not start again, the last
+    std::string last_call_{}; ///< of anyone's
     SwarmVerdict verdict_{};
 };
 

@@ -58,7 +58,8 @@ void SwarmWires::begin(MachineInstance& instance) {
     }
 }
 
-/// What has an axis' facets is one: its place and its drive's word come from signals of a bus.
+/// What has an axis' facets is one: its place and what its drive says come from signals of a bus, and where
+/// it is sent goes there.
 void SwarmWires::add_axes() {
     const MachineView& table = machine_.table;
     const auto has = [](const ComponentType& type, std::string_view name, FacetKind kind) {
@@ -68,35 +69,41 @@ void SwarmWires::add_axes() {
     };
     for (std::size_t c = 0; c < table.components.size(); ++c) {
         const ComponentType& type = *table.components[c].type;
-        const std::size_t place = has(type, "position", FacetKind::input),
-                          word = has(type, "statusword", FacetKind::input),
-                          state = has(type, "state", FacetKind::output),
+        const std::size_t state = has(type, "state", FacetKind::output),
                           standing = has(type, "standing", FacetKind::property);
-        if (place == nowhere || word == nowhere || state == nowhere || standing == nowhere ||
-            has(type, "move_to", FacetKind::command) == nowhere)
+        if (state == nowhere || standing == nowhere || has(type, "move_to", FacetKind::command) == nowhere)
             continue;
         Axis axis;
         axis.name = table.components[c].name;
         axis.state = {c, state};
         axis.standing = {c, standing};
+        const std::array wires{std::pair{has(type, "position", FacetKind::input), &axis.place},
+                               std::pair{has(type, "statusword", FacetKind::input), &axis.word},
+                               std::pair{has(type, "mode_display", FacetKind::input), &axis.mode},
+                               std::pair{has(type, "target_position", FacetKind::output), &axis.target}};
         for (std::size_t x = 0; x < table.connections.size(); ++x) {
             const Link& link = machine_.index.connections[x];
-            const bool is_place = link.to == End{c, place};
-            const ComponentRow& from = table.components[link.from.component];
-            if ((!is_place && link.to != End{c, word}) || !tappet::drives(from, "can")) continue;
-            const auto& map = *static_cast<const can::Identifiers*>(from.type->device_map);
-            axis.device = from.device;
-            for (const can::FrameRow& row : map.frames)
-                for (const can::Signal& signal : map.signals.subspan(row.first, row.signals)) {
-                    if (facet_at(table, link.from).name !=
-                        std::string{row.name} + "." + std::string{signal.name})
-                        continue;
-                    (is_place ? axis.place : axis.word) = &signal;
-                    (is_place ? axis.frame : axis.word_frame) = row.identifier;
-                }
+            for (const auto& [facet, wire] : wires) {
+                const bool is_sent = link.from == End{c, facet};
+                const End driver = is_sent ? link.to : link.from;
+                const ComponentRow& row = table.components[driver.component];
+                if ((!is_sent && link.to != End{c, facet}) || !tappet::drives(row, "can")) continue;
+                axis.device = row.device;
+                *wire = wire_of(*static_cast<const can::Identifiers*>(row.type->device_map),
+                                facet_at(table, driver).name);
+            }
         }
-        if (axis.place != nullptr && axis.word != nullptr) axes_.push_back(axis);
+        if (std::ranges::all_of(wires, [](const auto& each) { return each.second->signal != nullptr; }))
+            axes_.push_back(axis);
     }
+}
+
+SwarmWires::Axis::Wire SwarmWires::wire_of(const can::Identifiers& map, std::string_view facet) {
+    for (const can::FrameRow& row : map.frames)
+        for (const can::Signal& signal : map.signals.subspan(row.first, row.signals))
+            if (facet == std::string{row.name} + "." + std::string{signal.name})
+                return {row.identifier, &signal};
+    return {};
 }
 
 std::string_view SwarmWires::state_of(const Axis& axis) const {
@@ -109,16 +116,39 @@ std::string_view SwarmWires::state_of(const Axis& axis) const {
                                              : std::string_view{};
 }
 
-/// An enabled drive whose axis is in no motion stays where it is.
+/// An enabled drive whose axis is in no motion stays where it is, and one that follows positions is sent to
+/// none that is far from the one before: it would go there as fast as it can.
 void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame& frame) {
     constexpr std::uint64_t enabled_bits = 0x6F, enabled = 0x27; // of CiA 402's word
+    constexpr std::uint64_t cyclic_position = 8;
     constexpr Duration comes_to_rest = 300ms;
     constexpr unsigned longest_lie = 5; // of a wire that says anything, in frames
+    constexpr double far = 1000;        // times what counts as standing
     if (device != axis.device || instance_ == nullptr) return;
     const can::Identifier identifier{frame.id, frame.extended};
-    if (identifier == axis.word_frame)
-        axis.is_enabled = (can::extract(frame.data, *axis.word) & enabled_bits) == enabled;
-    if (identifier != axis.frame) return;
+    if (identifier == axis.word.frame)
+        axis.is_enabled = (can::extract(frame.data, *axis.word.signal) & enabled_bits) == enabled;
+    if (identifier == axis.mode.frame) {
+        const bool says_so =
+            axis.is_enabled && can::extract(frame.data, *axis.mode.signal) == cyclic_position;
+        axis.follows = says_so ? axis.follows + 1 : 0;
+    }
+    const bool follows = axis.follows > longest_lie && frame.stamp >= axis.excused;
+    if (!follows) axis.sent_to = {};
+    if (identifier == axis.target.frame && follows) {
+        const double place =
+            can::to_physical(*axis.target.signal, can::extract(frame.data, *axis.target.signal));
+        if (axis.sent_to && std::abs(place - *axis.sent_to) > far * axis.stands_below)
+            heard_ = Sentence{"axis \"",
+                              axis.name,
+                              "\" follows positions, and is sent from ",
+                              std::int64_t{std::llround(*axis.sent_to)},
+                              " to ",
+                              std::int64_t{std::llround(place)},
+                              " at once"};
+        axis.sent_to = place;
+    }
+    if (identifier != axis.place.frame) return;
     const std::string_view state = state_of(axis);
     // A drive that the machine cannot reach is its own time-out's.
     const bool is_reached = !can::faulted(devices_.controller(device).state());
@@ -131,10 +161,10 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
         axis.rests_at = {};
         return;
     }
-    const double place = can::to_physical(*axis.place, can::extract(frame.data, *axis.place));
+    const double place = can::to_physical(*axis.place.signal, can::extract(frame.data, *axis.place.signal));
     if (!axis.rests_at) axis.rests_at = place;
     const bool is_there =
-        std::abs(place - *axis.rests_at) <= axis.stands_below + 3 * std::abs(axis.place->factor);
+        std::abs(place - *axis.rests_at) <= axis.stands_below + 3 * std::abs(axis.place.signal->factor);
     axis.elsewhere = is_there ? 0 : axis.elsewhere + 1;
     if (axis.elsewhere > longest_lie)
         heard_ = Sentence{"axis \"", axis.name, "\" moves unasked: it is in \"", state,

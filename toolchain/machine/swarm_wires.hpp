@@ -80,11 +80,17 @@ private:
     /// An axis of the library, as its facets say, and what its drive tells at the wire.
     struct Axis {
         std::string_view name{}, device{};
-        can::Identifier frame{}, word_frame{};
-        const can::Signal *place = nullptr, *word = nullptr;
+        /// A signal of the bus, and the frame that it is in.
+        struct Wire {
+            can::Identifier frame{};
+            const can::Signal* signal = nullptr;
+        };
+        Wire place{}, word{}, mode{}, target{};
         End state{}, standing{};
-        bool is_enabled = false;  ///< the drive says so
-        Time rests_since = never; ///< by its state, which names no motion
+        bool is_enabled = false;         ///< the drive says so
+        unsigned follows = 0;            ///< frames one after the other that say it follows positions
+        std::optional<double> sent_to{}; ///< while it follows
+        Time rests_since = never;        ///< by its state, which names no motion
         std::optional<double> rests_at{};
         double stands_below = -1.0; ///< its property as the table has it
         Time excused{};
@@ -92,6 +98,7 @@ private:
     };
 
     void add_axes();
+    [[nodiscard]] static Axis::Wire wire_of(const can::Identifiers& map, std::string_view facet);
     void hear_axis(Axis& axis, std::string_view device, const can::Frame& frame);
     [[nodiscard]] std::string_view state_of(const Axis& axis) const;
     void add_lines(std::size_t component);

@@ -1,4 +1,5 @@
-// A servo drive, and somebody who turns its shaft by hand while it has no power.
+// A servo drive as slow and as forgetful as CiA 402 lets it be, and somebody who turns its shaft by hand
+// while it has no power.
 #pragma once
 
 #include "drivers/can/far_end.hpp"
@@ -7,6 +8,8 @@
 #include "kernel/base/random.hpp"
 #include "tests/adversary/axis/machine.hpp"
 
+#include <array>
+
 namespace adversary_axis {
 
 class Plant final : public tappet::Plant {
@@ -14,6 +17,12 @@ public:
     explicit Plant(std::uint64_t seed) : random_{seed} {
         can.send_every("status", 2ms);
         can.send_every("actual", 2ms);
+        hears_late_by_ = any_trip();
+        answers_late_by_ = any_trip();
+        servo_.faults.knows_no_halt_in_cyclic = random_.one_in(2);
+        servo_.faults.remembers_home = random_.one_in(2);
+        servo_.faults.mode_steps = random_.one_in(2) ? 0 : static_cast<int>(random_.between(1, 60));
+        servo_.set_home(40.0 * (random_.unit() - 0.5));
     }
 
     Time move(Time now) override {
@@ -26,22 +35,38 @@ public:
             order.torque = can.get("profile.torque");
             return order;
         }(canopen::DriveOrder{});
-        servo_.take(told);
+        told_[moves_ % trips] = told;
+        servo_.take(told_[(moves_ + trips - hears_late_by_) % trips]);
         servo_.step(to_seconds(step()));
         const std::uint16_t word = servo_.statusword();
         if ((word & 0x6Fu) != 0x27u && (word & 0x6Fu) != 0x07u && random_.one_in(200))
             servo_.turn_shaft(20.0 * (random_.unit() - 0.5));
-        can.set_integer("status.word", word);
-        can.set_integer("status.mode", static_cast<std::uint64_t>(servo_.mode()));
-        can.set("actual.position", servo_.position());
-        can.set("actual.velocity", servo_.velocity());
+        says_[moves_ % trips] = {word, servo_.mode(), servo_.position(), servo_.velocity()};
+        const Says& says = says_[(moves_ + trips - answers_late_by_) % trips];
+        can.set_integer("status.word", says.word);
+        can.set_integer("status.mode", static_cast<std::uint64_t>(says.mode));
+        can.set("actual.position", says.position);
+        can.set("actual.velocity", says.velocity);
+        ++moves_;
         return now + 2ms;
     }
 
     can::FarEnd<axis_signals> can{ends, "axis-can"};
 
 private:
+    struct Says {
+        std::uint16_t word = 0;
+        std::int64_t mode = 0;
+        double position = 0, velocity = 0;
+    };
+    static constexpr std::size_t trips = 26; // steps of 2 ms from one end of the wire to the other, and back
+
+    std::size_t any_trip() { return random_.one_in(2) ? 0 : random_.below(trips); }
+
     Random random_;
+    std::array<canopen::DriveOrder, trips> told_{};
+    std::array<Says, trips> says_{};
+    std::size_t moves_ = 0, hears_late_by_ = 0, answers_late_by_ = 0;
     canopen::SimulatedServo servo_{};
 };
 
