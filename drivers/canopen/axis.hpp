@@ -34,6 +34,7 @@ template <text unit> struct Axis {
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         motion_ = {};
+        motion_.begin_at(position.get());
         standing_changed();
         mode.write(static_cast<std::int64_t>(OperationMode::profile_position));
         controlword.write(controlword::disable_voltage);

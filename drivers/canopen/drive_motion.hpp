@@ -19,6 +19,8 @@ public:
     using AxisCommand = motion::AxisCommand;
     using Asked = std::expected<void, motion::Refused>;
 
+    /// Where it is, before the drive was heard: one that still follows positions is sent to no other.
+    void begin_at(double place) noexcept TAPPET_REALTIME { gate_.begin_at(place); }
     /// Slower than this it stands.
     void set_standing(double velocity) noexcept TAPPET_REALTIME { gate_.set_standing(velocity); }
 

@@ -4,6 +4,8 @@
 
 #include "drivers/canopen/network_rows.hpp"
 
+#include <algorithm>
+
 namespace tappet::canopen::detail {
 
 /// Which of a node's predefined PDOs a frame is.
@@ -178,6 +180,23 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
     return signals_fault(signals, node, row, frame);
 }
 
+/// The bits of a drive's word are those of the mode that it shows (CiA 402): in two frames that do not come
+/// at each SYNC together the bits of the mode before would count as this one's.
+constexpr Sentence moment_fault(const NodeRow& node) noexcept {
+    const auto has = [](const PdoRow& row, std::uint16_t index) {
+        return std::ranges::find(row.objects, Address{index, 0}) != row.objects.end();
+    };
+    const auto row_with = [&](std::uint16_t index) {
+        return std::ranges::find_if(node.pdos, [&](const PdoRow& row) { return has(row, index); });
+    };
+    const auto word = row_with(0x6041), mode = row_with(0x6061);
+    if (word == node.pdos.end() || mode == node.pdos.end() || has(*mode, 0x6041)) return {};
+    if (word->how.type == 1 && mode->how.type == 1) return {};
+    return Sentence{who(node),   ": its status word (6041) comes with frame \"",
+                    word->frame, "\" and the mode that it belongs to (6061) with frame \"",
+                    mode->frame, "\", at other times; map both into one frame, or let both be synchronous()"};
+}
+
 constexpr bool is_configured_by_rows(std::uint16_t index) noexcept {
     return (index >= 0x1000 && index <= 0x1019 && index != 0x1012) || (index >= 0x1400 && index < 0x1C00);
 }
@@ -268,6 +287,7 @@ constexpr Sentence network_fault(const can::SignalMap<F, S>& signals, const Netw
             if (map.nodes[other].id == node.id || map.nodes[other].name == node.name)
                 return Sentence{who(node), " has the identifier or the name of ", who(map.nodes[other]),
                                 "; give it its own"};
+        if (const Sentence fault = moment_fault(node); !fault.empty()) return fault;
         for (std::size_t p = 0; p < node.pdos.size(); ++p) {
             if (const Sentence fault = pdo_fault(signals, manager, node, node.pdos[p]); !fault.empty())
                 return fault;

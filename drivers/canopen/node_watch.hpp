@@ -12,7 +12,7 @@ enum class NodePhase : std::uint8_t {
     configuring, ///< its identity is read, its configuration written and read back
     starting,    ///< told to start
     operational,
-    lost,    ///< its heartbeat is missing, or it answers no request
+    lost,    ///< its heartbeat is missing, it answers no request, or cannot do so now: it is asked again
     refused, ///< another device, or one that does not take its configuration: until it boots again
 };
 
@@ -46,7 +46,7 @@ struct WatchedNode {
 class NodeWatch {
 public:
     static constexpr Duration poll_every = 1s; ///< a node that is not heard of
-    static constexpr int most_tries = 3;       ///< of a transfer that is not answered
+    static constexpr int most_tries = 3;       ///< of a transfer that is not answered, or whose abort passes
 
     /// Forgets all; `steps` are those of this node, the first of them number `first`.
     void start(const WatchedNode& row, std::span<const ConfigurationStep> steps, std::size_t first,
@@ -80,7 +80,9 @@ public:
         }
         switch (phase_) {
         case NodePhase::absent:
-        case NodePhase::lost: configure(); break;
+        case NodePhase::lost: // one that could not be configured is asked again after a while
+            if (trouble_.kind != NodeTrouble::Kind::aborted) configure();
+            break;
         case NodePhase::starting:
             if (state != NmtState::operational) break;
             phase_ = NodePhase::operational;
@@ -159,7 +161,11 @@ private:
     }
     void refuse(NodeTrouble::Kind kind, std::uint64_t found = 0) noexcept TAPPET_REALTIME {
         phase_ = NodePhase::refused;
-        trouble_ = {kind, static_cast<std::uint16_t>(first_ + step_), client_.why(), found};
+        trouble_ = trouble_of(kind, found);
+    }
+    [[nodiscard]] NodeTrouble trouble_of(NodeTrouble::Kind kind, std::uint64_t found = 0) const noexcept
+        TAPPET_REALTIME {
+        return {kind, static_cast<std::uint16_t>(first_ + step_), client_.why(), found};
     }
 
     void go_on(Time now) noexcept TAPPET_REALTIME {
@@ -167,9 +173,13 @@ private:
         switch (client_.state()) {
         case State::busy: return;
         case State::aborted:
-            if (client_.why() != SdoAbort::time_out) return refuse(NodeTrouble::Kind::aborted);
+            if (client_.has_abort_to_send()) return;
+            if (!passes(client_.why())) return refuse(NodeTrouble::Kind::aborted);
             if (++tries_ < most_tries) return begin_step();
-            return lose({.kind = NodeTrouble::Kind::no_answer}, now);
+            return lose(client_.why() == SdoAbort::time_out
+                            ? NodeTrouble{.kind = NodeTrouble::Kind::no_answer}
+                            : trouble_of(NodeTrouble::Kind::aborted),
+                        now);
         case State::done:
             if (const ConfigurationStep& step = steps_[step_]; step.kind != ConfigurationStep::Kind::write) {
                 const std::uint64_t found = low_bits(from_bytes(client_.value()), 8u * step.bytes);

@@ -41,6 +41,23 @@ enum class SdoAbort : std::uint32_t {
     no_data = 0x0800'0024,
 };
 
+/// What may be otherwise when it is asked again: of the transfer, and of the device's present state. The rest
+/// says that the device has no such object, or does not take this value.
+constexpr bool passes(SdoAbort code) noexcept TAPPET_REALTIME {
+    switch (code) {
+    case SdoAbort::toggle_bit:
+    case SdoAbort::time_out:
+    case SdoAbort::unknown_command:
+    case SdoAbort::out_of_memory:
+    case SdoAbort::hardware:
+    case SdoAbort::no_resource:
+    case SdoAbort::not_stored:
+    case SdoAbort::local_control:
+    case SdoAbort::device_state: return true;
+    default: return false;
+    }
+}
+
 constexpr std::string_view to_text(SdoAbort code) noexcept TAPPET_REALTIME {
     switch (code) {
     case SdoAbort::none: return "no abort";

@@ -34,6 +34,11 @@ public:
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_; }
     /// Why it was aborted, by whom ever.
     [[nodiscard]] SdoAbort why() const noexcept TAPPET_REALTIME { return why_; }
+    /// The server was not told yet that it was aborted: the next transfer would begin in the middle of this
+    /// one.
+    [[nodiscard]] bool has_abort_to_send() const noexcept TAPPET_REALTIME {
+        return state_ == State::aborted && to_send_;
+    }
     /// What was read.
     [[nodiscard]] std::span<const std::uint8_t> value() const noexcept TAPPET_REALTIME {
         return std::span{bytes_}.first(size_);
@@ -68,7 +73,8 @@ public:
         return true;
     }
 
-    /// A frame of the server's. What answers no request of ours is of no account.
+    /// A frame of the server's. What answers no request of ours, or an earlier one that was given up, is of
+    /// no account.
     void take(const sdo::Payload& answer) noexcept TAPPET_REALTIME {
         if (state_ != State::busy || to_send_) return;
         const unsigned command = answer[0] >> 5;
@@ -76,11 +82,11 @@ public:
             if (sdo::address_in(answer) == at_) end(State::aborted, sdo::abort_in(answer));
             return;
         }
+        if (is_of_before(answer, command)) return;
         switch (step_) {
         case Step::initiate_read: begin_reading(answer, command); break;
         case Step::read_segment: take_segment(answer, command); break;
         case Step::initiate_write:
-            if (sdo::address_in(answer) != at_) return; // of a transfer before
             if (command != 3) return fail(SdoAbort::unknown_command);
             if (size_ <= 4) return end(State::done, SdoAbort::none);
             step_ = Step::write_segment;
@@ -122,8 +128,16 @@ private:
         end(State::aborted, why);
         to_send_ = true;
     }
+    /// The beginning of a transfer is confirmed with its object, and in another way when it is read than when
+    /// it is written: by that a confirmation which comes late, of what was asked before, is known.
+    [[nodiscard]] bool is_of_before(const sdo::Payload& answer, unsigned command) const noexcept
+        TAPPET_REALTIME {
+        const bool is_initiate = command == 2 || command == 3;
+        if (step_ == Step::read_segment || step_ == Step::write_segment) return is_initiate;
+        const bool is_own = step_ == Step::initiate_read ? command == 2 : command == 3;
+        return sdo::address_in(answer) != at_ || (is_initiate && !is_own);
+    }
     void begin_reading(const sdo::Payload& answer, unsigned command) noexcept TAPPET_REALTIME {
-        if (sdo::address_in(answer) != at_) return; // of a transfer before
         if (command != 2) return fail(SdoAbort::unknown_command);
         const bool expedited = (answer[0] & 2u) != 0;
         const bool says_size = (answer[0] & 1u) != 0;

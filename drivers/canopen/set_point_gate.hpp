@@ -58,6 +58,7 @@ public:
 
     enum class Progress : std::uint8_t { under_way, done, failed };
 
+    void begin_at(double place) noexcept TAPPET_REALTIME { order_.position = place; }
     void set_standing(double velocity) noexcept TAPPET_REALTIME { standing_ = velocity; }
 
     /// Ends the motion.

@@ -48,8 +48,9 @@ inline Sentence to_text(const WatchedNode& node, const NodeTrouble& trouble,
         detail::add_object(text, step.at);
         text.add(step.kind == ConfigurationStep::Kind::write ? " was not written" : " was not read");
         add_hex(text.add(", abort "), static_cast<std::uint32_t>(trouble.why), 8);
-        text.add(" (").add(to_text(trouble.why)).add("); correct the network's table or ").add(node.file);
-        return text;
+        text.add(" (").add(to_text(trouble.why)).add("); ");
+        if (passes(trouble.why)) return text.add("it is asked again: look at the device");
+        return text.add("correct the network's table or ").add(node.file);
     }
     return text;
 }

@@ -92,12 +92,27 @@ TEST_F(Network, refuses_a_device_that_does_not_keep_its_mapping) {
 }
 
 TEST_F(Network, tells_the_abort_code_of_a_device_that_refuses) {
+    drive.refuse(0x605A, SdoAbort::too_high);
+    run_until(1s);
+    EXPECT_EQ(
+        reason(),
+        "node 5 \"drive\": object 605Ah:0 was not written, abort 06090031h (value of parameter written too "
+        "high); correct the network's table or apps/carpet_loom/nodes/drive.eds");
+    EXPECT_EQ(phase(0), NodePhase::refused);
+}
+
+TEST_F(Network, asks_a_device_again_that_cannot_take_its_configuration_now) {
     drive.refuse(0x605A, SdoAbort::device_state);
     run_until(1s);
-    EXPECT_EQ(reason(),
-              "node 5 \"drive\": object 605Ah:0 was not written, abort 08000022h (data cannot be transferred "
-              "or stored to the application because of the present device state); correct the network's "
-              "table or apps/carpet_loom/nodes/drive.eds");
+    EXPECT_EQ(
+        reason(),
+        "node 5 \"drive\": object 605Ah:0 was not written, abort 08000022h (data cannot be transferred "
+        "or stored to the application because of the present device state); it is asked again: look at the "
+        "device");
+    EXPECT_EQ(phase(0), NodePhase::lost);
+    drive.refuse(0x605A, SdoAbort::none);
+    run(1500ms);
+    EXPECT_TRUE(operational()) << reason();
 }
 
 TEST_F(Network, waits_for_a_node_that_does_not_answer) {

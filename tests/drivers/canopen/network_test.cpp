@@ -2,6 +2,7 @@
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "apps/carpet_loom/nodes/encoder.eds.hpp"
 #include "drivers/canopen/network.hpp"
+#include "tests/drivers/canopen/servo.eds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -275,6 +276,23 @@ TEST(NetworkTable, keeps_its_own_identifiers) {
                   "frame \"mine\" has the identifier " + std::string{hex(id, 3).view()} +
                       ", which is the network's own; take it out of the signal map");
     }
+}
+
+TEST(NetworkTable, refuses_a_status_word_that_comes_apart_from_its_mode) {
+    constexpr auto apart =
+        can::signal_map(can::receive(can::standard(0x185), "word", can::bytes(2), can::every(5ms),
+                                     can::signal("word", 0, 16)),
+                        can::receive(can::standard(0x285), "mode", can::bytes(1), can::every(5ms),
+                                     can::signal("mode", 0, 8).as_signed()));
+    constexpr NodeRow servo = node(5, "servo", dictionary<files::servo_eds>).heartbeat(100ms);
+    constexpr ManagerRow beats = manager(127).sync(1ms);
+    EXPECT_EQ(
+        fault_of(apart, beats, servo.pdo("word", on_event(), {0x6041}).pdo("mode", synchronous(), {0x6061})),
+        "node 5 \"servo\": its status word (6041) comes with frame \"word\" and the mode that it belongs to "
+        "(6061) with frame \"mode\", at other times; map both into one frame, or let both be synchronous()");
+    EXPECT_EQ(fault_of(apart, beats,
+                       servo.pdo("word", synchronous(), {0x6041}).pdo("mode", synchronous(), {0x6061})),
+              "");
 }
 
 } // namespace

@@ -149,8 +149,49 @@ TEST_F(Connection, notices_a_missing_answer_a_wrong_toggle_and_a_strange_answer)
     ASSERT_TRUE(client.next(request, now));
     client.take(sdo::with_address(0x43, 0x1000, 1));
     EXPECT_EQ(client.state(), SdoClient::State::busy) << "an answer for another object is none";
-    client.take(sdo::with_address(0x60, 0x2000));
+    client.take(sdo::with_address(0xE0, 0x2000));
     EXPECT_EQ(client.why(), SdoAbort::unknown_command);
+}
+
+TEST_F(Connection, takes_no_confirmation_that_is_late_for_the_transfer_after_it) {
+    sdo::Payload request;
+    const std::string one{"\x01"}, long_one{"more than four bytes"};
+    const auto begin_write = [&](const std::string& value) {
+        client.write(0x2000, std::span{reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
+        ASSERT_TRUE(client.next(request, now));
+    };
+    const sdo::Payload written = sdo::with_address(0x60, 0x2000), read = sdo::with_address(0x43, 0x2000, 7);
+    begin_write(long_one);
+    client.take(written);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(written); // of the try before, which was given up
+    EXPECT_EQ(client.state(), SdoClient::State::busy);
+    client.take({0x20});
+    EXPECT_EQ(client.state(), SdoClient::State::busy) << "the next segment";
+
+    client.read(0x2000);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(written);
+    EXPECT_EQ(client.state(), SdoClient::State::busy);
+    client.take(read);
+    EXPECT_EQ(client.state(), SdoClient::State::done);
+
+    begin_write(one);
+    client.take(read);
+    EXPECT_EQ(client.state(), SdoClient::State::busy);
+    client.take(written);
+    EXPECT_EQ(client.state(), SdoClient::State::done);
+}
+
+TEST_F(Connection, tells_the_server_of_a_time_out_before_anything_else) {
+    sdo::Payload request;
+    client.read(0x2000);
+    ASSERT_TRUE(client.next(request, now));
+    client.tick(now + 101ms);
+    EXPECT_TRUE(client.has_abort_to_send());
+    ASSERT_TRUE(client.next(request, now));
+    EXPECT_EQ(request, sdo::abort_frame(0x2000, SdoAbort::time_out));
+    EXPECT_FALSE(client.has_abort_to_send());
 }
 
 TEST_F(Connection, has_a_server_that_takes_no_segment_out_of_turn) {
