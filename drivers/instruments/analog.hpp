@@ -1,6 +1,7 @@
 // Analog inputs and outputs: what a converter counts, or a transmitter sends, becomes a quantity and back.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/component/component.hpp"
 
@@ -94,7 +95,7 @@ struct AnalogOutput {
         const AnalogScale scale = detail::scale_of(*this);
         const double wanted = value.get();
         const auto [least, most] = std::minmax(scale.low, scale.high);
-        send(scale, wanted >= least ? std::min(wanted, most) : wanted < least ? least : scale.low);
+        send(scale, is_number(wanted) ? std::clamp(wanted, least, most) : scale.low);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         const AnalogScale scale = detail::scale_of(*this);

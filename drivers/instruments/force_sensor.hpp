@@ -24,7 +24,7 @@ struct ForceSensor {
         double now = 0.0;
         const Flow flow = measured.read(now);
         const bool is_good = (flow == Flow::fresh || flow == Flow::old) && std::isfinite(now);
-        if (is_good) force.write(now - tare_, measured.stamp());
+        if (is_good) force.write((measured_ = now) - tare_, measured.stamp());
         good.write(is_good);
         const bool too_much = is_good && std::abs(now) > most.get();
         if (too_much && !is_overloaded_) overloaded.emit(now);
@@ -34,7 +34,7 @@ struct ForceSensor {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { force.write(0.0); }
     /// What lies on it now is no load.
     void tare() noexcept TAPPET_REALTIME {
-        if (good.last()) tare_ += force.last();
+        if (good.last()) tare_ = measured_;
     }
 
     static constexpr auto interface() {
@@ -48,7 +48,7 @@ struct ForceSensor {
     }
 
 private:
-    double tare_ = 0.0;
+    double tare_ = 0.0, measured_ = 0.0;
     bool is_overloaded_ = false;
 };
 

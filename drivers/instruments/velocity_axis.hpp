@@ -1,6 +1,7 @@
 // An axis with a drive that takes velocities: only what it may do goes to the wire.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/component/component.hpp"
 
@@ -19,7 +20,7 @@ struct VelocityAxis {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME { stop(cycle); }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         const double now = wanted.get();
-        velocity.write(now == now ? std::clamp(now, -most.get(), most.get()) : 0.0);
+        velocity.write(is_number(now) ? std::clamp(now, -most.get(), most.get()) : 0.0);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
 

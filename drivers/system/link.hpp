@@ -318,7 +318,6 @@ private:
         }
         next.arm(first);
     }
-
     void send_wanted(std::size_t i, Time now) noexcept TAPPET_REALTIME {
         RowState& row = state_[i];
         if (now < row.may_offer) return hold(row);

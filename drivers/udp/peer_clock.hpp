@@ -111,7 +111,7 @@ private:
     void take(std::span<const std::byte> packet) noexcept TAPPET_REALTIME {
         clock_packet::Content content;
         if (!clock_packet::read(packet, content) || !is_open_ || content.number != number_ ||
-            content.is_question())
+            content.asked != asked_ || content.is_question() || content.answered < content.received)
             return; // of a question before this one it says less than the next one's
         is_open_ = false;
         known_.take({asked_, content.received, content.answered, clock_->now()}, drift.get());

@@ -87,9 +87,9 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     if (was_stopped_) {
         static_cast<void>(run_messages()); // what came meanwhile reached nobody: each row counts its own
         commands_.reject_sent();
-        asked_.store(true, std::memory_order_relaxed);
-        serve_requests();
     }
+    asked_.store(true, std::memory_order_relaxed);
+    serve_requests(); // and refuse them, as they were answered
     active_.store(true, std::memory_order_release);
     awaiting_ = 0;
     // All of them first: what the first one tells in its start() reaches those behind it that are sure to

@@ -24,14 +24,16 @@ public:
         if (known_) least_ -= wider, most_ += wider;
         at_ = now;
     }
-    /// Both hold at the time of the last age(). Where they exclude each other it is another clock.
+    /// Both hold at the time of the last age(). Where they exclude what is known it is another clock; where
+    /// they exclude each other they tell of none.
     void narrow(Duration least, Duration most) noexcept TAPPET_REALTIME {
-        if (!known_ || excludes(least, most)) return replace(least, most);
+        if (!known_ || least > most || excludes(least, most)) return replace(least, most);
         least_ = std::max(least_, least);
         most_ = std::min(most_, most);
     }
     /// Only the new ones hold: nobody knows whether it is the same clock.
     void replace(Duration least, Duration most) noexcept TAPPET_REALTIME {
+        if (least > most) return;
         jumps_ += known_ && excludes(least, most) ? 1 : 0;
         least_ = least, most_ = most;
         known_ = true;

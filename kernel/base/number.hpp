@@ -3,9 +3,24 @@
 
 #include "kernel/base/realtime.hpp"
 
+#include <cstddef>
+#include <cstring>
+
 namespace tappet {
 
 /// False: not a number, or infinite.
 constexpr bool is_number(double value) noexcept TAPPET_REALTIME { return value - value == 0.0; }
+
+/// Of a floating value of that many bytes.
+inline double real_at(const std::byte* value, std::size_t bytes) noexcept TAPPET_REALTIME {
+    double number = 0;
+    float single = 0;
+    if (bytes == sizeof single) {
+        std::memcpy(&single, value, sizeof single);
+        return static_cast<double>(single);
+    }
+    std::memcpy(&number, value, sizeof number);
+    return number;
+}
 
 } // namespace tappet

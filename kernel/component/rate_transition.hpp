@@ -2,6 +2,7 @@
 // Control of Dynamic Systems, 1998, chapter 6: holds of order nought and one).
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 
@@ -33,8 +34,8 @@ public:
 private:
     void take(Time now, double written, Time stamp) noexcept TAPPET_REALTIME {
         const double seconds = to_seconds(period_);
-        is_first_ |=
-            now - began_ > 2 * period_; // nobody read it meanwhile: a line from there leads from the past
+        // Nobody read it meanwhile: a line from there leads from the past; from no number it leads nowhere.
+        is_first_ |= now - began_ > 2 * period_ || !is_number(from_) || !is_number(slope_);
         if (how_ == RateTransition::interpolate) {
             from_ = is_first_ ? written
                               : from_ + slope_ * to_seconds(std::clamp(now - began_, Duration{}, period_));

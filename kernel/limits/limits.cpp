@@ -43,17 +43,13 @@ double without_number(const LimitRow& row, const Limited& port) noexcept TAPPET_
 
 /// The nearest value to `wanted` that a row allows: always a number.
 double allowed(const LimitRow& row, const Limited& port, double wanted, Time stamp) noexcept TAPPET_REALTIME {
-    if (!row.is_rate) {
-        if (wanted > row.high) return row.high;
-        if (wanted < row.low) return row.low;
-        return is_number(wanted) ? wanted : without_number(row, port);
-    }
-    if (!port.has_last) return is_number(wanted) ? wanted : without_number(row, port);
+    if (!is_number(wanted)) return without_number(row, port);
+    if (!row.is_rate) return wanted > row.high ? row.high : wanted < row.low ? row.low : wanted;
+    if (!port.has_last) return wanted;
     const double step =
         row.per_second * static_cast<double>(std::max(stamp - port.at, Duration{}).count()) * 1e-9;
     if (std::abs(wanted - port.last) <= step) return wanted;
-    if (wanted > port.last) return port.last + step;
-    return wanted < port.last ? port.last - step : port.last;
+    return wanted > port.last ? port.last + step : port.last - step;
 }
 
 void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {

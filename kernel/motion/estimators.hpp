@@ -48,13 +48,20 @@ public:
         TAPPET_CONTRACT(check(gains).empty(), Contract::refused_settings);
     }
 
+    static constexpr int most_before = 8;
+
     /// A value that was true at `at`. One that is no number, or not later than the last one, is left out and
-    /// counts. Real-time.
+    /// counts; more than `most_before` in a row that are not later show that the last one's time was wrong,
+    /// and it begins anew. Real-time.
     constexpr void sample(double value, Time at) noexcept TAPPET_REALTIME {
-        if (!is_number(value) || (samples_ > 0 && at <= at_)) {
+        const bool is_before = samples_ > 0 && at <= at_;
+        before_ = is_number(value) && is_before ? before_ + 1 : 0;
+        if (before_ > most_before) reset();
+        if (!is_number(value) || (is_before && before_ <= most_before)) {
             ++refused_;
             return;
         }
+        before_ = 0;
         const double h = to_seconds(at - at_);
         // Not by h alone: the noise of a value that comes at almost the time of the last one is no speed.
         usual_s_ = samples_ < 2 ? h : std::max(h, usual_s_ / 2.0);
@@ -94,7 +101,7 @@ private:
     double velocity_ = 0.0;
     double usual_s_ = 0.0; ///< from sample to sample
     Time at_{};
-    int samples_ = 0;
+    int samples_ = 0, before_ = 0;
     std::uint32_t refused_ = 0;
 };
 

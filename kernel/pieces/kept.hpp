@@ -40,7 +40,7 @@ private:
 };
 
 /// Adds up a count that begins anew at each start of who counts: pieces, strokes, stops. What is counted
-/// while this component stands it adds when it runs again. Real-time.
+/// while this component stands it adds when it runs again. What the count is forced to is counted. Real-time.
 struct Total {
     Input<std::int64_t> count;
     Output<std::int64_t> sum;

@@ -1,6 +1,7 @@
 // A set point that follows its target no faster than it may.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 
@@ -15,6 +16,7 @@ public:
 
     /// One step towards the target, which it reaches and does not pass. What is no number is no target.
     constexpr double operator()(double target, Duration step) noexcept TAPPET_REALTIME {
+        if (!is_number(target)) return value_;
         const double s = to_seconds(step);
         if (target > value_ && up_ > 0)
             value_ = target - value_ <= up_ * s ? target : value_ + up_ * s;

@@ -101,17 +101,6 @@ constexpr void put_bits(std::span<std::uint8_t> into, std::size_t at, std::size_
 /// What telling a value found; what is no number is not told.
 enum class Told : std::uint8_t { well, beyond, no_number };
 
-inline double real_at(const std::byte* value, const WireValue& as) noexcept TAPPET_REALTIME {
-    double number = 0;
-    float single = 0;
-    if (as.bytes == sizeof single) {
-        std::memcpy(&single, value, sizeof single);
-        return static_cast<double>(single);
-    }
-    std::memcpy(&number, value, sizeof number);
-    return number;
-}
-
 /// The whole number nearest to value / step that the bits can hold.
 inline Told to_steps(double value, const WireValue& as, std::int64_t& steps) noexcept TAPPET_REALTIME {
     if (!is_number(value)) return Told::no_number;
@@ -134,7 +123,7 @@ inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uin
         return Told::well;
     }
     if (as.kind == ValueKind::opaque) {
-        if (as.is_real && !is_number(real_at(value, as))) return Told::no_number;
+        if (as.is_real && !is_number(real_at(value, as.bytes))) return Told::no_number;
         for (std::size_t i = 0; i < as.bytes; ++i)
             put_bits(into, at + 8 * i, 8, std::to_integer<std::uint64_t>(value[i]));
         return Told::well;
@@ -142,7 +131,7 @@ inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uin
     std::int64_t steps = 0;
     Told told = Told::well;
     if (as.kind == ValueKind::real) {
-        told = to_steps(real_at(value, as), as, steps);
+        told = to_steps(real_at(value, as.bytes), as, steps);
     } else {
         std::int64_t whole = 0;
         if (as.bytes == 4 && as.kind == ValueKind::integer) {
@@ -192,7 +181,7 @@ inline bool hear(std::span<const std::uint8_t> from, std::size_t at, const WireV
     if (as.kind == ValueKind::opaque) {
         for (std::size_t i = 0; i < as.bytes; ++i)
             value[i] = static_cast<std::byte>(take_bits(from, at + 8 * i, 8));
-        return !as.is_real || is_number(real_at(value, as));
+        return !as.is_real || is_number(real_at(value, as.bytes));
     }
     auto steps = static_cast<std::int64_t>(take_bits(from, at, as.bits));
     if (as.is_signed && (steps >> (as.bits - 1) & 1) != 0) steps -= std::int64_t{1} << as.bits;

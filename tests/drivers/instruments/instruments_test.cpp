@@ -179,6 +179,13 @@ TEST_F(Instruments, a_force_sensor_takes_its_tare_off_and_tells_an_overload_once
     wires().newtons_now = 115.0;
     pass();
     EXPECT_DOUBLE_EQ(cell.force.last(), 100.0);
+    cell.tare();
+    cell.tare();
+    pass();
+    EXPECT_DOUBLE_EQ(cell.force.last(), 0.0) << "twice in one cycle is once";
+    wires().newtons_now = 15.0;
+    pass();
+    cell.tare();
     wires().newtons_now = -1200.0;
     pass(5ms);
     EXPECT_EQ(alarm.times, 1);
@@ -203,14 +210,15 @@ TEST_F(Instruments, an_axis_and_an_analog_output_send_what_they_may) {
         double wanted, sent;
     };
     constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-    for (const auto& [wanted, sent] :
-         {Case{0.3, 0.3}, Case{2.0, 0.5}, Case{-2.0, -0.5}, Case{no_number, 0.0}}) {
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    for (const auto& [wanted, sent] : {Case{0.3, 0.3}, Case{2.0, 0.5}, Case{-2.0, -0.5}, Case{no_number, 0.0},
+                                       Case{endless, 0.0}, Case{-endless, 0.0}}) {
         wires().velocity_now = wanted;
         pass();
         EXPECT_EQ(wires().velocity.get(), sent) << wanted;
     }
     for (const auto& [wanted, sent] :
-         {Case{5.0, 12.0}, Case{90.0, 20.0}, Case{-3.0, 4.0}, Case{no_number, 4.0}}) {
+         {Case{5.0, 12.0}, Case{90.0, 20.0}, Case{-3.0, 4.0}, Case{no_number, 4.0}, Case{endless, 4.0}}) {
         wires().pressure_now = wanted;
         pass();
         EXPECT_DOUBLE_EQ(wires().raw.get(), sent) << wanted;

@@ -146,6 +146,31 @@ TEST_F(Clocks, tell_how_far_the_other_one_is_ahead_and_how_surely) {
     EXPECT_LT(peer.error.last(), 1001us);
 }
 
+TEST_F(Clocks, take_no_answer_that_cannot_be) {
+    for (int i = 0; i < 3; ++i) exchange();
+    const Duration ahead = peer.ahead.last(), error = peer.error.last();
+    const auto answer = [&](Duration asked, Duration received, Duration answered) {
+        peer.step(cycle());
+        std::array<std::byte, most_bytes> packet;
+        clock_packet::Content question;
+        const std::size_t size = asking.hear(packet);
+        ASSERT_TRUE(clock_packet::read(std::span{packet}.first(size), question));
+        wait(1ms);
+        ASSERT_TRUE(asking.tell(clock_packet::write(
+            {question.number, question.asked + asked, clock.now() + received, clock.now() + answered})));
+        wait(1ms);
+        peer.step(cycle());
+        wait(98ms);
+    };
+    answer(-77s, 0ms, 0ms); // of a question that was not asked then
+    answer(0ms, 0ms, -5ms); // given before it was asked for
+    answer(0ms, -50s, 40s); // which took longer than its way there and back
+    EXPECT_EQ(peer.ahead.last(), ahead);
+    EXPECT_GE(peer.error.last(), error);
+    EXPECT_LT(peer.error.last(), error + 1ms) << "by what the clocks drift";
+    EXPECT_EQ(peer.jumps.last(), 0);
+}
+
 TEST_F(Clocks, take_no_answer_of_another_question_and_answer_no_nonsense) {
     exchange();
     peer.step(cycle());

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace tappet {
 namespace {
 
@@ -50,6 +52,20 @@ TEST(RateTransitions, of_two_values_of_almost_one_time_lead_no_further_than_from
     EXPECT_NEAR(between.at(third, true, 10.5, third), 10.5, 1e-12);
     for (Duration later{}; later < 20ms; later += 1ms)
         EXPECT_LE(between.at(third + later, false, 10.5, third), 11.0);
+}
+
+TEST(RateTransitions, forget_what_is_no_number) {
+    for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
+        BetweenValues between{how, 4ms};
+        Time now{1s};
+        static_cast<void>(between.at(now, true, 1.0, now));
+        now += 4ms;
+        static_cast<void>(between.at(now, true, std::numeric_limits<double>::quiet_NaN(), now));
+        for (int i = 0; i < 3; ++i) {
+            now += 4ms;
+            EXPECT_EQ(between.at(now, true, 5.0, now), 5.0);
+        }
+    }
 }
 
 TEST(RateTransitions, begin_anew_when_nobody_read_for_a_while) {

@@ -50,6 +50,17 @@ TEST(AlphaBeta, leaves_out_what_is_no_number_or_too_old_and_says_so) {
     EXPECT_EQ(estimator.at(at_ns(20)), 4.0);
 }
 
+TEST(AlphaBeta, begins_anew_after_a_time_that_cannot_have_been) {
+    AlphaBeta estimator{AlphaBetaGains::critically_damped(0.5)};
+    Time now{10s};
+    for (int i = 0; i < 100; ++i) estimator.sample(0.01 * i, now += 10ms);
+    estimator.sample(1.0, now + 1h);
+    for (int i = 100; i < 150; ++i) estimator.sample(0.01 * i, now += 10ms);
+    EXPECT_TRUE(estimator.good());
+    EXPECT_NEAR(estimator.at(now), 1.49, 1e-6);
+    EXPECT_EQ(estimator.refused(), static_cast<std::uint32_t>(AlphaBeta::most_before));
+}
+
 TEST(AlphaBeta, refuses_gains_that_never_settle) {
     EXPECT_EQ(check(AlphaBetaGains{.5, .17}), "");
     for (const AlphaBetaGains bad : {AlphaBetaGains{0.0, 0.1}, {0.5, 0.0}, {1.0, 2.0}, {no_number, 1.0}}) {

@@ -129,6 +129,20 @@ TEST(VirtualWorld, stops_within_no_time_while_makers_functions_take_theirs_and_n
     EXPECT_TRUE(rig.instance.standing());
 }
 
+TEST(VirtualWorld, does_not_do_later_what_it_refused_before_the_start) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<watched::table, watched::board>::machine(), clock};
+    VirtualWorld world{instance};
+    ASSERT_TRUE(instance.configure({}));
+    const std::size_t middle = find_component(instance.machine().table, "middle");
+    const LifeTicket ticket = instance.life().ask_component(middle, LifeChange::stop);
+    EXPECT_EQ(instance.life().answer_of_component(middle, ticket).refusal, LifeRefusal::activity_stopped);
+    world.start();
+    EXPECT_TRUE(world.run_until(at_ns(0) + 100ms));
+    EXPECT_EQ(instance.life().state_of(middle), ComponentState::running);
+    world.stop();
+}
+
 TEST(VirtualWorldDeathTest, does_nothing_to_an_engine_that_runs_that_is_for_one_that_stands) {
     Rig<watched::table> rig;
     Engine& engine = rig.instance.engines()[0];

@@ -1,0 +1,95 @@
+// Frames on demand when what they carry is forced, when a force ends, and when a time cannot be.
+#include "tests/drivers/components/can_machine.hpp"
+
+#include <vector>
+
+namespace tappet::test {
+namespace {
+
+using OnDemand = CanMachine;
+
+TEST_F(OnDemand, repeats_no_demand_when_a_force_ends_or_the_machine_stops_meanwhile) {
+    demand(1, 3);
+    run_until(20ms);
+    ASSERT_EQ(heard_of(0x000).size(), 1u);
+    heard.clear();
+    End node;
+    ASSERT_TRUE(resolve(instance.machine().table, "can.nmt.node", FacetKind::input, node).empty());
+    const PortOperations& port = *facet_at(instance.machine().table, node).port;
+    const std::int64_t three = 3;
+    const auto force = [&] {
+        port.force(instance.place_of(node), true, reinterpret_cast<const std::byte*>(&three));
+        instance.engines()[0].waiter().wake();
+    };
+    force();
+    run_until(40ms);
+    port.release(instance.place_of(node), true);
+    instance.engines()[0].waiter().wake();
+    run_until(60ms);
+    EXPECT_TRUE(heard_of(0x000).empty());
+    force();
+    run_until(80ms);
+    world.stop();
+    carry(clock.now() + 1ms);
+    EXPECT_TRUE(heard_of(0x000).empty());
+}
+
+/// Frames on demand while what they carry is forced.
+struct ForcedDemand : OnDemand {
+    void force(std::string_view name, FacetKind kind, std::int64_t value) {
+        ASSERT_TRUE(resolve(instance.machine().table, name, kind, end).empty());
+        ASSERT_TRUE(port().force(instance.place_of(end), kind == FacetKind::input,
+                                 reinterpret_cast<const std::byte*>(&value)));
+        wait();
+    }
+    void release() {
+        port().release(instance.place_of(end),
+                       facet_at(instance.machine().table, end).kind == FacetKind::input);
+        wait();
+    }
+    void write(std::int64_t value) {
+        master->sync_next = static_cast<int>(value);
+        wait();
+    }
+    void wait() {
+        instance.engines()[0].waiter().wake();
+        run_until(clock.now().time_since_epoch() + 20ms);
+    }
+    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
+    [[nodiscard]] std::vector<int> sent() {
+        std::vector<int> values;
+        for (const can::Frame& each : heard_of(0x080)) values.push_back(each.data[0]);
+        return values;
+    }
+    End end;
+};
+
+TEST_F(ForcedDemand, goes_back_to_what_its_component_wrote_when_the_force_of_its_output_ends) {
+    write(1);
+    force("master.sync", FacetKind::output, 99);
+    write(0);
+    release();
+    EXPECT_EQ(sent().back(), 0);
+}
+
+TEST_F(ForcedDemand, goes_back_to_what_was_written_before_when_the_force_of_its_input_ends) {
+    write(7);
+    force("can.sync.count", FacetKind::input, 99);
+    release();
+    EXPECT_EQ(sent(), (std::vector{7, 99, 7}));
+}
+
+TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_cannot_be) {
+    master->sync_at = at_ns(3'600'000'000'000);
+    master->sync_next = 1;
+    run_until(20ms);
+    master->sync_at = Time::min();
+    master->sync_next = 2;
+    run_until(40ms);
+    master->sync_next = 2;
+    run_until(60ms);
+    EXPECT_EQ(heard_of(0x080).size(), 3u);
+}
+
+} // namespace
+} // namespace tappet::test
