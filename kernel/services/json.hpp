@@ -2,7 +2,9 @@
 #pragma once
 
 #include "kernel/base/real_text.hpp"
+#include "kernel/base/utf8.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <concepts>
 #include <cstddef>
@@ -39,10 +41,15 @@ public:
     JsonText& value(std::string_view text) noexcept {
         separate();
         put("\"");
-        for (const char character : text) {
+        while (!text.empty()) {
+            const char character = text.front();
+            const std::size_t length = utf8_length(text);
             if (character == '"' || character == '\\') put("\\");
             const bool control = static_cast<unsigned char>(character) < 0x20;
-            put(control ? std::string_view{" "} : std::string_view{&character, 1});
+            put(control       ? " "
+                : length == 0 ? "?"
+                              : text.substr(0, length)); // JSON is UTF-8, whoever wrote it
+            text.remove_prefix(std::max<std::size_t>(length, 1));
         }
         put("\"");
         return *this;

@@ -160,4 +160,13 @@ void BrowserService::note(const Client& client, std::string_view what, std::stri
     os::print(line.add("\n").view());
 }
 
+// What was accepted and is not done; the line of its request says by whom.
+void BrowserService::note_end(const Pending& place, std::string_view how,
+                              std::string_view why) const noexcept {
+    if (!log.get() || place.is_told) return;
+    os::print(Sentence{"browser: not done (", how, ") at ", to_ns(now_) / 1000, " us, request ",
+                       place.asker.number, ", ", to_text(place.asker.role), ": ", why, "\n"}
+                  .view());
+}
+
 } // namespace tappet

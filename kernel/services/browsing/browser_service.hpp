@@ -21,6 +21,8 @@ public:
     /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
+    /// Of them, by commands and lines, which may take any time.
+    static constexpr std::size_t kept_by_endless = 2;
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 
@@ -82,7 +84,7 @@ private:
     }
 
     // What waits for an answer; requests_pending.cpp
-    [[nodiscard]] Pending* free_place(Role role) noexcept;
+    [[nodiscard]] Pending* free_place(Role role, std::size_t also_kept = 0) noexcept;
     static Verdict no_place() noexcept;
     Verdict await(Pending& place, const browsing::Asker& asker, bool (BrowserService::*look)(Pending&));
     Verdict await_engine(Pending& place, const browsing::Asker& asker, std::size_t component,
@@ -91,6 +93,7 @@ private:
     [[nodiscard]] Client* who_waits(const Pending& place) noexcept;
     bool answer_good(const Pending& place) noexcept;
     bool answer_bad(const Pending& place, Refusal code, const Sentence& why) noexcept;
+    void note_end(const Pending& place, std::string_view how, std::string_view why) const noexcept;
 
     // What is read; requests_read.cpp
     Verdict hello(Client& client, const Request& request);

@@ -206,17 +206,11 @@ BrowserService::Verdict BrowserService::call(Client& client, const Request& requ
     if (facet.method != nullptr && facet.type->size + facet.method->result_bytes > values.size())
         return {Refusal::unsupported, Sentence{"its result is too large to be shown"}};
     const ActivityRow& activity = table.activities[machine_->machine().index.activity[end.component]];
-    if (facet.may_block && activity.real_time) {
-        if (!facet.any_thread)
-            return {
-                Refusal::unsupported,
+    // Not here, if it is any_thread: everybody else's requests would wait for it.
+    if (facet.may_block && activity.real_time)
+        return {Refusal::unsupported,
                 Sentence{"\"", request.arguments[0], "\" may block, and activity \"", activity.name,
-                         "\" of its component is real-time; make it a command, or declare it any_thread if "
-                         "it is safe here"}};
-        auto& own = prepare(*place, end);
-        run_method(&own, nullptr);
-        return await(*place, asker(client, request), &BrowserService::look_at_facet);
-    }
+                         "\" of its component is real-time; put the component into another activity"}};
     return reach(*place, asker(client, request), end, facet.method != nullptr ? &run_method : &run_operation);
 }
 

@@ -18,7 +18,7 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
     if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
         !role.good())
         return role;
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.role, kept_by_endless);
     if (place == nullptr) return no_place();
     auto& call = place->work.emplace<FollowedCommand>();
     const Facet& facet = facet_at(table, end);
@@ -41,11 +41,12 @@ bool BrowserService::look_at_command(Pending& place) {
     if (state == call.told) return false;
     call.told = state;
     const bool is_final = !in_flight(state);
-    Client* client = who_waits(place);
-    if (client == nullptr) return is_final;
     const MachineView& table = machine_->machine().table;
     const Facet& facet = facet_at(table, call.command);
     const Sentence name{table.components[call.command.component].name, ".", facet.name};
+    if (is_final && state != CommandState::done) note_end(place, to_text(state), name.view());
+    Client* client = who_waits(place);
+    if (client == nullptr) return is_final;
     Reply reply{place.asker.number};
     JsonText& json = reply.json();
     json.field("command", name.view()).field("state", to_text(state)).field("time_ns", to_ns(now_));

@@ -7,11 +7,11 @@ namespace tappet {
 
 using browsing::Asker;
 
-BrowserService::Pending* BrowserService::free_place(Role role) noexcept {
+BrowserService::Pending* BrowserService::free_place(Role role, std::size_t also_kept) noexcept {
     const auto is_free = [](const Pending& each) { return each.look == nullptr; };
     const auto first = std::ranges::find_if(pending_, is_free);
     const auto count = static_cast<std::size_t>(std::ranges::count_if(pending_, is_free));
-    return count > kept_from(role, max_pending) ? &*first : nullptr;
+    return count > kept_from(role, max_pending) + also_kept ? &*first : nullptr;
 }
 
 BrowserService::Verdict BrowserService::no_place() noexcept {
@@ -67,6 +67,7 @@ bool BrowserService::answer_good(const Pending& place) noexcept {
 }
 
 bool BrowserService::answer_bad(const Pending& place, Refusal code, const Sentence& why) noexcept {
+    note_end(place, to_text(code), why.view());
     if (Client* client = who_waits(place)) {
         Reply reply{place.asker.number, code, why};
         finish(*client, reply);
