@@ -1,0 +1,140 @@
+// Any bytes as what three browsers ask at once of a machine with behaviours, a slot and lines: a line's first
+// character says who asks what stands behind it, an empty line lets time pass. Whatever comes, each answer is
+// one object, no property leaves what its component accepts, the count of forced ports is right, and in the
+// end somebody who asks for one thing is served.
+#include "tests/kernel/services/browsing/press_machine.hpp"
+
+#include "kernel/machine/firmware.hpp"
+#include "kernel/os/local_socket.hpp"
+#include "kernel/services/configuration/property_files.hpp"
+#include "kernel/services/interpreter/command_interpreter.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <unistd.h>
+
+namespace {
+
+using namespace tappet;
+
+struct RamCycle {
+    static constexpr auto machine() {
+        return state_machine<press::Ram>(
+            "cycle", states(state("up", initial), state("down"), state("held"), state("safe", final)),
+            transitions(transition("up", "down", on("arrived")), transition("down", "up", on("arrived")),
+                        transition("down", "held", guard<&press::Ram::may_hold>),
+                        transition("held", "up", on("arrived"))));
+    }
+};
+constexpr auto cycle = RamCycle::machine();
+
+// clang-format off
+constexpr auto table = machine("press",
+    components(component<press::Ram>("ram"), component<press::Table>("table"),
+               component<BrowserService>("browser", set("log", false)), component<CommandInterpreter>("interpreter")),
+    activities(
+        activity("motion",  every(1ms), budget(50us), runs("ram")),
+        activity("slow",    every(10ms), budget(50us), runs("table")),
+        activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser", "interpreter"))),
+    connections(data("table.height", "ram.limit", stale_after(1s), hold)),
+    reactions(),
+    behaviours(behaviour("ram", cycle),
+               behaviour("ram", slot(nodes(60), data_bytes(512), depth(3), command_slots(1), timers(4), trial(1)))));
+// clang-format on
+
+void demand(bool holds) {
+    if (!holds) std::abort();
+}
+
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<table, press::board>::machine(), clock};
+    VirtualWorld world{instance};
+    PropertyFiles files{{}}; // none are kept
+    Rig() { instance.read_properties_from(files.store()); }
+    void run(Duration time) { demand(world.run_until(clock.now() + time)); }
+};
+
+struct Browser {
+    std::optional<os::LocalConnection> connection;
+    std::string last{};
+    void connect(const std::string& path) {
+        if (auto made = os::LocalConnection::connect(path.c_str())) connection.emplace(std::move(*made));
+    }
+    void hear() {
+        static std::array<char, browsing::max_packet_bytes + 1> room;
+        while (connection) {
+            const auto received = connection->receive(room);
+            if (received.what == os::LocalConnection::Received::What::closed) return connection.reset();
+            if (received.what != os::LocalConnection::Received::What::packet) return;
+            demand(received.bytes > 2 && room[0] == '{' && room[received.bytes - 1] == '\n');
+            last.assign(room.data(), received.bytes);
+        }
+    }
+};
+
+void check(Rig& rig) {
+    const auto& ram = *rig.instance.find<press::Ram>("ram");
+    demand(ram.speed.get() * ram.force.get() <= 100);
+    std::uint32_t forced = 0;
+    const auto view = map::View::open(rig.instance.observation().shared_memory());
+    demand(view.has_value());
+    for (const map::Facet& each : view->facets()) forced += view->word<std::uint8_t>(each.forced_at) != 0;
+    demand(forced == rig.instance.observation().forced_ports().load());
+}
+
+/// Commands and lines may take any time; what they leave is asked again for so long.
+constexpr int patience = 400;
+
+void demand_to_be_served(Rig& rig, const std::string& path) {
+    Browser one;
+    for (int tries = 0; tries < patience; ++tries) {
+        if (!one.connection) one.connect(path);
+        if (one.connection) static_cast<void>(one.connection->send("1 get table.height"));
+        rig.run(50ms);
+        one.hear();
+        if (one.last.find("\"value\"") != std::string::npos) return;
+    }
+    demand(false);
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const std::string directory = "/tmp/tappet-storm-fuzz-" + std::to_string(getpid());
+    static const std::string path = directory + "/press.socket";
+    static std::optional<Rig> rig;
+    rig.emplace();
+    rig->instance.browse_in(directory);
+    demand(rig->instance.configure({}).has_value());
+    rig->world.start();
+    {
+        std::array<Browser, 3> browsers;
+        for (Browser& each : browsers) each.connect(path);
+        std::string_view rest{reinterpret_cast<const char*>(data), size};
+        for (int lines = 0; !rest.empty() && lines < 200; ++lines) {
+            const std::size_t end = rest.find('\n');
+            const std::string_view line = rest.substr(0, end);
+            rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
+            if (line.size() < 2) {
+                rig->run(20ms);
+                for (Browser& each : browsers) each.hear();
+                check(*rig);
+                continue;
+            }
+            Browser& by = browsers[static_cast<unsigned char>(line.front()) % browsers.size()];
+            if (!by.connection) by.connect(path);
+            if (by.connection) static_cast<void>(by.connection->send(line.substr(1)));
+        }
+        rig->run(1s);
+        for (Browser& each : browsers) each.hear();
+        check(*rig);
+        demand_to_be_served(*rig, path);
+    }
+    rig->instance.find<BrowserService>("browser")->finalise();
+    return 0;
+}
