@@ -11,7 +11,8 @@ using namespace tappet;
 
 // clang-format off
 inline constexpr auto bed_signals = can::signal_map(
-    can::receive(can::standard(0x181), "level", can::bytes(2), can::every(5ms), can::signal("height", 0, 16).times(0.1).in("mm")),
+    can::receive(can::standard(0x181), "level", can::bytes(6), can::every(5ms), can::signal("height", 0, 16).times(0.1).in("mm"),
+        can::signal("weight", 16, 32).as_float().in("kg")),
     can::transmit(can::standard(0x201), "pump", can::bytes(5), can::every(5ms),
         can::signal("speed", 0, 16).as_signed().times(0.1).in("rpm").range(-1000, 1000).safe(0),
         can::signal("on", 16, 1).safe(0),

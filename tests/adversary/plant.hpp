@@ -18,6 +18,7 @@ public:
     Time move(Time now) override {
         height_ = std::clamp(height_ + (random_.unit() - 0.5), 0.0, 100.0);
         can.set("level.height", height_);
+        can.set("level.weight", 0.4 * height_);
         io.set("full", height_ > 50.0);
         unit.set("oven.temperature", 20.0 + unit.get("heat.power"));
         return now + 5ms;

@@ -119,6 +119,9 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
 /// A value that is shown as good was written within the age that its row allows.
 void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
     if (field_of(answer, "flow") != "fresh" || field_of(answer, "forced") == "true") return;
+    const std::string value = field_of(answer, "value");
+    if (value == "nan" || value == "inf" || value == "-inf")
+        return deny(Sentence{"\"", name, "\" is shown as fresh, and is no number"});
     const MachineView& table = of_.machine.table;
     Duration oldest{};
     for (std::size_t x = 0; x < table.connections.size(); ++x)

@@ -118,6 +118,7 @@ void SwarmRun::garble_bus(std::string_view device, const can::Identifiers& map) 
     for (std::size_t i = 0; i < row.length; ++i)
         frame.data[i] = static_cast<std::uint8_t>(how < 3 ? patterns[how] : random_.below(256));
     ++verdict_.faults["bus says anything"];
+    wires_.excuse_axes(run_.now() + 50ms); // one that starts begins where it is said to be
     say(Sentence{"bus \"", device, "\" says ",
                  how == 3   ? "anything"
                  : how == 0 ? "ones"

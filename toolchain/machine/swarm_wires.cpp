@@ -89,6 +89,7 @@ void SwarmWires::add_axes() {
                 const ComponentRow& row = table.components[driver.component];
                 if ((!is_sent && link.to != End{c, facet}) || !tappet::drives(row, "can")) continue;
                 axis.device = row.device;
+                axis.driver = driver.component;
                 *wire = wire_of(*static_cast<const can::Identifiers*>(row.type->device_map),
                                 facet_at(table, driver).name);
             }
@@ -151,7 +152,8 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
     if (identifier != axis.place.frame) return;
     const std::string_view state = state_of(axis);
     // A drive that the machine cannot reach is its own time-out's.
-    const bool is_reached = !can::faulted(devices_.controller(device).state());
+    const bool is_reached = !can::faulted(devices_.controller(device).state()) &&
+                            struck_.whole_for(axis.driver, frame.stamp) >= Duration{};
     if (!is_reached || (state != "Disabled" && state != "Standstill"))
         axis.rests_since = never;
     else if (axis.rests_since == never)

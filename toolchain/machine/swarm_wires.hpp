@@ -87,6 +87,7 @@ private:
         };
         Wire place{}, word{}, mode{}, target{};
         End state{}, standing{};
+        std::size_t driver = 0;          ///< of its wires
         bool is_enabled = false;         ///< the drive says so
         unsigned follows = 0;            ///< frames one after the other that say it follows positions
         std::optional<double> sent_to{}; ///< while it follows

@@ -1,4 +1,5 @@
-// A machine whose one axis stands on a CiA 402 drive: what it does is asked for by people alone.
+// A machine whose one axis stands on a CiA 402 drive: it goes home, to places and follows, and people ask it
+// for anything besides.
 #pragma once
 
 #include "drivers/can/bus.hpp"
@@ -10,6 +11,43 @@
 namespace adversary_axis {
 
 using namespace tappet;
+
+/// One motion after the other, each a while after the one before.
+struct Work {
+    Event<> power_on, reset, release;
+    CommandCall<> home;
+    CommandCall<double, double> move_to;
+    CommandCall<std::int64_t> synchronize;
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME { waits_ = turn_ = 0; }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        if (in_flight(home.state()) || in_flight(move_to.state()) || in_flight(synchronize.state()))
+            waits_ = 0;
+        if (++waits_ < pause) return;
+        waits_ = 0;
+        switch (turn_++ % 5) {
+        case 0:
+            reset.emit();
+            release.emit();
+            return power_on.emit();
+        case 1: return static_cast<void>(home.send());
+        case 2: return static_cast<void>(move_to.send(25.0, 40.0));
+        case 3: return static_cast<void>(synchronize.send(8));
+        default: return static_cast<void>(move_to.send(-25.0, 20.0));
+        }
+    }
+    static constexpr auto interface() {
+        return facets(
+            event<&Work::power_on>("power_on", "asked for"), event<&Work::reset>("reset", "asked for"),
+            event<&Work::release>("release", "asked for"), sends<&Work::home>("home", "its reference"),
+            sends<&Work::move_to>("move_to", "a place"),
+            sends<&Work::synchronize>("synchronize", "with positions"));
+    }
+
+private:
+    static constexpr int pause = 300; // cycles
+    int waits_ = 0, turn_ = 0;
+};
 
 // clang-format off
 inline constexpr auto axis_signals = can::signal_map(
@@ -26,10 +64,11 @@ inline constexpr auto table = machine("axis-bed",
     components(
         component<can::Bus<axis_signals>>("can", device("axis-can")),
         component<canopen::Axis<"mm">>("axis", set("standing", 0.01)),
+        component<Work>("work"),
         component<BrowserService>("browser"), component<CommandInterpreter>("interpreter")),
     activities(
         activity("can",     on_device("can"), at_most(8, 1ms), runs("can"), deadline(500us), budget(30us)),
-        activity("axis",    every(2ms), runs("axis"), budget(50us)),
+        activity("axis",    every(2ms), runs("work", "axis"), budget(50us)),
         activity("browser", every(20ms), not_real_time, runs("browser", "interpreter"), stack(256 * 1024))),
     connections(
         data("can.status.word",       "axis.statusword",   stale_after(20ms), hold),
@@ -42,7 +81,13 @@ inline constexpr auto table = machine("axis-bed",
         data("axis.target_velocity",  "can.target.velocity"),
         data("axis.profile_velocity", "can.profile.velocity"),
         data("axis.target_torque",    "can.profile.torque")),
-    reactions(),
+    reactions(
+        uses("work.home",        "axis.home"),
+        uses("work.move_to",     "axis.move_to"),
+        uses("work.synchronize", "axis.synchronize"),
+        when("work.power_on",    call("axis.power_on")),
+        when("work.reset",       call("axis.reset")),
+        when("work.release",     call("axis.release"))),
     behaviours());
 // clang-format on
 
