@@ -42,7 +42,7 @@ const std::vector<Size> sizes{
     {"toolchain/machine",     5939},
     {"toolchain/tools",       13192},
     {"tests/kernel",         31906},
-    {"tests/drivers",         15737},
+    {"tests/drivers",         15750},
     {"tests/apps",            6064},
     {"tests/toolchain",       6163},
     {"tests/bench",           4642},

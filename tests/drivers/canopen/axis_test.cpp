@@ -295,16 +295,20 @@ TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
     EXPECT_EQ(axis->target_velocity.last(), 30);
 }
 
-/// Its set point is forced meanwhile.
+/// Its set point is forced meanwhile, for less than what stands behind it takes to grow stale.
 struct ForcedAxis : ServoAxis {
     void force(double value) {
         ASSERT_TRUE(resolve(instance.machine().table, "axis.set_point", FacetKind::input, end).empty());
         EXPECT_TRUE(port().force(instance.place_of(end), true, reinterpret_cast<const std::byte*>(&value)));
-        run(200ms);
+        run(4ms);
     }
     void release() {
         port().release(instance.place_of(end), true);
-        run(200ms);
+        run(3ms);
+    }
+    void write(double value) {
+        client->once = value;
+        run(3ms);
     }
     [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
     End end;
@@ -314,8 +318,7 @@ TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
     power();
     ASSERT_TRUE(client->synchronize.send(8));
     ASSERT_TRUE(until([&] { return axis->follows.last(); }));
-    client->once = 1;
-    run(10ms);
+    write(1);
     force(1.5);
     ASSERT_NEAR(axis->target_position.last(), 1.5, 1e-9);
     release();
@@ -325,10 +328,20 @@ TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
 TEST_F(ForcedAxis, comes_to_rest_when_the_force_of_its_velocity_ends) {
     power();
     ASSERT_TRUE(client->synchronize.send(9));
-    client->once = 30;
-    run(10ms);
+    run(20ms);
+    write(30);
     force(20);
     ASSERT_EQ(axis->target_velocity.last(), 20);
+    release();
+    EXPECT_EQ(axis->target_velocity.last(), 0);
+}
+
+TEST_F(ForcedAxis, is_led_by_nothing_that_was_written_before_it_follows) {
+    power();
+    write(30);
+    force(20);
+    ASSERT_TRUE(client->synchronize.send(9));
+    run(3ms);
     release();
     EXPECT_EQ(axis->target_velocity.last(), 0);
 }
