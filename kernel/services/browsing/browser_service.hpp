@@ -21,8 +21,6 @@ public:
     /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
-    /// Of them, by commands and lines, which may take any time.
-    static constexpr std::size_t kept_by_endless = 2;
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 
@@ -84,7 +82,7 @@ private:
     }
 
     // What waits for an answer; requests_pending.cpp
-    [[nodiscard]] Pending* free_place(Role role, std::size_t also_kept = 0) noexcept;
+    [[nodiscard]] Pending* free_place(Role role) noexcept;
     static Verdict no_place() noexcept;
     Verdict await(Pending& place, const browsing::Asker& asker, bool (BrowserService::*look)(Pending&));
     Verdict await_engine(Pending& place, const browsing::Asker& asker, std::size_t component,
@@ -198,7 +196,7 @@ private:
     std::uint64_t accepted_ = 0;
     std::uint64_t refused_ = 0;
     std::uint64_t turned_away_ = 0;
-    std::array<Pending, max_pending> pending_{};
+    std::array<Pending, max_pending + 1> pending_{}; ///< the last one: the service's own
     std::array<Subscribed, max_subscriptions> subscribed_{};
     std::array<Seen, max_events> seen_{};
     alignas(value_alignment) std::array<std::byte, max_events * sizeof(Message::arguments)> seen_bytes_{};

@@ -157,11 +157,11 @@ bool BrowserService::release_readers_of(std::size_t component) {
         if (link.from.component != component || record.forced_at == 0 ||
             view->word<std::uint8_t>(record.forced_at) == 0 || !check_alive(link.to.component).good())
             continue;
-        Pending* place = free_place(Role::engineer);
-        if (place == nullptr) return false;
-        place->work.emplace<FacetCall>();
-        if (!reach(*place, {.since = now_}, link.to, &release_port).good()) return false;
-        place->is_told = true; // nobody waits for its answer
+        Pending& own = pending_.back(); // whatever waits: people's commands may take any time
+        if (own.look != nullptr) return false;
+        own.work.emplace<FacetCall>();
+        if (!reach(own, {.since = now_}, link.to, &release_port).good()) return false;
+        own.is_told = true; // nobody waits for its answer
     }
     return true;
 }

@@ -18,7 +18,7 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
     if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
         !role.good())
         return role;
-    Pending* place = free_place(client.role, kept_by_endless);
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     auto& call = place->work.emplace<FollowedCommand>();
     const Facet& facet = facet_at(table, end);

@@ -28,7 +28,7 @@ BrowserService::Verdict BrowserService::execute(Client& client, const Request& r
     if (line.functions == nullptr) return no_interpreter();
     if (for_nobody_.data() != nullptr)
         return {Refusal::unsupported, Sentence{"a machine that runs no more executes nothing; read it"}};
-    Pending* place = free_place(client.role, kept_by_endless);
+    Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     std::array<char, browsing::max_packet_bytes> text;
     std::size_t length = 0;
