@@ -415,7 +415,7 @@ private:
             const Frame before = store_.encode(f, now);
             const bool is_new = found.at > demanded_at_[f];
             if (!keep_inputs(f)) continue;
-            // What was sent before is no demand: a force has ended, and shows it again.
+            // The end of a force shows the value of before: it is not sent again.
             if (!is_new && store_.encode(f, now).data == before.data) continue;
             demanded_at_[f] = found.at > now + ahead_at_most ? now : found.at;
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);

@@ -144,7 +144,7 @@ private:
         const Flow flow = set_point.read(wanted);
         if (std::exchange(begins_, false)) is_led_ = false, led_at_ = now;
         const bool is_place = mode.last() == static_cast<std::int64_t>(OperationMode::cyclic_position);
-        // What the row gives for a stale velocity or torque ends one; a place that is stale leads nowhere.
+        // A stale velocity or torque is what the row gives in its place. A stale place is not followed.
         if (flow != Flow::fresh && (flow != Flow::stale || is_place || !is_led_)) return;
         if (set_point.stamp() < led_at_) { // it stood behind a force that has ended, or is of before
             if (!is_place) motion_.follow(0);

@@ -41,8 +41,8 @@ enum class SdoAbort : std::uint32_t {
     no_data = 0x0800'0024,
 };
 
-/// What may be otherwise when it is asked again: of the transfer, and of the device's present state. The rest
-/// says that the device has no such object, or does not take this value.
+/// The same request may succeed later: the transfer was disturbed, or the device cannot serve it now. The
+/// rest says that the device has no such object, or does not take this value.
 constexpr bool passes(SdoAbort code) noexcept TAPPET_REALTIME {
     switch (code) {
     case SdoAbort::toggle_bit:

@@ -11,7 +11,7 @@ namespace tappet {
 /// False: not a number, or infinite.
 constexpr bool is_number(double value) noexcept TAPPET_REALTIME { return value - value == 0.0; }
 
-/// Of a floating value of that many bytes.
+/// Reads a float of 4 bytes or a double of 8. Real-time.
 inline double real_at(const std::byte* value, std::size_t bytes) noexcept TAPPET_REALTIME {
     double number = 0;
     float single = 0;

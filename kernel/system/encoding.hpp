@@ -98,7 +98,7 @@ constexpr void put_bits(std::span<std::uint8_t> into, std::size_t at, std::size_
     }
 }
 
-/// What telling a value found; what is no number is not told.
+/// How a value was put into a frame: exactly, at an end of its range, or not at all since it is no number.
 enum class Told : std::uint8_t { well, beyond, no_number };
 
 /// The whole number nearest to value / step that the bits can hold.

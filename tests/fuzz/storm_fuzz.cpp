@@ -2,15 +2,11 @@
 // character says who asks what stands behind it, an empty line lets time pass. Whatever comes, each answer is
 // one object, no property leaves what its component accepts, the count of forced ports is right, and in the
 // end somebody who asks for one thing is served.
-#include "tests/kernel/services/browsing/press_machine.hpp"
+#include "tests/fuzz/browsed_press.hpp"
 
-#include "kernel/machine/firmware.hpp"
-#include "kernel/os/local_socket.hpp"
-#include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/interpreter/command_interpreter.hpp"
 
 #include <array>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +16,7 @@
 namespace {
 
 using namespace tappet;
+using press::demand;
 
 struct RamCycle {
     static constexpr auto machine() {
@@ -46,18 +43,7 @@ constexpr auto table = machine("press",
                behaviour("ram", slot(nodes(60), data_bytes(512), depth(3), command_slots(1), timers(4), trial(1)))));
 // clang-format on
 
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
-
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, press::board>::machine(), clock};
-    VirtualWorld world{instance};
-    PropertyFiles files{{}}; // none are kept
-    Rig() { instance.read_properties_from(files.store()); }
-    void run(Duration time) { demand(world.run_until(clock.now() + time)); }
-};
+using Rig = press::BrowsedPress<table>;
 
 struct Browser {
     std::optional<os::LocalConnection> connection;
@@ -76,16 +62,6 @@ struct Browser {
         }
     }
 };
-
-void check(Rig& rig) {
-    const auto& ram = *rig.instance.find<press::Ram>("ram");
-    demand(ram.speed.get() * ram.force.get() <= 100);
-    std::uint32_t forced = 0;
-    const auto view = map::View::open(rig.instance.observation().shared_memory());
-    demand(view.has_value());
-    for (const map::Facet& each : view->facets()) forced += view->word<std::uint8_t>(each.forced_at) != 0;
-    demand(forced == rig.instance.observation().forced_ports().load());
-}
 
 /// Commands and lines may take any time; what they leave is asked again for so long.
 constexpr int patience = 400;
@@ -108,10 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const std::string directory = "/tmp/tappet-storm-fuzz-" + std::to_string(getpid());
     static const std::string path = directory + "/press.socket";
     static std::optional<Rig> rig;
-    rig.emplace();
-    rig->instance.browse_in(directory);
-    demand(rig->instance.configure({}).has_value());
-    rig->world.start();
+    rig.emplace(directory);
     {
         std::array<Browser, 3> browsers;
         for (Browser& each : browsers) each.connect(path);
@@ -123,7 +96,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             if (line.size() < 2) {
                 rig->run(20ms);
                 for (Browser& each : browsers) each.hear();
-                check(*rig);
+                rig->check();
                 continue;
             }
             Browser& by = browsers[static_cast<unsigned char>(line.front()) % browsers.size()];
@@ -132,9 +105,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         rig->run(1s);
         for (Browser& each : browsers) each.hear();
-        check(*rig);
+        rig->check();
         demand_to_be_served(*rig, path);
     }
-    rig->instance.find<BrowserService>("browser")->finalise();
+    rig.reset();
     return 0;
 }

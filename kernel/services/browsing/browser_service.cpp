@@ -160,7 +160,7 @@ void BrowserService::note(const Client& client, std::string_view what, std::stri
     os::print(line.add("\n").view());
 }
 
-// What was accepted and is not done; the line of its request says by whom.
+// Logs that a request which was accepted is not done. The line of the request names the client.
 void BrowserService::note_end(const Pending& place, std::string_view how,
                               std::string_view why) const noexcept {
     if (!log.get() || place.is_told) return;

@@ -74,9 +74,7 @@ TEST_F(Press, observers_leave_subscriptions_for_who_has_a_higher_role) {
 TEST_F(Press, who_has_not_the_role_is_refused_clearly_and_nothing_happens) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     // Who the peer is, is held fast when it connects.
-    ASSERT_EQ(seteuid(65534), 0);
-    Talker talker{path()};
-    ASSERT_EQ(seteuid(0), 0);
+    Talker talker{path(), 65534};
     EXPECT_TRUE(has(ask(talker, "1 hello"), R"("role": "observer")"));
     const std::string answer = ask(talker, "2 set ram.speed 3");
     EXPECT_TRUE(has(answer, R"("code": "denied")")) << answer;
@@ -89,9 +87,7 @@ TEST_F(Press, who_has_not_the_role_is_refused_clearly_and_nothing_happens) {
 
 TEST_F(Press, an_operator_asks_for_what_the_interface_has_for_people_and_for_nothing_else) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    ASSERT_EQ(seteuid(1001), 0);
-    Talker talker{path()};
-    ASSERT_EQ(seteuid(0), 0);
+    Talker talker{path(), 1001};
     EXPECT_TRUE(has(ask(talker, "1 hello"), R"("role": "operator")"));
     EXPECT_TRUE(has(ask(talker, "2 call ram.halt"), R"("ok": true)"));
     EXPECT_TRUE(has(ask(talker, "3 send ram.move_to 10"), R"("state": "sent")"));
@@ -154,12 +150,8 @@ TEST_F(Press, one_client_too_many_is_told_so_and_those_that_are_in_stay) {
     EXPECT_TRUE(has(ask(next, "1 hello"), R"("ok": true)")) << "a place that was left is given again";
 }
 
-/// Connected as somebody whom the board does not list; only root can do that.
-std::unique_ptr<Talker> observer(const std::string& path) {
-    if (seteuid(65534) != 0) return nullptr;
-    auto talker = std::make_unique<Talker>(path);
-    return seteuid(0) == 0 ? std::move(talker) : nullptr;
-}
+/// Connected as somebody whom the board does not list.
+std::unique_ptr<Talker> observer(const std::string& path) { return std::make_unique<Talker>(path, 65534); }
 
 TEST_F(Press, who_has_a_higher_role_gets_the_place_of_the_longest_idle_of_a_lower_one) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";

@@ -22,6 +22,10 @@ public:
     explicit Talker(const std::string& path) : connection_{os::LocalConnection::connect(path.c_str())} {
         EXPECT_TRUE(connection_) << "cannot connect";
     }
+    /// As somebody else, which only root can.
+    Talker(const std::string& path, uid_t user) : connection_{connect_as(user, path)} {
+        EXPECT_TRUE(connection_) << "cannot connect";
+    }
     bool send(std::string_view request) {
         return connection_->send(request) == os::LocalConnection::Sent::sent;
     }
@@ -42,7 +46,15 @@ public:
     }
 
 private:
-    std::expected<os::LocalConnection, Sentence> connection_;
+    using Connected = std::expected<os::LocalConnection, Sentence>;
+    static Connected connect_as(uid_t user, const std::string& path) {
+        EXPECT_EQ(::seteuid(user), 0);
+        Connected made = os::LocalConnection::connect(path.c_str());
+        EXPECT_EQ(::seteuid(0), 0);
+        return made;
+    }
+
+    Connected connection_;
 };
 
 class Press : public testing::Test {

@@ -108,9 +108,7 @@ TEST_F(Lines, one_is_at_work_at_a_time_and_is_broken_off_by_whoever_asks) {
 
 TEST_F(Lines, an_expression_gives_way_to_a_higher_role_which_is_served_next) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    ASSERT_EQ(seteuid(65534), 0);
-    Talker observer{path()};
-    ASSERT_EQ(seteuid(0), 0);
+    Talker observer{path(), 65534};
     instance.engines()[0].stop(clock.now());
     instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
     EXPECT_THAT(ask(observer, request("gauge.target")), HasSubstr("sent"));
@@ -125,9 +123,7 @@ TEST_F(Lines, an_expression_gives_way_to_a_higher_role_which_is_served_next) {
 
 TEST_F(Lines, whoever_broke_one_off_is_next_before_those_of_a_lower_role) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    ASSERT_EQ(seteuid(1001), 0);
-    Talker worker{path()};
-    ASSERT_EQ(seteuid(0), 0);
+    Talker worker{path(), 1001};
     EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("sent"));
     EXPECT_THAT(ask("3 break_off"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(next(worker), has_failed("it was broken off"));
@@ -145,12 +141,8 @@ TEST_F(Lines, whoever_broke_one_off_is_next_before_those_of_a_lower_role) {
 
 TEST_F(Lines, whoever_waits_is_not_passed_by_somebody_of_a_role_between) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    ASSERT_EQ(seteuid(1001), 0);
-    Talker worker{path()};
-    ASSERT_EQ(seteuid(0), 0);
-    ASSERT_EQ(seteuid(65534), 0);
-    Talker observer{path()};
-    ASSERT_EQ(seteuid(0), 0);
+    Talker worker{path(), 1001};
+    Talker observer{path(), 65534};
     instance.engines()[0].stop(clock.now());
     instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
     EXPECT_THAT(ask(observer, request("gauge.target")), HasSubstr("sent"));
@@ -165,9 +157,7 @@ TEST_F(Lines, whoever_waits_is_not_passed_by_somebody_of_a_role_between) {
 
 TEST_F(Lines, commands_that_operators_left_behind_leave_engineers_a_line) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    ASSERT_EQ(seteuid(1001), 0);
-    Talker worker{path()};
-    ASSERT_EQ(seteuid(0), 0);
+    Talker worker{path(), 1001};
     ram().speed.set(0.001);
     for (const double to : {49.0, 48.0, 47.0}) {
         const std::string answer =
@@ -185,9 +175,7 @@ TEST_F(Lines, commands_that_operators_left_behind_leave_engineers_a_line) {
 
 TEST_F(Lines, what_is_half_done_gives_way_to_nobody_and_is_broken_off_by_no_lower_role) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    ASSERT_EQ(seteuid(1001), 0);
-    Talker worker{path()};
-    ASSERT_EQ(seteuid(0), 0);
+    Talker worker{path(), 1001};
     EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("sent"));
     EXPECT_THAT(execute("1"), HasSubstr("another line is at work"));
     EXPECT_THAT(ask("3 break_off"), HasSubstr("\"ok\": true"));
