@@ -39,7 +39,7 @@ inline constexpr auto table = machine("carpet-loom",
         component<modbus::Client<utility_registers>>("utility", device("loom-utility")),
         component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // once that activity hangs
         component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // written at each sample
-        component<Watchdog>("io_dog", watches("io"), set("limit", 6ms)), // silent: woken, and it does not come
+        component<Watchdog>("io_dog", watches("io"), set("limit", 4ms)), // silent: woken, and it does not come
         component<Watchdog>("logic_dog", watches("logic"), set("limit", 20ms)),
         component<LastResort>("last_resort"),                // when logic hangs
         component<TimedEvent>("new_shift"),

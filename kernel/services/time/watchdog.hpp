@@ -31,6 +31,7 @@ struct Watchdog {
         count_ = sign_.count(sign_.watched);
         last_life_ = cycle.now;
         silent_ = false;
+        rested_ = sign_.rests != nullptr;
         alive.write(true);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
@@ -39,7 +40,9 @@ struct Watchdog {
         const Duration silence = cycle.now - last_life_;
         count_ = count;
         const bool rests = sign_.rests != nullptr && sign_.rests(sign_.owner, cycle.now);
-        if (lives || rests || !sign_.expected(sign_.owner)) last_life_ = cycle.now;
+        // What rested at the last look was woken since, perhaps just now.
+        if (lives || rests || rested_ || !sign_.expected(sign_.owner)) last_life_ = cycle.now;
+        rested_ = rests;
         if (lives && silent_) {
             silent_ = false;
             revived(silence);
@@ -64,7 +67,7 @@ private:
     LifeSign sign_{};
     std::uint64_t count_ = 0;
     Time last_life_{};
-    bool silent_ = false;
+    bool silent_ = false, rested_ = false; ///< at the last look
 };
 
 } // namespace tappet

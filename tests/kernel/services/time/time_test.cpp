@@ -346,6 +346,30 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_th
     EXPECT_EQ(rouser.silences.size(), 1u);
 }
 
+// clang-format off
+constexpr auto rousing_table = machine("rousing", // it is woken just before the watchdog looks
+    components(component<Sleeper>("sleeper"), component<Rouser>("rouser"), component<Watchdog>("dog", watches("sleep"), set("limit", 1ms))),
+    activities(
+        activity("watch", every(2ms), runs("rouser", "dog"), budget(50us), stack(64 * 1024)),
+        activity("sleep", on_work(), at_most(1, 2ms), runs("sleeper"), deadline(100ms), budget(50us))),
+    connections(),
+    reactions(when("rouser.now", tell("sleeper.rouse")), when("dog.silent", call("rouser.on_silent"))), behaviours());
+// clang-format on
+
+TEST(AWatchdogOfAnActivityWithoutAPeriod, takes_no_rest_for_silence_whose_limit_is_below_its_own_period) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<rousing_table, board>::machine(), clock};
+    VirtualWorld world{instance};
+    ASSERT_TRUE(instance.configure({}));
+    ASSERT_EQ(world.start().view(), "");
+    Rouser& rouser = *instance.find<Rouser>("rouser");
+    for (int i = 0; i < 20; ++i) {
+        rouser.rouses = true;
+        EXPECT_TRUE(world.run_until(clock.now() + 10ms));
+    }
+    EXPECT_THAT(rouser.silences, IsEmpty()) << "it comes at once, each time";
+}
+
 TEST(AWatchdogOfAnActivityWithoutAPeriod, hears_that_it_does_not_come_for_a_timer_that_is_due) {
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{Firmware<virtual_sleeping_table, board>::machine(), clock};
