@@ -47,7 +47,7 @@ void SwarmWires::begin(MachineInstance& instance) {
     instance_ = &instance;
     for (Axis& each : axes_) {
         each.rests_at = {};
-        each.rests_since = never;
+        each.rests_since = each.astray_since = never;
         if (each.stands_below < 0.0)
             each.stands_below = *static_cast<const double*>(instance.facet(each.standing));
     }
@@ -80,6 +80,7 @@ void SwarmWires::add_axes() {
         const std::array wires{std::pair{has(type, "position", FacetKind::input), &axis.place},
                                std::pair{has(type, "statusword", FacetKind::input), &axis.word},
                                std::pair{has(type, "mode_display", FacetKind::input), &axis.mode},
+                               std::pair{has(type, "controlword", FacetKind::output), &axis.control},
                                std::pair{has(type, "target_position", FacetKind::output), &axis.target}};
         for (std::size_t x = 0; x < table.connections.size(); ++x) {
             const Link& link = machine_.index.connections[x];
@@ -118,11 +119,13 @@ std::string_view SwarmWires::state_of(const Axis& axis) const {
 }
 
 /// An enabled drive whose axis is in no motion stays where it is, and one that follows positions is sent to
-/// none that is far from the one before: it would go there as fast as it can.
+/// none that is far from the one before: it would go there as fast as it can. What goes to a place by itself
+/// follows nobody.
 void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame& frame) {
-    constexpr std::uint64_t enabled_bits = 0x6F, enabled = 0x27; // of CiA 402's word
+    constexpr std::uint64_t enabled_bits = 0x6F, enabled = 0x27; // of CiA 402's words
+    constexpr std::uint64_t told_bits = 0x8F, told = 0x0F;
     constexpr std::uint64_t cyclic_position = 8;
-    constexpr Duration comes_to_rest = 300ms;
+    constexpr Duration comes_to_rest = 300ms, changes_mode = 2s;
     constexpr unsigned longest_lie = 5; // of a wire that says anything, in frames
     constexpr double far = 1000;        // times what counts as standing
     if (device != axis.device || instance_ == nullptr) return;
@@ -134,7 +137,9 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
             axis.is_enabled && can::extract(frame.data, *axis.mode.signal) == cyclic_position;
         axis.follows = says_so ? axis.follows + 1 : 0;
     }
-    const bool follows = axis.follows > longest_lie && frame.stamp >= axis.excused;
+    if (identifier == axis.control.frame)
+        axis.is_told = (can::extract(frame.data, *axis.control.signal) & told_bits) == told;
+    const bool follows = axis.is_told && axis.follows > longest_lie && frame.stamp >= axis.excused;
     if (!follows) axis.sent_to = {};
     if (identifier == axis.target.frame && follows) {
         const double place =
@@ -158,6 +163,13 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
         axis.rests_since = never;
     else if (axis.rests_since == never)
         axis.rests_since = frame.stamp;
+    if (!is_reached || !axis.is_told || axis.follows <= longest_lie || frame.stamp < axis.excused ||
+        state != "DiscreteMotion")
+        axis.astray_since = never;
+    else if (axis.astray_since == never)
+        axis.astray_since = frame.stamp;
+    else if (frame.stamp - axis.astray_since > changes_mode)
+        heard_ = Sentence{"axis \"", axis.name, "\" is in \"", state, "\", and its drive follows positions"};
     if (!axis.is_enabled || frame.stamp < axis.excused || axis.rests_since == never ||
         frame.stamp - axis.rests_since < comes_to_rest) {
         axis.rests_at = {};

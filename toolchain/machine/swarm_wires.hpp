@@ -85,13 +85,15 @@ private:
             can::Identifier frame{};
             const can::Signal* signal = nullptr;
         };
-        Wire place{}, word{}, mode{}, target{};
+        Wire place{}, word{}, mode{}, target{}, control{};
         End state{}, standing{};
         std::size_t driver = 0;          ///< of its wires
         bool is_enabled = false;         ///< the drive says so
+        bool is_told = false;            ///< so is the drive
         unsigned follows = 0;            ///< frames one after the other that say it follows positions
         std::optional<double> sent_to{}; ///< while it follows
         Time rests_since = never;        ///< by its state, which names no motion
+        Time astray_since = never;       ///< its state names a motion that its drive does not make
         std::optional<double> rests_at{};
         double stands_below = -1.0; ///< its property as the table has it
         Time excused{};

@@ -12,20 +12,28 @@ namespace adversary_axis {
 
 using namespace tappet;
 
-/// One motion after the other, each a while after the one before.
+/// One motion after the other, each a while after the one before. While the axis follows positions, it leads
+/// it on from where it is, for long enough that more is asked for besides.
 struct Work {
+    Input<bool> follows;
+    Input<double> position;
+    Output<double> place;
     Event<> power_on, reset, release;
     CommandCall<> home;
     CommandCall<double, double> move_to;
+    CommandCall<double, double, double> superimpose;
     CommandCall<std::int64_t> synchronize;
 
     void start(const Cycle&) noexcept TAPPET_REALTIME { waits_ = turn_ = 0; }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
-        if (in_flight(home.state()) || in_flight(move_to.state()) || in_flight(synchronize.state()))
+        const bool leads = std::exchange(leads_, follows.get()) && leads_;
+        place.write(leads ? place.last() + 0.01 : position.get());
+        if (in_flight(home.state()) || in_flight(move_to.state()) || in_flight(synchronize.state()) ||
+            in_flight(superimpose.state()))
             waits_ = 0;
         if (++waits_ < pause) return;
         waits_ = 0;
-        switch (turn_++ % 5) {
+        switch (turn_++ % 9) {
         case 0:
             reset.emit();
             release.emit();
@@ -33,20 +41,27 @@ struct Work {
         case 1: return static_cast<void>(home.send());
         case 2: return static_cast<void>(move_to.send(25.0, 40.0));
         case 3: return static_cast<void>(synchronize.send(8));
-        default: return static_cast<void>(move_to.send(-25.0, 20.0));
+        case 4: return static_cast<void>(superimpose.send(2.0, 5.0, 50.0));
+        case 8: return static_cast<void>(move_to.send(-25.0, 20.0));
+        default: return;
         }
     }
     static constexpr auto interface() {
         return facets(
+            input<&Work::follows>("follows", "", "the axis", optional),
+            input<&Work::position>("position", "mm", "of the axis"),
+            output<&Work::place>("place", "mm", "where it is led"),
             event<&Work::power_on>("power_on", "asked for"), event<&Work::reset>("reset", "asked for"),
             event<&Work::release>("release", "asked for"), sends<&Work::home>("home", "its reference"),
             sends<&Work::move_to>("move_to", "a place"),
+            sends<&Work::superimpose>("superimpose", "a distance"),
             sends<&Work::synchronize>("synchronize", "with positions"));
     }
 
 private:
     static constexpr int pause = 300; // cycles
     int waits_ = 0, turn_ = 0;
+    bool leads_ = false;
 };
 
 // clang-format off
@@ -75,6 +90,9 @@ inline constexpr auto table = machine("axis-bed",
         data("can.status.mode",       "axis.mode_display", stale_after(20ms), hold),
         data("can.actual.position",   "axis.position",     stale_after(20ms), hold),
         data("can.actual.velocity",   "axis.velocity",     stale_after(20ms), hold),
+        data("can.actual.position",   "work.position",     stale_after(20ms), hold),
+        data("axis.follows",          "work.follows", delayed),
+        data("work.place",            "axis.set_point"),
         data("axis.controlword",      "can.control.word"),
         data("axis.mode",             "can.control.mode"),
         data("axis.target_position",  "can.target.position"),
@@ -84,6 +102,7 @@ inline constexpr auto table = machine("axis-bed",
     reactions(
         uses("work.home",        "axis.home"),
         uses("work.move_to",     "axis.move_to"),
+        uses("work.superimpose", "axis.superimpose"),
         uses("work.synchronize", "axis.synchronize"),
         when("work.power_on",    call("axis.power_on")),
         when("work.reset",       call("axis.reset")),

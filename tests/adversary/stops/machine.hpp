@@ -28,9 +28,10 @@ enum class Cause : std::uint8_t {
     stale,
     hang,
     hang_alone,
-    valve_alone
+    valve_alone,
+    supervisor_sleeps
 };
-inline constexpr std::size_t causes = 8;
+inline constexpr std::size_t causes = 9;
 enum Slow : std::uint8_t { camera, receiver };
 
 /// What a seed chose. Times are in ms. Those of people count from their first cycle.
@@ -50,11 +51,12 @@ struct Page : test::WirePage {
     Draw draw{};
     std::atomic<int> on_supervisor{-1}; ///< the Function that ran there
     std::array<std::atomic<int>, 2> initialised{}, finalised{};
+    std::atomic<bool> has_stopped{false}; ///< the valve, by its own stop()
 };
 inline Page* page = nullptr;
 inline MachineInstance* instance = nullptr;
 
-constexpr std::size_t drivers = 0, logic = 1, receive = 3, look = 4; // activities
+constexpr std::size_t drivers = 0, lamps = 2, receive = 4, look = 5; // activities
 
 struct Valve {
     Input<std::int64_t> beat;
@@ -64,30 +66,41 @@ struct Valve {
         clock = setup.clock;
         return {};
     }
-    void start(const Cycle&) noexcept TAPPET_REALTIME { page->wire = 1; }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a note for the judge", page->wire = 1; page->has_stopped = false);
+    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         TAPPET_CONTRACT(!breaks_contract.load(), Contract::precondition, 7);
         if (takes_long.exchange(false)) clock->consume(150ms);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a note for the judge", page->be_safe());
+        TAPPET_ESCAPE("a note for the judge", page->be_safe(); page->has_stopped = true);
     }
     static constexpr auto interface() { return facets(input<&Valve::beat>("beat", "", "of the pulse")); }
 };
 
 struct Pulse {
     Output<std::int64_t> beat;
-    std::atomic<bool> silent{false}, hangs{false}, hangs_in_stop{false};
-    /// Others have its processor meanwhile.
-    static void hang(const std::atomic<bool>& while_so) noexcept TAPPET_REALTIME {
-        while (while_so) TAPPET_ESCAPE("it shall hang", os::sleep_for(1ms));
-    }
+    std::atomic<bool> silent{false}, hangs{false};
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         if (!silent) beat.write(beat.last() + 1);
-        hang(hangs);
+        while (hangs) TAPPET_ESCAPE("it shall hang, and others have its processor", os::sleep_for(1ms));
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { hang(hangs_in_stop); }
     static constexpr auto interface() { return facets(output<&Pulse::beat>("beat", "", "counts")); }
+};
+
+/// No row awaits what it says, so that nothing but the machine's patience with its stop tells that it hangs.
+/// Until it is ended it puts the wire on again and again.
+struct Lamp {
+    Property<std::int64_t> unused{0};
+    std::atomic<bool> hangs_in_stop{false};
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        while (hangs_in_stop) TAPPET_ESCAPE("it shall hang", page->wire = 1; os::sleep_for(1ms));
+    }
+    static constexpr auto interface() {
+        return facets(property<&Lamp::unused>("unused", "", "a component has a facet", range(0, 0)));
+    }
 };
 
 /// They restart what takes long, and in the end something stops the machine.
@@ -120,8 +133,13 @@ struct People {
         case Cause::stale: pulse.silent = true; break;
         case Cause::hang: pulse.hangs = true; break;
         case Cause::hang_alone:
-            pulse.hangs_in_stop = true;
-            static_cast<void>(instance->life().ask_activity(logic, LifeChange::restart));
+            instance->find<Lamp>("lamp")->hangs_in_stop = true;
+            static_cast<void>(instance->life().ask_activity(lamps, LifeChange::restart));
+            break;
+        case Cause::supervisor_sleeps:
+            ::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGRTMIN);
+            os::sleep_for(50ms);
+            instance->ask_stop(StopReason::requested, 0, nullptr);
             break;
         case Cause::valve_alone:
             static_cast<void>(instance->life().ask_activity(drivers, LifeChange::stop));
@@ -175,10 +193,11 @@ struct Receiver : Slowly<receiver> {
 
 // clang-format off
 inline constexpr auto table = machine("stops",
-    components(component<Valve>("valve"), component<Pulse>("pulse"), component<People>("people"), component<Receiver>("receiver"), component<Camera>("camera")),
+    components(component<Valve>("valve"), component<Pulse>("pulse"), component<Lamp>("lamp"), component<People>("people"), component<Receiver>("receiver"), component<Camera>("camera")),
     activities(
         activity("drivers", every(100ms), runs("valve"), budget(50us), stop_when_late),
         activity("logic",   every(5ms),   runs("pulse"), budget(50us)),
+        activity("lamps",   every(5ms),   runs("lamp"), budget(50us)),
         activity("people",  every(5ms),   not_real_time, runs("people")),
         activity("receive", on_work(),    not_real_time, runs("receiver")),
         activity("look",    every(10ms),  not_real_time, runs("camera"))),
