@@ -83,7 +83,11 @@ Time VirtualWorld::quiet(const void* but, Time end) const {
         if (process.self != but) next = std::min(next, process.next(process.self));
     const auto engines = instance_.engines();
     for (std::size_t a = 0; a < engines.size(); ++a) {
-        if (!engines[a].is_active() || jobs_[a].is_there) continue;
+        if (!engines[a].is_active()) continue;
+        if (jobs_[a].is_there) { // in the middle of its work when it began to hang
+            if (hangs_until_[a] > worked_until_) next = std::min(next, hangs_until_[a]);
+            continue;
+        }
         const bool woken = engines[a].waiter().is_woken();
         if (woken && hangs_until_[a] <= instance_.clock().now()) return instance_.clock().now();
         next = std::min(next, std::max(woken ? Time::min() : wake_at_[a], hangs_until_[a]));

@@ -84,6 +84,20 @@ TEST(VirtualWorld, lets_cycles_take_up_to_their_budgets_and_none_respond_later_t
     EXPECT_GT(longest, 0us) << "none was preempted";
 }
 
+/// Whose thread does not come in the middle of its cycle goes on with it as soon as it comes.
+TEST(VirtualWorld, goes_on_with_a_cycle_when_a_hang_in_the_middle_of_it_is_over) {
+    Rig<watched::table> rig{1};
+    const auto a = find_component(rig.instance.machine().table, "driver");
+    const std::size_t activity = rig.instance.machine().index.activity[a];
+    for (int period = 1; period <= 100; ++period) {
+        const Time begin = at_ns(0) + period * 2ms;
+        EXPECT_TRUE(rig.world.run_until(begin)); // one begins
+        rig.world.hang(activity, begin + 300us);
+    }
+    EXPECT_GT(rig.worker("driver").cycles, 90u);
+    EXPECT_LT(rig.world.longest_response(activity), 300us);
+}
+
 TEST(VirtualWorld, stops_the_last_row_first) {
     Rig<watched::table> rig;
     EXPECT_TRUE(rig.world.run_until(at_ns(0) + 20ms));
