@@ -120,7 +120,7 @@ std::string_view SwarmWires::state_of(const Axis& axis) const {
 
 /// An enabled drive whose axis is in no motion stays where it is, and one that follows positions is sent to
 /// none that is far from the one before: it would go there as fast as it can. What goes to a place by itself
-/// follows nobody.
+/// follows nobody, and an error leaves no power.
 void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame& frame) {
     constexpr std::uint64_t enabled_bits = 0x6F, enabled = 0x27; // of CiA 402's words
     constexpr std::uint64_t told_bits = 0x8F, told = 0x0F;
@@ -163,13 +163,18 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
         axis.rests_since = never;
     else if (axis.rests_since == never)
         axis.rests_since = frame.stamp;
-    if (!is_reached || !axis.is_told || axis.follows <= longest_lie || frame.stamp < axis.excused ||
-        state != "DiscreteMotion")
+    const bool is_astray = state == "ErrorStop" || (state == "DiscreteMotion" && axis.follows > longest_lie);
+    if (!is_reached || !axis.is_told || !is_astray || frame.stamp < axis.excused)
         axis.astray_since = never;
     else if (axis.astray_since == never)
         axis.astray_since = frame.stamp;
     else if (frame.stamp - axis.astray_since > changes_mode)
-        heard_ = Sentence{"axis \"", axis.name, "\" is in \"", state, "\", and its drive follows positions"};
+        heard_ = Sentence{"axis \"",
+                          axis.name,
+                          "\" is in \"",
+                          state,
+                          "\", and its drive ",
+                          state == "ErrorStop" ? "is told to be enabled" : "follows positions"};
     if (!axis.is_enabled || frame.stamp < axis.excused || axis.rests_since == never ||
         frame.stamp - axis.rests_since < comes_to_rest) {
         axis.rests_at = {};

@@ -56,7 +56,7 @@ Draw draw_of(std::uint64_t seed) {
                 random.one_in(3)   ? LifeChange::stop
                 : random.one_in(2) ? LifeChange::start
                                    : LifeChange::restart};
-    draw.cause = static_cast<Cause>(random.below(causes));
+    draw.cause = static_cast<Cause>(seed % causes);
     draw.cause_at = static_cast<int>(random.between(150, 700));
     return draw;
 }
@@ -80,8 +80,8 @@ Duration noticed_within(Cause cause) {
     case Cause::contract: return 100ms; // a period of the drivers
     case Cause::deadline: return 250ms; // and the cycle that takes long
     case Cause::stale:
-    case Cause::hang: return 110ms;       // the row's age
-    case Cause::hang_alone: return 600ms; // RealWorld::patience_ms
+    case Cause::hang: return 110ms;         // the row's age
+    case Cause::hang_alone: return 10100ms; // RealWorld::patience_beside_ms
     case Cause::termination:
     case Cause::somebody:
     case Cause::supervisor_sleeps:
