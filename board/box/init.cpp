@@ -409,12 +409,15 @@ private:
     }
     void reset_box() override { init::reset_box(); }
 
-    /// A trial, and a start, goes on at the next boot: who switched off has not judged it.
+    /// A trial, and a start, goes on at the next boot: who switched off has not judged it. One that has
+    /// failed is over.
     [[noreturn]] void end_in_order(const std::string& by, bool again) {
+        const bool has_failed = again_at_s_ != 0.0 && slots_.on_trial();
         bring_up_rest();
         voice_.say(by + " ends it");
         stop_everything();
-        if (const auto kept = slots_.keep_trial(); !kept) voice_.say(kept.error());
+        if (!has_failed)
+            if (const auto kept = slots_.keep_trial(); !kept) voice_.say(kept.error());
         again |= !again && renew_under_watchdog();
         voice_.say(again ? "restart" : "power off");
         if (again) init::restart_box();

@@ -219,7 +219,10 @@ init::Done make_service_folder() {
 std::string new_nonce() {
     std::array<unsigned char, 16> bytes{};
     std::string digits;
-    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return digits;
+    ssize_t got = -1;
+    do got = ::getrandom(bytes.data(), bytes.size(), 0);
+    while (got < 0 && errno == EINTR); // a child's end, while chance is gathered
+    if (got != static_cast<ssize_t>(bytes.size())) return digits;
     for (const unsigned char byte : bytes)
         digits += {"0123456789abcdef"[byte >> 4], "0123456789abcdef"[byte & 15]};
     return digits;

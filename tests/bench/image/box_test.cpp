@@ -241,6 +241,18 @@ TEST(Box, that_is_switched_off_in_order_has_its_trial_once_more) {
     EXPECT_EQ(slot(box, 2).state, SlotState::installed);
 }
 
+TEST(Box, that_is_switched_off_when_a_trial_has_failed_asks_for_it_no_more) {
+    EmulatedBox box{image("lonely") / "disk.img"};
+    image::install(box.disk(), image("crashing") / "tappet.efi");
+    box.switch_on({"-no-reboot"});
+    box.await("it was on trial: the box goes back to the other slot");
+    box.press_power_button();
+    const std::string said = box.await_end();
+    SCOPED_TRACE(said);
+    EXPECT_THAT(said, HasSubstr("the power button ends it"));
+    EXPECT_EQ(slot(box, 2).state, SlotState::testing) << "the loader goes back from there";
+}
+
 // A stick is a disk that came later. Without its plant's end the machine works until somebody presses the
 // button.
 TEST(Box, takes_a_signed_update_from_a_stick_when_its_power_button_is_pressed) {
