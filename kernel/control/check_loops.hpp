@@ -136,9 +136,8 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     const auto [dead, varying] = dead_samples(row, m, r, seats, component, activity.period);
     if (dead > max_dead_samples)
         return of_loop(row, "its transport is more than ", max_dead_samples, " periods; sample more slowly");
-    // A step that begins late by all of its response makes one period so much longer.
-    const Duration jitter{
-        std::max<std::int64_t>(0, r.worst_response_ns[r.activity[component]] - activity.budget_each.count())};
+    // What is sent at once in one step, and late by all of the response in the next, lasts so much longer.
+    const Duration jitter{r.worst_response_ns[r.activity[component]]};
     const double period = to_seconds(activity.period), longest = to_seconds(activity.period + jitter);
     const auto with = [&](double seconds) {
         return SampledLoop{gain * row.factor * seconds, integral * row.factor * seconds * seconds, dead,

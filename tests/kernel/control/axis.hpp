@@ -103,7 +103,7 @@ struct Follower {
             input<&Follower::measured>("measured", "m", "the place"),
             input<&Follower::sent>("sent", "m/s", "in the step before"),
             output<&Follower::velocity>("velocity", "m/s", "wanted"),
-            property<&Follower::kp>("kp", "1/s", "speed for each unit of the error", range(0.0, 999.9)));
+            property<&Follower::kp>("kp", "1/s", "speed for each unit of the error", range(0.0, 900.0)));
     }
 };
 
