@@ -311,9 +311,13 @@ struct Raw {
 
 namespace detail {
 constexpr Raw to_any_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
-    const double number = (physical - s.offset) / s.factor;
-    if (!is_number(number)) return {.refused = true};
-    if (s.kind == Kind::float64) return {.bits = std::bit_cast<std::uint64_t>(number)};
+    if (!is_number(physical)) return {.refused = true};
+    const double number = (physical - s.offset) / s.factor; // infinite, of a large one: its nearest end
+    if (s.kind == Kind::float64) {
+        constexpr double most = 1.7976931348623157e308;
+        const double kept = number > most ? most : number < -most ? -most : number;
+        return {.bits = std::bit_cast<std::uint64_t>(kept), .saturated = kept != number};
+    }
     if (s.kind == Kind::float32) {
         constexpr double most = 3.4028234663852886e38;
         const double kept = number > most ? most : number < -most ? -most : number;

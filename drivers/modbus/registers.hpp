@@ -140,8 +140,8 @@ struct Encoded {
 };
 
 constexpr Encoded to_words(const Register& r, double physical) noexcept {
-    const double number = (physical - r.offset) / r.factor;
-    if (!is_number(number)) return {.refused = true};
+    if (!is_number(physical)) return {.refused = true};
+    const double number = (physical - r.offset) / r.factor; // infinite, of a large one: its nearest end
     double low = 0, high = 1;
     switch (r.kind) {
     case Kind::bit: break;

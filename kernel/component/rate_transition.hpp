@@ -50,6 +50,8 @@ private:
             from_ = written;
             began_ = stamp;
         }
+        // Two numbers may lie farther apart than any number says.
+        if (!is_number(slope_)) from_ = written, slope_ = 0.0;
         is_first_ = false;
     }
 

@@ -37,8 +37,7 @@ Conversion conversion_of(const TypeTag& type) noexcept {
 /// What goes out in the place of what is no number.
 double without_number(const LimitRow& row, const Limited& port) noexcept TAPPET_REALTIME {
     if (port.has_last) return port.last;
-    if (row.is_rate) return 0.0;
-    return is_number(row.low) ? row.low : is_number(row.high) ? row.high : 0.0;
+    return row.is_rate ? 0.0 : std::clamp(0.0, row.low, row.high);
 }
 
 /// The nearest value to `wanted` that a row allows: always a number.
@@ -55,12 +54,12 @@ double allowed(const LimitRow& row, const Limited& port, double wanted, Time sta
 void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
     auto& port = static_cast<Limited&>(self);
     double number = port.convert.read(value);
-    // What a component leaves behind when it stops is safe, whatever the rows say of its values at work.
+    // What a component leaves behind when it stops is safe, whatever the rows say of its values at work; but
+    // it is a number.
     const ComponentState state = port.machine->life().state_of(port.component);
-    if (state != ComponentState::running && state != ComponentState::starting) {
-        port.has_last = false;
-        return;
-    }
+    const bool is_left = state != ComponentState::running && state != ComponentState::starting;
+    if (is_left) port.has_last = false;
+    if (is_left && is_number(number)) return;
     // The range first: what is then reached at the rate lies between two values of the range.
     std::array<std::size_t, 2> order{port.row, port.other};
     if (port.other != nowhere && port.rows[port.row].is_rate) std::swap(order[0], order[1]);
@@ -78,7 +77,7 @@ void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
     }
     port.last = number;
     port.at = stamp;
-    port.has_last = is_number(number);
+    port.has_last = is_number(number) && !is_left;
     if (changed) port.convert.write(value, number);
 }
 

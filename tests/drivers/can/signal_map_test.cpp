@@ -152,6 +152,7 @@ TEST(Signals, carry_floats) {
 }
 
 TEST(Signals, saturate_and_never_wrap) {
+    const Signal f = signal("f", 0, 32).as_float().times(0.001);
     const Signal s = signal("v", 0, 16).as_signed();
     const Signal u = signal("v", 0, 16);
     EXPECT_EQ(to_raw(s, 40000).bits, 0x7FFFu);
@@ -172,6 +173,16 @@ TEST(Signals, saturate_and_never_wrap) {
     EXPECT_EQ(to_raw(signal("b", 0, 1).as_signed(), 1).bits, 0u) << "one signed bit holds -1 and 0";
     EXPECT_EQ(to_raw(signal("b", 0, 1).as_signed(), -1).bits, 1u);
     EXPECT_EQ(to_raw(signal("w", 0, 53), 9007199254740991.0).bits, 9007199254740991u);
+    // A number of the field's unit that has no end in that of the wire.
+    for (const double large : {1e306, -1e306}) {
+        const bool up = large > 0;
+        EXPECT_EQ(to_raw(signal("p", 0, 32).as_signed().times(0.001), large).bits,
+                  up ? 0x7FFF'FFFFu : 0x8000'0000u);
+        EXPECT_EQ(to_raw(signal("p", 0, 32).times(0.001), large).bits, up ? 0xFFFF'FFFFu : 0u);
+        EXPECT_EQ(to_physical(f, to_raw(f, large).bits),
+                  up ? 3.4028234663852886e38 * 0.001 : -3.4028234663852886e38 * 0.001);
+        EXPECT_TRUE(to_raw(signal("d", 0, 64).as_float().times(0.001), large).saturated);
+    }
 }
 
 TEST(Signals, refuse_what_is_no_number) {

@@ -58,6 +58,8 @@ TEST(Registers, saturate_and_refuse_what_is_no_number) {
     EXPECT_EQ(to_words(word("w", 0).as_signed(), -40000).words[0], 0x8000);
     EXPECT_EQ(to_words(word("w", 0).as_signed(), -2.5).words[0], 0xFFFD);
     EXPECT_EQ(to_words(bit("b", 0), 5).words[0], 1);
+    EXPECT_EQ(to_words(word("w", 0).times(0.001), 1e306).words[0], 65535) << "it has no end in that unit";
+    EXPECT_EQ(to_words(word("w", 0).times(0.001).as_signed(), -1e306).words[0], 0x8000);
     EXPECT_TRUE(to_words(word("w", 0), std::numeric_limits<double>::quiet_NaN()).refused);
 }
 

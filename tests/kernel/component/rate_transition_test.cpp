@@ -44,6 +44,17 @@ TEST(RateTransitions, extrapolate_without_delay) {
     }
 }
 
+TEST(RateTransitions, between_numbers_that_no_number_lies_as_far_apart_are_numbers) {
+    for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
+        BetweenValues between{how, 4ms};
+        for (int period = 0; period < 10; ++period)
+            for (int ms = 0; ms < 4; ++ms) {
+                const Time now = at_ns(0) + (4 * period + ms) * 1ms;
+                EXPECT_TRUE(is_number(between.at(now, ms == 0, period % 2 == 0 ? 1.7e308 : -1.7e308, now)));
+            }
+    }
+}
+
 TEST(RateTransitions, of_two_values_of_almost_one_time_lead_no_further_than_from_one_to_the_other) {
     BetweenValues between{RateTransition::extrapolate, 4ms};
     const Time second = at_ns(0) + 4ms, third = second + 10us;

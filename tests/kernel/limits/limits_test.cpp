@@ -33,7 +33,8 @@ struct Source {
         speed.write(speed_wanted);
         place.write(place_wanted);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
+    double speed_left = 0.0;
+    void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(speed_left); }
     static constexpr auto interface() {
         return facets(output<&Source::speed>("speed", "rpm", "of the drive"),
                       output<&Source::place>("place", "mm", "of the ram"),
@@ -202,6 +203,21 @@ TEST(Limits, do_not_hold_back_the_safe_value_of_a_stop) {
     EXPECT_TRUE(rig.run(10ms));
     EXPECT_EQ(rig.sink->speed_seen, 0.0);
     EXPECT_EQ(rig.breaches(0) + rig.breaches(1), 0u);
+}
+
+TEST(Limits, let_no_safe_value_out_that_is_no_number) {
+    for (const double left : {std::nan(""), infinite, -infinite}) {
+        Rig<clamped> rig;
+        rig.source->speed_wanted = 20.0;
+        rig.source->speed_left = left;
+        EXPECT_TRUE(rig.world.start().empty());
+        EXPECT_TRUE(rig.run(10ms));
+        rig.instance.life().ask_component(find_component(rig.instance.machine().table, "source"),
+                                          LifeChange::stop);
+        EXPECT_TRUE(rig.run(10ms));
+        EXPECT_EQ(rig.sink->speed_seen, 0.0);
+        EXPECT_EQ(rig.breaches(0), 1u);
+    }
 }
 
 TEST(Limits, of_range_and_rate_hold_both_for_one_port) {
