@@ -51,7 +51,7 @@ struct EnginePart : GatedComponent {
     LifeTicket ending{};
     LifeChange wanted{};
     std::atomic<bool> left_unsafe{false}; ///< a driver: its last stop() did not reach its device
-    std::atomic<bool> has_stopped{false}; ///< since somebody looked at who is forced to read what it left
+    Stops stops{};                        ///< who reads it, and is forced to something else, lets go then
 };
 
 struct EngineTimer {

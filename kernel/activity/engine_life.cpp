@@ -233,10 +233,12 @@ void Engine::cancel_timers(std::uint32_t part) noexcept TAPPET_REALTIME {
 void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     const ComponentState state = part.state.load(std::memory_order_relaxed);
-    part.has_stopped.store(true, std::memory_order_release);
     end_forces(part, FacetKind::input);
-    if (state == ComponentState::stopped || state == ComponentState::failed)
-        return end_forces(part, FacetKind::output);
+    if (state == ComponentState::stopped || state == ComponentState::failed) {
+        end_forces(part, FacetKind::output);
+        part.stops.count.fetch_add(1, std::memory_order_release);
+        return;
+    }
     part.state.store(ComponentState::stopping, std::memory_order_release);
     commands_.fail(i);
     open_outputs(part); // it may never have started
@@ -245,6 +247,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
         part.left_unsafe.store(!part.type->stopped_safely(part.component_), std::memory_order_relaxed);
     say_at_rest(part);
     end_forces(part, FacetKind::output);
+    part.stops.count.fetch_add(1, std::memory_order_release); // its safe values stand
     close_outputs(part);
     cancel_timers(i);
     part.state.store(ComponentState::stopped, std::memory_order_release);

@@ -236,6 +236,7 @@ struct PortAccess {
             [](void* input, const InputPolicy& policy) {
                 auto& in = *static_cast<Input<T>*>(input);
                 in.max_age_ = policy.max_age;
+                in.writer_ = policy.writer;
                 in.settle();
                 in.when_stale_ = policy.when_stale;
                 if constexpr (std::is_floating_point_v<T>) in.scale_ = {policy.scale, policy.between};

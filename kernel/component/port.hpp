@@ -2,6 +2,7 @@
 // is decided by the machine table: inside one activity nothing, across activities a wait-free data object.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
@@ -13,6 +14,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace tappet {
@@ -40,6 +42,12 @@ struct RowValue {
 };
 
 /// What a connection's row says to the input.
+/// How often a component has left its safe values behind; and how many ports are forced, for who looks.
+struct Stops {
+    std::atomic<std::uint32_t> count{0};
+    std::atomic<std::uint32_t>* forced = nullptr;
+};
+
 struct InputPolicy {
     Duration max_age{}; ///< 0: no value is ever stale
     WhenStale when_stale = WhenStale::hold;
@@ -47,6 +55,7 @@ struct InputPolicy {
     RowValue before_first{};
     double scale = 1;                 ///< of a floating number that comes from another data object
     BetweenValues* between = nullptr; ///< likewise; null: the last value is held
+    const Stops* writer = nullptr;    ///< of the component that writes it; null: it never stops
 };
 
 /// Of an input: what each new value is multiplied by, and what is made of it between two. What is no floating
@@ -247,6 +256,8 @@ public:
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }
+    /// What was read last was forced, and not written.
+    [[nodiscard]] bool forced() const noexcept TAPPET_REALTIME { return forced_; }
 
 private:
     friend struct PortAccess;
@@ -271,10 +282,14 @@ private:
     /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
     /// writer leaves the last good value, which is then old.
     bool fetch() noexcept TAPPET_REALTIME {
+        if (forced_ && stops_of_writer() != cached_generation_) {
+            release();
+            if (writer_->forced != nullptr) writer_->forced->fetch_sub(1, std::memory_order_relaxed);
+        }
         if (shared_ == nullptr || forced_) return false;
         const bool is_new = shared_->read(cache_, cached_generation_);
         if constexpr (std::is_floating_point_v<T>) {
-            if (is_new) cache_.value = static_cast<T>(cache_.value * scale_.factor);
+            if (is_new && scale_.factor != 1) cache_.value = scaled(cache_.value);
             if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
                 cache_.value = static_cast<T>(
                     scale_.between->at(*now_, is_new, static_cast<double>(cache_.value), cache_.stamp));
@@ -303,10 +318,11 @@ private:
         if (flow == Flow::stale && when_stale_ == WhenStale::substitute) return substitute_;
         return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
-    /// In the port's own activity, between two steps. The component reads this value, whatever comes: fresh
-    /// once, never stale.
+    /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh
+    /// once and never stale, until it is released, or its writer stops: that one's safe values count then.
     bool force(const T& value) noexcept TAPPET_REALTIME {
         cache_ = {value, *now_};
+        cached_generation_ = stops_of_writer();
         seen_ = 0;
         forced_ = true;
         settle();
@@ -320,10 +336,22 @@ private:
         cache_ = {};
     }
 
+    [[nodiscard]] std::uint64_t stops_of_writer() const noexcept TAPPET_REALTIME {
+        return writer_ == nullptr ? 0 : writer_->count.load(std::memory_order_acquire);
+    }
+    /// Of a number that is one: its nearest end where the other unit has none so large.
+    [[nodiscard]] T scaled(T value) const noexcept TAPPET_REALTIME
+        requires std::is_floating_point_v<T>
+    {
+        constexpr double most = std::numeric_limits<T>::max();
+        const double wanted = static_cast<double>(value) * scale_.factor;
+        return is_number(value) ? static_cast<T>(std::clamp(wanted, -most, most)) : value;
+    }
+
     static constexpr std::uint64_t forced_generation = ~std::uint64_t{0};
 
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
-    std::uint64_t cached_generation_ = 0;
+    std::uint64_t cached_generation_ = 0; ///< while it is forced: the stops of its writer before
     const DataObject<Sample<T>>* shared_ = nullptr;
     [[no_unique_address]] std::conditional_t<std::is_floating_point_v<T>, Scale, NoScale> scale_{};
     bool inside_only_ = false; ///< the value is the one at the other end, of any age
@@ -331,6 +359,7 @@ private:
     WhenStale when_stale_ = WhenStale::hold;
     std::uint64_t seen_ = 0;
     const Output<T>* local_ = nullptr;
+    const Stops* writer_ = nullptr;
     Duration max_age_{};
     const Time* now_ = &Output<T>::detail_epoch;
     alignas(place_alignment<T>) T substitute_ = default_value<T>();

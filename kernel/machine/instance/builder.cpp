@@ -138,6 +138,7 @@ void MachineBuilder::place_engines() {
         engine.behaviours = {instance_.at<Behaviour>(plan.behaviours_at), plan.behaviour_count};
         engine.inputs = {instance_.at<NeededInput>(plan.inputs_at), plan.input_count};
         engine.forced = &instance_.observation().forced_ports();
+        for (EnginePart& part : engine.parts) part.stops.forced = engine.forced;
         engine.guarded = {instance_.at<GuardedInput>(plan.guarded_at), plan.guarded_count};
         auto* placed = new (&instance_.engines()[a]) Engine;
         placed->place(engine, instance_.clock());

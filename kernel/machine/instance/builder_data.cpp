@@ -65,7 +65,11 @@ void MachineBuilder::connect_row(std::size_t x) {
             row.transition, machine_.table.activities[machine_.index.activity[link.from.component]].period};
     from.port->set_policy(instance_.facet(link.to),
                           {row.max_age, row.when_stale, row.substitute, row.before_first,
-                           checks::factor_of(row, from, facet_at(machine_.table, link.to)), between});
+                           checks::factor_of(row, from, facet_at(machine_.table, link.to)), between,
+                           &instance_.engines()[machine_.index.activity[link.from.component]]
+                                .plan()
+                                .parts[machine_.plan.part_of[link.from.component]]
+                                .stops});
 }
 
 void MachineBuilder::add_waker(std::size_t x) {

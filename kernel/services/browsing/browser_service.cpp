@@ -36,7 +36,6 @@ void BrowserService::work(const Cycle& cycle) {
     now_ = cycle.now;
     accept();
     for (Client& each : connections_.clients()) hear(each);
-    static_cast<void>(follow_stops()); // again in the next cycle
     follow_pending();
     tell_events();
     std::int64_t connected = 0;

@@ -21,6 +21,7 @@ public:
     /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
+    static constexpr std::ptrdiff_t max_commands = max_pending / 2; ///< of them
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 
@@ -112,8 +113,6 @@ private:
     browsing::FacetCall& prepare(Pending& place, End end) const noexcept;
     Verdict reach(Pending& place, const browsing::Asker& asker, End end, Message::Run act);
     [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
-    [[nodiscard]] bool follow_stops();
-    [[nodiscard]] bool release_readers_of(std::size_t component);
     bool look_at_facet(Pending& place);
     bool look_at_change(Pending& place);
 
@@ -196,7 +195,7 @@ private:
     std::uint64_t accepted_ = 0;
     std::uint64_t refused_ = 0;
     std::uint64_t turned_away_ = 0;
-    std::array<Pending, max_pending + 1> pending_{}; ///< the last one: the service's own
+    std::array<Pending, max_pending> pending_{};
     std::array<Subscribed, max_subscriptions> subscribed_{};
     std::array<Seen, max_events> seen_{};
     alignas(value_alignment) std::array<std::byte, max_events * sizeof(Message::arguments)> seen_bytes_{};

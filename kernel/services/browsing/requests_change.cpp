@@ -129,43 +129,6 @@ BrowserService::Verdict BrowserService::release(Client& client, const Request& r
     return reach(*place, asker(client, request), end, &release_port);
 }
 
-// A component's own forces end with it; a forced input of another activity would still hide its safe value
-// from there, whoever asked for the stop. False: not all could be asked for in this cycle.
-bool BrowserService::follow_stops() {
-    const AcceptedMachine& machine = machine_->machine();
-    bool all = true;
-    for (std::size_t c = 0; c < machine.table.components.size(); ++c) {
-        std::atomic<bool>& has_stopped =
-            machine_->engines()[machine.index.activity[c]].plan().parts[machine.plan.part_of[c]].has_stopped;
-        if (!has_stopped.load(std::memory_order_acquire)) continue;
-        has_stopped.store(false, std::memory_order_relaxed); // first: it may stop once more meanwhile
-        if (release_readers_of(c)) continue;
-        has_stopped.store(true, std::memory_order_relaxed);
-        all = false;
-    }
-    return all;
-}
-
-bool BrowserService::release_readers_of(std::size_t component) {
-    const AcceptedMachine& machine = machine_->machine();
-    const auto view = map::View::open(machine_->observation().shared_memory());
-    if (!view) return true;
-    for (std::size_t x = 0; x < machine.table.connections.size(); ++x) {
-        const Link& link = machine.index.connections[x];
-        const map::Facet& record =
-            view->facets()[view->components()[link.to.component].first_facet + link.to.facet];
-        if (link.from.component != component || record.forced_at == 0 ||
-            view->word<std::uint8_t>(record.forced_at) == 0 || !check_alive(link.to.component).good())
-            continue;
-        Pending& own = pending_.back(); // whatever waits: people's commands may take any time
-        if (own.look != nullptr) return false;
-        own.work.emplace<FacetCall>();
-        if (!reach(own, {.since = now_}, link.to, &release_port).good()) return false;
-        own.is_told = true; // nobody waits for its answer
-    }
-    return true;
-}
-
 BrowserService::Verdict BrowserService::read_arguments(const Facet& facet, const Request& request,
                                                        std::span<std::byte> into) {
     // A command's results are part of its signature, but come back instead of going in.

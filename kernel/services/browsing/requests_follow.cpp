@@ -5,6 +5,8 @@
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/browsing/names.hpp"
 
+#include <algorithm>
+
 namespace tappet {
 
 using browsing::FollowedCommand;
@@ -18,8 +20,10 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
     if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
         !role.good())
         return role;
+    // They take as long as they take, also when their client has gone: the others are for what ends them.
+    const auto is_command = [](const Pending& each) { return each.look == &BrowserService::look_at_command; };
     Pending* place = free_place(client.role);
-    if (place == nullptr) return no_place();
+    if (place == nullptr || std::ranges::count_if(pending_, is_command) >= max_commands) return no_place();
     auto& call = place->work.emplace<FollowedCommand>();
     const Facet& facet = facet_at(table, end);
     if (facet.command->value_bytes() > call.values.size())
@@ -103,8 +107,6 @@ bool BrowserService::look_at_life(Pending& place) {
         if (answer.refusal == LifeRefusal::left_unsafe) break;
         return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));
     }
-    // Places for what is released come back in time, unless every one waits for another's.
-    if (call.change != LifeChange::start && !follow_stops() && !place.is_told) return false;
     if (answer.outcome == LifeOutcome::done) return answer_good(place);
     return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));
 }

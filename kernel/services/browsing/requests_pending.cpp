@@ -9,9 +9,8 @@ using browsing::Asker;
 
 BrowserService::Pending* BrowserService::free_place(Role role) noexcept {
     const auto is_free = [](const Pending& each) { return each.look == nullptr; };
-    const auto places = std::span{pending_}.first(max_pending);
-    const auto first = std::ranges::find_if(places, is_free);
-    const auto count = static_cast<std::size_t>(std::ranges::count_if(places, is_free));
+    const auto first = std::ranges::find_if(pending_, is_free);
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(pending_, is_free));
     return count > kept_from(role, max_pending) ? &*first : nullptr;
 }
 

@@ -110,6 +110,25 @@ TEST_P(Forcing, an_input_reads_the_forced_value_fresh_once_and_never_stale) {
     EXPECT_EQ(value, 9.0);
 }
 
+TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
+    std::atomic<std::uint32_t> forced{1};
+    Stops writer;
+    writer.forced = &forced;
+    port.set_policy(&input, {.writer = &writer});
+    writer.count = 3; // before it was forced
+    output.write(1.0);
+    force_input(9.0);
+    EXPECT_EQ(input.get(), 9.0);
+    output.write(0.0);
+    EXPECT_EQ(input.get(), 9.0);
+    ++writer.count;
+    EXPECT_EQ(input.read(value), Flow::fresh);
+    EXPECT_EQ(value, 0.0);
+    EXPECT_EQ(forced, 0u);
+    force_input(9.0);
+    EXPECT_EQ(input.get(), 9.0) << "forced after that";
+}
+
 TEST_P(Forcing, an_input_that_nobody_ever_wrote_can_be_forced) {
     force_input(9.0);
     EXPECT_EQ(input.read(value), Flow::fresh);

@@ -34,6 +34,24 @@ TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_whatever_commands_wait)
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u) << "who reads it lets go";
 }
 
+TEST_F(Press, commands_without_end_leave_places_for_what_ends_them) {
+    {
+        Talker talker{path()};
+        ask(talker, "1 set ram.speed 0.1");
+        for (std::size_t i = 0; i < 2 * BrowserService::max_pending; ++i) // to where it comes to no stand
+            ASSERT_TRUE(
+                talker.send(std::to_string(10 + i) + " send ram.move_to " + std::to_string(i) + ".037"));
+        run(200ms);
+    }
+    Talker other{path()};
+    EXPECT_TRUE(has(ask(other, "1 call ram.distance 8"), R"("ok": true)"));
+    EXPECT_THAT(ask(other, "2 send ram.move_to 5"), testing::HasSubstr("too many requests are under way"));
+    EXPECT_THAT(ask(other, "3 stop ram"), testing::HasSubstr(R"("ok": true)"));
+    run(100ms);
+    EXPECT_THAT(ask(other, "4 start ram"), testing::HasSubstr(R"("ok": true)"));
+    EXPECT_THAT(ask(other, "5 send ram.move_to 5"), testing::HasSubstr(R"("state": "sent")"));
+}
+
 TEST_F(Press, nothing_is_forced_that_was_asked_for_in_the_moment_of_the_stop) {
     Talker talker{path()};
     for (const char* request : {"1 stop ram", "2 force ram.place 33", "3 force ram.limit 5"})

@@ -127,6 +127,19 @@ TEST_F(Press, a_stop_that_no_browser_asked_for_ends_what_is_forced_of_those_that
     }
 }
 
+TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_although_the_browsers_activity_stands) {
+    Talker talker{path()};
+    EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
+    static_cast<void>(world.change_activity(
+        instance.machine().index.activity[find_component(instance.machine().table, "browser")],
+        LifeChange::stop));
+    static_cast<void>(
+        instance.life().ask_component(find_component(instance.machine().table, "table"), LifeChange::stop));
+    run(60ms);
+    EXPECT_EQ(ram().limit.get(), 50.0);
+    EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
+}
+
 TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had_stopped_before) {
     Talker talker{path()};
     EXPECT_TRUE(has(ask(talker, "1 force ram.place 33"), R"("ok": true)"));
