@@ -100,7 +100,7 @@ struct Bus {
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         may_repeat_ = {};
         was_faulted_ = false;
-        if (was_stopped_) forget_stopped_time();
+        was_stopped_ ? forget_stopped_time() : demanded_at_.fill(Time::min());
         if (was_stopped_ && !faulted(device_->state())) bus_recovered.emit();
         lost_ = taken_ = 0;
         too_often_ = 0;
@@ -125,7 +125,7 @@ struct Bus {
         for (std::size_t f = 0; f < frame_count; ++f)
             if (is_cyclic(f) && map.frames[f].silence_is_safe) send(f, cycle.now);
         send_services();
-        static_cast<void>(send_on_demand(cycle.now));
+        static_cast<void>(send_on_demand(cycle.now, true));
         static_cast<void>(device_->finish(cycle.now));
         stopped_safely_ = true;
         for (Frame frame : device_map.safe) {
@@ -350,8 +350,8 @@ private:
     struct Reading {
         bool usable = true; ///< each was written, none is stale
         bool fresh = false; ///< one was written since the last reading
-        bool agreed = true; ///< all are of the same time,
-        Time at{};          ///< which is this
+        bool agreed = true; ///< all are of the same time, but those that are forced, which are true now
+        Time at = never;    ///< that time
     };
 
     /// By the values of multiplexors that were read before it.
@@ -363,6 +363,7 @@ private:
 
     Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         Reading found;
+        Time forced_at{};
         const FrameRow& row = map.frames[f];
         for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
             if (!is_selected(row, s)) continue;
@@ -371,9 +372,11 @@ private:
             const Time stamp = integer ? integer_in[s].stamp() : physical_in[s].stamp();
             found.usable &= flow == Flow::fresh || flow == Flow::old;
             found.fresh |= flow == Flow::fresh;
-            if (s == row.first) found.at = stamp;
-            found.agreed &= stamp == found.at;
+            const bool forced = integer ? integer_in[s].forced() : physical_in[s].forced();
+            if (forced || found.at == never) (forced ? forced_at : found.at) = stamp;
+            found.agreed &= forced || stamp == found.at;
         }
+        if (found.at == never) found.at = forced_at;
         return found;
     }
 
@@ -404,7 +407,7 @@ private:
     }
 
     /// False: nothing was demanded.
-    bool send_on_demand(Time now) noexcept TAPPET_REALTIME {
+    bool send_on_demand(Time now, bool ends = false) noexcept TAPPET_REALTIME {
         bool sent = false;
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
@@ -415,8 +418,8 @@ private:
             const Frame before = store_.encode(f, now);
             const bool is_new = found.at > demanded_at_[f];
             if (!keep_inputs(f)) continue;
-            // The end of a force shows the value of before: it is not sent again.
-            if (!is_new && store_.encode(f, now).data == before.data) continue;
+            // The end of a force shows the value of before: not again, and not as the last that is said.
+            if (!is_new && (ends || store_.encode(f, now).data == before.data)) continue;
             demanded_at_[f] = found.at > now + ahead_at_most ? now : found.at;
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
@@ -448,7 +451,8 @@ private:
         }
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
-            static_cast<void>(read_inputs(f));
+            const Reading found = read_inputs(f);
+            if (found.usable && keep_inputs(f)) demanded_at_[f] = std::max(demanded_at_[f], found.at);
             demanded_[f] = false;
         }
     }
@@ -481,11 +485,7 @@ private:
     std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
     std::array<Time, frame_count> may_follow_{}; // on demand
-    std::array<Time, frame_count> demanded_at_ = [] {
-        std::array<Time, frame_count> none{};
-        none.fill(Time::min());
-        return none;
-    }();
+    std::array<Time, frame_count> demanded_at_{};
     std::array<bool, frame_count> demanded_{};   // written since it was last sent
     std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
     Device* device_ = nullptr;

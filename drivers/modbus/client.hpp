@@ -170,7 +170,9 @@ private:
             if (!is_written(v)) continue;
             double value = 0;
             const Flow flow = wanted[v].read(value);
-            if (flow != Flow::fresh && (flow != Flow::old || is_set_[v])) continue;
+            // One that is forced is true now, in each cycle.
+            const bool is_newer = wanted[v].stamp() > session_->value(v).stamp;
+            if (flow != Flow::fresh && (flow != Flow::old || (is_set_[v] && !is_newer))) continue;
             // One that is not newer than the one before stood behind a force, which must not stay: it counts
             // from now on, or, too old to be sent by its row, what is safe does.
             const Time stamp = wanted[v].stamp();

@@ -1,6 +1,7 @@
 // Frames on demand when what they carry is forced, when a force ends, and when a time cannot be.
 #include "tests/drivers/components/can_machine.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace tappet::test {
@@ -77,6 +78,63 @@ TEST_F(ForcedDemand, goes_back_to_what_was_written_before_when_the_force_of_its_
     force("can.sync.count", FacetKind::input, 99);
     release();
     EXPECT_EQ(sent(), (std::vector{7, 99, 7}));
+}
+
+/// A frame of two signals, of which one is forced.
+struct HalfForced : ForcedDemand {
+    void SetUp() override {
+        demand_each_once();
+        force("can.nmt.node", FacetKind::input, 7);
+        heard.clear();
+    }
+    void demand_late(std::int64_t command, std::int64_t node) {
+        demand(command, node);
+        master->overrun = 10us; // the bus looks a while after it was written
+        wait();
+    }
+    [[nodiscard]] std::vector<std::pair<int, int>> demanded() {
+        std::vector<std::pair<int, int>> all;
+        for (const can::Frame& each : heard_of(0x000)) all.emplace_back(each.data[0], each.data[1]);
+        return all;
+    }
+    using All = std::vector<std::pair<int, int>>;
+};
+
+TEST_F(HalfForced, sends_each_demand_of_the_others_with_what_is_forced) {
+    demand_late(128, 4);
+    demand_late(2, 5);
+    EXPECT_EQ(demanded(), (All{{128, 7}, {2, 7}}));
+    release();
+    EXPECT_EQ(demanded().back(), std::pair(2, 5)) << "what stood behind the force reaches the wire";
+}
+
+TEST_F(HalfForced, sends_nothing_of_before_when_its_bus_stops) {
+    demand_late(129, 6);
+    heard.clear();
+    change(0, LifeChange::stop);
+    wait();
+    EXPECT_EQ(demanded(), All{});
+}
+
+TEST_F(OnDemand, sends_nothing_that_was_dropped_while_it_stood_when_a_force_begins_or_ends) {
+    demand_each_once();
+    change(0, LifeChange::stop);
+    demand(129, 6);
+    run_until(40ms);
+    change(0, LifeChange::start);
+    run_until(60ms);
+    heard.clear();
+    End node;
+    ASSERT_TRUE(resolve(instance.machine().table, "can.nmt.node", FacetKind::input, node).empty());
+    const PortOperations& port = *facet_at(instance.machine().table, node).port;
+    const std::int64_t six = 6;
+    port.force(instance.place_of(node), true, reinterpret_cast<const std::byte*>(&six));
+    instance.engines()[0].waiter().wake();
+    run_until(80ms);
+    port.release(instance.place_of(node), true);
+    instance.engines()[0].waiter().wake();
+    run_until(100ms);
+    EXPECT_TRUE(heard_of(0x000).empty());
 }
 
 TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_cannot_be) {

@@ -438,6 +438,16 @@ TEST_F(ForcedPump, is_told_what_stood_behind_the_force_however_old_that_is) {
     EXPECT_FALSE(pump_runs());
 }
 
+TEST_F(ForcedPump, is_told_once_more_what_is_forced_when_its_server_was_away_for_long) {
+    begin("server.pump.on", FacetKind::input);
+    twin.inject(modbus::Fault::down);
+    run_until(32s); // longer than its row calls good
+    twin.set(modbus::Table::coils, 0, 0);
+    twin.inject(modbus::Fault::none);
+    run_until(60s);
+    EXPECT_TRUE(pump_runs());
+}
+
 TEST_F(ForcedPump, is_told_so_too_when_its_writer_stops) {
     reader->leaves_safe = false;
     begin("reader.pump", FacetKind::output);
