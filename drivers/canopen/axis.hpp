@@ -146,7 +146,8 @@ private:
         const bool is_place = mode.last() == static_cast<std::int64_t>(OperationMode::cyclic_position);
         // A stale velocity or torque is what the row gives in its place. A stale place is not followed.
         if (flow != Flow::fresh && (flow != Flow::stale || is_place || !is_led_)) return;
-        if (set_point.stamp() < led_at_) { // it stood behind a force that has ended, or is of before
+        // One that stood behind a force, is of before, or is no number.
+        if (set_point.stamp() < led_at_ || !motion::is_number(wanted)) {
             if (!is_place) motion_.follow(0);
             return;
         }

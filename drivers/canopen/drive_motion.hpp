@@ -79,11 +79,13 @@ public:
     /// is a MC_MoveRelative. Refused in the other modes: there the drive makes the motion, and adds none to
     /// it.
     Asked superimpose(double distance, double velocity, double acceleration) noexcept TAPPET_REALTIME {
-        if (axis_ == AxisMode::standstill) return move_to(seen_.position + distance, velocity);
-        if (!follows() || !gate_.leads(OperationMode::cyclic_position)) return std::unexpected(wrong_state);
-        const motion::AxisState from = gate_.offset();
+        const bool stands = axis_ == AxisMode::standstill;
+        if (!stands && (!follows() || !gate_.leads(OperationMode::cyclic_position)))
+            return std::unexpected(wrong_state);
+        const motion::AxisState from = stands ? motion::AxisState{} : gate_.offset();
         const auto planned = motion::trapezoid(from, from.position + distance, {velocity, acceleration});
         if (!planned) return std::unexpected(planned.error());
+        if (stands) return move_to(seen_.position + distance, velocity);
         const Asked asked = ask(AxisCommand::superimpose);
         if (!asked) return asked;
         count_motion(true);

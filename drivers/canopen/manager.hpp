@@ -57,7 +57,7 @@ template <const auto& map> struct Manager {
         }
         next_sync_ = next_time_ = cycle.now;
         next_beat_ = cycle.now + map.manager.beats; // after the boot-up message
-        counter_ = 0;
+        counter_ = to_reset_ = 0;
         emergencies_.clear();
         told_ = NodeTrouble{.step = no_step};
         if constexpr (map.manager.beats != Duration{})

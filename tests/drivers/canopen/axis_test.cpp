@@ -280,6 +280,18 @@ TEST_F(ServoAxis, takes_what_the_row_gives_for_a_velocity_that_grew_stale) {
     EXPECT_NEAR(servo.velocity(), 0.0, 1e-6);
 }
 
+TEST_F(ServoAxis, comes_to_rest_when_its_velocity_is_no_number) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    run(20ms);
+    client->once = 20;
+    run(10ms);
+    ASSERT_EQ(axis->target_velocity.last(), 20);
+    client->once = std::nan("");
+    run(10ms);
+    EXPECT_EQ(axis->target_velocity.last(), 0);
+}
+
 TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
     power();
     ASSERT_TRUE(client->synchronize.send(8));

@@ -175,6 +175,19 @@ TEST_F(Axis, follows_positions_velocities_and_torques_cycle_by_cycle) {
     EXPECT_FALSE(axis.follows());
 }
 
+TEST_F(Axis, superimposes_nothing_that_is_no_motion_from_a_stand_either) {
+    power();
+    for (const auto& [distance, velocity, acceleration] : {std::array{10.0, 20.0, std::nan("")},
+                                                           {10.0, 20.0, -5.0},
+                                                           {10.0, -1.0, 5.0},
+                                                           {std::nan(""), 20.0, 5.0}})
+        EXPECT_FALSE(axis.superimpose(distance, velocity, acceleration))
+            << distance << velocity << acceleration;
+    run(100);
+    EXPECT_EQ(axis.state(), AxisMode::standstill);
+    EXPECT_EQ(servo.position(), 0);
+}
+
 TEST_F(Axis, waits_until_the_drive_shows_its_mode) {
     power();
     servo.faults.refuses_mode = true;

@@ -255,6 +255,17 @@ TEST_F(Network, gives_a_person_the_reset_of_one_node) {
     EXPECT_EQ(manager->reboots.last(), 1);
 }
 
+TEST_F(Network, resets_no_node_that_was_to_be_reset_before_it_stood) {
+    run_until(500ms);
+    static_cast<void>(world.change_activity(1, LifeChange::stop));
+    manager->reset(7); // of its last cycle, and not yet sent
+    run(2s);
+    heard.clear();
+    static_cast<void>(world.change_activity(1, LifeChange::start));
+    run(20ms);
+    for (const can::Frame& each : heard) EXPECT_FALSE(each.id == 0 && each.data[0] == 0x81) << "reset node";
+}
+
 TEST_F(Network, survives_frames_that_nobody_asked_for) {
     run_until(500ms);
     for (const std::uint32_t id : {0x585u, 0x705u, 0x085u})
