@@ -12,9 +12,11 @@ namespace {
 constexpr Duration killed_within = 100ms; // a thread in the kernel ends when its call does
 constexpr Duration confirmed_within = 500ms;
 constexpr Duration answered_within = 5s;
-constexpr Duration ended_within = 3s;
+constexpr Duration ended_within = 2s;
+constexpr Duration again_within = 1s;
 constexpr Duration kick_every = 100ms;
-static_assert(killed_within + confirmed_within + answered_within + ended_within < os::guardian_acts_within);
+static_assert(killed_within + 2 * confirmed_within + answered_within + ended_within + again_within <
+              os::guardian_acts_within);
 
 } // namespace
 
@@ -29,17 +31,21 @@ SafeEnding end_safely(EndedProcess& process, GuardedDevices& devices, os::Output
     process.kill(); // guardian.kill
     static_cast<void>(devices.write_safe_lines());
     done.written = os::Clock::monotonic() - begin;
-    static_cast<void>(process.await_end(killed_within));
+    const bool ended_at_once = process.await_end(killed_within);
     static_cast<void>(devices.write_safe_lines());
     kick();
     done.frames = devices.send_safe_frames(confirmed_within);
     done.confirmed = os::Clock::monotonic() - begin;
     done.servers = devices.write_safe_registers(answered_within, kick);
-    // A thread that waited in the kernel for memory or for a chip may have written after us.
+    // A thread that waited in the kernel for memory, for a chip or for a network may have written after us.
     for (const Time until = os::Clock::monotonic() + ended_within;
          !(done.ended = process.await_end(kick_every)) && os::Clock::monotonic() < until;)
         kick();
     done.chips = devices.write_safe_lines(); // guardian.write
+    if (!ended_at_once) {
+        done.frames = devices.send_safe_frames(confirmed_within);
+        done.servers = devices.write_safe_registers(again_within, kick);
+    }
     if (done.outputs_are_safe())
         outputs.guardian_says_safe();
     else

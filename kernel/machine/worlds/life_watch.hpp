@@ -27,8 +27,9 @@ public:
     /// in `within`: a longer pause is taken for a box that was frozen. What it asks of an engine is read in
     /// one piece and leads nowhere: an engine that is damaged damages nobody here.
     [[nodiscard]] std::size_t look(Time now) noexcept {
-        // Who looks stands above everybody: when it did not look, nothing ran.
-        const Duration frozen = now - last_ > within_ / 4 ? now - last_ : Duration{};
+        // Who looks stands above everybody: when it did not look, nothing ran. A part of each pause counts,
+        // so that one who always looks late finds a hang, too.
+        const Duration frozen = std::max(now - last_ - within_ / 4, Duration{});
         last_ = now;
         const auto engines = machine_.engines();
         for (std::size_t a = 0; a < engines.size(); ++a) {

@@ -60,7 +60,7 @@ struct Watchdog {
                                      while_stopped(false)),
             event<&Watchdog::silent>("silent", "no life for longer than the limit; how long"),
             event<&Watchdog::revived>("revived", "life again after a silence; how long that was"),
-            property<&Watchdog::limit>("limit", "s", "the longest time without life", range(0, 3600)));
+            property<&Watchdog::limit>("limit", "s", "the longest time without life", range(1e-6, 3600)));
     }
 
 private:

@@ -55,11 +55,12 @@ class Process final : public EndedProcess {
 public:
     std::vector<std::string>& done;
     bool ends = true;
+    int late_looks = 0; ///< so many find it still there
     explicit Process(std::vector<std::string>& to) : done{to} {}
     void kill() noexcept override { done.emplace_back("kill"); }
     bool await_end(Duration time) noexcept override {
         if (!ends) os::sleep_for(time);
-        return ends;
+        return ends && late_looks-- <= 0;
     }
 };
 
@@ -95,6 +96,13 @@ TEST_F(ASafeEnding,
     EXPECT_TRUE(a_kick_goes_through());
     watchdog.stand_down();
     EXPECT_TRUE(device.is_stood_down());
+}
+
+TEST_F(ASafeEnding, writes_all_once_more_when_the_process_has_ended_late) {
+    process.late_looks = 2;
+    EXPECT_TRUE(end().outputs_are_safe());
+    EXPECT_THAT(done,
+                ElementsAre("kill", "lines", "lines", "frames", "registers", "lines", "frames", "registers"));
 }
 
 TEST_F(ASafeEnding, kicks_the_watchdog_while_servers_are_asked) {

@@ -118,7 +118,15 @@ TEST_F(Watched, a_box_that_was_frozen_is_no_hang) {
     EXPECT_EQ(found_by(50ms), never);
     looked = begin + 10s; // nobody ran, who looks neither
     EXPECT_EQ(watch.look(looked), LifeWatch::all_live);
-    EXPECT_EQ(found_by(11s), begin + 10s + 70ms) << "what was owed before counts, the frozen time does not";
+    EXPECT_EQ(found_by(11s), begin + 10s + 40ms)
+        << "of the frozen time counts a quarter of the limit, and what was owed before";
+}
+
+TEST_F(Watched, one_that_hangs_is_found_also_by_who_always_looks_late) {
+    beat().waiter().wake();
+    for (int looks = 0; looks < 6; ++looks)
+        if (watch.look(looked += 60ms) != LifeWatch::all_live) return;
+    FAIL() << "it was not found in " << (looked - begin) / 1ms << " ms";
 }
 
 TEST_F(Watched, who_may_block_and_who_is_stopped_owe_nothing) {
