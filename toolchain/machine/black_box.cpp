@@ -5,31 +5,44 @@
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/browsing/protocol.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace tappet {
 
-Sentence keep_black_box(std::string_view directory, const map::black_box::Record& record,
+namespace {
+
+/// 0: there is none, or it is damaged.
+std::uint64_t number_of(const Sentence& path) {
+    map::black_box::Record record;
+    const int file = ::open(path.data(), O_RDONLY | O_CLOEXEC);
+    const bool is_whole = file >= 0 && ::pread(file, &record, sizeof record, 0) == sizeof record &&
+                          record.magic == map::black_box::magic;
+    if (file >= 0) ::close(file);
+    return is_whole ? record.number : 0;
+}
+
+} // namespace
+
+// Not by the time of a file: the clock of a box without a battery begins anew with each boot.
+Sentence keep_black_box(std::string_view directory, map::black_box::Record record,
                         std::span<const std::byte> memory) {
     if (directory.empty()) return {};
     Sentence chosen;
-    std::int64_t oldest = INT64_MAX;
+    std::uint64_t oldest = UINT64_MAX, newest = 0;
     for (int n = 0; n < black_boxes_kept; ++n) {
         const Sentence path{directory, "/", std::string_view{record.machine.data()}, "-", n, ".blackbox"};
-        struct stat facts{};
-        const bool is_there = ::stat(path.data(), &facts) == 0;
-        const std::int64_t written =
-            is_there ? facts.st_mtim.tv_sec * 1'000'000'000 + facts.st_mtim.tv_nsec : -1;
-        if (written >= oldest) continue;
-        oldest = written;
+        const std::uint64_t number = number_of(path);
+        newest = std::max(newest, number);
+        if (number >= oldest) continue;
+        oldest = number;
         chosen = path;
-        if (!is_there) break;
     }
+    record.number = newest + 1;
     std::array<char, map::black_box::memory_at> head{};
     __builtin_memcpy(head.data(), &record, sizeof record);
     const std::string_view pieces[] = {{head.data(), head.size()},

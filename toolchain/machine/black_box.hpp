@@ -14,9 +14,9 @@ namespace tappet {
 
 inline constexpr int black_boxes_kept = 8; ///< of one machine
 
-/// Writes `<directory>/<machine>-N.blackbox`, N from 0; whole or not at all, and for good. Empty: nothing
-/// could be written. Not real-time.
-[[nodiscard]] Sentence keep_black_box(std::string_view directory, const map::black_box::Record& record,
+/// Writes `<directory>/<machine>-N.blackbox`, N from 0, in the place of none, of a damaged one or of the
+/// oldest, and numbers it; whole or not at all, and for good. Empty: nothing could be written. Not real-time.
+[[nodiscard]] Sentence keep_black_box(std::string_view directory, map::black_box::Record record,
                                       std::span<const std::byte> memory);
 /// Adds what the machine, of which nothing runs any more, answers to browsers. What is damaged in it may end
 /// the calling process: the file is whole without. Not real-time.

@@ -37,8 +37,8 @@ Result<void> tell(Work& work) {
         text("reason", box.reason.data());
         text("done", done);
         text("thread", box.thread_name.data());
-        work.out << "\"signal\": " << box.signal << ", \"instruction\": " << box.instruction
-                 << ", \"returns\": [";
+        work.out << "\"number\": " << box.number << ", \"signal\": " << box.signal
+                 << ", \"instruction\": " << box.instruction << ", \"returns\": [";
         for (std::size_t i = 0; i < box.returns.size() && box.returns[i] != 0; ++i)
             work.out << (i == 0 ? "" : ", ") << box.returns[i];
         work.out << "], \"address\": " << box.address << ", \"exit_code\": " << box.exit_code << "}\n";
@@ -46,7 +46,8 @@ Result<void> tell(Work& work) {
     }
     work.out << box.machine.data() << " on board " << box.board.data() << ", build "
              << (build.empty() ? "without an id" : build) << "\n"
-             << date_of(box.wall_ns) << ": " << box.reason.data() << "; exit code " << box.exit_code << "\n";
+             << "black box " << box.number << ", " << date_of(box.wall_ns) << ": " << box.reason.data()
+             << "; exit code " << box.exit_code << "\n";
     if (!done.empty()) work.out << "told: " << done << "\n";
     if (box.signal != 0) {
         work.out << "source, then callers (some may have returned before): addr2line -Cfipe FIRMWARE"

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which black boxes are kept: the last ones, whatever the clock says.
+#include "toolchain/machine/black_box.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+namespace tappet {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BlackBoxes : testing::Test {
+    char name[32] = "/tmp/black-boxes-XXXXXX";
+    fs::path folder = ::mkdtemp(name);
+    map::black_box::Record record{.magic = map::black_box::magic, .machine = {"loom"}};
+
+    ~BlackBoxes() override { fs::remove_all(folder); }
+    /// Written at a time of its clock, in s since 1970.
+    void keep(std::time_t at) {
+        const Sentence path = keep_black_box(folder.native(), record, {});
+        ASSERT_FALSE(path.empty());
+        const timespec times[] = {{at, 0}, {at, 0}};
+        ASSERT_EQ(::utimensat(AT_FDCWD, path.data(), times, 0), 0);
+    }
+    std::multiset<std::uint64_t> numbers() {
+        std::multiset<std::uint64_t> all;
+        for (const auto& each : fs::directory_iterator{folder}) {
+            map::black_box::Record read;
+            std::ifstream{each.path(), std::ios::binary}.read(reinterpret_cast<char*>(&read), sizeof read);
+            all.insert(read.number);
+        }
+        return all;
+    }
+};
+
+TEST_F(BlackBoxes, are_the_last_ones_also_of_a_box_whose_clock_begins_anew_with_each_boot) {
+    for (std::time_t n = 0; n < 3 * black_boxes_kept; ++n) keep(100 - n);
+    std::multiset<std::uint64_t> last;
+    for (std::uint64_t n = 0; n < black_boxes_kept; ++n) last.insert(3 * black_boxes_kept - n);
+    EXPECT_EQ(numbers(), last);
+}
+
+TEST_F(BlackBoxes, that_are_damaged_make_room_first) {
+    for (int n = 0; n < black_boxes_kept; ++n) keep(0);
+    std::ofstream{folder / "loom-5.blackbox"} << "torn";
+    keep(0);
+    EXPECT_FALSE(numbers().contains(6));
+    EXPECT_TRUE(numbers().contains(1));
+    EXPECT_TRUE(numbers().contains(black_boxes_kept + 1));
+}
+
+} // namespace
+} // namespace tappet
