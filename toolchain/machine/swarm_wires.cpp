@@ -240,6 +240,9 @@ void SwarmWires::add_signals(std::size_t c) {
             };
             output.name = std::string{frame.name} + "." + std::string{signal.name};
             add(std::move(output), output.name);
+            if (can::is_integer(signal) && !signal.is_bits && !signal.has_range && signal.bits < 64 &&
+                !outputs_.back().facets.empty())
+                wholes_.push_back({sent_.size() - 1, &signal, outputs_.back().facets.front()});
         }
     }
 }
@@ -308,10 +311,13 @@ void SwarmWires::add(Output output, std::string_view facet, std::string_view oth
 /// What the machine sends: numbers, within what the map allows.
 void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
     for (Axis& axis : axes_) hear_axis(axis, device, frame);
-    for (Sent& sent : sent_) {
+    for (std::size_t at = 0; at < sent_.size(); ++at) {
+        Sent& sent = sent_[at];
         const can::FrameRow& row = sent.map->frames[sent.row];
         if (sent.device != device || row.identifier != can::Identifier{frame.id, frame.extended}) continue;
         sent.last = frame;
+        for (Whole& whole : wholes_)
+            if (whole.sent == at && is_in(*sent.map, row, *whole.signal, frame)) hear_whole(whole, frame);
         for (const can::Signal& signal : sent.map->signals.subspan(row.first, row.signals)) {
             if (!is_in(*sent.map, row, signal, frame)) continue;
             const std::uint64_t raw = can::extract(frame.data, signal);
@@ -335,6 +341,32 @@ void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
                                   ", outside of its range"};
         }
     }
+}
+
+/// It is what its port says, or the end of its range that is nearest to that.
+void SwarmWires::hear_whole(Whole& whole, const can::Frame& frame) {
+    constexpr unsigned longest = 5; // frames that were under way, or wait for values of one time
+    if (instance_ == nullptr || instance_->life().state_of(whole.port.component) != ComponentState::running)
+        return;
+    const Facet& facet = facet_at(machine_.table, whole.port);
+    const PortPlaces places = facet.port->places(instance_->place_of(whole.port), true);
+    std::int64_t said = 0;
+    std::memcpy(&said, *places.forced ? places.forced_value : places.value, sizeof said);
+    const bool is_signed = whole.signal->kind == can::Kind::signed_integer;
+    const std::int64_t most = (std::int64_t{1} << (whole.signal->bits - (is_signed ? 1 : 0))) - 1;
+    const std::int64_t wire = can::to_integer(*whole.signal, can::extract(frame.data, *whole.signal));
+    const bool is_meant = wire == std::clamp(said, is_signed ? -most - 1 : 0, most);
+    whole.another = is_meant || said != whole.said ? 0 : whole.another + 1;
+    whole.said = said;
+    if (whole.another > longest)
+        heard_ = Sentence{"\"",
+                          machine_.table.components[whole.port.component].name,
+                          ".",
+                          facet.name,
+                          "\" is ",
+                          said,
+                          ", and goes out as ",
+                          wire};
 }
 
 bool SwarmWires::drives(const Output& output) const {

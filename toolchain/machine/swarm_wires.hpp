@@ -76,6 +76,14 @@ private:
         std::size_t row = 0;
         std::optional<can::Frame> last{};
     };
+    /// A whole number that the machine sends, and the input of its driver that says which.
+    struct Whole {
+        std::size_t sent = 0;
+        const can::Signal* signal = nullptr;
+        End port{};
+        std::int64_t said = 0;
+        unsigned another = 0; ///< frames one after the other with another value, while the port said the same
+    };
 
     /// An axis of the library, as its facets say, and what its drive tells at the wire.
     struct Axis {
@@ -109,6 +117,7 @@ private:
     void add_registers(std::size_t component);
     void add(Output output, std::string_view facet, std::string_view other_facet = {});
     void hear(std::string_view device, const can::Frame& frame);
+    void hear_whole(Whole& whole, const can::Frame& frame);
     [[nodiscard]] bool drives(const Output& output) const;
     [[nodiscard]] bool is_forced(const Output& output) const;
     [[nodiscard]] Sentence broken(Output& output, Time now) const;
@@ -122,6 +131,7 @@ private:
     Time now_{};
     std::vector<Output> outputs_{};
     std::vector<Sent> sent_{};
+    std::vector<Whole> wholes_{};
     std::vector<Axis> axes_{};
     Sentence heard_{}; ///< what was wrong with a frame
 };
