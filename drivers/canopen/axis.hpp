@@ -122,7 +122,7 @@ template <text unit> struct Axis {
             output<&Axis::lags>("lags", "", "behind its set point; written on change"),
             output<&Axis::limited>("limited", "", "held by a limit of the drive's; written on change"),
             event<&Axis::stopped_by_error>("stopped_by_error", "a fault, a silence, a mode that it does not show, or power that went away"),
-            property<&Axis::standing>("standing", speed_unit.view(), "slower than this it stands", range(0, 1e9)),
+            property<&Axis::standing>("standing", speed_unit.view(), "up to this speed it stands", range(0, 1e9)),
             operation<&Axis::power_on>("power_on", "MC_Power"),
             operation<&Axis::power_off>("power_off", "MC_Power, not enabled"),
             operation<&Axis::reset>("reset", "MC_Reset: of one fault"),

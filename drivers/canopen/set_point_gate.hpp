@@ -221,7 +221,7 @@ private:
         const bool is_quiet = hand_shake_ == HandShake::over;
         if (!is_cyclic && is_quiet) order_.position = seen.position;
         // While the drive shows another mode, it has not yet heard of the rest.
-        const bool is_slow = seen.velocity < standing_ && -seen.velocity < standing_;
+        const bool is_slow = seen.velocity <= standing_ && -seen.velocity <= standing_;
         slow_cycles_ = is_slow && is_quiet && shown == ordered_ ? slow_cycles_ + 1 : 0;
         if (slow_cycles_ > settling_cycles) slow_cycles_ = settling_cycles + 1;
     }

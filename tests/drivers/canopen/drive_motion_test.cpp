@@ -175,6 +175,15 @@ TEST_F(Axis, follows_positions_velocities_and_torques_cycle_by_cycle) {
     EXPECT_FALSE(axis.follows());
 }
 
+TEST_F(Axis, stands_when_it_does_not_move_though_nothing_is_slow_enough) {
+    axis.set_standing(0);
+    power();
+    ASSERT_TRUE(axis.move_at(5));
+    run(300);
+    ASSERT_TRUE(axis.halt());
+    EXPECT_TRUE(reaches(AxisMode::standstill));
+}
+
 TEST_F(Axis, superimposes_nothing_that_is_no_motion_from_a_stand_either) {
     power();
     for (const auto& [distance, velocity, acceleration] : {std::array{10.0, 20.0, std::nan("")},
