@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Partitions by name; the data partition.
 #include "board/box/disk.hpp"
+#include "kernel/base/crc.hpp"
 
 #include <algorithm>
 #include <array>
@@ -118,15 +119,6 @@ init::Done make_anew(const std::string& device, const std::function<void()>& mea
 /// A head of ext4 is whole when its magic number is there and its checksum, if it has one, is right.
 enum class Head : std::uint8_t { none, whole, unreadable };
 
-std::uint32_t crc32c(const std::uint8_t* bytes, std::size_t count) {
-    std::uint32_t rest = ~std::uint32_t{0};
-    for (std::size_t i = 0; i < count; ++i) {
-        rest ^= bytes[i];
-        for (int bit = 0; bit < 8; ++bit) rest = (rest & 1) != 0 ? rest >> 1 ^ 0x82F63B78u : rest >> 1;
-    }
-    return rest;
-}
-
 Head look_at_head(int disk, off_t at) {
     constexpr std::size_t magic = 0x38, features = 0x64, sum = 0x3FC;
     constexpr std::uint32_t has_sums = 0x400;
@@ -139,8 +131,9 @@ Head look_at_head(int disk, off_t at) {
         return value;
     };
     if ((word(magic) & 0xFFFF) != 0xEF53) return Head::none;
-    return (word(features) & has_sums) == 0 || word(sum) == crc32c(head.data(), sum) ? Head::whole
-                                                                                     : Head::none;
+    return (word(features) & has_sums) == 0 || word(sum) == ~crc32({head.data(), sum}, castagnoli)
+               ? Head::whole
+               : Head::none;
 }
 
 /// e2fsck says with one code that there is no file system, that the disk cannot be read and that it had no

@@ -46,4 +46,17 @@ inline constexpr Crc<std::uint8_t> crc8_j1850{0x1D, 0xFF, 0xFF};    ///< SAE J18
 inline constexpr Crc<std::uint8_t> crc8_2f{0x2F, 0xFF, 0xFF};       ///< AUTOSAR's CRC8H2F
 inline constexpr Crc<std::uint16_t> crc16_ccitt{0x1021, 0xFFFF, 0}; ///< AUTOSAR's CRC16, CCITT-FALSE
 
+/// The one of disks and files, lowest bit first: of zlib's polynomial, or Castagnoli's. Not for large
+/// amounts: bit by bit.
+constexpr std::uint32_t crc32(std::span<const std::uint8_t> bytes,
+                              std::uint32_t polynomial = 0xEDB88320u) noexcept TAPPET_REALTIME {
+    std::uint32_t rest = ~std::uint32_t{0};
+    for (const std::uint8_t byte : bytes) {
+        rest ^= byte;
+        for (int bit = 0; bit < 8; ++bit) rest = (rest & 1) != 0 ? rest >> 1 ^ polynomial : rest >> 1;
+    }
+    return ~rest;
+}
+inline constexpr std::uint32_t castagnoli = 0x82F63B78u;
+
 } // namespace tappet

@@ -41,12 +41,12 @@ struct RowValue {
     TypeId type = nullptr; ///< of the constant
 };
 
-/// How often a component has left its safe values behind; and how many ports are forced, for who looks.
+/// How often a component has left its safe values behind; and how many ports are forced, for who looks at
+/// it from outside.
 struct Stops {
     std::atomic<std::uint32_t> count{0};
     std::atomic<std::uint32_t>* forced = nullptr;
 };
-
 /// What a connection's row says to the input.
 struct InputPolicy {
     Duration max_age{}; ///< 0: no value is ever stale

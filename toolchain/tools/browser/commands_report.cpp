@@ -113,6 +113,10 @@ Result<void> convert(const Line& line, std::ostream& out) {
     file << as_csv(*contents);
     file.close();
     if (!file) return wrong("'" + to + "' could not be written; is its folder there, and yours?");
+    if (!contents->damage.empty())
+        return wrong("'" + from + "' is damaged, " + contents->damage + "; the " +
+                     std::to_string(contents->messages.size()) + " messages that are whole stand in '" + to +
+                     "'");
     if (line.json)
         out << "{\"messages\": " << contents->messages.size()
             << ", \"whole\": " << (contents->has_end ? "true" : "false") << "}\n";

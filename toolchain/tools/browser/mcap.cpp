@@ -2,8 +2,11 @@
 // four bytes before them.
 #include "toolchain/tools/browser/mcap.hpp"
 
+#include "kernel/base/crc.hpp"
+
 #include <algorithm>
 #include <set>
+#include <span>
 
 namespace tappet::browser::mcap {
 
@@ -111,9 +114,83 @@ bool take_record(Opcode opcode, std::string_view bytes, Contents& into) {
     }
     case Opcode::footer: into.has_end = true; break;
     case Opcode::header:
+    case Opcode::chunk:
     case Opcode::data_end: break;
     }
     return !fields.is_broken();
+}
+
+constexpr std::size_t head_bytes = 9;
+/// By the specification: its own, and those of others.
+bool is_of_no_kind(char opcode) {
+    const auto kind = static_cast<unsigned char>(opcode);
+    return kind > 0x0F && kind < 0x80;
+}
+
+std::uint32_t checksum(std::string_view bytes) {
+    return crc32({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+void tell_damage(Contents& into, const std::string& what, std::size_t at) {
+    if (into.damage.empty()) into.damage = what + " at byte " + std::to_string(at);
+}
+
+std::expected<void, std::string> take_records(std::string_view bytes, std::size_t begin, bool in_chunk,
+                                              Contents& into);
+
+/// The error: as of take_records().
+std::expected<void, std::string> take_chunk(std::string_view fields, std::size_t at, Contents& into) {
+    Fields chunk{fields};
+    const auto first_ns = chunk.number<std::uint64_t>(), last_ns = chunk.number<std::uint64_t>();
+    const auto unpacked = chunk.number<std::uint64_t>();
+    const auto sum = chunk.number<std::uint32_t>();
+    const bool is_packed = !chunk.text().empty();
+    const auto size = chunk.number<std::uint64_t>();
+    const std::string_view records = chunk.rest();
+    const bool is_whole = !chunk.is_broken() && size == records.size() &&
+                          (is_packed || (unpacked == size && (sum == 0 || sum == checksum(records))));
+    if (!is_whole) {
+        tell_damage(into, "a chunk does not have its checksum", at);
+        return {};
+    }
+    if (is_packed)
+        return std::unexpected(
+            std::string{"is in chunks that are packed, which are not read here; write it anew without"});
+    const auto before = static_cast<std::ptrdiff_t>(into.messages.size());
+    const auto taken = take_records(records, at + head_bytes + fields.size() - size, true, into);
+    const std::span messages{into.messages.begin() + before, into.messages.end()};
+    const auto [first, last] = std::ranges::minmax_element(messages, {}, &Message::log_ns);
+    if (!messages.empty() && (first->log_ns != first_ns || last->log_ns != last_ns))
+        tell_damage(into, "a chunk says other times than its messages", at);
+    return taken;
+}
+
+/// Records of a file, or of a chunk, which begins at byte `begin`. The error: what is not read here.
+std::expected<void, std::string> take_records(std::string_view bytes, std::size_t begin, bool in_chunk,
+                                              Contents& into) {
+    std::string_view left = bytes;
+    for (std::size_t at = begin; !into.has_end && left.size() >= head_bytes;) {
+        const auto opcode = static_cast<Opcode>(left[0]);
+        const auto length = Fields{left.substr(1)}.number<std::uint64_t>();
+        if (left[0] == 0 || length > left.size() - head_bytes) break;
+        const std::string_view fields = left.substr(head_bytes, length);
+        if (opcode == Opcode::chunk && !in_chunk) {
+            if (auto taken = take_chunk(fields, at, into); !taken) return taken;
+        } else if (in_chunk && opcode != Opcode::schema && opcode != Opcode::channel &&
+                   opcode != Opcode::message) {
+            tell_damage(into, "a chunk holds what belongs into none", at);
+        } else if (is_of_no_kind(left[0]) || !take_record(opcode, fields, into)) {
+            tell_damage(into, "a record is of no kind, or contradicts itself", at);
+        }
+        left.remove_prefix(head_bytes + length);
+        at += head_bytes + length;
+        into.whole_bytes = std::max(into.whole_bytes, at);
+    }
+    const bool is_cut = into.has_end ? !left.empty() && left != magic
+                                     : left.ends_with(magic) || (!left.empty() && left[0] == 0 &&
+                                                                 left.find_first_not_of('\0') != left.npos);
+    if (is_cut) tell_damage(into, "there is no record", begin + bytes.size() - left.size());
+    return {};
 }
 
 } // namespace
@@ -155,6 +232,18 @@ void put_message(std::string& file, const Message& message) {
     put_record(file, Opcode::message, fields);
 }
 
+void put_chunk(std::string& file, std::uint64_t first_ns, std::uint64_t last_ns, std::string_view records) {
+    std::string fields;
+    put(fields, first_ns);
+    put(fields, last_ns);
+    put(fields, std::uint64_t{records.size()});
+    put(fields, checksum(records));
+    put_text(fields, ""); // it is not packed
+    put(fields, std::uint64_t{records.size()});
+    fields += records;
+    put_record(file, Opcode::chunk, fields);
+}
+
 void put_metadata(std::string& file, std::string_view name, const Pairs& values) {
     std::string fields;
     put_text(fields, name);
@@ -180,31 +269,19 @@ std::expected<Contents, std::string> read(std::string_view file) {
     Contents contents;
     if (file.size() < magic.size()) return contents;
     contents.whole_bytes = magic.size();
-    std::string_view left = file.substr(magic.size());
-    constexpr std::size_t head_bytes = 9;
-    while (!contents.has_end && left.size() >= head_bytes) {
-        const auto opcode = static_cast<unsigned char>(left[0]);
-        const auto length = Fields{left.substr(1)}.number<std::uint64_t>();
-        if (opcode == 0)
-            return std::unexpected("holds no record at byte " + std::to_string(contents.whole_bytes) +
-                                   "; it is damaged");
-        if (length > left.size() - head_bytes) break; // cut off
-        if (opcode == 0x06)
-            return std::unexpected(
-                std::string{"is in chunks, which are not read here; write it anew without"});
-        if (!take_record(static_cast<Opcode>(opcode), left.substr(head_bytes, length), contents))
-            return std::unexpected("contradicts itself at byte " + std::to_string(contents.whole_bytes) +
-                                   "; it is damaged");
-        left.remove_prefix(head_bytes + length);
-        contents.whole_bytes = file.size() - left.size();
-    }
-    contents.has_end = contents.has_end && left.starts_with(magic);
+    if (auto taken = take_records(file.substr(magic.size()), magic.size(), false, contents); !taken)
+        return std::unexpected(taken.error());
+    contents.has_end = contents.has_end && file.ends_with(magic);
     std::set<std::uint16_t> known;
     for (const Channel& each : contents.channels) known.insert(each.id);
-    for (const Message& each : contents.messages)
-        if (!known.contains(each.channel))
-            return std::unexpected("has messages of channel " + std::to_string(each.channel) +
-                                   ", which is not there; it is damaged");
+    std::erase_if(contents.messages, [&](const Message& each) {
+        const bool is_known = known.contains(each.channel);
+        if (!is_known)
+            tell_damage(contents,
+                        "a message is of channel " + std::to_string(each.channel) + ", which is not there,",
+                        static_cast<std::size_t>(each.data.data() - file.data()));
+        return !is_known;
+    });
     return contents;
 }
 

@@ -1,5 +1,5 @@
-// Recordings as MCAP, version 0 (mcap.dev/spec): append-only records that say themselves what they hold. They
-// are written without chunks, so that a file that was cut off is good up to its last whole record.
+// Recordings as MCAP, version 0 (mcap.dev/spec): append-only records that say themselves what they hold, in
+// small chunks with checksums, so that a file that was cut off or damaged is good in all other chunks.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,7 @@ enum class Opcode : std::uint8_t {
     schema = 0x03,
     channel = 0x04,
     message = 0x05,
+    chunk = 0x06,
     metadata = 0x0C,
     data_end = 0x0F
 };
@@ -46,6 +47,8 @@ void put_begin(std::string& file, std::string_view library);
 void put_schema(std::string& file, std::uint16_t id, std::string_view name, std::string_view json_schema);
 void put_channel(std::string& file, const Channel& channel);
 void put_message(std::string& file, const Message& message);
+/// `records`: of schemas, channels and messages, from the first to the last time of these.
+void put_chunk(std::string& file, std::uint64_t first_ns, std::uint64_t last_ns, std::string_view records);
 void put_metadata(std::string& file, std::string_view name, const Pairs& values);
 /// What a file that was not cut off ends with.
 void put_end(std::string& file);
@@ -58,10 +61,11 @@ struct Contents {
     std::map<std::string, Pairs, std::less<>> metadata{};
     bool has_end = false;        ///< it was not cut off
     std::size_t whole_bytes = 0; ///< up to the end of its last whole record
+    std::string damage{};        ///< what first was found damaged, and is left out; empty: nothing
 };
 
-/// The error says what is no MCAP that is read here; what stands behind a cut is none. Records that are not
-/// known are passed over.
+/// The error says what is no MCAP that is read here; what stands behind a cut is none, and neither are
+/// noughts to the end, which a power cut leaves. Records that are not known are passed over.
 [[nodiscard]] std::expected<Contents, std::string> read(std::string_view file);
 
 } // namespace tappet::browser::mcap

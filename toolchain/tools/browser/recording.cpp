@@ -66,14 +66,16 @@ Recording::Recording(const MapReader& map, const std::vector<RecordedChannel>& c
                         {"clock_zero_ns", std::to_string(zero_ns)}});
     const std::uint16_t lost_schema =
         schema_of("lost", of_object(R"("channel": {"type": "string"}, "samples": {"type": "integer"})"));
-    mcap::put_channel(bytes_, {lost_id, lost_schema, std::string{lost_topic}, "json", {}});
+    mcap::put_channel(records_, {lost_id, lost_schema, std::string{lost_topic}, "json", {}});
     for (std::uint32_t c = 0; c < channels.size(); ++c) describe(c);
+    description_ = records_;
+    close_chunk();
 }
 
 std::uint16_t Recording::schema_of(const std::string& name, const std::string& json_schema) {
     const auto [found, is_new] =
         schemas_.try_emplace(json_schema, static_cast<std::uint16_t>(schemas_.size() + 1));
-    if (is_new) mcap::put_schema(bytes_, found->second, name, json_schema);
+    if (is_new) mcap::put_schema(records_, found->second, name, json_schema);
     return found->second;
 }
 
@@ -97,7 +99,7 @@ void Recording::describe(std::uint32_t channel) {
         about.emplace_back("every", std::to_string(each.of.every));
     else
         about.emplace_back("on_change", std::to_string(each.of.band));
-    mcap::put_channel(bytes_, {id_of(channel), schema, each.name, "json", std::move(about)});
+    mcap::put_channel(records_, {id_of(channel), schema, each.name, "json", std::move(about)});
 }
 
 void Recording::add(std::span<const RecordedSample> samples) {
@@ -131,14 +133,36 @@ void Recording::keep(const RecordedSample& sample) {
     forget_until(before, sample.at_ns - channel.before_ns, channel.every == 0);
 }
 
-void Recording::end() { mcap::put_end(bytes_); }
+void Recording::end() {
+    close_chunk();
+    mcap::put_chunk(bytes_, 0, 0, description_); // once more: without it nothing is read
+    mcap::put_end(bytes_);
+}
+
+std::string Recording::take() {
+    close_chunk();
+    return std::exchange(bytes_, {});
+}
+
+void Recording::close_chunk() {
+    if (records_.empty()) return;
+    mcap::put_chunk(bytes_, first_ns_, last_ns_, records_);
+    records_.clear();
+    first_ns_ = last_ns_ = 0;
+}
+
+void Recording::put(const mcap::Message& message) {
+    first_ns_ = first_ns_ == 0 ? message.log_ns : std::min(first_ns_, message.log_ns);
+    last_ns_ = std::max(last_ns_, message.log_ns);
+    mcap::put_message(records_, message);
+    if (records_.size() >= most_in_a_chunk) close_chunk();
+}
 
 void Recording::tell_lost(const RecordedSample& sample) {
     lost_ += sample.lost;
     const std::string data = "{\"channel\": " + in_quotes((*channels_)[sample.channel].name) +
                              ", \"samples\": " + std::to_string(sample.lost) + "}";
-    mcap::put_message(bytes_,
-                      {lost_id, lost_messages_++, static_cast<std::uint64_t>(sample.at_ns + zero_ns_), data});
+    put({lost_id, lost_messages_++, static_cast<std::uint64_t>(sample.at_ns + zero_ns_), data});
 }
 
 void Recording::write(const RecordedSample& sample) {
@@ -148,8 +172,7 @@ void Recording::write(const RecordedSample& sample) {
             ? std::to_string(sample.words[0])
             : to_text(*map_, type, std::as_bytes(std::span{sample.words}), Style::plain);
     const std::string data = "{\"value\": " + value + "}";
-    mcap::put_message(bytes_, {id_of(sample.channel), sample.sequence,
-                               static_cast<std::uint64_t>(sample.at_ns + zero_ns_), data});
+    put({id_of(sample.channel), sample.sequence, static_cast<std::uint64_t>(sample.at_ns + zero_ns_), data});
     ++samples_;
 }
 

@@ -25,7 +25,7 @@ public:
     /// Nothing follows.
     void end();
     /// What has come together since the last call.
-    [[nodiscard]] std::string take() { return std::exchange(bytes_, {}); }
+    [[nodiscard]] std::string take();
 
     [[nodiscard]] std::uint64_t samples() const { return samples_; }
     [[nodiscard]] std::uint64_t lost() const { return lost_; }
@@ -45,13 +45,19 @@ private:
     }
     void tell_lost(const RecordedSample& sample);
     void write(const RecordedSample& sample);
+    void put(const mcap::Message& message);
+    void close_chunk();
+    static constexpr std::size_t most_in_a_chunk =
+        8192; ///< bytes, of which one that is damaged loses so many
 
     const MapReader* map_;
     const std::vector<RecordedChannel>* channels_;
     std::int64_t zero_ns_;
     std::vector<Window> windows_{}; ///< of each channel
     std::map<std::string, std::uint16_t> schemas_{};
-    std::string bytes_{};
+    std::string description_{};                ///< of the channels
+    std::string bytes_{}, records_{};          ///< whole; of the chunk that is being filled
+    std::uint64_t first_ns_ = 0, last_ns_ = 0; ///< of the messages in it
     std::uint64_t samples_ = 0;
     std::uint64_t lost_ = 0;
     std::uint32_t lost_messages_ = 0;

@@ -5,6 +5,7 @@
 import json
 import struct
 import sys
+import zlib
 
 MAGIC = b"\x89MCAP0\r\n"
 
@@ -67,7 +68,7 @@ def main(name, cut):
     file = open(name, "rb").read()
     if not file.startswith(MAGIC):
         fail("no magic")
-    at, schemas, channels, opcodes = len(MAGIC), {}, {}, []
+    at, schemas, channels, opcodes, in_chunk, times = len(MAGIC), {}, {}, [], 0, (0, 0)
     while at < len(file):
         if file[at:] == MAGIC and opcodes[-1:] == [0x02]:
             break
@@ -88,25 +89,34 @@ def main(name, cut):
         elif opcode == 0x03:
             number, _, encoding, data = fields.number("H"), fields.text(), fields.text(), fields.bytes()
             fields.end()
-            if number == 0 or number in schemas or encoding != "jsonschema":
-                fail("schema %d stands twice, or is none" % number)
+            if number == 0 or schemas.get(number, json.loads(data)) != json.loads(data) or encoding != "jsonschema":
+                fail("schema %d stands twice, otherwise, or is none" % number)
             schemas[number] = json.loads(data)
         elif opcode == 0x04:
             number, schema, topic, encoding = fields.number("H"), fields.number("H"), fields.text(), fields.text()
             fields.map()
             fields.end()
-            if schema not in schemas or number in channels or encoding != "json":
-                fail("channel '%s' has no schema before it, or stands twice" % topic)
+            if schema not in schemas or channels.get(number, (topic, schemas[schema])) != (topic, schemas[schema]) or encoding != "json":
+                fail("channel '%s' has no schema before it, or stands twice, otherwise" % topic)
             channels[number] = (topic, schemas[schema])
         elif opcode == 0x05:
             number, sequence, time, sent = fields.number("H"), fields.number("I"), fields.number("Q"), fields.number("Q")
             if number not in channels:
                 fail("a message is of no channel")
+            if at <= in_chunk and not times[0] <= time <= times[1]:
+                fail("a message is of no time of its chunk")
             topic, schema = channels[number]
             message = json.loads(fields.data[fields.at :])
             if not fits(message, schema):
                 fail("a message of '%s' is not as its schema says: %s" % (topic, message))
             print(json.dumps({"topic": topic, "sequence": sequence, "time": time, "message": message}))
+        elif opcode == 0x06:
+            first, last, size, checksum, packed = fields.number("Q"), fields.number("Q"), fields.number("Q"), fields.number("I"), fields.text()
+            records = fields.data[fields.at + 8 :]
+            if packed or fields.number("Q") != size or size != len(records) or checksum != zlib.crc32(records):
+                fail("a chunk is packed, or not as it says itself")
+            file = file[:at] + records + file[at:]  # read next, as if they stood there
+            in_chunk, times = at + len(records), (first, last)
         elif opcode == 0x0C:
             fields.text(), fields.map(), fields.end()
         elif opcode == 0x0F:
