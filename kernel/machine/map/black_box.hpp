@@ -36,7 +36,7 @@ struct Record {
     std::array<char, 64> build_id{};
     std::array<char, 512> reason{};
     std::array<char, 512> done{}; ///< by the guardian
-    std::uint64_t number = 0; ///< of those that the machine left there, from 1, whatever the clock said
+    std::uint64_t number = 0;     ///< of those that the machine left there, from 1, whatever the clock said
 };
 static_assert(std::is_trivially_copyable_v<Record> && sizeof(Record) <= memory_at);
 
