@@ -21,7 +21,7 @@ public:
     /// No client waits for its answer any longer; a command tells its states as long as it takes.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
-    static constexpr std::ptrdiff_t max_commands = max_pending / 2; ///< of them
+    static constexpr std::size_t max_commands = max_pending / 2; ///< of them
     static constexpr std::size_t max_subscriptions = 32;
     static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
 

@@ -21,9 +21,13 @@ BrowserService::Verdict BrowserService::send(Client& client, const Request& requ
         !role.good())
         return role;
     // They take as long as they take, also when their client has gone: the others are for what ends them.
-    const auto is_command = [](const Pending& each) { return each.look == &BrowserService::look_at_command; };
+    const auto commands = static_cast<std::size_t>(std::ranges::count_if(
+        pending_, [](const Pending& each) { return each.look == &BrowserService::look_at_command; }));
+    if (commands + kept_from(client.role, max_commands) >= max_commands)
+        return {Refusal::not_now,
+                Sentence{"too many commands are under way; await one, or stop what they wait for"}};
     Pending* place = free_place(client.role);
-    if (place == nullptr || std::ranges::count_if(pending_, is_command) >= max_commands) return no_place();
+    if (place == nullptr) return no_place();
     auto& call = place->work.emplace<FollowedCommand>();
     const Facet& facet = facet_at(table, end);
     if (facet.command->value_bytes() > call.values.size())

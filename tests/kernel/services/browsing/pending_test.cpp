@@ -45,11 +45,24 @@ TEST_F(Press, commands_without_end_leave_places_for_what_ends_them) {
     }
     Talker other{path()};
     EXPECT_TRUE(has(ask(other, "1 call ram.distance 8"), R"("ok": true)"));
-    EXPECT_THAT(ask(other, "2 send ram.move_to 5"), testing::HasSubstr("too many requests are under way"));
+    EXPECT_THAT(ask(other, "2 send ram.move_to 5"), testing::HasSubstr("too many commands are under way"));
     EXPECT_THAT(ask(other, "3 stop ram"), testing::HasSubstr(R"("ok": true)"));
     run(100ms);
     EXPECT_THAT(ask(other, "4 start ram"), testing::HasSubstr(R"("ok": true)"));
     EXPECT_THAT(ask(other, "5 send ram.move_to 5"), testing::HasSubstr(R"("state": "sent")"));
+}
+
+TEST_F(Press, commands_of_operators_leave_engineers_some) {
+    Talker engineer{path()};
+    ask(engineer, "1 set ram.speed 0.1");
+    {
+        Talker worker{path(), 1001};
+        for (std::size_t i = 0; i < 2 * BrowserService::max_pending; ++i)
+            ASSERT_TRUE(
+                worker.send(std::to_string(10 + i) + " send ram.move_to " + std::to_string(i) + ".037"));
+        run(200ms);
+    }
+    EXPECT_THAT(ask(engineer, "2 send ram.move_to 5"), testing::HasSubstr(R"("state": "sent")"));
 }
 
 TEST_F(Press, nothing_is_forced_that_was_asked_for_in_the_moment_of_the_stop) {
