@@ -240,9 +240,10 @@ void SwarmWires::add_signals(std::size_t c) {
             };
             output.name = std::string{frame.name} + "." + std::string{signal.name};
             add(std::move(output), output.name);
+            const std::size_t port = find_facet(row, outputs_.back().name.substr(row.name.size() + 1));
             if (can::is_integer(signal) && !signal.is_bits && !signal.has_range && signal.bits < 64 &&
-                !outputs_.back().facets.empty())
-                wholes_.push_back({sent_.size() - 1, &signal, outputs_.back().facets.front()});
+                port != nowhere)
+                wholes_.push_back({sent_.size() - 1, &signal, {c, port}});
         }
     }
 }
