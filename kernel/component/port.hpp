@@ -256,7 +256,7 @@ public:
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }
-    /// What was read last was forced, and not written.
+    /// Its component gets a forced value in place of what is written.
     [[nodiscard]] bool forced() const noexcept TAPPET_REALTIME { return forced_; }
 
 private:
@@ -339,7 +339,7 @@ private:
     [[nodiscard]] std::uint64_t stops_of_writer() const noexcept TAPPET_REALTIME {
         return writer_ == nullptr ? 0 : writer_->count.load(std::memory_order_acquire);
     }
-    /// Of a number that is one: its nearest end where the other unit has none so large.
+    /// In the unit of the reader. A value too large for T becomes its largest one; no number stays none.
     [[nodiscard]] T scaled(T value) const noexcept TAPPET_REALTIME
         requires std::is_floating_point_v<T>
     {

@@ -136,7 +136,8 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     const auto [dead, varying] = dead_samples(row, m, r, seats, component, activity.period);
     if (dead > max_dead_samples)
         return of_loop(row, "its transport is more than ", max_dead_samples, " periods; sample more slowly");
-    // What is sent at once in one step, and late by all of the response in the next, lasts so much longer.
+    // A step may send at once, and the next one at the end of its response: the first value then lasts
+    // longer by that.
     const Duration jitter{r.worst_response_ns[r.activity[component]]};
     const double period = to_seconds(activity.period), longest = to_seconds(activity.period + jitter);
     const auto with = [&](double seconds) {

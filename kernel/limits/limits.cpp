@@ -54,8 +54,7 @@ double allowed(const LimitRow& row, const Limited& port, double wanted, Time sta
 void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
     auto& port = static_cast<Limited&>(self);
     double number = port.convert.read(value);
-    // What a component leaves behind when it stops is safe, whatever the rows say of its values at work; but
-    // it is a number.
+    // The rows hold for values at work. The safe value of a stop passes them, if it is a number.
     const ComponentState state = port.machine->life().state_of(port.component);
     const bool is_left = state != ComponentState::running && state != ComponentState::starting;
     if (is_left) port.has_last = false;

@@ -27,8 +27,8 @@ public:
     /// in `within`: a longer pause is taken for a box that was frozen. What it asks of an engine is read in
     /// one piece and leads nowhere: an engine that is damaged damages nobody here.
     [[nodiscard]] std::size_t look(Time now) noexcept {
-        // Who looks stands above everybody: when it did not look, nothing ran. A part of each pause counts,
-        // so that one who always looks late finds a hang, too.
+        // The caller has the highest priority: while it did not look, nothing ran. A quarter of the limit
+        // counts of each pause, so that a caller that is always late finds a hang, too.
         const Duration frozen = std::max(now - last_ - within_ / 4, Duration{});
         last_ = now;
         const auto engines = machine_.engines();

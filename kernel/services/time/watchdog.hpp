@@ -40,7 +40,7 @@ struct Watchdog {
         const Duration silence = cycle.now - last_life_;
         count_ = count;
         const bool rests = sign_.rests != nullptr && sign_.rests(sign_.owner, cycle.now);
-        // What rested at the last look was woken since, perhaps just now.
+        // An activity that rested at the last look may have been woken just now.
         if (lives || rests || rested_ || !sign_.expected(sign_.owner)) last_life_ = cycle.now;
         rested_ = rests;
         if (lives && silent_) {

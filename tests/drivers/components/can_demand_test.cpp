@@ -116,7 +116,7 @@ TEST_F(HalfForced, sends_nothing_of_before_when_its_bus_stops) {
     EXPECT_EQ(demanded(), All{});
 }
 
-TEST_F(OnDemand, sends_nothing_that_was_dropped_while_it_stood_when_a_force_begins_or_ends) {
+TEST_F(ForcedDemand, sends_nothing_that_was_dropped_while_it_stood_when_a_force_begins_or_ends) {
     demand_each_once();
     change(0, LifeChange::stop);
     demand(129, 6);
@@ -124,16 +124,8 @@ TEST_F(OnDemand, sends_nothing_that_was_dropped_while_it_stood_when_a_force_begi
     change(0, LifeChange::start);
     run_until(60ms);
     heard.clear();
-    End node;
-    ASSERT_TRUE(resolve(instance.machine().table, "can.nmt.node", FacetKind::input, node).empty());
-    const PortOperations& port = *facet_at(instance.machine().table, node).port;
-    const std::int64_t six = 6;
-    port.force(instance.place_of(node), true, reinterpret_cast<const std::byte*>(&six));
-    instance.engines()[0].waiter().wake();
-    run_until(80ms);
-    port.release(instance.place_of(node), true);
-    instance.engines()[0].waiter().wake();
-    run_until(100ms);
+    force("can.nmt.node", FacetKind::input, 6);
+    release();
     EXPECT_TRUE(heard_of(0x000).empty());
 }
 
