@@ -157,7 +157,7 @@ private:
     }
 
     void write_last(const Cycle& cycle) noexcept {
-        take_wanted(cycle.now);
+        take_wanted();
         for (std::size_t v = 0; v < count; ++v)
             if (is_written(v) && map.registers[v].says_safe)
                 static_cast<void>(session_->set(v, map.registers[v].safe_value, cycle.now)); // it is in range
@@ -165,7 +165,7 @@ private:
         const bool is_safe = session_->finish(cycle.now);
         stopped_safely_ = is_safe || (!was_asked && stopped_safely_); // who was never asked was not driven
     }
-    void take_wanted(Time now) noexcept {
+    void take_wanted() noexcept {
         for (std::size_t v = 0; v < count; ++v) {
             if (!is_written(v)) continue;
             double value = 0;
@@ -173,18 +173,11 @@ private:
             // One that is forced is true now, in each cycle.
             const bool is_newer = wanted[v].stamp() > session_->value(v).stamp;
             if (flow != Flow::fresh && (flow != Flow::old || (is_set_[v] && !is_newer))) continue;
-            // One that is not newer than the one before stood behind a force, which must not stay: it counts
-            // from now on, or, too old to be sent by its row, what is safe does.
-            const Time stamp = wanted[v].stamp();
-            const bool stood_behind = stamp <= session_->value(v).stamp;
-            const Duration most = map.rows[map.row_of[v]].stale_after;
-            const bool is_old = most > Duration::zero() && is_older(now - stamp, most);
-            if (stood_behind && is_old && map.registers[v].says_safe) value = map.registers[v].safe_value;
-            is_set_[v] = session_->set(v, value, stood_behind ? now : stamp);
+            is_set_[v] = session_->set(v, value, wanted[v].stamp());
         }
     }
     void exchange(const Cycle& cycle) noexcept {
-        take_wanted(cycle.now);
+        take_wanted();
         // The client says when a request ended; the next one begins then.
         Time at = cycle.now;
         for (std::size_t n = 0; n <= map.rows.size(); ++n) {

@@ -46,7 +46,7 @@ struct Row {
     Run run{};
     bool write = false;
     Duration every{};
-    Duration stale_after{}; ///< write: older values are not sent any more; 0: never
+    Duration stale_after{}; ///< write: of older values what is safe is sent, if anything; 0: none is older
     std::size_t first = 0;  ///< its registers in the map's array
     std::size_t registers = 0;
     bool silence_is_safe = false; ///< write: no safe values are sent
@@ -72,7 +72,8 @@ constexpr Every every(Duration period) noexcept { return {period}; }
 struct StaleAfter {
     Duration age{};
 };
-/// Values that are older are not sent any more.
+/// A value that is older is sent no more. One that the server never got is replaced by its safe value, or, in
+/// a row that is safe by silence, by nothing.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 
 /// read("climate", input_registers(0, 4), every(250ms), word("temperature", 0).as_signed().times(0.1), ...)

@@ -4,8 +4,10 @@
 
 #include "drivers/modbus/register_map.hpp"
 #include "drivers/modbus/transport.hpp"
+#include "kernel/component/port.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tappet::modbus {
 
@@ -117,8 +119,10 @@ public:
         if (encoded.refused) ++count_.saturated;
         if (encoded.refused || !map_->rows[r].write) return false;
         if (encoded.saturated) ++count_.saturated;
-        if (values_[v].stamp == Time::min() || words_[v] != encoded.words)
+        if (values_[v].stamp == Time::min() || words_[v] != encoded.words) {
             changed_at_[r] = std::min(changed_at_[r], now);
+            is_there_[v] = false;
+        }
         words_[v] = encoded.words;
         values_[v] = {to_physical(map_->registers[v], encoded.words), now, Quality::good, 0};
         return true;
@@ -161,7 +165,7 @@ private:
     }
     Time request(std::size_t r, Time now) noexcept {
         const Row& row = map_->rows[r];
-        if (row.write && !fresh(r, now)) return now;
+        if (row.write && !is_to_be_sent(r, now)) return now;
         const auto address = static_cast<std::uint16_t>(row.run.address);
         const auto words = std::span{buffer_}.first(row.run.count);
         if (row.write) fill(row);
@@ -173,7 +177,10 @@ private:
         exception_[r] = answer.exception;
         switch (answer.outcome) {
         case Outcome::ok:
-            if (!row.write) take(row, done);
+            if (!row.write)
+                take(row, done);
+            else
+                std::ranges::fill(std::span{is_there_}.subspan(row.first, row.registers), true);
             changed_at_[r] = never;
             answered();
             return done;
@@ -203,16 +210,33 @@ private:
         return std::ranges::none_of(std::span{values_}.subspan(row.first, row.registers),
                                     [](const Value& each) { return each.stamp == Time::min(); });
     }
-    /// False, and the change forgotten, when the row's values were never set or are too old to be sent.
-    bool fresh(std::size_t r, Time now) noexcept {
+    /// Whether the row goes out. Of what grew too old before the server had it, what is safe goes out; what
+    /// the server has is repeated beside a newer value only.
+    bool is_to_be_sent(std::size_t r, Time now) noexcept {
         const Row& row = map_->rows[r];
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
-            const bool old = row.stale_after > 0ns && values_[v].stamp != Time::min() &&
-                             now - values_[v].stamp > row.stale_after;
-            if (values_[v].stamp != Time::min() && !old) continue;
-            if (old && changed_at_[r] != never) ++count_.dropped_stale;
+        if (!was_set(row)) {
             changed_at_[r] = never;
             return false;
+        }
+        const auto is_old = [&](std::size_t v) {
+            return row.stale_after > 0ns && is_older(now - values_[v].stamp, row.stale_after);
+        };
+        bool is_good = true;
+        bool is_behind = false;
+        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+            is_good = is_good && !is_old(v);
+            is_behind = is_behind || !is_there_[v];
+        }
+        if (is_good) return true;
+        if (!is_behind || row.silence_is_safe) {
+            if (std::exchange(changed_at_[r], never) != never) ++count_.dropped_stale;
+            return false;
+        }
+        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+            if (!is_old(v) || is_there_[v]) continue;
+            const Words before = words_[v];
+            static_cast<void>(set(v, map_->registers[v].safe_value, now)); // the map says that it is in range
+            if (words_[v] != before) ++count_.dropped_stale;
         }
         return true;
     }
@@ -265,6 +289,7 @@ private:
     }();
     std::array<Value, V> values_{};
     std::array<Words, V> words_{};
+    std::array<bool, V> is_there_{}; ///< the server confirmed what is written
     std::array<std::uint16_t, most_words> buffer_{};
     Counters count_{};
     static_assert(R > 0, "a client without rows has nothing to do");

@@ -190,6 +190,20 @@ TEST_F(Utility, writes_nothing_that_grew_stale_during_an_outage) {
     EXPECT_FALSE(pump_runs());
 }
 
+TEST_F(Utility, is_safe_when_its_writer_stopped_while_the_server_was_away_for_long) {
+    run_until(1s);
+    reader->pump_next = 1;
+    run_until(2s);
+    ASSERT_TRUE(pump_runs());
+    twin.inject(modbus::Fault::down);
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    run_until(20s);
+    ASSERT_TRUE(pump_runs());
+    twin.inject(modbus::Fault::none);
+    run_until(24s);
+    EXPECT_FALSE(pump_runs());
+}
+
 TEST_F(Utility, gives_no_fresh_value_for_an_exception) {
     run_until(1s);
     twin.inject(modbus::Fault::exception);

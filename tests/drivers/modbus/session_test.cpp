@@ -127,6 +127,54 @@ TEST_F(ModbusSession, sends_nothing_stale_after_an_outage) {
     run_until(Time{40s});
     EXPECT_FALSE(session.outage());
     EXPECT_EQ(server.get(Table::holding_registers, 8), 0);
+    EXPECT_EQ(session.counters().dropped_stale, 2u);
+}
+
+TEST_F(ModbusSession, makes_safe_what_grew_stale_before_the_server_had_it) {
+    for (const Fault fault : {Fault::down, Fault::silent, Fault::exception}) {
+        SCOPED_TRACE(static_cast<int>(fault));
+        session.set(wanted_temperature, 22, now);
+        session.set(wanted_humidity, 60, now);
+        run_until(now + 1s);
+        server.inject(fault);
+        run_until(now + 1s);
+        session.set(wanted_temperature, 30, now);
+        run_until(now + 12s);
+        ASSERT_EQ(server.get(Table::holding_registers, 8), 22);
+        server.inject(Fault::none);
+        run_until(now + 20s);
+        EXPECT_EQ(server.get(Table::holding_registers, 8), 0);
+        EXPECT_EQ(server.get(Table::holding_registers, 9), 60) << "the server has that one";
+    }
+    EXPECT_EQ(session.counters().dropped_stale, 3u);
+}
+
+TEST_F(ModbusSession, brings_a_new_value_to_the_server_beside_one_that_was_written_long_ago) {
+    session.set(wanted_temperature, 22, now);
+    session.set(wanted_humidity, 60, now);
+    run_until(Time{20s});
+    session.set(wanted_humidity, 40, now);
+    run_until(Time{21s});
+    EXPECT_EQ(server.get(Table::holding_registers, 8), 22);
+    EXPECT_EQ(server.get(Table::holding_registers, 9), 40);
+    EXPECT_EQ(session.counters().dropped_stale, 0u);
+}
+
+TEST(ModbusSessionOfSilence, lets_a_row_that_is_safe_by_silence_be_silent) {
+    static constexpr auto ramp = register_map(write("ramp", holding_registers(0, 2), every(1s),
+                                                    stale_after(3s), word("speed", 0), word("torque", 1))
+                                                  .safe_by_silence());
+    static_assert(ramp.fault.empty());
+    Twin server{300ms};
+    Session<1, 2> session{ramp, server};
+    session.set(0, 100, Time{});
+    session.set(1, 5, Time{});
+    Time now{};
+    while (now < Time{10s}) now = session.step(now);
+    const std::uint64_t requests = session.counters().requests;
+    session.set(1, 6, now);
+    for (const Time end = now + 10s; now < end;) now = session.step(now);
+    EXPECT_EQ(session.counters().requests, requests) << "nobody says the speed any more";
     EXPECT_EQ(session.counters().dropped_stale, 1u);
 }
 
