@@ -6,6 +6,7 @@
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include <unistd.h>
@@ -88,8 +89,13 @@ SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
     find_what_people_may();
     if (service_ != nowhere) run_.browse_in(directory_);
     const auto rows = of.machine.table.components;
-    for (std::size_t c = 0; c < rows.size(); ++c)
+    for (std::size_t c = 0; c < rows.size(); ++c) {
         if (is_driver(rows[c])) drivers_.push_back(c);
+        const auto facets = rows[c].type->facets;
+        for (std::size_t f = 0; f < facets.size(); ++f)
+            if (facets[f].kind == FacetKind::output && facets[f].at_rest >= AtRest::says_false)
+                said_at_rest_.push_back({c, f});
+    }
     run_.judge_by([this](Time now) { judge(now); });
 }
 
@@ -170,9 +176,25 @@ void SwarmRun::judge(Time now) {
     if (!verdict_.broken.empty() || rules_ == nullptr || is_gone_) return;
     Sentence broken{rules_->broken(now)};
     if (broken.empty()) broken = wires_.broken(now);
+    if (broken.empty()) broken = misled_at_rest();
     if (broken.empty()) return;
     verdict_.broken = broken;
     verdict_.at = now;
+}
+
+/// What stands says what its interface says that it does then.
+Sentence SwarmRun::misled_at_rest() {
+    for (const End end : said_at_rest_) {
+        if (run_.instance().life().state_of(end.component) != ComponentState::stopped) continue;
+        const Facet& facet = facet_at(of_.machine.table, end);
+        const PortPlaces places = facet.port->places(run_.instance().place_of(end), false);
+        bool says = false;
+        std::memcpy(&says, places.value, sizeof says);
+        if (!*places.forced && says != (facet.at_rest == AtRest::says_true))
+            return Sentence{"\"", name_of(end), "\" says ", says ? "true" : "false",
+                            " though its component stands"};
+    }
+    return {};
 }
 
 void SwarmRun::deny(const Sentence& why) {

@@ -99,6 +99,7 @@ private:
     void rest(Duration time);
     bool mend(Duration limit);
     void judge(Time now);
+    [[nodiscard]] Sentence misled_at_rest();
     void judge_emissions();
     void deny(const Sentence& why);
     void say(std::string_view text);
@@ -166,6 +167,7 @@ private:
     std::unique_ptr<SwarmRules> rules_;
     std::vector<Fault> faults_{};
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
+    std::vector<End> said_at_rest_{}; ///< outputs of which their interface says what they say while stopped
     bool is_calm_ = false;
     bool only_people_;          ///< all else is well: what they do goes further
     std::size_t busy_with_ = 0; ///< a component that somebody calls again and again

@@ -211,11 +211,10 @@ void SwarmWires::add_lines(std::size_t c) {
         const std::string name{map[i].line.name};
         Output output{.driver = c, .safe = map[i].line.safe_value, .is_switch = true, .is_line = true};
         output.read = [&chip, i] { return std::optional<std::uint64_t>{chip.outputs() >> i & 1}; };
-        output.name = name;
         if (map[i].driven == gpio::Driven::by_port)
             add(std::move(output), name);
         else
-            add(std::move(output), name + ".set", name + ".clear");
+            add(std::move(output), name, {name + ".set", name + ".clear"});
     }
 }
 
@@ -238,12 +237,10 @@ void SwarmWires::add_signals(std::size_t c) {
                 if (is_cyclic && now_ - sent.last->stamp > usual_settling) return {};
                 return can::extract(sent.last->data, signal);
             };
-            output.name = std::string{frame.name} + "." + std::string{signal.name};
-            add(std::move(output), output.name);
-            const std::size_t port = find_facet(row, outputs_.back().name.substr(row.name.size() + 1));
-            if (can::is_integer(signal) && !signal.is_bits && !signal.has_range && signal.bits < 64 &&
-                port != nowhere)
-                wholes_.push_back({sent_.size() - 1, &signal, {c, port}});
+            add(std::move(output), std::string{frame.name} + "." + std::string{signal.name});
+            if (can::is_integer(signal) && !signal.is_bits && !signal.has_range && signal.bits < 64)
+                for (const End port : outputs_.back().facets)
+                    wholes_.push_back({sent_.size() - 1, &signal, port});
         }
     }
 }
@@ -268,20 +265,22 @@ void SwarmWires::add_registers(std::size_t c) {
                 return std::optional<std::uint64_t>{
                     whole([&](unsigned w) { return server.get(table, at + w); })};
             };
-            output.name = std::string{request.name} + "." + std::string{one.name};
-            add(std::move(output), output.name);
+            add(std::move(output), std::string{request.name} + "." + std::string{one.name});
         }
     }
 }
 
 /// With who writes to its facets, by any row of the table.
-void SwarmWires::add(Output output, std::string_view facet, std::string_view other_facet) {
+void SwarmWires::add(Output output, std::string_view name, const std::vector<std::string>& events) {
     const MachineView& table = machine_.table;
     const std::string driver{table.components[output.driver].name};
     const auto facets = table.components[output.driver].type->facets;
+    const auto switches = [&](std::string_view facet) {
+        return events.empty() ? facet == name : std::ranges::find(events, facet) != events.end();
+    };
+    output.name = driver + "." + std::string{name};
     for (std::size_t f = 0; f < facets.size(); ++f)
-        if (facets[f].name == facet || (!other_facet.empty() && facets[f].name == other_facet))
-            output.facets.push_back({output.driver, f});
+        if (switches(facets[f].name)) output.facets.push_back({output.driver, f});
     const auto is_meant = [&](End end) {
         return std::ranges::find(output.facets, end) != output.facets.end();
     };
@@ -301,11 +300,9 @@ void SwarmWires::add(Output output, std::string_view facet, std::string_view oth
         if (is_meant(machine_.index.reactions[r].to)) write(machine_.index.reactions[r].from.component);
     for (const BehaviourRow& row : table.behaviours)
         for (const std::string_view operation : row.slot.operations)
-            if (operation == driver + "." + std::string{facet} ||
-                operation == driver + "." + std::string{other_facet})
+            if (operation.starts_with(driver + ".") && switches(operation.substr(driver.size() + 1)))
                 write(find_component(table, row.component));
     output.settles += usual_settling + oldest;
-    output.name = driver + "." + output.name;
     outputs_.push_back(std::move(output));
 }
 

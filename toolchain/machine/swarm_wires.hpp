@@ -115,7 +115,8 @@ private:
     void add_lines(std::size_t component);
     void add_signals(std::size_t component);
     void add_registers(std::size_t component);
-    void add(Output output, std::string_view facet, std::string_view other_facet = {});
+    /// `events`: what switches it, in place of an input of its name.
+    void add(Output output, std::string_view name, const std::vector<std::string>& events = {});
     void hear(std::string_view device, const can::Frame& frame);
     void hear_whole(Whole& whole, const can::Frame& frame);
     [[nodiscard]] bool drives(const Output& output) const;
