@@ -218,7 +218,9 @@ void Engine::open_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
     close(*part.type, part.component_, nullptr);
 }
 
+// The count first: who is woken by what closes, and is forced, finds that it has to let go.
 void Engine::close_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
+    part.stops.count.fetch_add(1, std::memory_order_seq_cst);
     close(*part.type, part.component_, &part.dropped_writes);
 }
 
@@ -236,7 +238,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     end_forces(part, FacetKind::input);
     if (state == ComponentState::stopped || state == ComponentState::failed) {
         end_forces(part, FacetKind::output);
-        part.stops.count.fetch_add(1, std::memory_order_release);
+        close_outputs(part);
         return;
     }
     part.state.store(ComponentState::stopping, std::memory_order_release);
@@ -247,8 +249,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
         part.left_unsafe.store(!part.type->stopped_safely(part.component_), std::memory_order_relaxed);
     say_at_rest(part);
     end_forces(part, FacetKind::output);
-    part.stops.count.fetch_add(1, std::memory_order_release); // its safe values stand
-    close_outputs(part);
+    close_outputs(part); // its safe values stand
     cancel_timers(i);
     part.state.store(ComponentState::stopped, std::memory_order_release);
 }

@@ -48,14 +48,15 @@ struct PortOperations {
     std::size_t shared_bytes;
     std::size_t shared_align;
     void (*place_shared)(void* output, void* memory);
-    /// Also while both run by turns with others: in their activity, between two steps.
-    void (*link_local)(void* input, const void* output) noexcept TAPPET_REALTIME;
+    /// Also while both run by turns with others: in their activity, between two steps. `writer`: of the
+    /// component whose output it is; null: it never stops.
+    void (*link_local)(void* input, const void* output, const Stops* writer) noexcept TAPPET_REALTIME;
     /// The output is as if it had never been written, for readers of its own activity; likewise.
     void (*forget)(void* output) noexcept TAPPET_REALTIME;
-    void (*link_shared)(void* input, const void* output);
+    void (*link_shared)(void* input, const void* output, const Stops* writer);
     void (*set_clock)(void* port, bool is_input, const Time* now);
     void (*set_waker)(void* output, Waker waker);
-    /// Of an output: null opens it. In the port's activity.
+    /// Of an output: null opens it. In the port's activity. Who is woken by it looks once more at the close.
     void (*close)(void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME;
     void (*set_filter)(void* output, PortFilter* filter);
     void (*set_policy)(void* input, const InputPolicy&);
@@ -195,17 +196,16 @@ struct PortAccess {
                 out.settle();
             },
         .link_local =
-            [](void* input, const void* output) noexcept TAPPET_REALTIME {
-                auto& in = *static_cast<Input<T>*>(input);
-                in.local_ = static_cast<const Output<T>*>(output);
-                if (!in.forced_) in.seen_ = 0;
-                in.settle();
+            [](void* input, const void* output, const Stops* writer) noexcept TAPPET_REALTIME {
+                static_cast<Input<T>*>(input)->link(static_cast<const Output<T>*>(output), writer);
             },
         .forget = [](void* output) noexcept
         TAPPET_REALTIME { static_cast<Output<T>*>(output)->generation_ = 0; },
         .link_shared =
-            [](void* input, const void* output) {
-                static_cast<Input<T>*>(input)->shared_ = static_cast<const Output<T>*>(output)->shared_;
+            [](void* input, const void* output, const Stops* writer) {
+                auto& in = *static_cast<Input<T>*>(input);
+                in.shared_ = static_cast<const Output<T>*>(output)->shared_;
+                in.writer_ = writer;
             },
         .set_clock =
             [](void* port, bool is_input, const Time* now) {
@@ -225,6 +225,7 @@ struct PortAccess {
                 auto& out = *static_cast<Output<T>*>(output);
                 out.dropped_ = counter;
                 out.settle();
+                if (counter != nullptr) out.waker_();
             },
         .set_filter =
             [](void* output, PortFilter* filter) {
@@ -236,7 +237,6 @@ struct PortAccess {
             [](void* input, const InputPolicy& policy) {
                 auto& in = *static_cast<Input<T>*>(input);
                 in.max_age_ = policy.max_age;
-                in.writer_ = policy.writer;
                 in.settle();
                 in.when_stale_ = policy.when_stale;
                 if constexpr (std::is_floating_point_v<T>) in.scale_ = {policy.scale, policy.between};

@@ -55,7 +55,6 @@ struct InputPolicy {
     RowValue before_first{};
     double scale = 1;                 ///< of a floating number that comes from another data object
     BetweenValues* between = nullptr; ///< likewise; null: the last value is held
-    const Stops* writer = nullptr;    ///< of the component that writes it; null: it never stops
 };
 
 /// Of an input: what each new value is multiplied by, and what is made of it between two. What is no floating
@@ -250,11 +249,15 @@ public:
     /// not.
     [[nodiscard]] Time expires() const noexcept TAPPET_REALTIME {
         const std::uint64_t generation = local_ != nullptr ? local_->generation_ : cached_generation_;
-        if (forced_ || max_age_ == Duration::zero()) return never;
-        return (generation == 0 ? *now_ : stamp()) + max_age_ + 1ns;
+        if (max_age_ == Duration::zero()) return never;
+        return (generation == 0 && !forced_ ? *now_ : stamp()) + max_age_ + 1ns;
     }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
+    }
+    /// What its row gives in place of a stale value counts: it is true now.
+    [[nodiscard]] bool substituted() noexcept TAPPET_REALTIME {
+        return when_stale_ == WhenStale::substitute && flow() == Flow::stale;
     }
     /// Its component gets a forced value in place of what is written.
     [[nodiscard]] bool forced() const noexcept TAPPET_REALTIME { return forced_; }
@@ -318,6 +321,14 @@ private:
         if (flow == Flow::stale && when_stale_ == WhenStale::substitute) return substitute_;
         return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
+    /// By turns another one writes it: the writer that it had has stopped.
+    void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
+        if (forced_ && output != local_) cached_generation_ = another_writer;
+        if (!forced_) seen_ = 0;
+        local_ = output;
+        writer_ = writer;
+        settle();
+    }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh
     /// once and never stale, until it is released, or its writer stops: that one's safe values count then.
     bool force(const T& value) noexcept TAPPET_REALTIME {
@@ -348,7 +359,7 @@ private:
         return is_number(value) ? static_cast<T>(std::clamp(wanted, -most, most)) : value;
     }
 
-    static constexpr std::uint64_t forced_generation = ~std::uint64_t{0};
+    static constexpr std::uint64_t forced_generation = ~std::uint64_t{0}, another_writer = forced_generation;
 
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
     std::uint64_t cached_generation_ = 0; ///< while it is forced: the stops of its writer before

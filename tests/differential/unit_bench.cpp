@@ -96,7 +96,7 @@ UnitBench::UnitBench() {
     own.name = "own";
     mate.name = "mate";
     arm.diary = &diary;
-    PortAccess::data<double>.link_local(&own.measured, &source);
+    PortAccess::data<double>.link_local(&own.measured, &source, nullptr);
     for (void* output :
          {static_cast<void*>(&source), static_cast<void*>(&own.setpoint), static_cast<void*>(&mate.setpoint)})
         PortAccess::data<double>.set_clock(output, false, &now);

@@ -55,21 +55,21 @@ void MachineBuilder::connect_row(std::size_t x) {
     }
     if (plan.shared && plan.first_of_output)
         from.port->place_shared(instance_.facet(link.from), instance_.at<void>(plan.memory_at));
+    const Stops* const writer = &instance_.engines()[machine_.index.activity[link.from.component]]
+                                     .plan()
+                                     .parts[machine_.plan.part_of[link.from.component]]
+                                     .stops;
     if (plan.shared)
-        from.port->link_shared(instance_.facet(link.to), instance_.facet(link.from));
+        from.port->link_shared(instance_.facet(link.to), instance_.facet(link.from), writer);
     else
-        from.port->link_local(instance_.facet(link.to), instance_.facet(link.from));
+        from.port->link_local(instance_.facet(link.to), instance_.facet(link.from), writer);
     BetweenValues* between = nullptr;
     if (has_values_between(row))
         between = new (instance_.at<BetweenValues>(plan.between_at)) BetweenValues{
             row.transition, machine_.table.activities[machine_.index.activity[link.from.component]].period};
     from.port->set_policy(instance_.facet(link.to),
                           {row.max_age, row.when_stale, row.substitute, row.before_first,
-                           checks::factor_of(row, from, facet_at(machine_.table, link.to)), between,
-                           &instance_.engines()[machine_.index.activity[link.from.component]]
-                                .plan()
-                                .parts[machine_.plan.part_of[link.from.component]]
-                                .stops});
+                           checks::factor_of(row, from, facet_at(machine_.table, link.to)), between});
 }
 
 void MachineBuilder::add_waker(std::size_t x) {

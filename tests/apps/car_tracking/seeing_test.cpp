@@ -21,8 +21,8 @@ public:
         setup.device_name = "eye";
         setup.devices = devices;
         EXPECT_TRUE(camera().configure(setup).empty());
-        PortAccess::data<Image>.link_local(&recognition().image, &camera().image);
-        PortAccess::data<Lens>.link_local(&recognition().lens, &camera().lens);
+        PortAccess::data<Image>.link_local(&recognition().image, &camera().image, nullptr);
+        PortAccess::data<Lens>.link_local(&recognition().lens, &camera().lens, nullptr);
         camera().start({});
         recognition().start({});
     }

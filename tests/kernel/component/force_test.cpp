@@ -24,12 +24,14 @@ protected:
     Forcing() {
         port.set_clock(&output, false, &now);
         port.set_clock(&input, true, &now);
-        if (GetParam()) {
-            port.place_shared(&output, memory.data());
-            port.link_shared(&input, &output);
-        } else {
-            port.link_local(&input, &output);
-        }
+        if (GetParam()) port.place_shared(&output, memory.data());
+        link(nullptr);
+    }
+    void link(const Stops* writer) {
+        if (GetParam())
+            port.link_shared(&input, &output, writer);
+        else
+            port.link_local(&input, &output, writer);
     }
     void force_output(double to) { port.force(&output, false, reinterpret_cast<const std::byte*>(&to)); }
     void force_input(double to) { port.force(&input, true, reinterpret_cast<const std::byte*>(&to)); }
@@ -114,7 +116,7 @@ TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
     std::atomic<std::uint32_t> forced{1};
     Stops writer;
     writer.forced = &forced;
-    port.set_policy(&input, {.writer = &writer});
+    link(&writer);
     writer.count = 3; // before it was forced
     output.write(1.0);
     force_input(9.0);

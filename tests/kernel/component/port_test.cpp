@@ -25,12 +25,12 @@ template <class T> struct Link {
         port.set_clock(&output, false, &written_at);
         port.set_clock(&input, true, &read_at);
         if (!across) {
-            port.link_local(&input, &output);
+            port.link_local(&input, &output, nullptr);
             return;
         }
         EXPECT_LE(port.shared_bytes, sizeof memory_);
         port.place_shared(&output, memory_.data());
-        port.link_shared(&input, &output);
+        port.link_shared(&input, &output, nullptr);
     }
     void at(Time now) { written_at = read_at = now; }
 
@@ -167,7 +167,7 @@ TEST(Port, of_an_input_that_no_row_connects_is_never_written) {
 TEST(Port, of_one_output_feeds_readers_in_its_own_activity_and_in_others) {
     Link<int> link{true};
     Input<int> near;
-    link.port.link_local(&near, &link.output);
+    link.port.link_local(&near, &link.output, nullptr);
     link.output.write(3);
     EXPECT_EQ(near.get(), 3);
     EXPECT_EQ(link.input.get(), 3);

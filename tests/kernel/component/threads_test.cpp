@@ -40,7 +40,7 @@ struct PortsOfAnActivityDeathTest : testing::Test {
     PortsOfAnActivityDeathTest() {
         port.set_clock(&output, false, &own);
         port.set_clock(&input, true, &own);
-        port.link_local(&input, &output);
+        port.link_local(&input, &output, nullptr);
     }
 };
 

@@ -113,7 +113,7 @@ TEST(Ports, are_read_and_written_and_tell_their_age) {
     const Time now = at_ms(30);
     port.set_clock(&p.arm.wanted, false, &now);
     port.set_clock(&p.arm.measured, true, &now);
-    port.link_local(&p.arm.measured, &p.arm.wanted); // what it writes it reads
+    port.link_local(&p.arm.measured, &p.arm.wanted, nullptr); // what it writes it reads
     const auto running = p.bind();
     EXPECT_EQ(running->run(at_ms(50)), ProgramStatus::stopped);
     EXPECT_EQ(p.arm.wanted.last(), 2.5);
