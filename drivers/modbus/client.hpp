@@ -157,7 +157,7 @@ private:
     }
 
     void write_last(const Cycle& cycle) noexcept {
-        take_wanted();
+        take_wanted(cycle.now);
         for (std::size_t v = 0; v < count; ++v)
             if (is_written(v) && map.registers[v].says_safe)
                 static_cast<void>(session_->set(v, map.registers[v].safe_value, cycle.now)); // it is in range
@@ -165,19 +165,20 @@ private:
         const bool is_safe = session_->finish(cycle.now);
         stopped_safely_ = is_safe || (!was_asked && stopped_safely_); // who was never asked was not driven
     }
-    void take_wanted() noexcept {
+    void take_wanted(Time now) noexcept {
         for (std::size_t v = 0; v < count; ++v) {
             if (!is_written(v)) continue;
             double value = 0;
             const Flow flow = wanted[v].read(value);
-            // One that is forced is true now, in each cycle.
-            const bool is_newer = wanted[v].stamp() > session_->value(v).stamp;
-            if (flow != Flow::fresh && (flow != Flow::old || (is_set_[v] && !is_newer))) continue;
-            is_set_[v] = session_->set(v, value, wanted[v].stamp());
+            // One that is forced, and what the row gives for a stale one, is true now, in each cycle.
+            const Time stamp = wanted[v].substituted() ? now : wanted[v].stamp();
+            const bool is_newer = stamp > session_->value(v).stamp;
+            if (flow == Flow::never_written || (flow != Flow::fresh && is_set_[v] && !is_newer)) continue;
+            is_set_[v] = session_->set(v, value, stamp);
         }
     }
     void exchange(const Cycle& cycle) noexcept {
-        take_wanted();
+        take_wanted(cycle.now);
         // The client says when a request ended; the next one begins then.
         Time at = cycle.now;
         for (std::size_t n = 0; n <= map.rows.size(); ++n) {

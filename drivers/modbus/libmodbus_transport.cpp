@@ -10,6 +10,7 @@
 #include <modbus.h>
 #include <string>
 #include <sys/select.h>
+#include <sys/socket.h>
 #include <time.h>
 
 namespace tappet::modbus {
@@ -114,8 +115,17 @@ Answer LibmodbusTransport::connect() noexcept {
     const Time begin = now();
     connected_ = modbus_connect(context_.get()) == 0;
     // libmodbus waits by select(), which cannot watch a higher descriptor.
-    if (connected_ && modbus_get_socket(context_.get()) >= FD_SETSIZE) disconnect();
+    if (connected_ && (modbus_get_socket(context_.get()) >= FD_SETSIZE || !forgets_what_is_lost()))
+        disconnect();
     return {.outcome = connected_ ? Outcome::ok : Outcome::refused, .took = now() - begin};
+}
+
+/// A request that got no answer ends with its connection, also with this process. Not in order: the kernel
+/// would go on sending it, and it came behind what is asked since.
+bool LibmodbusTransport::forgets_what_is_lost() const noexcept {
+    const linger at_once{.l_onoff = 1, .l_linger = 0};
+    return is_serial_ || ::setsockopt(modbus_get_socket(context_.get()), SOL_SOCKET, SO_LINGER, &at_once,
+                                      sizeof at_once) == 0;
 }
 
 void LibmodbusTransport::disconnect() noexcept {

@@ -58,6 +58,7 @@ public:
 
 private:
     /// Before each request.
+    [[nodiscard]] bool forgets_what_is_lost() const noexcept;
     void settle() noexcept;
     Answer end(int result, int expected, int error, Time began) noexcept;
     struct Free {

@@ -121,7 +121,7 @@ public:
         if (encoded.saturated) ++count_.saturated;
         if (values_[v].stamp == Time::min() || words_[v] != encoded.words) {
             changed_at_[r] = std::min(changed_at_[r], now);
-            is_there_[v] = false;
+            at_server_[v] = AtServer::not_yet;
         }
         words_[v] = encoded.words;
         values_[v] = {to_physical(map_->registers[v], encoded.words), now, Quality::good, 0};
@@ -180,7 +180,7 @@ private:
             if (!row.write)
                 take(row, done);
             else
-                std::ranges::fill(std::span{is_there_}.subspan(row.first, row.registers), true);
+                std::ranges::fill(std::span{at_server_}.subspan(row.first, row.registers), AtServer::is);
             changed_at_[r] = never;
             answered();
             return done;
@@ -211,7 +211,8 @@ private:
                                     [](const Value& each) { return each.stamp == Time::min(); });
     }
     /// Whether the row goes out. Of what grew too old before the server had it, what is safe goes out; what
-    /// the server has is repeated beside a newer value only.
+    /// the server has is repeated beside a newer value only, and what it had before an outage is made safe
+    /// then.
     bool is_to_be_sent(std::size_t r, Time now) noexcept {
         const Row& row = map_->rows[r];
         if (!was_set(row)) {
@@ -225,7 +226,7 @@ private:
         bool is_behind = false;
         for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
             is_good = is_good && !is_old(v);
-            is_behind = is_behind || !is_there_[v];
+            is_behind = is_behind || at_server_[v] == AtServer::not_yet;
         }
         if (is_good) return true;
         if (!is_behind || row.silence_is_safe) {
@@ -233,7 +234,7 @@ private:
             return false;
         }
         for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
-            if (!is_old(v) || is_there_[v]) continue;
+            if (!is_old(v) || at_server_[v] == AtServer::is) continue;
             const Words before = words_[v];
             static_cast<void>(set(v, map_->registers[v].safe_value, now)); // the map says that it is in range
             if (words_[v] != before) ++count_.dropped_stale;
@@ -265,6 +266,7 @@ private:
     }
     Time lose(Time now, const Trouble& by) noexcept {
         if (!outage_) ++count_.outages;
+        for (AtServer& each : at_server_) each = std::min(each, AtServer::was);
         lost_by_ = by;
         outage_ = true;
         busy_until_ = now + wait_;
@@ -289,7 +291,9 @@ private:
     }();
     std::array<Value, V> values_{};
     std::array<Words, V> words_{};
-    std::array<bool, V> is_there_{}; ///< the server confirmed what is written
+    /// What is written. A server that was lost may have begun with values of its own.
+    enum class AtServer : std::uint8_t { not_yet, was, is };
+    std::array<AtServer, V> at_server_{};
     std::array<std::uint16_t, most_words> buffer_{};
     Counters count_{};
     static_assert(R > 0, "a client without rows has nothing to do");

@@ -57,34 +57,40 @@ struct Reader {
 using Client = modbus::Client<registers>;
 
 // clang-format off
-inline constexpr auto utility_machine = machine("utility-machine",
-    components(
-        component<Client>("server", device("server")),
-        component<Reader>("reader")),
-    activities( // the reader stops first, so that what it writes last reaches the server
-        activity("server", every(50ms), runs("server"), not_real_time),
-        activity("reader", every(1ms), runs("reader"), budget(20us))),
-    connections(
-        data("server.unit.temperature", "reader.temperature", stale_after(500ms), hold),
-        data("server.connected",        "reader.connected"),
-        data("server.outages",          "reader.outages"),
-        data("server.outages_survived", "reader.survived"),
-        data("reader.pump",             "server.pump.on")),
-    reactions(
-        when("server.lost", tell("reader.on_lost")),
-        when("server.back", tell("reader.on_back"))),
-    behaviours());
+template <class... Pump>
+constexpr auto machine_with(const Pump&... pump) {
+    return machine("utility-machine",
+        components(
+            component<Client>("server", device("server")),
+            component<Reader>("reader")),
+        activities( // the reader stops first, so that what it writes last reaches the server
+            activity("server", every(50ms), runs("server"), not_real_time),
+            activity("reader", every(1ms), runs("reader"), budget(20us))),
+        connections(
+            data("server.unit.temperature", "reader.temperature", stale_after(500ms), hold),
+            data("server.connected",        "reader.connected"),
+            data("server.outages",          "reader.outages"),
+            data("server.outages_survived", "reader.survived"),
+            data("reader.pump",             "server.pump.on", pump...)),
+        reactions(
+            when("server.lost", tell("reader.on_lost")),
+            when("server.back", tell("reader.on_back"))),
+        behaviours());
+}
+inline constexpr auto utility_machine = machine_with();
+inline constexpr auto machine_with_substitute = machine_with(stale_after(200ms), substitute(0.0));
 // clang-format on
 
-struct Utility : testing::Test {
-    Utility() {
+template <const auto& table>
+struct UtilityOf : testing::Test {
+    UtilityOf() {
         twin.set(modbus::Table::input_registers, 0, static_cast<std::uint16_t>(-55)); // -5.5 degC
         const ProvidedDevice provided{type_id<modbus::Transport>, "server",
                                       static_cast<modbus::Transport*>(&twin)};
         const auto configured = instance.configure({&provided, 1});
         EXPECT_TRUE(configured);
-        reader = instance.find<Reader>("reader");
-        server = instance.find<Client>("server");
+        reader = instance.template find<Reader>("reader");
+        server = instance.template find<Client>("server");
         world.start();
     }
     void run_until(Duration end) { EXPECT_TRUE(world.run_until(Time{end})); }
@@ -97,11 +103,27 @@ struct Utility : testing::Test {
 
     os::Clock clock{os::Clock::Kind::virtual_time};
     modbus::Twin twin{300ms, 2ms};
-    MachineInstance instance{Firmware<utility_machine, board>::machine(), clock};
+    MachineInstance instance{Firmware<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Reader* reader = nullptr;
     Client* server = nullptr;
 };
+using Utility = UtilityOf<utility_machine>;
+using SubstitutedPump = UtilityOf<machine_with_substitute>;
+
+TEST_F(SubstitutedPump, is_told_what_the_row_gives_for_a_stale_value) {
+    run_until(1s);
+    reader->pump_next = 1; // once
+    run_until(1150ms);
+    EXPECT_TRUE(pump_runs());
+    run_until(1500ms);
+    EXPECT_FALSE(pump_runs());
+    run_until(20s);
+    EXPECT_FALSE(pump_runs());
+    reader->pump_next = 1;
+    run_until(20'150ms);
+    EXPECT_TRUE(pump_runs());
+}
 
 TEST_F(Utility, gives_values_the_time_of_their_answer) {
     run_until(1s);

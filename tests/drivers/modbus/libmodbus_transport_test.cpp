@@ -10,6 +10,7 @@
 #include <array>
 #include <ctime>
 #include <dirent.h>
+#include <linux/filter.h>
 #include <string>
 #include <thread>
 
@@ -183,6 +184,32 @@ TEST(ModbusRtu, refuses_an_answer_with_a_wrong_checksum) {
         EXPECT_EQ(transport.read(Table::holding_registers, 9, words).outcome, Outcome::ok);
         EXPECT_EQ(words[0], 1009) << "what was garbled leaves nothing behind";
     }
+}
+
+/// The network loses what it asks, and is whole again when it has given up.
+TEST(ModbusTcp, never_sends_a_request_again_that_it_has_given_up) {
+    const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+    ASSERT_EQ(::listen(listener, 1), 0);
+    ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", ntohs(address.sin_port)}, .answer_within = 50ms}));
+    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
+    const int server = ::accept(listener, nullptr, nullptr);
+    sock_filter drop{BPF_RET | BPF_K, 0, 0, 0};
+    const sock_fprog all{1, &drop};
+    ASSERT_EQ(::setsockopt(server, SOL_SOCKET, SO_ATTACH_FILTER, &all, sizeof all), 0);
+    const std::array<std::uint16_t, 1> on{1};
+    EXPECT_EQ(transport.write(Table::coils, 0, on).outcome, Outcome::timeout);
+    EXPECT_FALSE(transport.recover());
+    ASSERT_EQ(::setsockopt(server, SOL_SOCKET, SO_DETACH_FILTER, &drop, sizeof drop), 0);
+    pollfd comes{server, POLLIN, 0};
+    EXPECT_EQ(::poll(&comes, 1, 1500), 0) << "the kernel tries again after 0.2, 0.6 and 1.4 s";
+    for (const int fd : {server, listener}) ::close(fd);
 }
 
 TEST(ModbusTcp, is_refused_where_nobody_listens) {
