@@ -25,9 +25,9 @@ namespace tappet::can {
 /// between two of them (their stamps differ where they agreed before), the values sent last go out once more.
 /// A frame on demand goes out once for each writing; all of its signals are written in one cycle of one
 /// writer, so that no command leaves with the arguments of another. A row that wakes makes it leave at once.
-/// A frame with an input that was never written, is stale by its row, or is no number does not go out: the
-/// receiver's own time-out notices. What arrives and is no number is counted: its output grows stale. Of a
-/// multiplexed frame what its multiplexors select is written, read and sent; the other signals stay.
+/// A frame with an input that was never written, is no number, or is stale without a substitute does not go
+/// out: the receiver's own time-out notices. What arrives and is no number is counted: its output grows
+/// stale. Of a multiplexed frame what its multiplexors select is written, read and sent.
 ///
 /// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
 /// what is written after it leaves. It looks for that restart every now and then and rests in between.
@@ -100,7 +100,7 @@ struct Bus {
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         may_repeat_ = {};
         was_faulted_ = false;
-        was_stopped_ ? forget_stopped_time() : demanded_at_.fill(Time::min());
+        was_stopped_ ? forget_stopped_time(cycle.now) : demanded_at_.fill(Time::min());
         if (was_stopped_ && !faulted(device_->state())) bus_recovered.emit();
         lost_ = taken_ = 0;
         too_often_ = 0;
@@ -340,7 +340,7 @@ private:
             bus_fault.emit();
             return;
         }
-        forget_demands();
+        forget_demands(now);
         for (std::size_t f = 0; f < frame_count; ++f)
             if (due_[f] <= now) next_period(f, now);
         bus_recovered.emit();
@@ -348,9 +348,9 @@ private:
 
     /// What reading the inputs of a frame found.
     struct Reading {
-        bool usable = true; ///< each was written, none is stale
+        bool usable = true; ///< each was written; what is stale has a substitute
         bool fresh = false; ///< one was written since the last reading
-        bool agreed = true; ///< all are of the same time, but those that are forced, which are true now
+        bool agreed = true; ///< all are of the same time, but what is forced or substituted: that is true now
         Time at = never;    ///< that time
     };
 
@@ -363,20 +363,21 @@ private:
 
     Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         Reading found;
-        Time forced_at{};
-        const FrameRow& row = map.frames[f];
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
-            if (!is_selected(row, s)) continue;
-            const bool integer = is_integer(map.signals[s]);
-            const Flow flow = integer ? integer_in[s].read(integers_[s]) : physical_in[s].read(physical_[s]);
-            const Time stamp = integer ? integer_in[s].stamp() : physical_in[s].stamp();
-            found.usable &= flow == Flow::fresh || flow == Flow::old;
+        Time now_at{};
+        const auto take = [&](auto& input, auto& value) noexcept TAPPET_REALTIME {
+            const Flow flow = input.read(value);
+            const bool given = flow == Flow::stale && input.substituted(), is_now = given || input.forced();
+            found.usable &= flow == Flow::fresh || flow == Flow::old || given;
             found.fresh |= flow == Flow::fresh;
-            const bool forced = integer ? integer_in[s].forced() : physical_in[s].forced();
-            if (forced || found.at == never) (forced ? forced_at : found.at) = stamp;
-            found.agreed &= forced || stamp == found.at;
-        }
-        if (found.at == never) found.at = forced_at;
+            if (is_now || found.at == never) (is_now ? now_at : found.at) = input.stamp();
+            found.agreed &= is_now || input.stamp() == found.at;
+        };
+        const FrameRow& row = map.frames[f];
+        for (std::size_t s = row.first; s < row.first + row.signals; ++s)
+            if (is_selected(row, s))
+                is_integer(map.signals[s]) ? take(integer_in[s], integers_[s])
+                                           : take(physical_in[s], physical_[s]);
+        if (found.at == never) found.at = now_at;
         return found;
     }
 
@@ -420,7 +421,7 @@ private:
             if (!keep_inputs(f)) continue;
             // The end of a force shows the value of before: not again, and not as the last that is said.
             if (!is_new && (ends || store_.encode(f, now).data == before.data)) continue;
-            demanded_at_[f] = found.at > now + ahead_at_most ? now : found.at;
+            demanded_at_[f] = std::min(found.at, now); // what lies ahead hides no later one
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
             static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
@@ -436,15 +437,15 @@ private:
         }
     }
     /// What waited, what arrived and what was demanded while nobody served the bus.
-    void forget_stopped_time() noexcept TAPPET_REALTIME {
+    void forget_stopped_time(Time now) noexcept TAPPET_REALTIME {
         device_->purge();
         Frame ignored;
         for (int n = 0; n < max_passes; ++n)
             if (const Receive got = device_->receive(ignored); got.what == Received::none && got.lost == 0)
                 break;
-        forget_demands();
+        forget_demands(now);
     }
-    void forget_demands() noexcept TAPPET_REALTIME {
+    void forget_demands(Time now) noexcept TAPPET_REALTIME {
         if constexpr (protocol.any) {
             Frame forgotten;
             for (int n = 0; n < max_passes && to_send.pop(forgotten);) ++n;
@@ -452,7 +453,7 @@ private:
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             const Reading found = read_inputs(f);
-            if (found.usable && keep_inputs(f)) demanded_at_[f] = std::max(demanded_at_[f], found.at);
+            if (found.usable && keep_inputs(f)) demanded_at_[f] = std::clamp(found.at, demanded_at_[f], now);
             demanded_[f] = false;
         }
     }

@@ -61,6 +61,11 @@ void SafeSender::close() noexcept {
     confirmed_ = 0;
 }
 
+void SafeSender::begin() noexcept {
+    static_cast<void>(left()); // what waits at the socket is of before
+    confirmed_ = 0;
+}
+
 void SafeSender::send(Purpose purpose) noexcept {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
         if ((confirmed_ >> i & 1u) != 0) continue;

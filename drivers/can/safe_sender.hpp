@@ -27,6 +27,8 @@ public:
     std::expected<void, Sentence> open(std::string_view interface, std::span<const Frame> frames);
     void close() noexcept;
 
+    /// What was confirmed so far counts no more: another one may have sent since.
+    void begin() noexcept;
     /// Hands over each frame that is not confirmed, in order. A rehearsal does the same with frames that the
     /// kernel refuses: nothing reaches the bus.
     enum class Purpose : std::uint8_t { rehearsal, earnest };

@@ -36,7 +36,7 @@ void rehearse(std::span<can::SafeSender> buses) noexcept {
 }
 
 std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) noexcept {
-    for (can::SafeSender& bus : buses) static_cast<void>(bus.left()); // what the machine sent is still there
+    for (can::SafeSender& bus : buses) bus.begin();
     for (const Time end = os::Clock::monotonic() + within;;) {
         for (can::SafeSender& bus : buses) bus.send(can::SafeSender::Purpose::earnest);
         os::sleep_for(can::SafeSender::repeat_after);

@@ -330,10 +330,14 @@ TEST_F(RealCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_
     std::this_thread::sleep_for(200ms);
     sender.send(SafeSender::Purpose::rehearsal);
     EXPECT_EQ(sender.left(), 2u);
-    sender.send(SafeSender::Purpose::earnest);
-    EXPECT_EQ(sender.left(), 0u);
-    EXPECT_EQ(flags_of(dump, safe[0]), CANFD_BRS);
-    EXPECT_TRUE(dump.says("can0 202#ABCD"));
+    for (int n = 0; n < 2; ++n) {
+        sender.begin();
+        EXPECT_EQ(sender.left(), 2u);
+        sender.send(SafeSender::Purpose::earnest);
+        EXPECT_EQ(sender.left(), 0u);
+        EXPECT_EQ(flags_of(dump, safe[0]), CANFD_BRS);
+        EXPECT_TRUE(dump.says("can0 202#ABCD"));
+    }
 }
 
 TEST_F(RealCanFd, refuses_an_interface_for_classical_frames_and_says_the_cure) {

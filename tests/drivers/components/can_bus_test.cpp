@@ -143,6 +143,18 @@ TEST_F(CanBus, holds_a_stale_frame_back_and_resumes_on_its_grid) {
     EXPECT_EQ(resumed->stamp, Time{62ms});
 }
 
+TEST_F(CanBus, sends_what_a_row_gives_for_a_stale_value) {
+    run_until(20ms);
+    const can::Frame before = heard_of(0x201).back();
+    master->writes_target = false; // written last at 20 ms, good for 10 ms
+    run_until(60ms);
+    const can::Frame last = heard_of(0x201).back();
+    EXPECT_GT(last.stamp, Time{50ms});
+    const can::Signal& velocity = signals.signals[signals.signal("drive_command.velocity")];
+    EXPECT_NE(can::extract(before.data, velocity), 0u);
+    EXPECT_EQ(can::extract(last.data, velocity), 0u);
+}
+
 TEST_F(CanBus, writes_no_signal_that_is_no_number) {
     const auto& force = bus->physical_out[signals.signals.size() - 1];
     run_until(10ms);

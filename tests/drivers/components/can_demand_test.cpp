@@ -129,6 +129,18 @@ TEST_F(ForcedDemand, sends_nothing_that_was_dropped_while_it_stood_when_a_force_
     EXPECT_TRUE(heard_of(0x000).empty());
 }
 
+TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_lies_a_little_ahead) {
+    master->sync_at = at_ns(910'000'000);
+    master->sync_next = 1;
+    run_until(20ms);
+    master->sync_at = Time::min();
+    for (const Duration end : {40ms, 60ms, 80ms}) {
+        master->sync_next = 1;
+        run_until(end);
+    }
+    EXPECT_EQ(heard_of(0x080).size(), 4u);
+}
+
 TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_cannot_be) {
     master->sync_at = at_ns(3'600'000'000'000);
     master->sync_next = 1;
