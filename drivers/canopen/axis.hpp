@@ -75,6 +75,7 @@ template <text unit> struct Axis {
             !motion_.synchronize(OperationMode{static_cast<std::int8_t>(cyclic)}))
             return false;
         begins_ = true;
+        follows_in_ = cyclic;
         return true;
     }
     bool home() noexcept TAPPET_REALTIME { return takes(home_, motion_.home(), {}); }
@@ -142,8 +143,11 @@ private:
     void follow(Time now) noexcept TAPPET_REALTIME {
         double wanted = 0;
         const Flow flow = set_point.read(wanted);
+        const std::int64_t ordered = mode.last();
+        // What is written before the mode is ordered is of another unit.
+        if (begins_ && ordered != follows_in_) return;
         if (std::exchange(begins_, false)) is_led_ = false, led_at_ = now;
-        const bool is_place = mode.last() == static_cast<std::int64_t>(OperationMode::cyclic_position);
+        const bool is_place = ordered == static_cast<std::int64_t>(OperationMode::cyclic_position);
         // A stale velocity or torque is what the row gives in its place. A stale place is not followed.
         if (flow != Flow::fresh && (flow != Flow::stale || is_place || !is_led_)) return;
         // One that stood behind a force, is of before, or is no number.
@@ -189,6 +193,7 @@ private:
     DriveMotion motion_{};
     Time led_at_{}; ///< when the set point that it follows was true
     bool begins_ = false, is_led_ = false;
+    std::int64_t follows_in_ = 0; ///< the mode
     Begun home_{}, move_to_{}, superimpose_{}, halt_{};
     Changed<AxisMode> state_{};
     Changed<bool> follows_{}, lags_{}, limited_{};

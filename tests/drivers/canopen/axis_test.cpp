@@ -307,6 +307,23 @@ TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
     EXPECT_EQ(axis->target_velocity.last(), 30);
 }
 
+TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_ordered) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    client->oscillates = true;
+    run(2200ms);
+    client->synchronize.reset();
+    ASSERT_TRUE(client->synchronize.send(9));
+    ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
+    client->oscillates = false;
+    run(5ms);
+    EXPECT_EQ(axis->target_velocity.last(), 0);
+    client->once = 3;
+    run(5ms);
+    EXPECT_EQ(axis->target_velocity.last(), 3);
+}
+
 /// Its set point is forced meanwhile, for less than what stands behind it takes to grow stale.
 struct ForcedAxis : ServoAxis {
     void force(double value) {
