@@ -31,6 +31,7 @@ inline constexpr auto bed_lines = gpio::line_map(
 
 inline constexpr auto bed_registers = modbus::register_map(
     modbus::read("oven", modbus::input_registers(0, 1), modbus::every(100ms), modbus::word("temperature", 0).as_signed().times(0.1).in("degC")),
+    modbus::read("meter", modbus::input_registers(2, 2), modbus::every(100ms), modbus::float_word("flow", 0).in("kg/s")),
     modbus::write("heat", modbus::holding_registers(4, 2), modbus::every(100ms), modbus::stale_after(1s),
         modbus::word("power", 0).times(0.1).in("%").safe(0),
         modbus::word("fan", 1).in("rpm").safe(0)),

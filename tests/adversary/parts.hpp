@@ -2,7 +2,10 @@
 // command, a property's change, a step; and one whose preparations take long.
 #pragma once
 
+#include "kernel/motion/filters.hpp"
 #include "tests/adversary/maps.hpp"
+
+#include <algorithm>
 
 namespace adversary {
 
@@ -112,22 +115,63 @@ private:
     }
 };
 
+/// Weighs what is there, and has no mean of it until it has a sample.
+struct Scale {
+    Input<double> weight, flow;
+    Output<double> filtered, mean, share;
+    motion::Biquad filter = *motion::Biquad::low_pass(5.0, 10ms);
+    double sum = 0, samples = 0;
+
+    void start(const Cycle&) noexcept TAPPET_REALTIME { tare(); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        mean.write(sum / samples);
+        share.write(sum / samples);
+        if (samples >= 1000) tare();
+        double value = 0, into = 0;
+        if (weight.read(value) != Flow::never_written) filtered.write(filter(value));
+        if (flow.read(into) != Flow::never_written) sum += std::clamp(filtered.last(), -1e3, 1e3) + into;
+        ++samples;
+    }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        tare();
+        mean.write(sum / samples);
+    }
+    void tare() noexcept TAPPET_REALTIME { sum = samples = 0; }
+    static constexpr auto interface() {
+        return facets(input<&Scale::weight>("weight", "kg", "of the vessel"),
+                      input<&Scale::flow>("flow", "kg/s", "into it", optional),
+                      output<&Scale::filtered>("filtered", "kg", "what is weighed"),
+                      output<&Scale::mean>("mean", "kg", "since it was tared"),
+                      output<&Scale::share>("share", "kg", "the same, for who interpolates"),
+                      operation<&Scale::tare>("tare", "from now on", for_people(Role::machine_operator)));
+    }
+};
+
 /// Asks the valve, by a row of its own, whenever its level is low.
 struct Doser {
-    Input<double> height;
+    Input<double> height, share;
     Output<bool> lamp;
     MethodCall<void()> open, close;
     std::uint32_t cycles = 0;
+    double has = 0;
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
+        static_cast<void>(share.read(has));
         if (++cycles % 50 != 0) return;
         const bool opens = cycles % 100 == 0;
         const Answer<void> answer = opens ? open() : close();
         lamp.write(opens && answer.given());
     }
+    bool dose(double) noexcept TAPPET_REALTIME { return true; }
+    CommandProgress is_dosed(double weight) noexcept TAPPET_REALTIME {
+        return has >= weight ? CommandProgress::done : CommandProgress::executing;
+    }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { lamp.write(false); }
     static constexpr auto interface() {
         return facets(input<&Doser::height>("height", "mm", "of what is dosed"),
+                      input<&Doser::share>("share", "kg", "what there is", optional),
+                      command<&Doser::dose, &Doser::is_dosed>("dose", "ends when so much is there",
+                                                              for_people(Role::machine_operator)),
                       output<&Doser::lamp>("lamp", "", "it doses"), calls<&Doser::open>("open", "the valve"),
                       calls<&Doser::close>("close", "the valve"));
     }

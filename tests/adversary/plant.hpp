@@ -21,6 +21,7 @@ public:
         can.set("level.weight", 0.4 * height_);
         io.set("full", height_ > 50.0);
         unit.set("oven.temperature", 20.0 + unit.get("heat.power"));
+        if (!std::exchange(flows_, true)) unit.set("meter.flow", 0.5); // what a fault writes there stays
         return now + 5ms;
     }
 
@@ -31,6 +32,7 @@ public:
 private:
     Random random_;
     double height_ = 50.0;
+    bool flows_ = false;
 };
 
 } // namespace adversary

@@ -6,7 +6,6 @@
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 
 #include <unistd.h>
@@ -47,6 +46,11 @@ std::string socket_in(const std::string& directory, std::string_view machine) {
     return directory + "/" + std::string{machine} + std::string{browsing::socket_suffix};
 }
 
+std::array<SwarmBrowser, 6> visitors(const std::string& socket) {
+    const auto one = [&socket](std::uint32_t user) { return SwarmBrowser{socket, user}; };
+    return {one(machine_operator), one(observer), one(observer), one(observer), one(observer), one(observer)};
+}
+
 Board with_visitors(Board board) {
     board.browsing.mode = 0666;
     static_cast<void>(board.browsing.roles.push({false, machine_operator, Role::machine_operator}));
@@ -78,24 +82,19 @@ SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
       run_{on_board(of_.machine, board_), *plant_, seed},
       struck_{of.machine.table.components.size()},
       wires_{of_.machine, run_.devices(), struck_, of.left},
+      ports_{of_.machine},
       only_people_{seed % 3 == 0},
       files_{std::make_unique<PropertyFiles>(directory_)},
       browser_{socket_in(directory_, of.machine.table.name)},
-      visitors_{SwarmBrowser{socket_in(directory_, of.machine.table.name), machine_operator},
-                SwarmBrowser{socket_in(directory_, of.machine.table.name), observer}} {
+      visitors_{visitors(socket_in(directory_, of.machine.table.name))} {
     std::filesystem::remove_all(directory_); // of who had this number before
     std::filesystem::create_directories(directory_);
     run_.keep_properties_in(directory_);
     find_what_people_may();
     if (service_ != nowhere) run_.browse_in(directory_);
     const auto rows = of.machine.table.components;
-    for (std::size_t c = 0; c < rows.size(); ++c) {
+    for (std::size_t c = 0; c < rows.size(); ++c)
         if (is_driver(rows[c])) drivers_.push_back(c);
-        const auto facets = rows[c].type->facets;
-        for (std::size_t f = 0; f < facets.size(); ++f)
-            if (facets[f].kind == FacetKind::output && facets[f].at_rest >= AtRest::says_false)
-                said_at_rest_.push_back({c, f});
-    }
     run_.judge_by([this](Time now) { judge(now); });
 }
 
@@ -161,10 +160,12 @@ bool SwarmRun::start(bool is_again) {
     }
     if (!is_again) wires_.listen();
     wires_.begin(run_.instance());
+    ports_.begin(run_.instance());
     rules_ = of_.rules ? of_.rules(run_.instance(), *plant_, struck_) : std::make_unique<NoRules>();
     is_gone_ = false;
     lost_ = 0;
     set_values_.clear();
+    lines_ = {};
     if (service_ != nowhere)
         run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->log.set(false);
     judge_kept();
@@ -176,25 +177,10 @@ void SwarmRun::judge(Time now) {
     if (!verdict_.broken.empty() || rules_ == nullptr || is_gone_) return;
     Sentence broken{rules_->broken(now)};
     if (broken.empty()) broken = wires_.broken(now);
-    if (broken.empty()) broken = misled_at_rest();
+    if (broken.empty()) broken = ports_.broken(now);
     if (broken.empty()) return;
     verdict_.broken = broken;
     verdict_.at = now;
-}
-
-/// What stands says what its interface says that it does then.
-Sentence SwarmRun::misled_at_rest() {
-    for (const End end : said_at_rest_) {
-        if (run_.instance().life().state_of(end.component) != ComponentState::stopped) continue;
-        const Facet& facet = facet_at(of_.machine.table, end);
-        const PortPlaces places = facet.port->places(run_.instance().place_of(end), false);
-        bool says = false;
-        std::memcpy(&says, places.value, sizeof says);
-        if (!*places.forced && says != (facet.at_rest == AtRest::says_true))
-            return Sentence{"\"", name_of(end), "\" says ", says ? "true" : "false",
-                            " though its component stands"};
-    }
-    return {};
 }
 
 void SwarmRun::deny(const Sentence& why) {

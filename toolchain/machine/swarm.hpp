@@ -6,6 +6,7 @@
 #include "kernel/services/configuration/property_files.hpp"
 #include "toolchain/machine/host.hpp"
 #include "toolchain/machine/swarm_browser.hpp"
+#include "toolchain/machine/swarm_ports.hpp"
 #include "toolchain/machine/swarm_rules.hpp"
 #include "toolchain/machine/swarm_wires.hpp"
 
@@ -99,7 +100,6 @@ private:
     void rest(Duration time);
     bool mend(Duration limit);
     void judge(Time now);
-    [[nodiscard]] Sentence misled_at_rest();
     void judge_emissions();
     void deny(const Sentence& why);
     void say(std::string_view text);
@@ -142,7 +142,10 @@ private:
     void call_anything(std::size_t component);
     void stop_a_part(std::size_t component, Duration lasts);
     void flood();
-    void anyone_asks(SwarmBrowser& by, std::string request);
+    void anyone_asks(SwarmBrowser& by, std::string request, const SwarmBrowser::Then& then = {});
+    void execute(const std::string& line, bool is_again = false);
+    [[nodiscard]] std::string any_state();
+    void ask_of_lower_role(SwarmBrowser& by);
     void judge_shown(const std::string& name, std::string_view answer);
     [[nodiscard]] std::string name_of(End end) const;
     [[nodiscard]] End any_of(std::initializer_list<FacetKind> kinds, std::size_t component);
@@ -164,10 +167,10 @@ private:
     VirtualRun run_;
     Struck struck_;
     SwarmWires wires_;
+    SwarmPorts ports_;
     std::unique_ptr<SwarmRules> rules_;
     std::vector<Fault> faults_{};
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
-    std::vector<End> said_at_rest_{}; ///< outputs of which their interface says what they say while stopped
     bool is_calm_ = false;
     bool only_people_;          ///< all else is well: what they do goes further
     std::size_t busy_with_ = 0; ///< a component that somebody calls again and again
@@ -175,7 +178,7 @@ private:
     std::uint64_t lost_ = 0; ///< emissions, so far
     std::unique_ptr<PropertyFiles> files_;
     SwarmBrowser browser_;                     ///< an engineer's
-    std::array<SwarmBrowser, 2> visitors_;     ///< an operator's, and an observer's
+    std::array<SwarmBrowser, 6> visitors_;     ///< an operator's, and observers'
     std::size_t service_ = nowhere;            ///< the component that answers browsers
     std::vector<End> commands_{}, readable_{}; ///< that operators may send and call; that anybody may read
     std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
@@ -194,6 +197,13 @@ private:
     bool is_gone_ = false;    ///< the machine's process
     Sentence refusal_{};      ///< why a part did not start again, the last
     std::string last_call_{}; ///< of anyone's
+    /// Of the interpreter, as engineers know it.
+    struct Lines {
+        unsigned at_work = 0;       ///< theirs
+        bool left_commands = false; ///< theirs may have
+        bool of_peers = false;      ///< whose role is not known
+    };
+    Lines lines_{};
     SwarmVerdict verdict_{};
 };
 

@@ -89,7 +89,9 @@ std::string SwarmRun::any_script(const BehaviourRow& row) {
         }
     if (calls.empty()) return {};
     std::string text = "StateMachine Anything { var int n = 0; ";
-    for (const std::string_view state : {"One", "Two"})
+    // In any order, so that a state has another number in the next one.
+    const bool is_other = random_.one_in(2);
+    for (const std::string_view state : {is_other ? "Two" : "One", is_other ? "One" : "Two"})
         text += std::string{state == "One" ? "initial " : ""} + "state " + std::string{state} +
                 " { run { var int i = 0; while i < " + std::to_string(1 + random_.below(100)) +
                 " { yield; set i = i + 1; } try do " + calls[random_.below(calls.size())] +
@@ -98,7 +100,21 @@ std::string SwarmRun::any_script(const BehaviourRow& row) {
     return text + "final state Last { } }";
 }
 
-void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
+/// A state of a machine that is loaded, or was: "component.state".
+std::string SwarmRun::any_state() {
+    const auto rows = of_.machine.table.behaviours;
+    if (rows.empty()) return {};
+    const BehaviourRow& row = rows[random_.below(rows.size())];
+    const std::string component = std::string{row.component} + ".";
+    constexpr std::array<std::string_view, 3> loaded{"One", "Two", "Last"}; // of any_script()
+    if (row.is_slot()) return component + std::string{loaded[random_.below(loaded.size())]};
+    const ScriptUnit unit = row.unit();
+    if (unit.types.empty() || unit.types.back().machine.states.empty()) return {};
+    const auto states = unit.types.back().machine.states;
+    return component + std::string{states[random_.below(states.size())].name};
+}
+
+void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request, const SwarmBrowser::Then& then) {
     say(Sentence{&by == &browser_ ? "somebody asks: " : "a visitor asks: ", request}.view());
     // What is asked of a driver itself its wires may follow.
     for (const std::size_t c : drivers_)
@@ -108,7 +124,13 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
     const bool reads = request.starts_with("get ");
     const std::string name = reads ? request.substr(4) : std::string{};
     const bool is_alone = &by == &browser_ && by.waits_for() == 0; // of the engineers
-    by.ask(std::move(request), run_.now(), [this, name, is_alone](std::string_view answer) {
+    const std::string state = request.starts_with("why ") ? request.substr(request.rfind('.') + 1) : "";
+    lines_.of_peers |= request.starts_with("send ") && request.contains(".execute ");
+    by.ask(std::move(request), run_.now(), [this, name, state, is_alone, then](std::string_view answer) {
+        if (then) then(answer);
+        if (!state.empty() && is_good(answer) && !field_of(answer, "wanted").ends_with(state))
+            deny(Sentence{"who asked why \"", state, "\" is not reached is told of \"",
+                          field_of(answer, "wanted"), "\""});
         if (is_alone && field_of(answer, "error").starts_with("too many requests"))
             deny(Sentence{
                 "an engineer who asks for one thing is not served: people of lower roles have every place"});
@@ -119,9 +141,6 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request) {
 /// A value that is shown as good was written within the age that its row allows.
 void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
     if (field_of(answer, "flow") != "fresh" || field_of(answer, "forced") == "true") return;
-    const std::string value = field_of(answer, "value");
-    if (value == "nan" || value == "inf" || value == "-inf")
-        return deny(Sentence{"\"", name, "\" is shown as fresh, and is no number"});
     const MachineView& table = of_.machine.table;
     Duration oldest{};
     for (std::size_t x = 0; x < table.connections.size(); ++x)
@@ -131,6 +150,25 @@ void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
     if (oldest > Duration{} && run_.now() - stamp > oldest + told_late)
         deny(Sentence{"input \"", name, "\" is shown as fresh, and was written ", (run_.now() - stamp) / 1ms,
                       " ms ago"});
+}
+
+/// Nobody of a lower role keeps an engineer's line from its turn for long.
+void SwarmRun::execute(const std::string& line, bool is_again) {
+    std::string quoted;
+    for (const char each : line) quoted += (each == '"' || each == '\\' ? "\\" : "") + std::string{each};
+    anyone_asks(browser_, "execute \"" + quoted + "\"", [this, line, is_again](std::string_view answer) {
+        const std::string why = field_of(answer, "error");
+        if (is_good(answer)) ++lines_.at_work;
+        if (why.starts_with("commands of earlier lines") && !lines_.left_commands && !lines_.of_peers)
+            deny(Sentence{"an engineer's line finds no place: commands of operators' lines have every one"});
+        if (!why.starts_with("another line is at work") || lines_.at_work > 0 || lines_.of_peers) return;
+        if (is_again)
+            return deny(
+                Sentence{"an engineer who broke a line off finds the next one of a lower role at work"});
+        anyone_asks(browser_, "break_off", [this, line](std::string_view broken_off) {
+            if (is_good(broken_off)) execute(line, true);
+        });
+    });
 }
 
 /// Now and then the call before once more: much fails the second time only.
@@ -179,9 +217,7 @@ void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
     if (what < 80) {
         const std::string line = random_.one_in(10) ? "" : any_line(component);
         ++verdict_.faults["line"];
-        std::string quoted;
-        for (const char each : line) quoted += (each == '"' || each == '\\' ? "\\" : "") + std::string{each};
-        return anyone_asks(browser_, line.empty() ? "break_off" : "execute \"" + quoted + "\"");
+        return line.empty() ? anyone_asks(browser_, "break_off") : execute(line);
     }
     if (what < 88) {
         std::vector<const BehaviourRow*> slots;
@@ -265,18 +301,36 @@ void SwarmRun::strike_as_anyone(Duration lasts) {
     }
 }
 
-/// Somebody of a lower role asks for as much as fits, and for what is not his.
-void SwarmRun::flood() {
-    SwarmBrowser& by = visitors_[random_.below(visitors_.size())];
-    ++verdict_.faults["flood"];
-    for (std::int64_t n = random_.between(1, most_at_once); n > 0; --n) {
-        const End end = readable_[random_.below(readable_.size())];
-        switch (random_.below(4)) {
-        case 0: anyone_asks(by, "set " + name_of(end) + " 1"); break;
-        case 1: anyone_asks(by, "execute \"" + name_of(end) + "\""); break;
-        default: anyone_asks(by, "get " + name_of(end));
-        }
+/// Something that anybody may ask for, or that is not his.
+void SwarmRun::ask_of_lower_role(SwarmBrowser& by) {
+    const std::string port = name_of(readable_[random_.below(readable_.size())]);
+    const std::string state = any_state();
+    const bool operates = &by == visitors_.data();
+    const std::string call =
+        operates && !commands_.empty() ? any_call(commands_[random_.below(commands_.size())]) : std::string{};
+    switch (random_.below(6)) {
+    case 0: return anyone_asks(by, "set " + port + " 1");
+    case 1: return anyone_asks(by, "execute \"" + port + "\"");
+    case 2: return anyone_asks(by, state.empty() ? "behaviours" : "why " + state);
+    case 3:
+        if (call.empty() || call.contains('"')) break;
+        return anyone_asks(by, random_.one_in(3) ? "break_off" : "execute \"do " + call + ";\"");
+    default: break;
     }
+    anyone_asks(by, "get " + port);
+}
+
+/// People of lower roles ask for as much as fits: one of them, or all at once for the same.
+void SwarmRun::flood() {
+    ++verdict_.faults["flood"];
+    if (const std::string state = any_state(); !state.empty() && random_.one_in(3)) {
+        for (SwarmBrowser& each : visitors_)
+            for (std::int64_t n = random_.between(1, 4); n > 0; --n) anyone_asks(each, "why " + state);
+    } else {
+        SwarmBrowser& by = visitors_[random_.below(visitors_.size())];
+        for (std::int64_t n = random_.between(1, most_at_once); n > 0; --n) ask_of_lower_role(by);
+    }
+    if (random_.one_in(2)) ask_anything(random_.below(of_.machine.table.components.size()), {});
 }
 
 } // namespace tappet

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace tappet {
@@ -16,6 +17,7 @@ namespace {
 
 constexpr Duration answered_within = BrowserService::patience + 1s; // while the service runs
 constexpr Duration told_within = 100ms;                             // an emission, to who watches
+constexpr std::array largest{std::numeric_limits<double>::max(), 1e306, 3.4e38}; // of what has no range
 
 std::string text_of(const TypeTag& type, const std::byte* value) {
     std::array<char, 256> text;
@@ -53,6 +55,10 @@ void SwarmRun::find_what_people_may() {
     for (std::size_t s = 0; s < rows.size(); ++s)
         if (rows[s].kind == SubscriberKind::observer) events_.push_back(s);
     browser_.tell_by([this](std::string_view packet) {
+        if (const std::string line = field_of(packet, "line"); !line.empty()) {
+            lines_.at_work -= std::min(lines_.at_work, 1u);
+            lines_.left_commands |= line != "done";
+        }
         if (field_of(packet, "event").empty()) return;
         ++watched_.told;
         watched_.was_told = true;
@@ -67,7 +73,10 @@ void SwarmRun::hear() {
     const bool connected = browser_.hear();
     if (anything_goes_)
         for (SwarmBrowser& each : visitors_) static_cast<void>(each.hear());
-    if (!connected || connections != browser_.connections()) watched_ = {};
+    if (!connected || connections != browser_.connections()) {
+        watched_ = {};
+        lines_ = {.left_commands = true, .of_peers = true};
+    }
     if (!connected) return;
     if (connections != browser_.connections()) watch();
     judge_watched();
@@ -173,7 +182,12 @@ std::string SwarmRun::draw(const TypeTag& type, Range range) {
     case ValueKind::integer: value.put_whole(std::llround(number), type.size); break;
     case ValueKind::natural: value.put_whole(std::llround(std::abs(number)), type.size); break;
     case ValueKind::real:
-        type.size == sizeof(float) ? value.put(static_cast<float>(number)) : value.put(number);
+        if (type.size == sizeof(float))
+            value.put(static_cast<float>(number));
+        else if (anything_goes_ && !bounded && random_.one_in(8))
+            value.put((random_.one_in(2) ? -1 : 1) * largest[random_.below(largest.size())]);
+        else
+            value.put(number);
         break;
     case ValueKind::duration: value.put(std::int64_t{1000} * std::llround(number * 1e6)); break;
     case ValueKind::text: {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace tappet {
 
@@ -39,6 +40,7 @@ void SwarmWires::listen() {
         if (tappet::drives(rows[c], "modbus")) add_registers(c);
     }
     add_axes();
+    find_together();
     devices_.look_at_frames(
         [this](std::string_view device, const can::Frame& frame) { hear(device, frame); });
 }
@@ -53,7 +55,8 @@ void SwarmWires::begin(MachineInstance& instance) {
     }
     for (Output& each : outputs_) {
         each.before = each.left = {};
-        each.since = never;
+        each.since = each.wanted_since = never;
+        each.wanted = std::numeric_limits<double>::quiet_NaN();
         each.excused = {};
     }
 }
@@ -226,7 +229,12 @@ void SwarmWires::add_signals(std::size_t c) {
         if (frame.direction != can::Direction::transmit) continue;
         sent_.push_back({row.device, &map, f});
         for (const can::Signal& signal : map.signals.subspan(frame.first, frame.signals)) {
-            Output output{.driver = c, .is_switch = signal.bits == 1, .settles = frame.every};
+            Output output{.driver = c, .is_switch = signal.bits == 1, .settles = frame.every, .goes_in = f};
+            // What selects others, or is selected, goes out in turns.
+            if (frame.every > Duration{} && !signal.is_bits && !frame.multiplexed) {
+                output.numbers = numbers_of(signal);
+                output.physical = [&signal](std::uint64_t raw) { return can::to_physical(signal, raw); };
+            }
             if (signal.says_safe) output.safe = can::to_raw(signal, signal.safe_value).bits;
             output.read = [this, at = sent_.size() - 1, &signal]() -> std::optional<std::uint64_t> {
                 const Sent& sent = sent_[at];
@@ -238,9 +246,6 @@ void SwarmWires::add_signals(std::size_t c) {
                 return can::extract(sent.last->data, signal);
             };
             add(std::move(output), std::string{frame.name} + "." + std::string{signal.name});
-            if (can::is_integer(signal) && !signal.is_bits && !signal.has_range && signal.bits < 64)
-                for (const End port : outputs_.back().facets)
-                    wholes_.push_back({sent_.size() - 1, &signal, port});
         }
     }
 }
@@ -257,7 +262,17 @@ void SwarmWires::add_registers(std::size_t c) {
                 for (unsigned w = 0; w < width; ++w) all = all << 16 | word(w);
                 return all;
             };
-            Output output{.driver = c, .is_switch = one.kind == modbus::Kind::bit, .settles = request.every};
+            Output output{.driver = c,
+                          .is_switch = one.kind == modbus::Kind::bit,
+                          .settles = request.every,
+                          .goes_in = request.first,
+                          .numbers = numbers_of(one)};
+            output.physical = [&one](std::uint64_t all) {
+                modbus::Words words{static_cast<std::uint16_t>(all), 0};
+                if (one.width() == 2)
+                    words = {static_cast<std::uint16_t>(all >> 16), static_cast<std::uint16_t>(all)};
+                return modbus::to_physical(one, words);
+            };
             if (one.says_safe)
                 output.safe = whole(
                     [words = modbus::to_words(one, one.safe_value)](unsigned w) { return words.words[w]; });
@@ -303,6 +318,7 @@ void SwarmWires::add(Output output, std::string_view name, const std::vector<std
             if (operation.starts_with(driver + ".") && switches(operation.substr(driver.size() + 1)))
                 write(find_component(table, row.component));
     output.settles += usual_settling + oldest;
+    output.grows_stale = oldest > Duration{};
     outputs_.push_back(std::move(output));
 }
 
@@ -314,8 +330,6 @@ void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
         const can::FrameRow& row = sent.map->frames[sent.row];
         if (sent.device != device || row.identifier != can::Identifier{frame.id, frame.extended}) continue;
         sent.last = frame;
-        for (Whole& whole : wholes_)
-            if (whole.sent == at && is_in(*sent.map, row, *whole.signal, frame)) hear_whole(whole, frame);
         for (const can::Signal& signal : sent.map->signals.subspan(row.first, row.signals)) {
             if (!is_in(*sent.map, row, signal, frame)) continue;
             const std::uint64_t raw = can::extract(frame.data, signal);
@@ -339,32 +353,6 @@ void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
                                   ", outside of its range"};
         }
     }
-}
-
-/// It is what its port says, or the end of its range that is nearest to that.
-void SwarmWires::hear_whole(Whole& whole, const can::Frame& frame) {
-    constexpr unsigned longest = 5; // frames that were under way, or wait for values of one time
-    if (instance_ == nullptr || instance_->life().state_of(whole.port.component) != ComponentState::running)
-        return;
-    const Facet& facet = facet_at(machine_.table, whole.port);
-    const PortPlaces places = facet.port->places(instance_->place_of(whole.port), true);
-    std::int64_t said = 0;
-    std::memcpy(&said, *places.forced ? places.forced_value : places.value, sizeof said);
-    const bool is_signed = whole.signal->kind == can::Kind::signed_integer;
-    const std::int64_t most = (std::int64_t{1} << (whole.signal->bits - (is_signed ? 1 : 0))) - 1;
-    const std::int64_t wire = can::to_integer(*whole.signal, can::extract(frame.data, *whole.signal));
-    const bool is_meant = wire == std::clamp(said, is_signed ? -most - 1 : 0, most);
-    whole.another = is_meant || said != whole.said ? 0 : whole.another + 1;
-    whole.said = said;
-    if (whole.another > longest)
-        heard_ = Sentence{"\"",
-                          machine_.table.components[whole.port.component].name,
-                          ".",
-                          facet.name,
-                          "\" is ",
-                          said,
-                          ", and goes out as ",
-                          wire};
 }
 
 bool SwarmWires::drives(const Output& output) const {
@@ -393,6 +381,7 @@ Sentence SwarmWires::told(const Output& output, std::uint64_t value) const {
 Sentence SwarmWires::broken(Output& output, Time now) const {
     if (output.writers.empty()) return {};
     const auto value = output.read();
+    if (Sentence why = told_otherwise(output, value, now); !why.empty()) return why;
     if (!value) return {};
     if (now >= output.excused && output.safe && *value == *output.safe) output.is_meddled = false;
     if (drives(output)) {

@@ -15,6 +15,10 @@
 
 namespace tappet {
 
+namespace modbus {
+struct Register;
+}
+
 /// What is on an output's wire when all that writes to it was stopped while nothing else went on.
 struct LeftBehind {
     bool holds = false;                  ///< whatever it was before
@@ -51,6 +55,11 @@ public:
     /// They stand since so long, and nothing else went on.
     void note_left(const std::vector<std::size_t>& writers, AllLeftBehind& left) const;
 
+    /// What a wire can say.
+    struct Numbers {
+        double least = 0, most = 0, step = 0;
+    };
+
 private:
     /// One output at the wires.
     struct Output {
@@ -68,6 +77,14 @@ private:
         Time since = never;                            ///< no writer runs
         Time excused{};
         bool is_meddled = false; ///< somebody asked its driver, and it was not safe since
+        // Of one that goes out again and again, as its input says.
+        std::size_t goes_in = nowhere; ///< its frame's or request's number
+        bool grows_stale = false;      ///< by its row
+        Numbers numbers{};
+        std::function<double(std::uint64_t)> physical{}; ///< null: it is another kind
+        std::vector<std::size_t> together{};             ///< outputs that go out with it, and itself
+        double wanted = 0;
+        Time wanted_since = never;
     };
     /// A frame that the machine sends, as it was on the wire last.
     struct Sent {
@@ -76,15 +93,6 @@ private:
         std::size_t row = 0;
         std::optional<can::Frame> last{};
     };
-    /// A whole number that the machine sends, and the input of its driver that says which.
-    struct Whole {
-        std::size_t sent = 0;
-        const can::Signal* signal = nullptr;
-        End port{};
-        std::int64_t said = 0;
-        unsigned another = 0; ///< frames one after the other with another value, while the port said the same
-    };
-
     /// An axis of the library, as its facets say, and what its drive tells at the wire.
     struct Axis {
         std::string_view name{}, device{};
@@ -117,8 +125,13 @@ private:
     void add_registers(std::size_t component);
     /// `events`: what switches it, in place of an input of its name.
     void add(Output output, std::string_view name, const std::vector<std::string>& events = {});
+    [[nodiscard]] static Numbers numbers_of(const can::Signal& signal);
+    [[nodiscard]] static Numbers numbers_of(const modbus::Register& one);
+    void find_together();
+    [[nodiscard]] double said(const Output& output) const;
+    [[nodiscard]] Sentence told_otherwise(Output& output, const std::optional<std::uint64_t>& value,
+                                          Time now) const;
     void hear(std::string_view device, const can::Frame& frame);
-    void hear_whole(Whole& whole, const can::Frame& frame);
     [[nodiscard]] bool drives(const Output& output) const;
     [[nodiscard]] bool is_forced(const Output& output) const;
     [[nodiscard]] Sentence broken(Output& output, Time now) const;
@@ -132,7 +145,6 @@ private:
     Time now_{};
     std::vector<Output> outputs_{};
     std::vector<Sent> sent_{};
-    std::vector<Whole> wholes_{};
     std::vector<Axis> axes_{};
     Sentence heard_{}; ///< what was wrong with a frame
 };

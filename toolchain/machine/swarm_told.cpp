@@ -1,0 +1,113 @@
+// What a driver is told at its inputs goes out, or the end of what the wire can say that is nearest to it.
+#include "drivers/modbus/register_map.hpp"
+#include "toolchain/machine/swarm_wires.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace tappet {
+
+namespace {
+
+constexpr Duration looks_within = 2s; // a bus that was off, for its restart
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double largest_float = std::numeric_limits<float>::max();
+
+/// Between the two ends, in whichever order: a factor may be negative.
+SwarmWires::Numbers between(double one, double other, double step) {
+    return {std::min(one, other), std::max(one, other), step};
+}
+
+} // namespace
+
+SwarmWires::Numbers SwarmWires::numbers_of(const can::Signal& signal) {
+    const double wide = std::ldexp(1.0, static_cast<int>(signal.bits)), step = std::abs(signal.factor);
+    const auto physical = [&signal](double raw) { return raw * signal.factor + signal.offset; };
+    Numbers numbers;
+    switch (signal.kind) {
+    case can::Kind::unsigned_integer: numbers = between(physical(0), physical(wide - 1), step); break;
+    case can::Kind::signed_integer:
+        numbers = between(physical(-wide / 2), physical(wide / 2 - 1), step);
+        break;
+    default: numbers = between(physical(-largest_float), physical(largest_float), step);
+    }
+    if (signal.has_range) numbers = {signal.least, signal.most, step};
+    return numbers;
+}
+
+SwarmWires::Numbers SwarmWires::numbers_of(const modbus::Register& one) {
+    const double wide = one.width() == 2 ? 4294967296.0 : 65536.0, step = std::abs(one.factor);
+    const auto physical = [&one](double number) { return number * one.factor + one.offset; };
+    switch (one.kind) {
+    case modbus::Kind::bit: return between(physical(0), physical(1), step);
+    case modbus::Kind::unsigned_word:
+    case modbus::Kind::unsigned_double: return between(physical(0), physical(wide - 1), step);
+    case modbus::Kind::signed_word:
+    case modbus::Kind::signed_double: return between(physical(-wide / 2), physical(wide / 2 - 1), step);
+    case modbus::Kind::float_double: break;
+    }
+    return between(physical(-largest_float), physical(largest_float), step);
+}
+
+/// What goes out in one, of which no row lets anything grow stale.
+void SwarmWires::find_together() {
+    for (Output& each : outputs_) {
+        each.together.clear();
+        for (std::size_t o = 0; o < outputs_.size(); ++o)
+            if (outputs_[o].driver == each.driver && outputs_[o].goes_in == each.goes_in)
+                each.together.push_back(o);
+        if (std::ranges::any_of(each.together, [this](std::size_t o) {
+                return outputs_[o].grows_stale || outputs_[o].facets.empty();
+            }))
+            each.physical = {};
+    }
+}
+
+/// What its input gives its driver; none: nothing yet.
+double SwarmWires::said(const Output& output) const {
+    const Facet& facet = facet_at(machine_.table, output.facets.front());
+    const PortPlaces places = facet.port->places(instance_->place_of(output.facets.front()), true);
+    if (!*places.forced && *places.writes == 0) return none;
+    const void* const value = *places.forced ? places.forced_value : places.value;
+    if (facet.type->kind == ValueKind::real) {
+        double number = 0;
+        std::memcpy(&number, value, sizeof number);
+        return number;
+    }
+    std::int64_t whole = 0;
+    std::memcpy(&whole, value, sizeof whole);
+    return static_cast<double>(whole);
+}
+
+Sentence SwarmWires::told_otherwise(Output& output, const std::optional<std::uint64_t>& value,
+                                    Time now) const {
+    if (!output.physical) return {};
+    double wanted = said(output);
+    for (const std::size_t o : output.together)
+        if (!std::isfinite(said(outputs_[o]))) wanted = none;
+    const Duration settles = output.settles + (value ? Duration{} : looks_within);
+    const ComponentRow& driver = machine_.table.components[output.driver];
+    const bool is_off =
+        tappet::drives(driver, "can") && can::faulted(devices_.controller(driver.device).state());
+    const bool is_whole = instance_->life().state_of(output.driver) == ComponentState::running && !is_off &&
+                          now >= output.excused && struck_.whole_for(output.driver, now) >= settles;
+    if (!is_whole || wanted != output.wanted) {
+        output.wanted = wanted;
+        output.wanted_since = now;
+        return {};
+    }
+    if (now - output.wanted_since < settles) return {};
+    const Numbers& numbers = output.numbers;
+    const double nearest = std::clamp(wanted, numbers.least, numbers.most);
+    Sentence text{"output \"", output.name, "\" "};
+    if (!value) return text.add("is not said any more, though its driver runs");
+    const bool is_safe = output.safe && *value == *output.safe;
+    if (is_safe ||
+        std::abs(output.physical(*value) - nearest) <= std::max(numbers.step, 1e-6 * std::abs(nearest)))
+        return {};
+    return told(output, *value).add(", and its driver is told ").add(std::int64_t{std::llround(nearest)});
+}
+
+} // namespace tappet
