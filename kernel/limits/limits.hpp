@@ -55,7 +55,11 @@ namespace limits_detail {
 
 /// Whether a port of that type can be given the number itself: a bound that it cannot is no bound of it.
 constexpr bool holds(const TypeTag& type, double number) noexcept {
-    if (type.kind == ValueKind::real) return true;
+    if (type.kind == ValueKind::real) {
+        constexpr double most = std::numeric_limits<float>::max();
+        return type.size == sizeof(double) || (number >= -most && number <= most &&
+                                               static_cast<double>(static_cast<float>(number)) == number);
+    }
     const bool is_signed = type.kind == ValueKind::integer;
     const double top = static_cast<double>(std::uint64_t{1} << (8 * type.size - (is_signed ? 1 : 0)));
     return number >= (is_signed ? -top : 0.0) && number < top &&

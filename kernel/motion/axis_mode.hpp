@@ -94,7 +94,9 @@ inline constexpr auto axis_rows = [] {
 constexpr std::expected<AxisMode, Refused> after(AxisMode mode, AxisCommand command) noexcept
     TAPPET_REALTIME {
     for (const detail::AxisRow& row : detail::axis_rows)
-        if (row.command == command && (row.from >> static_cast<unsigned>(mode) & 1U) != 0) return row.to;
+        if (row.command == command && mode <= AxisMode::error_stop &&
+            (row.from >> static_cast<unsigned>(mode) & 1U) != 0)
+            return row.to;
     return std::unexpected(Refused{Refusal::wrong_state});
 }
 
@@ -109,7 +111,7 @@ namespace tappet::motion {
 
 /// As PLCopen writes it.
 constexpr std::string_view to_text(AxisMode mode) noexcept TAPPET_REALTIME {
-    return names_of<AxisMode>[static_cast<std::size_t>(mode)];
+    return mode <= AxisMode::error_stop ? names_of<AxisMode>[static_cast<std::size_t>(mode)] : "?";
 }
 
 } // namespace tappet::motion

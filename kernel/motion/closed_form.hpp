@@ -139,6 +139,7 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
             Joints<6> q;
             q << joint_of(0, one.angle()), joint_of(1, two.angle()), joint_of(2, three.angle()),
                 joint_of(3, four.angle()), joint_of(4, five.angle()), joint_of(5, six.angle());
+            if (!q.allFinite()) continue; // the target's rotation is none
             static_cast<void>(found.push(q));
             // The wrist turned over is the same: half a turn before its bend, which goes the other way, and
             // after.

@@ -84,9 +84,10 @@ public:
     }
     /// Both of them know nothing before the second sample.
     [[nodiscard]] constexpr bool good() const noexcept TAPPET_REALTIME { return samples_ == 2; }
-    /// Where it is, was or will be, straight on. Real-time.
+    /// Where it is, was or will be, straight on; where that is no number, it is the last value. Real-time.
     [[nodiscard]] constexpr double at(Time when) const noexcept TAPPET_REALTIME {
-        return value_ + velocity_ * to_seconds(when - at_);
+        const double there = value_ + velocity_ * to_seconds(when - at_);
+        return is_number(there) ? there : value_;
     }
     [[nodiscard]] constexpr double velocity() const noexcept TAPPET_REALTIME { return velocity_; }
     [[nodiscard]] constexpr std::uint32_t refused() const noexcept TAPPET_REALTIME { return refused_; }
@@ -106,7 +107,7 @@ private:
 };
 
 /// The Kalman filter of `states` numbers, with the covariance in Joseph's form, which stays symmetric and
-/// positive. Units are the owner's.
+/// positive. When one of them grows beyond all numbers, it begins anew as it was made. Units are the owner's.
 template <int states>
 class Kalman {
 public:
@@ -114,14 +115,15 @@ public:
     using Covariance = Eigen::Matrix<double, states, states>;
 
     Kalman(const State& state, const Covariance& covariance) noexcept
-        : state_(state), covariance_(covariance) {}
+        : first_state_(state), first_covariance_(covariance) {}
 
-    /// One step of time: x = F x + u, with noise of covariance Q. Real-time.
+    /// One step of time: x = F x + u, with noise of covariance Q. One in which is what is no number is left
+    /// out. Real-time.
     void predict(const Covariance& f, const Covariance& q, const State& u = State::Zero()) noexcept
         TAPPET_REALTIME {
-        state_ = f * state_ + u;
+        if (!f.allFinite() || !q.allFinite() || !u.allFinite()) return;
         const Covariance moved = f * covariance_;
-        covariance_ = moved * f.transpose() + q;
+        static_cast<void>(take(f * state_ + u, moved * f.transpose() + q));
     }
     /// A measurement z = H x with noise of covariance R. Gives the squared distance from what was expected,
     /// in deviations; one beyond `gate` is refused, as is what is no number, and changes nothing. Real-time.
@@ -140,23 +142,31 @@ public:
         solved.template leftCols<states>() = spread;
         solved.template rightCols<1>() = surprise;
         if (!solve_positive(total, solved)) return std::unexpected(Refused{Refusal::not_positive});
-        const double distance = surprise.dot(solved.template rightCols<1>());
+        double distance = surprise.dot(solved.template rightCols<1>());
+        if (!is_number(distance)) distance = std::numeric_limits<double>::max(); // its square is none
         if (!(distance <= gate)) return std::unexpected(Refused{Refusal::outlier});
         const Eigen::Matrix<double, states, values> gain = solved.template leftCols<states>().transpose();
         const Covariance rest = Covariance::Identity() - gain * h;
         const Covariance kept = rest * covariance_ * rest.transpose();
         const Covariance added = gain * r * gain.transpose();
-        state_ += gain * surprise;
         const Covariance sum = kept + added;
-        covariance_ = 0.5 * (sum + sum.transpose());
+        if (!take(state_ + gain * surprise, 0.5 * (sum + sum.transpose())))
+            return std::unexpected(Refused{Refusal::not_a_number});
         return distance;
     }
     [[nodiscard]] const State& state() const noexcept TAPPET_REALTIME { return state_; }
     [[nodiscard]] const Covariance& covariance() const noexcept TAPPET_REALTIME { return covariance_; }
 
 private:
-    State state_;
-    Covariance covariance_;
+    bool take(const State& state, const Covariance& covariance) noexcept TAPPET_REALTIME {
+        const bool is_good = state.allFinite() && covariance.allFinite();
+        state_ = is_good ? state : first_state_;
+        covariance_ = is_good ? covariance : first_covariance_;
+        return is_good;
+    }
+
+    State first_state_, state_ = first_state_;
+    Covariance first_covariance_, covariance_ = first_covariance_;
 };
 
 } // namespace tappet::motion

@@ -7,20 +7,21 @@
 #include "kernel/motion/refused.hpp"
 #include "kernel/motion/sine.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <expected>
 
 namespace tappet::motion {
 
-/// First order, 1 / (1 + T s), by the backward difference: for any step that is not negative. The first value
-/// is taken as it is; what is no number is left out. A sum that becomes none begins anew with the value. T of
-/// nought or less is no filter. Real-time.
+/// First order, 1 / (1 + T s), by the backward difference: for any step, of which a negative one is none. The
+/// first value is taken as it is; what is no number is left out. A sum that becomes none begins anew with the
+/// value. T of nought or less is no filter. Real-time.
 class LowPass {
 public:
     explicit constexpr LowPass(Duration time_constant) noexcept : constant_s_{to_seconds(time_constant)} {}
     constexpr double operator()(double value, Duration step) noexcept TAPPET_REALTIME {
         if (!is_number(value)) return value_;
-        const double h = to_seconds(step);
+        const double h = std::max(to_seconds(step), 0.0);
         value_ = !known_ || !(constant_s_ > 0.0) ? value : value_ + (value - value_) * h / (constant_s_ + h);
         if (!is_number(value_)) value_ = value;
         known_ = true;
@@ -36,7 +37,7 @@ private:
 
 /// (1 + T1 s) / (1 + T2 s), by Tustin's rule: T1 above T2 leads, below it lags. The first value is taken as
 /// one that has been there for long; what is no number is left out, and a sum that becomes none begins anew.
-/// Real-time.
+/// A negative step is none. Real-time.
 class LeadLag {
 public:
     /// Contract: `lag` is positive, `lead` is not negative.
@@ -49,7 +50,7 @@ public:
         if (!is_number(value)) return value_;
         if (!known_) before_ = value_ = value;
         known_ = true;
-        const double h = to_seconds(step);
+        const double h = std::max(to_seconds(step), 0.0);
         value_ = ((2.0 * lead_s_ + h) * value + (h - 2.0 * lead_s_) * before_ - (h - 2.0 * lag_s_) * value_) /
                  (2.0 * lag_s_ + h);
         if (!is_number(value_)) value_ = value;
@@ -77,10 +78,10 @@ public:
         TAPPET_REALTIME {
         const auto warped = warp(corner_hz, period);
         if (!warped) return std::unexpected(warped.error());
-        if (!(damping > 0.0) || !is_number(damping))
-            return std::unexpected(Refused{Refusal::limit_not_positive, 2});
         const double k = *warped;
         const double a0 = 1.0 + 2.0 * damping * k + k * k;
+        if (!(damping > 0.0) || !is_number(a0))
+            return std::unexpected(Refused{Refusal::limit_not_positive, 2});
         return Biquad{k * k / a0, 2.0 * k * k / a0, k * k / a0, 2.0 * (k * k - 1.0) / a0,
                       (1.0 - 2.0 * damping * k + k * k) / a0};
     }
@@ -89,11 +90,11 @@ public:
                                                           Duration period) noexcept TAPPET_REALTIME {
         const auto warped = warp(centre_hz, period);
         if (!warped) return std::unexpected(warped.error());
-        if (!(width_hz > 0.0) || !is_number(width_hz))
-            return std::unexpected(Refused{Refusal::limit_not_positive, 1});
         const double k = *warped;
         const double wide = k * width_hz / centre_hz;
         const double a0 = 1.0 + wide + k * k;
+        if (!(width_hz > 0.0) || !is_number(a0))
+            return std::unexpected(Refused{Refusal::limit_not_positive, 1});
         return Biquad{(1.0 + k * k) / a0, 2.0 * (k * k - 1.0) / a0, (1.0 + k * k) / a0,
                       2.0 * (k * k - 1.0) / a0, (1.0 - wide + k * k) / a0};
     }
@@ -123,7 +124,8 @@ private:
     static constexpr std::expected<double, Refused> warp(double hz, Duration period) noexcept
         TAPPET_REALTIME {
         const double turns = hz * to_seconds(period);
-        if (!(turns > 0.0 && turns < 0.5)) return std::unexpected(Refused{Refusal::beyond_half_rate});
+        if (!(hz > 0.0 && turns > 0.0 && turns < 0.5))
+            return std::unexpected(Refused{Refusal::beyond_half_rate});
         const auto [sine, cosine] = sine_cosine_of_degrees(180.0 * turns);
         return sine / cosine;
     }

@@ -23,6 +23,16 @@ struct JointRange {
 template <int joints>
 using JointRanges = std::array<JointRange, static_cast<std::size_t>(joints)>;
 
+/// False of what is no number, and for a range that holds nothing. Real-time.
+template <int joints>
+bool is_within(const Joints<joints>& q, const JointRanges<joints>& ranges) noexcept TAPPET_REALTIME {
+    for (int i = 0; i < joints; ++i) {
+        const auto [lowest, highest] = ranges[static_cast<std::size_t>(i)];
+        if (!(q[i] >= lowest && q[i] <= highest)) return false;
+    }
+    return true;
+}
+
 /// The same angle, whole turns away, nearest to `near`. Real-time.
 inline double same_angle_near(double angle, double near) noexcept TAPPET_REALTIME {
     constexpr double turn = 2.0 * std::numbers::pi;

@@ -35,6 +35,7 @@ std::expected<Joints<joints>, Refused> damped_rates(const Jacobian<B, R, At, In,
     Joints<joints> rates = j.transpose() * v;
     double over = 1.0;
     for (int i = 0; i < joints; ++i) {
+        if (!is_number(rates[i])) return std::unexpected(Refused{Refusal::not_a_number, i});
         if (!(most[i] > 0.0)) return std::unexpected(Refused{Refusal::limit_not_positive, i});
         over = std::max(over, std::fabs(rates[i]) / most[i]);
     }
@@ -74,7 +75,7 @@ least_squares(const Robot& robot, const FrameOf<Robot>& target, const Joints<Rob
         const double apart = way.linear.squaredNorm();
         const double turned = way.angular.squaredNorm();
         if (apart <= options.position_m * options.position_m &&
-            turned <= options.angle_rad * options.angle_rad)
+            turned <= options.angle_rad * options.angle_rad && is_within(q, ranges))
             return LeastSquares<joints>{q, step};
         Eigen::Matrix<double, 6, 1> error;
         error << way.linear, way.angular;
@@ -90,6 +91,7 @@ least_squares(const Robot& robot, const FrameOf<Robot>& target, const Joints<Rob
             const auto [lowest, highest] = ranges[static_cast<std::size_t>(i)];
             q[i] = std::min(std::max(q[i] + moves[i] / over, lowest), highest);
         }
+        if (!q.allFinite()) return std::unexpected(Refused{Refusal::not_converged});
     }
     return std::unexpected(Refused{Refusal::not_converged});
 }

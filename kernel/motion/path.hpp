@@ -65,6 +65,7 @@ public:
         const double turned = std::atan2(last.dot(path.across_), last.dot(path.along_));
         path.sweep_ = turned > 0.0 ? turned : turned + 2.0 * std::numbers::pi;
         path.length_ = path.radius_ * path.sweep_;
+        if (!is_number(path.length_)) return std::unexpected(Refused{Refusal::not_a_number});
         return path;
     }
 
@@ -96,7 +97,7 @@ public:
 
     /// The limits of the share, for a trajectory from 0 to 1. On an arc half of the squared acceleration is
     /// left to the bend. Refused: a limit that is not positive (0: linear, 1: angular), a path that leads
-    /// nowhere. Real-time.
+    /// nowhere, limits of which the share has none. Real-time.
     [[nodiscard]] std::expected<AxisLimits, Refused> limits(const PathLimits& most) const noexcept
         TAPPET_REALTIME {
         AxisLimits linear = most.linear;
@@ -114,7 +115,9 @@ public:
             found.acceleration = std::min(found.acceleration, limit.acceleration / size);
             found.jerk = std::min(found.jerk, limit.jerk / size);
         }
-        if (!is_number(found.velocity)) return std::unexpected(Refused{Refusal::no_direction});
+        if (!(std::max(length_, angle_) > nowhere)) return std::unexpected(Refused{Refusal::no_direction});
+        for (const double limit : {found.velocity, found.acceleration, found.jerk})
+            if (!is_number(limit) || limit == 0.0) return std::unexpected(Refused{Refusal::not_a_number});
         return found;
     }
 

@@ -68,15 +68,15 @@ public:
         const double wanted = proportional(set_point, measured) + integral_ + derivative_ + feed_forward;
         if (!is_number(wanted)) { // of numbers that are no more when they are added
             reset();
-            return output_ = std::clamp(0.0, gains_.lowest, gains_.highest);
+            return output_;
         }
-        output_ = std::clamp(wanted, gains_.lowest, gains_.highest);
+        put_out(wanted);
         const double grows = within_span(gains_.integral * error * h);
         const double cut = within_span(output_ - wanted);
         const bool is_far = cut != output_ - wanted, winds_up = cut * grows < 0.0;
         step_s_ = h;
         if (gains_.tracking_s > 0.0)
-            add((is_far && winds_up ? 0.0 : grows) + cut * share());
+            add(within_span((is_far && winds_up ? 0.0 : grows) + cut * share()));
         else if (!winds_up)
             add(grows);
         return output_;
@@ -100,16 +100,19 @@ public:
         seen_ = gains_.derivative_weight * set_point - measured;
         has_seen_ = true;
         integral_ = actual - proportional(set_point, measured) - feed_forward;
-        output_ = actual;
+        if (!is_number(integral_)) integral_ = 0.0;
+        put_out(actual);
     }
     constexpr void reset() noexcept TAPPET_REALTIME {
-        integral_ = derivative_ = output_ = 0.0;
+        integral_ = derivative_ = 0.0;
+        put_out(0.0);
         has_seen_ = false;
     }
     /// Other gains; the output does not jump but by the proportional part. Contract: as above. Real-time.
     constexpr void tune(const PidGains& gains) noexcept TAPPET_REALTIME {
         TAPPET_CONTRACT(check(gains).empty(), Contract::refused_settings);
         gains_ = gains;
+        put_out(output_);
     }
 
     [[nodiscard]] constexpr double output() const noexcept TAPPET_REALTIME { return output_; }
@@ -118,6 +121,9 @@ public:
     [[nodiscard]] constexpr std::uint32_t refused() const noexcept TAPPET_REALTIME { return refused_; }
 
 private:
+    constexpr void put_out(double wanted) noexcept TAPPET_REALTIME {
+        output_ = std::clamp(wanted, gains_.lowest, gains_.highest);
+    }
     [[nodiscard]] constexpr double beyond_dead_band(double error) const noexcept TAPPET_REALTIME {
         const double band = gains_.dead_band;
         return error > band ? error - band : error < -band ? error + band : 0.0;

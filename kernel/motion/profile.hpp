@@ -3,9 +3,12 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/contract.hpp"
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace tappet::motion {
@@ -30,7 +33,9 @@ public:
 
     Profile() noexcept TAPPET_REALTIME = default;
     /// It rests there for no time: pieces follow.
-    explicit Profile(const AxisState& from) noexcept TAPPET_REALTIME : end_(from) {}
+    explicit Profile(const AxisState& from) noexcept TAPPET_REALTIME : end_(from),
+                                                                       farthest_(std::fabs(from.position)),
+                                                                       fastest_(std::fabs(from.velocity)) {}
 
     /// Adds a piece at the end that begins with `acceleration`. One that takes no time is left out.
     void add(double seconds, double acceleration, double jerk) noexcept TAPPET_REALTIME {
@@ -38,11 +43,21 @@ public:
         end_.acceleration = acceleration;
         TAPPET_CONTRACT(pieces_.push({end_, jerk, duration_s_}), Contract::index_out_of_range, pieces_.size(),
                         most_pieces);
+        const Piece one_way{{farthest_, std::fabs(end_.velocity), std::fabs(acceleration)}, std::fabs(jerk)};
+        farthest_ = one_way.at(seconds).position;
+        fastest_ = std::max(fastest_, one_way.at(seconds).velocity);
         end_ = pieces_[pieces_.size() - 1].at(seconds);
         duration_s_ += seconds;
     }
-    /// It ends at rest, exactly there.
-    void rest_at(double position) noexcept TAPPET_REALTIME { end_ = {position, 0.0, 0.0}; }
+    /// It ends at rest, exactly there. False: its pieces do not lead there, or not by numbers.
+    [[nodiscard]] bool rest_at(double position) noexcept TAPPET_REALTIME {
+        constexpr double rounding = 1e-6, nothing = 1e-150; // smaller ones have no digits left when squared
+        const bool leads_there = is_number(duration_s_ + farthest_ + fastest_) &&
+                                 std::fabs(end_.position - position) <= rounding * farthest_ + nothing &&
+                                 std::fabs(end_.velocity) <= rounding * fastest_ + nothing;
+        end_ = {position, 0.0, 0.0};
+        return leads_there;
+    }
 
     [[nodiscard]] std::size_t pieces() const noexcept TAPPET_REALTIME { return pieces_.size(); }
     [[nodiscard]] double duration_s() const noexcept TAPPET_REALTIME { return duration_s_; }
@@ -75,6 +90,8 @@ private:
     Bounded<Piece, most_pieces> pieces_;
     AxisState end_;
     double duration_s_ = 0.0;
+    double farthest_ = 0.0; ///< from nought, were all of its way one way
+    double fastest_ = 0.0;
 };
 
 } // namespace tappet::motion

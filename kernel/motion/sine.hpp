@@ -82,9 +82,11 @@ inline void sine_cosine_of_two(double first, double second, SineCosine& of_first
     of_second = {both.sine[1], both.cosine[1]};
 }
 
-/// Of an angle in degrees, at most 1e9 either way: exact where it is a whole number of quarter turns.
-/// Real-time.
+/// Of an angle in degrees: exact where it is a whole number of quarter turns, of at most 1e9 degrees either
+/// way. Real-time.
 constexpr SineCosine sine_cosine_of_degrees(double degrees) noexcept TAPPET_REALTIME {
+    if (!(degrees <= 1e9 && degrees >= -1e9)) [[unlikely]]
+        return sine_cosine(degrees * (3.14159265358979323846 / 180.0));
     const double turned = degrees / 90.0;
     const auto quarters = static_cast<std::int64_t>(turned + (turned < 0.0 ? -0.5 : 0.5));
     const double rest = degrees - 90.0 * static_cast<double>(quarters);

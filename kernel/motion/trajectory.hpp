@@ -31,10 +31,9 @@ constexpr double cube_root(double x) noexcept TAPPET_REALTIME {
     return y;
 }
 
-/// Numbers that are good by themselves may be too far apart for what is computed of them.
-inline Planned whole(const Profile& profile) noexcept TAPPET_REALTIME {
-    if (!is_number(profile.duration_s()) || !is_number(profile.end().position))
-        return std::unexpected(Refused{Refusal::not_a_number});
+/// At rest there. Numbers that are good by themselves may be too far apart for what is computed of them.
+inline Planned whole(Profile profile, double position) noexcept TAPPET_REALTIME {
+    if (!profile.rest_at(position)) return std::unexpected(Refused{Refusal::not_a_number});
     return profile;
 }
 
@@ -66,8 +65,7 @@ inline Planned trapezoid(const AxisState& from, double target, const AxisLimits&
     profile.add(std::fabs(peak - v) / a, side * (v > peak ? -a : a), 0.0);
     profile.add(cruise, 0.0, 0.0);
     profile.add(peak / a, -side * a, 0.0);
-    profile.rest_at(target);
-    return detail::whole(profile);
+    return detail::whole(profile, target);
 }
 
 /// From rest to rest with bounded velocity, acceleration and jerk, at most seven pieces (Biagiotti and
@@ -81,7 +79,8 @@ inline Planned jerk_limited(double from, double target, const AxisLimits& limits
     const double way = std::fabs(target - from);
     const double side = detail::sign_of(target - from);
     // `bend` is how long the jerk lasts, `ramp` how long the speed rises.
-    const bool has_plateau = limits.velocity * j > a * a;
+    // Quotients: products have no number sooner.
+    const bool has_plateau = limits.velocity / a > a / j;
     double bend = has_plateau ? a / j : std::sqrt(limits.velocity / j);
     double ramp = has_plateau ? bend + limits.velocity / a : 2.0 * bend;
     double cruise = way / limits.velocity - ramp;
@@ -104,8 +103,7 @@ inline Planned jerk_limited(double from, double target, const AxisLimits& limits
     profile.add(bend, 0.0, -side * j);
     profile.add(flat, -reached, 0.0);
     profile.add(bend, -reached, side * j);
-    profile.rest_at(target);
-    return detail::whole(profile);
+    return detail::whole(profile, target);
 }
 
 /// From any state to rest, wherever that is, in the shortest time that acceleration and jerk leave; at most
@@ -131,8 +129,7 @@ inline Planned stop(const AxisState& from, const AxisLimits& limits) noexcept TA
     profile.add(std::fabs(turn) / j, from.acceleration, side * detail::sign_of(turn) * j);
     profile.add(hold, -side * brake, 0.0);
     profile.add(brake / j, -side * brake, side * j);
-    profile.rest_at(profile.end().position);
-    return detail::whole(profile);
+    return detail::whole(profile, profile.end().position);
 }
 
 } // namespace tappet::motion

@@ -13,16 +13,14 @@ namespace tappet {
 class Integrator {
 public:
     constexpr Integrator() noexcept = default;
-    constexpr Integrator(double low, double high) noexcept : low_{low}, high_{high} {}
+    constexpr Integrator(double low, double high) noexcept : low_{low}, high_{high} { reset(); }
 
     /// A value a second that was true at `at`. The first one, one that is no number and one that is older
     /// than the last one begin anew and add nothing; nor does what would make the sum no number.
     constexpr double operator()(double per_s, Time at) noexcept TAPPET_REALTIME {
         const bool is_good = is_number(per_s);
-        if (known_ && is_good && at > at_) {
-            const double sum = value_ + (0.5 * per_s + 0.5 * before_) * to_seconds(at - at_);
-            if (is_number(sum)) value_ = sum < low_ ? low_ : sum > high_ ? high_ : sum;
-        }
+        if (known_ && is_good && at > at_)
+            hold(value_ + (0.5 * per_s + 0.5 * before_) * to_seconds(at - at_));
         known_ = is_good;
         before_ = per_s;
         at_ = at;
@@ -30,13 +28,18 @@ public:
     }
     /// What is missing between two samples is left out: call it when the value was not good.
     constexpr void pause() noexcept TAPPET_REALTIME { known_ = false; }
+    /// What is no number leaves the sum as it is.
     constexpr void reset(double value = 0.0) noexcept TAPPET_REALTIME {
-        value_ = value;
+        hold(value);
         known_ = false;
     }
     [[nodiscard]] constexpr double value() const noexcept TAPPET_REALTIME { return value_; }
 
 private:
+    constexpr void hold(double sum) noexcept TAPPET_REALTIME {
+        if (is_number(sum)) value_ = sum < low_ ? low_ : sum > high_ ? high_ : sum;
+    }
+
     double low_ = -std::numeric_limits<double>::infinity();
     double high_ = std::numeric_limits<double>::infinity();
     double value_ = 0.0, before_ = 0.0;

@@ -7,6 +7,7 @@
 
 #include "kernel/component/component.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace tappet {
@@ -23,19 +24,22 @@ struct HourMeter {
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const bool counts = runs.good() && runs.get();
-        if (counts && last_ != never) total.set(total.get() + (cycle.now - last_));
+        if (counts && last_ != never)
+            total.set(std::min(most, (Time{total.get()} + (cycle.now - last_)).time_since_epoch()));
         last_ = counts ? cycle.now : never;
         if (counts) tell();
     }
 
     static constexpr auto interface() {
-        return facets(input<&HourMeter::runs>("runs", "", "it is counted while this is true, and not stale"),
-                      output<&HourMeter::hours>("hours", "h", "since it was built"),
-                      property<&HourMeter::total>("total", "s", "since it was built", range(0, 9e9)));
+        return facets(
+            input<&HourMeter::runs>("runs", "", "it is counted while this is true, and not stale"),
+            output<&HourMeter::hours>("hours", "h", "since it was built"),
+            property<&HourMeter::total>("total", "s", "since it was built", range(0, to_seconds(most))));
     }
 
 private:
     void tell() noexcept TAPPET_REALTIME { hours.write(to_seconds(total.get()) / 3600.0); }
+    static constexpr Duration most = 9'000'000'000s; ///< that a Duration holds, in round figures
     Time last_ = never;
 };
 
@@ -50,11 +54,12 @@ struct Total {
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         std::int64_t now = 0;
         if (count.read(now) != Flow::fresh) return;
-        const std::int64_t more = now >= counted_ ? now - counted_ : now; // less: it began anew
+        std::int64_t more = 0, all = 0;
+        if (now < counted_ || __builtin_sub_overflow(now, counted_, &more)) more = now; // it began anew
         counted_ = now;
         if (more <= 0) return;
-        const std::int64_t room = std::numeric_limits<std::int64_t>::max() - total.get();
-        total.set(total.get() + (more < room ? more : room));
+        if (__builtin_add_overflow(total.get(), more, &all)) all = std::numeric_limits<std::int64_t>::max();
+        total.set(all);
         sum.write(total.get());
     }
 

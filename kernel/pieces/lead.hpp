@@ -19,42 +19,54 @@ public:
 
     /// A value that was true at `at`. One that is no number, or older than the last one, begins anew.
     constexpr void sample(double value, Time at) noexcept TAPPET_REALTIME {
-        const bool is_good = is_number(value);
-        if (samples_ > 0 && is_good && at > at_) {
+        if (!is_number(value)) return reset();
+        if (samples_ > 0 && at > at_) {
             const Duration apart = at - at_;
-            if (2 * apart >= usual_) from_ = value_, from_at_ = at_;
+            if (apart >= usual_ - apart) from_ = value_, from_at_ = at_;
             usual_ = std::max(apart, usual_ / 2);
             per_s_ = (value - from_) / to_seconds(at - from_at_);
-            samples_ = is_number(per_s_) ? 2 : 1;
-        } else if (samples_ == 0 || !is_good || at < at_) {
-            samples_ = is_good ? 1 : 0;
-            per_s_ = 0.0;
-            usual_ = {};
+            samples_ = 2;
+            if (!is_number(per_s_)) begin();
+        } else if (samples_ == 0 || at < at_) {
+            begin();
         }
         value_ = value;
         at_ = at;
     }
-    constexpr void reset() noexcept TAPPET_REALTIME { samples_ = 0; }
+    constexpr void reset() noexcept TAPPET_REALTIME {
+        begin();
+        samples_ = 0;
+    }
     /// Two samples are there, and they do not lie too far back.
     [[nodiscard]] constexpr bool good(Time when) const noexcept TAPPET_REALTIME {
         return samples_ == 2 && when - at_ <= farthest_;
     }
-    /// What the value will be, or was. Beyond `farthest` it is what it will be there.
+    /// What the value will be, or was. Beyond `farthest` it is what it will be there; where that is no
+    /// number, it is the last value.
     [[nodiscard]] constexpr double at(Time when) const noexcept TAPPET_REALTIME {
         const Duration ahead = when - at_;
-        return value_ + per_s_ * to_seconds(ahead < farthest_ ? ahead : farthest_);
+        const double there = value_ + per_s_ * to_seconds(ahead < farthest_ ? ahead : farthest_);
+        return is_number(there) ? there : value_;
     }
     /// When an actuator with that dead time is to be driven to act at `place`; it may be past. never: it does
     /// not come there, or not within `farthest`.
     [[nodiscard]] constexpr Time drive_at(double place, Duration dead_time) const noexcept TAPPET_REALTIME {
-        const double way = place - value_;
-        const double limit = to_seconds(farthest_);
-        if (samples_ != 2 || per_s_ == 0.0 || !(way / per_s_ >= 0.0) || way / per_s_ > limit) return never;
-        return at_ + Duration{static_cast<std::int64_t>(way / per_s_ * 1e9 + 0.5)} - dead_time;
+        if (samples_ != 2 || per_s_ == 0.0) return never;
+        const double s = (place - value_) / per_s_;
+        const double limit = std::min(to_seconds(farthest_), 9.2e9); // of a Duration
+        if (!(s >= 0.0 && s <= limit)) return never;
+        return at_ + Duration{static_cast<std::int64_t>(s * 1e9 + 0.5)} - dead_time;
     }
     [[nodiscard]] constexpr double per_s() const noexcept TAPPET_REALTIME { return per_s_; }
 
 private:
+    /// With the one sample that comes.
+    constexpr void begin() noexcept TAPPET_REALTIME {
+        samples_ = 1;
+        per_s_ = 0.0;
+        usual_ = {};
+    }
+
     Duration farthest_;
     double value_ = 0.0, per_s_ = 0.0;
     Time at_{};

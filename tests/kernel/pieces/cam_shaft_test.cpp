@@ -2,6 +2,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/pieces/cam_shaft.hpp"
+#include "tests/kernel/base/hostile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,15 +22,23 @@ struct Encoder {
     bool enabled = true, silent = false, fights = false;
     double deg_s = 360.0, deg = 0.0;
     std::int64_t offset = 0;
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
+    Duration ahead{};               ///< of its stamps
+    test::Hostile* noise = nullptr; ///< what it writes then, and when that is to have been true
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         deg += deg_s * 1e-3;
         runs.write(enabled);
         if (silent) return;
+        if (noise != nullptr) {
+            const auto any = static_cast<std::int64_t>(noise->random.next());
+            const Time at = noise->random.one_in(2) ? cycle.now : noise->stamp(cycle.now);
+            code.write(noise->random.one_in(2) ? any : any & 4095, at);
+            return counter.write(any, at);
+        }
         const auto codes = static_cast<std::int64_t>(std::floor(deg / 360.0 * 4000.0)) + offset;
         // A second encoder, that stands elsewhere, sends under the same identifier.
         is_other_ = fights && !is_other_;
-        code.write(is_other_ ? 3000 : (codes % 4000 + 4000) % 4000);
-        counter.write(codes & 0xFFFF);
+        code.write(is_other_ ? 3000 : (codes % 4000 + 4000) % 4000, cycle.now + ahead);
+        counter.write(codes & 0xFFFF, cycle.now + ahead);
     }
     static constexpr auto interface() {
         return facets(output<&Encoder::code>("code", "", "in a turn"),
@@ -84,7 +93,7 @@ inline constexpr Board board{.name = "host",
 inline constexpr auto absolute = TAPPET_CAM_TABLE("encoder.code");
 inline constexpr auto counting = TAPPET_CAM_TABLE("encoder.counter", set("counter_bits", 16));
 
-struct Turning : testing::Test {
+struct Turning : test::Hostile {
     explicit Turning(const AcceptedMachine& machine = Firmware<absolute, board>::machine())
         : instance{machine, clock} {
         const auto configured = instance.configure({});
@@ -93,6 +102,26 @@ struct Turning : testing::Test {
         ejector.encoder = &encoder;
     }
     void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+
+    /// Numbers meanwhile, and half a second later it is followed as if nothing had been.
+    void expect_forgets_noise() {
+        run(250ms);
+        encoder.noise = this;
+        if (random.one_in(2)) encoder.deg_s = 0.0;
+        for (int n = 0; n < 500; ++n) {
+            run(1ms);
+            ASSERT_TRUE(shaft.angle_deg.last() >= 0.0 && shaft.angle_deg.last() < 360.0);
+            ASSERT_TRUE(is_number(shaft.speed_rpm.last()));
+        }
+        encoder.noise = nullptr;
+        encoder.deg_s = 360.0;
+        run(500ms);
+        EXPECT_TRUE(shaft.valid.last());
+        EXPECT_NEAR(shaft.speed_rpm.last(), 60.0, 0.5);
+        const std::size_t hits = ejector.hits.size();
+        run(2s);
+        EXPECT_EQ(ejector.hits.size(), hits + 2);
+    }
 
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance;
@@ -200,6 +229,8 @@ TEST_F(Turning, an_angle_that_was_seen_too_late_is_counted) {
     EXPECT_EQ(ejector.lost, 0);
 }
 
+TEST_F(Turning, codes_and_stamps_that_cannot_be_are_forgotten) { expect_forgets_noise(); }
+
 TEST_F(Turning, the_encoder_is_described_at_a_start_only) {
     const auto asks = [](CamShaft<cams>& of) {
         const std::array<std::byte, sizeof(std::int64_t)> finer{std::byte{8}};
@@ -240,6 +271,20 @@ TEST_F(Counting, a_turn_begins_anew_after_a_loss) {
     run(1s);
     ASSERT_EQ(ejector.hits.size(), 1u);
     expect_near(ejector.hits, 80.0 - 1.8, 0.8);
+}
+
+TEST_F(Counting, codes_and_stamps_that_cannot_be_are_forgotten) { expect_forgets_noise(); }
+
+TEST_F(Counting, a_stamp_far_ahead_does_not_hold_a_shaft_that_stands) {
+    encoder.deg_s = 0.0;
+    run(300ms);
+    encoder.ahead = 1h;
+    run(1ms);
+    encoder.ahead = 0ns;
+    encoder.deg_s = 360.0;
+    run(2s);
+    EXPECT_NEAR(shaft.speed_rpm.last(), 60.0, 0.5);
+    EXPECT_GE(ejector.hits.size(), 1u);
 }
 
 TEST_F(Counting, backwards_nothing_fires) {

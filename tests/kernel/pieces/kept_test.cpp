@@ -4,6 +4,7 @@
 #include "kernel/pieces/kept.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
+#include "tests/kernel/base/hostile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +73,7 @@ struct Life {
     }
 };
 
-struct Kept : testing::Test {
+struct Kept : test::Hostile {
     std::string directory = testing::TempDir() + "tappet-kept-" + std::to_string(getpid());
     void SetUp() override { std::filesystem::create_directory(directory); }
     void TearDown() override { std::filesystem::remove_all(directory); }
@@ -132,6 +133,29 @@ TEST_F(Kept, an_activity_that_is_stopped_keeps_no_other_from_being_saved) {
     life.run(61s);
     Life next{directory};
     EXPECT_EQ(next.part<Total>("strokes").total.get(), 8);
+}
+
+TEST_F(Kept, totals_and_hours_stop_at_the_ends_of_their_range_whatever_is_counted) {
+    using Whole = std::numeric_limits<std::int64_t>;
+    Life life{directory};
+    auto& total = life.part<Total>("strokes").total;
+    auto& count = life.part<Press>("press").count;
+    total.set(-5);
+    count = 3;
+    life.run(20ms);
+    EXPECT_EQ(total.get(), -2);
+    for (int n = 0; n < 500; ++n) {
+        const std::int64_t before = total.get(), bits = static_cast<std::int64_t>(random.next());
+        count = one_of(std::array{Whole::min(), Whole::max(), bits, std::int64_t{0}, count});
+        life.run(20ms);
+        ASSERT_GE(total.get(), before) << count;
+    }
+    EXPECT_EQ(total.get(), Whole::max());
+    auto& hours = life.part<HourMeter>("hours").total;
+    hours.set(8'999'999'999s);
+    life.part<Press>("press").turns = true;
+    life.run(5s);
+    EXPECT_EQ(hours.get(), 9'000'000'000s) << "or no file of it is read again";
 }
 
 TEST_F(Kept, time_is_counted_only_while_it_runs) {

@@ -1,0 +1,147 @@
+// Whatever a component writes, whenever and in whichever order, from its start on: what goes out is a number
+// within its limits. Ends that a port cannot have are refused.
+#include "kernel/limits/limits.hpp"
+
+#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+#include "tests/kernel/base/hostile.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet {
+namespace {
+
+/// Writes what the test wants, as if it had been true then.
+struct Drive {
+    double speed_wanted = 0.0, force_wanted = 0.0;
+    std::int64_t place_wanted = 0;
+    Time stamp{};
+    Output<double> speed;
+    Output<float> force;
+    Output<std::int8_t> notch;
+    Output<std::uint16_t> place;
+    void start(const Cycle&) noexcept TAPPET_REALTIME { write(); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME { write(); }
+    static constexpr auto interface() {
+        return facets(output<&Drive::speed>("speed", "rpm", "of the drive"),
+                      output<&Drive::force>("force", "N", "of the ram"),
+                      output<&Drive::notch>("notch", "", "of the lever"),
+                      output<&Drive::place>("place", "mm", "of the ram"));
+    }
+
+private:
+    void write() noexcept TAPPET_REALTIME {
+        constexpr double most = std::numeric_limits<float>::max();
+        speed.write(speed_wanted, stamp);
+        // A double beyond is no float that is a number.
+        force.write(is_number(force_wanted) ? static_cast<float>(std::clamp(force_wanted, -most, most))
+                                            : std::numeric_limits<float>::quiet_NaN(),
+                    stamp);
+        notch.write(static_cast<std::int8_t>(place_wanted), stamp);
+        place.write(static_cast<std::uint16_t>(place_wanted), stamp);
+    }
+};
+
+constexpr Board box{.name = "box", .memory_budget_bytes = 1 << 20};
+
+template <class... Rows>
+constexpr auto machine_with(const Rows&... rows) {
+    return machine("press", components(component<Drive>("drive")),
+                   activities(activity("motion", every(1ms), budget(50us), runs("drive"))), connections(),
+                   reactions(), behaviours(), limits(rows...));
+}
+
+constexpr double per_second = 700.0;
+constexpr double lowest_force = 0.1F, highest_force = 2.7F;
+constexpr auto held = machine_with(limit("drive.speed", 5.0, 40.0), rate("drive.speed", per_second),
+                                   limit("drive.force", lowest_force, highest_force),
+                                   limit("drive.notch", -3.0, 5.0), rate("drive.place", per_second));
+
+struct Drives : test::Hostile {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{Firmware<held, box>::machine(), clock};
+    VirtualWorld world{instance};
+    Drive* drive = nullptr;
+
+    Drives() {
+        EXPECT_TRUE(instance.configure({}));
+        drive = instance.find<Drive>("drive");
+        want();
+    }
+    void want() {
+        drive->speed_wanted = value();
+        drive->force_wanted = value();
+        drive->place_wanted = static_cast<std::int64_t>(random.next());
+        drive->stamp = stamp(drive->stamp);
+    }
+    void expect_held() const {
+        const double speed = drive->speed.last(), force = static_cast<double>(drive->force.last());
+        ASSERT_TRUE(speed >= 5.0 && speed <= 40.0) << speed;
+        ASSERT_TRUE(force >= lowest_force && force <= highest_force) << force;
+        ASSERT_TRUE(drive->notch.last() >= -3 && drive->notch.last() <= 5) << int{drive->notch.last()};
+    }
+};
+
+TEST_F(Drives, leave_their_limits_at_no_time) {
+    ASSERT_TRUE(world.start().empty());
+    ASSERT_NO_FATAL_FAILURE(expect_held()) << "at the start";
+    for (int n = 0; n < 2000; ++n) {
+        const double speed = drive->speed.last(), place = drive->place.last();
+        const Time before = drive->stamp;
+        want();
+        ASSERT_TRUE(world.run_until(clock.now() + 1ms));
+        ASSERT_NO_FATAL_FAILURE(expect_held()) << n;
+        const double most = per_second * std::max(to_seconds(drive->stamp - before), 0.0);
+        ASSERT_LE(std::fabs(drive->speed.last() - speed), most + 1e-9) << n;
+        ASSERT_LE(std::fabs(drive->place.last() - place), most + 1.0) << n << ", to the next whole number";
+    }
+    drive->speed_wanted = 7.0;
+    drive->place_wanted = 8;
+    for (int n = 0; n < 2; ++n) {
+        drive->stamp = Time{n * 1h};
+        ASSERT_TRUE(world.run_until(clock.now() + 1ms));
+    }
+    for (std::size_t row = 0; row < 5; ++row)
+        EXPECT_GT(instance.observation().counted(0, row).times, 100u) << row;
+    EXPECT_EQ(drive->speed.last(), 7.0);
+    EXPECT_EQ(drive->place.last(), 8);
+}
+
+// ---- rows that hold nothing
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN(),
+                 endless = std::numeric_limits<double>::infinity();
+
+template <const auto&... tables>
+void expect_refused() {
+    int row = 0;
+    for (const auto& said : {judge(tables, box).refusal...}) {
+        EXPECT_FALSE(said.empty()) << "row " << row;
+        ++row;
+    }
+}
+
+constexpr auto none_low = machine_with(limit("drive.speed", none, 1.0));
+constexpr auto none_high = machine_with(limit("drive.speed", 0.0, none));
+constexpr auto only_above = machine_with(limit("drive.speed", endless, endless));
+constexpr auto only_below = machine_with(limit("drive.speed", -endless, -endless));
+constexpr auto same = machine_with(limit("drive.speed", -0.0, 0.0));
+constexpr auto none_rate = machine_with(rate("drive.speed", none));
+constexpr auto backwards = machine_with(rate("drive.speed", -1.0));
+constexpr auto endless_rate = machine_with(rate("drive.speed", endless));
+constexpr auto beyond_float = machine_with(limit("drive.force", 1e39, 1e40));
+constexpr auto between_floats = machine_with(limit("drive.force", 0.0, 2.7));
+constexpr auto beyond_byte = machine_with(limit("drive.notch", -129.0, 5.0));
+constexpr auto beyond_word = machine_with(limit("drive.place", 0.0, 1e300));
+constexpr auto below_nought = machine_with(limit("drive.place", -1.0, 5.0));
+constexpr auto to_the_ends = machine_with(limit("drive.speed", -std::numeric_limits<double>::max(), 1e306),
+                                          rate("drive.speed", 1e306), limit("drive.force", 0.0, endless));
+
+TEST(Rows, with_ends_that_a_port_cannot_have_are_refused) {
+    expect_refused<none_low, none_high, only_above, only_below, same, none_rate, backwards, endless_rate,
+                   beyond_float, between_floats, beyond_byte, beyond_word, below_nought>();
+    EXPECT_TRUE(judge(to_the_ends, box).refusal.empty());
+}
+
+} // namespace
+} // namespace tappet
