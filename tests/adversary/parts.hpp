@@ -129,7 +129,7 @@ struct Scale {
         if (samples >= 1000) tare();
         double value = 0, into = 0;
         if (weight.read(value) != Flow::never_written) filtered.write(filter(value));
-        if (flow.read(into) != Flow::never_written) sum += std::clamp(filtered.last(), -1e3, 1e3) + into;
+        if (flow.read(into) != Flow::never_written) sum += std::clamp(filtered.last() + into, -1e3, 1e3);
         ++samples;
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {

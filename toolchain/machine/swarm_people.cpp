@@ -17,7 +17,8 @@ namespace {
 
 constexpr Duration answered_within = BrowserService::patience + 1s; // while the service runs
 constexpr Duration told_within = 100ms;                             // an emission, to who watches
-constexpr std::array largest{std::numeric_limits<double>::max(), 1e306, 3.4e38}; // of what has no range
+constexpr double last = std::numeric_limits<double>::max();
+constexpr std::array largest{last, last, 1e306, 3.4e38}; // of what has no range
 
 std::string text_of(const TypeTag& type, const std::byte* value) {
     std::array<char, 256> text;
@@ -184,7 +185,7 @@ std::string SwarmRun::draw(const TypeTag& type, Range range) {
     case ValueKind::real:
         if (type.size == sizeof(float))
             value.put(static_cast<float>(number));
-        else if (anything_goes_ && !bounded && random_.one_in(8))
+        else if (anything_goes_ && !bounded && random_.one_in(4))
             value.put((random_.one_in(2) ? -1 : 1) * largest[random_.below(largest.size())]);
         else
             value.put(number);
