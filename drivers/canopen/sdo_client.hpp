@@ -79,7 +79,9 @@ public:
         if (state_ != State::busy || to_send_) return;
         const unsigned command = answer[0] >> 5;
         if (command == 4) {
-            if (sdo::address_in(answer) == at_) end(State::aborted, sdo::abort_in(answer));
+            const SdoAbort why = sdo::abort_in(answer);
+            if (sdo::address_in(answer) == at_)
+                end(State::aborted, why == SdoAbort::none ? SdoAbort::general : why);
             return;
         }
         if (is_of_before(answer, command)) return;
@@ -108,6 +110,7 @@ public:
 
 private:
     enum class Step : std::uint8_t { initiate_read, read_segment, initiate_write, write_segment };
+    static constexpr auto unsaid = ~std::size_t{};
 
     void begin(Address at, Step step) noexcept TAPPET_REALTIME {
         at_ = at;
@@ -146,8 +149,9 @@ private:
             for (std::size_t i = 0; i < size_; ++i) bytes_[i] = answer[4 + i];
             return end(State::done, SdoAbort::none);
         }
-        if (says_size && from_bytes(std::span{answer}.subspan(4, 4)) > sdo::most_bytes)
-            return fail(SdoAbort::out_of_memory);
+        const std::uint64_t size = from_bytes(std::span{answer}.subspan(4, 4));
+        if (says_size && size > sdo::most_bytes) return fail(SdoAbort::out_of_memory);
+        announced_ = says_size ? static_cast<std::size_t>(size) : unsaid;
         step_ = Step::read_segment;
         to_send_ = true;
     }
@@ -159,7 +163,11 @@ private:
         if (size_ + count > sdo::most_bytes) return fail(SdoAbort::out_of_memory);
         for (std::size_t i = 0; i < count; ++i) bytes_[size_ + i] = answer[1 + i];
         size_ += count;
-        if ((answer[0] & 1u) != 0) return end(State::done, SdoAbort::none);
+        const bool is_last = (answer[0] & 1u) != 0;
+        // Without a byte it could go on for ever.
+        if (is_last ? announced_ != unsaid && announced_ != size_ : count == 0)
+            return fail(SdoAbort::unknown_command);
+        if (is_last) return end(State::done, SdoAbort::none);
         to_send_ = true;
     }
     void put_segment(sdo::Payload& request) noexcept TAPPET_REALTIME {
@@ -180,6 +188,7 @@ private:
     SdoAbort why_ = SdoAbort::none;
     std::size_t size_ = 0;
     std::size_t moved_ = 0;
+    std::size_t announced_ = unsaid; ///< of what is read in segments
     Duration time_out_ = 100ms;
     Time sent_at_{};
     std::array<std::uint8_t, sdo::most_bytes> bytes_{};

@@ -39,6 +39,7 @@ public:
 
 private:
     enum class Transfer : std::uint8_t { none, reading, writing };
+    static constexpr auto unsaid = ~std::size_t{};
 
     bool refuse(Address at, SdoAbort why, sdo::Payload& answer) noexcept TAPPET_REALTIME {
         transfer_ = Transfer::none;
@@ -66,7 +67,7 @@ private:
             const std::uint64_t size = from_bytes(std::span{request}.subspan(4, 4));
             if (says_size && size > sdo::most_bytes) return refuse(at, SdoAbort::too_long, answer);
             begin(at, Transfer::writing);
-            announced_ = says_size ? static_cast<std::size_t>(size) : 0;
+            announced_ = says_size ? static_cast<std::size_t>(size) : unsaid;
         }
         answer = sdo::with_address(0x60, at);
         return true;
@@ -84,7 +85,7 @@ private:
         toggle_ ^= 1u;
         if ((request[0] & 1u) == 0) return true;
         transfer_ = Transfer::none;
-        if (announced_ != 0 && announced_ != moved_) return refuse(at_, SdoAbort::wrong_length, answer);
+        if (announced_ != unsaid && announced_ != moved_) return refuse(at_, SdoAbort::wrong_length, answer);
         const SdoAbort why = objects.write_object(at_, std::span{bytes_}.first(moved_));
         return why == SdoAbort::none || refuse(at_, why, answer);
     }

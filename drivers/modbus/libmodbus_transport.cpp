@@ -68,6 +68,40 @@ bool set_answer_time(modbus_t* context, Duration time) noexcept {
                                        static_cast<std::uint32_t>(time % 1s / 1us)) == 0;
 }
 
+/// As modbus_write_bits() and modbus_write_registers(), which take it for good when another place is
+/// confirmed. On a serial line nothing else tells which question that belongs to.
+int write_on_serial(modbus_t* m, Table table, std::uint16_t address,
+                    std::span<const std::uint16_t> values) noexcept {
+    const std::size_t bytes = table == Table::coils ? (values.size() + 7) / 8 : 2 * values.size();
+    const auto low = [](std::size_t number) { return static_cast<std::uint8_t>(number & 0xFF); };
+    std::array<std::uint8_t, 7 + 2 * most_in_write> request{
+        low(static_cast<std::size_t>(modbus_get_slave(m))),
+        low(table == Table::coils ? MODBUS_FC_WRITE_MULTIPLE_COILS : MODBUS_FC_WRITE_MULTIPLE_REGISTERS),
+        low(address >> 8u),
+        low(address),
+        0,
+        low(values.size()),
+        low(bytes)};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (table == Table::coils) {
+            request[7 + i / 8] = low(request[7 + i / 8] | (values[i] != 0 ? 1u << i % 8 : 0u));
+        } else {
+            request[7 + 2 * i] = low(values[i] >> 8u);
+            request[8 + 2 * i] = low(values[i]);
+        }
+    }
+    if (modbus_send_raw_request(m, request.data(), static_cast<int>(7 + bytes)) < 0) return -1;
+    std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> answer{};
+    const int got = modbus_receive_confirmation(m, answer.data());
+    if (got < 0) return -1;
+    if (got == 8 && std::equal(answer.begin(), answer.begin() + 6, request.begin()))
+        return static_cast<int>(values.size());
+    const bool refuses = got == 5 && answer[0] == request[0] && answer[1] == (request[1] | 0x80) &&
+                         answer[2] != 0 && answer[2] < MODBUS_EXCEPTION_MAX;
+    errno = refuses ? MODBUS_ENOBASE + answer[2] : EMBBADDATA;
+    return -1;
+}
+
 } // namespace
 
 void LibmodbusTransport::Free::operator()(_modbus* context) const noexcept { modbus_free(context); }
@@ -190,7 +224,9 @@ Answer LibmodbusTransport::write(Table table, std::uint16_t address,
     const Time begin = now();
     settle();
     int result = -1;
-    if (table == Table::coils) {
+    if (is_serial_) {
+        result = write_on_serial(context_.get(), table, address, values);
+    } else if (table == Table::coils) {
         for (std::size_t i = 0; i < values.size(); ++i) bits[i] = values[i] != 0 ? 1 : 0;
         result = modbus_write_bits(context_.get(), address, count, bits.data());
     } else {

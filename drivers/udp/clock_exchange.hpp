@@ -37,6 +37,7 @@ namespace clock_packet {
 inline constexpr std::uint32_t mark = 0x316b6c63;
 inline constexpr std::size_t bytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(std::int64_t);
 using Packet = std::array<std::byte, bytes>;
+inline constexpr Duration longest = 36500 * 24h; ///< that a machine runs: their differences are numbers
 
 struct Content {
     std::uint32_t number = 0;
@@ -61,7 +62,9 @@ inline Packet write(const Content& content) noexcept TAPPET_REALTIME {
     std::memcpy(head.data(), packet.data(), sizeof head);
     std::memcpy(times.data(), packet.data() + sizeof head, sizeof times);
     content = {head[1], at_ns(times[0]), at_ns(times[1]), at_ns(times[2])};
-    return head[0] == mark;
+    return head[0] == mark && std::ranges::all_of(times, [](std::int64_t each) noexcept TAPPET_REALTIME {
+               return -to_ns(Time{longest}) <= each && each <= to_ns(Time{longest});
+           });
 }
 
 } // namespace clock_packet

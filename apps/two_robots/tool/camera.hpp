@@ -39,7 +39,7 @@ struct LedCamera {
             std::array<std::byte, led_packet::most + 1> packet;
             const std::size_t size = datagrams_->receive(packet);
             if (size == 0) return;
-            take(std::span{packet}.first(size), cycle.now);
+            take(std::span{packet}.first(std::min(size, packet.size())), cycle.now);
         }
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {}

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -37,6 +38,7 @@ namespace led_packet {
 inline constexpr std::uint16_t type = 345, body = 122;
 inline constexpr std::size_t head = 4 * 2 + 1 + 3 * 2;
 inline constexpr std::size_t most = head + led_count * 3 * sizeof(double);
+inline constexpr double reach = 10.0; ///< m: what lies beyond is no place, and filters would long remember it
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
@@ -59,10 +61,11 @@ void put_at(std::span<std::byte> packet, std::size_t place, T number) noexcept T
         return false;
     leds = {.cycle = number_at<std::uint16_t>(packet, 11)};
     for (std::size_t i = 0; i < led_count; ++i) {
-        double sum = 0.0;
+        bool is_seen = true;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            sum += leds.at[i][axis] = number_at<double>(packet, head + (3 * i + axis) * sizeof(double));
-        if (sum - sum == 0.0) leds.seen = static_cast<std::uint8_t>(leds.seen | 1U << i);
+            is_seen &= std::abs(leds.at[i][axis] = number_at<double>(
+                                    packet, head + (3 * i + axis) * sizeof(double))) <= reach;
+        if (is_seen) leds.seen = static_cast<std::uint8_t>(leds.seen | 1U << i);
     }
     return true;
 }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace two_robots {
 namespace {
 
@@ -61,6 +63,16 @@ TEST(Packet, that_is_cut_invalid_or_of_another_body_is_none) {
         auto bad = good;
         bad[place] ^= std::byte{1};
         EXPECT_FALSE(led_packet::read(bad, read)) << "at " << place;
+    }
+}
+
+TEST(Packet, hides_leds_at_no_place_or_out_of_reach) {
+    for (const double place :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200, -10.1}) {
+        Leds leds = seen_of({}, 0b111111), read;
+        leds.at[2][1] = place;
+        ASSERT_TRUE(led_packet::read(led_packet::write(leds, false), read));
+        EXPECT_EQ(read.seen, 0b111011) << place;
     }
 }
 

@@ -127,6 +127,39 @@ TEST_F(Connection, takes_no_more_than_it_holds) {
     EXPECT_EQ(client.why(), SdoAbort::out_of_memory);
 }
 
+TEST_F(Connection, takes_no_more_and_no_less_than_was_announced) {
+    sdo::Payload request, answer;
+    client.read(0x2000);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(sdo::with_address(0x41, 0x2000, 8));
+    ASSERT_TRUE(client.next(request, now));
+    client.take({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'});
+    EXPECT_EQ(client.state(), SdoClient::State::aborted);
+    EXPECT_EQ(client.why(), SdoAbort::unknown_command);
+    ASSERT_TRUE(server.serve(sdo::with_address(0x21, 0x2000, 0), device, answer));
+    ASSERT_TRUE(server.serve({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}, device, answer));
+    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::wrong_length);
+}
+
+TEST_F(Connection, ends_when_segments_bring_nothing) {
+    sdo::Payload request;
+    client.read(0x2000);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(sdo::with_address(0x40, 0x2000));
+    ASSERT_TRUE(client.next(request, now));
+    client.take({0x0E});
+    EXPECT_EQ(client.state(), SdoClient::State::aborted);
+}
+
+TEST_F(Connection, says_why_when_the_server_does_not) {
+    sdo::Payload request;
+    client.read(0x2000);
+    ASSERT_TRUE(client.next(request, now));
+    client.take(sdo::abort_frame(0x2000, SdoAbort::none));
+    EXPECT_EQ(client.state(), SdoClient::State::aborted);
+    EXPECT_EQ(client.why(), SdoAbort::general);
+}
+
 TEST_F(Connection, notices_a_missing_answer_a_wrong_toggle_and_a_strange_answer) {
     sdo::Payload request;
     client.read(0x1000);

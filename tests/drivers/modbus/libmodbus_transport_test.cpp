@@ -212,6 +212,22 @@ TEST(ModbusTcp, never_sends_a_request_again_that_it_has_given_up) {
     for (const int fd : {server, listener}) ::close(fd);
 }
 
+TEST(ModbusRtu, refuses_a_write_that_is_confirmed_for_another_place) {
+    RawServer server{RawServer::Line::serial};
+    LibmodbusTransport transport;
+    ASSERT_TRUE(transport.open({.line = Serial{server.terminal(), 19200, 'E', 1}, .answer_within = 2s}));
+    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
+    const std::array<std::uint16_t, 3> to{1, 0, 1};
+    for (const Table table : {Table::coils, Table::holding_registers}) {
+        server.manner = Manner::elsewhere;
+        EXPECT_EQ(transport.write(table, 7, to).outcome, Outcome::garbled);
+        server.manner = Manner::exception;
+        EXPECT_EQ(transport.write(table, 7, to).exception, 6);
+        server.manner = Manner::right;
+        EXPECT_EQ(transport.write(table, 7, to).outcome, Outcome::ok);
+    }
+}
+
 TEST(ModbusTcp, is_refused_where_nobody_listens) {
     std::uint16_t port = 0;
     {

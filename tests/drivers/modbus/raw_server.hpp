@@ -29,9 +29,10 @@ enum class Manner {
     late, ///< the answer waits until the test calls let_go()
     close,
     wrong_checksum,
-    stray,  ///< a byte of noise before the answer
-    drip,   ///< half of the answer, and no more
-    dribble ///< all of it, a byte every 50 ms
+    stray,     ///< a byte of noise before the answer
+    elsewhere, ///< it confirms a write to the place behind
+    drip,      ///< half of the answer, and no more
+    dribble    ///< all of it, a byte every 50 ms
 };
 
 using Bytes = std::vector<std::uint8_t>;
@@ -63,7 +64,8 @@ inline Bytes answer_to(const Bytes& pdu, Manner manner) {
                 answer[2 + i / 8] = static_cast<std::uint8_t>(answer[2 + i / 8] | 1u << i % 8);
         return answer;
     }
-    return {function, pdu[1], pdu[2], pdu[3], pdu[4]}; // a multiple write is answered with its range
+    const auto place = static_cast<std::uint8_t>(pdu[2] + (manner == Manner::elsewhere ? 1 : 0));
+    return {function, pdu[1], place, pdu[3], pdu[4]}; // a multiple write is answered with its range
 }
 
 inline std::uint16_t checksum(const Bytes& bytes, std::size_t n) {

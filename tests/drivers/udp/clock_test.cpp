@@ -87,6 +87,13 @@ TEST(ClockPacket, is_read_as_it_was_written_and_nothing_else_is_read) {
     EXPECT_FALSE(clock_packet::read(bad, read));
 }
 
+TEST(ClockPacket, of_a_time_that_no_machine_reaches_is_none) {
+    for (const Time at : {Time::max(), Time::min(), Time{} + clock_packet::longest + 1ns}) {
+        clock_packet::Content read;
+        EXPECT_FALSE(clock_packet::read(clock_packet::write({7, Time{} + 1s, at, at}), read));
+    }
+}
+
 /// Both components at twins between which datagrams are carried by hand.
 struct Clocks : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};

@@ -1,0 +1,31 @@
+// Any datagrams at any times: to the camera of the tool's robot and who follows it, and between two machines
+// that ask for each other's time. Each one is given on or refused, and counted; no place and no time that is
+// given on is none; and a proper peer is soon heard again.
+//
+// Each step is a byte that says what comes, and what that takes of the bytes behind it.
+#include "tests/fuzz/asked_clock.hpp"
+#include "tests/fuzz/followed_camera.hpp"
+
+namespace {
+
+using namespace tappet::fuzz;
+
+template <class Rig> void run(Script script) {
+    Rig rig;
+    for (int steps = 0; !script.rest.empty() && steps < 300; ++steps)
+        rig.take(std::to_integer<std::uint8_t>(script.next(1)[0]), script);
+    rig.come_back();
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) return 0;
+    const Script script{{data + 1, size - 1}};
+    switch (data[0] % 3) {
+    case 0: run<AskedClock>(script); break;
+    case 1: run<FollowedCamera<BodyEstimator>>(script); break;
+    default: run<FollowedCamera<KalmanBodyEstimator>>(script);
+    }
+    return 0;
+}

@@ -1,0 +1,60 @@
+// What drives the readers of datagrams under virtual time: the steps of an input, and twins that are told
+// them.
+#pragma once
+
+#include "drivers/udp/twin.hpp"
+#include "kernel/component/component.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+namespace tappet::fuzz {
+
+using Bytes = std::span<const std::byte>;
+
+inline void demand(bool holds) {
+    if (!holds) std::abort();
+}
+
+struct Script {
+    std::span<const std::uint8_t> rest;
+    Bytes next(std::size_t most) {
+        const auto part = rest.first(std::min(most, rest.size()));
+        rest = rest.subspan(part.size());
+        return std::as_bytes(part);
+    }
+    std::int64_t number() {
+        std::int64_t value = 0;
+        std::ranges::copy(next(sizeof value), std::as_writable_bytes(std::span{&value, 1}).begin());
+        return value;
+    }
+};
+
+struct Rig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    Cycle cycle{};
+    std::array<std::byte, udp::most_bytes> room{};
+    Bytes last{}; ///< what came last
+    std::int64_t arrived = 0;
+
+    template <class Component>
+    void set_up(Component& component, udp::Twin& twin) {
+        const std::array<ProvidedDevice, 1> devices{
+            {{type_id<udp::Device>, "it", static_cast<udp::Device*>(&twin)}}};
+        Setup setup{.device_name = "it", .devices = devices, .clock = &clock};
+        demand(component.configure(setup).empty());
+        component.start(cycle);
+    }
+    void wait(Duration time) {
+        clock.advance_to(clock.now() + time);
+        cycle.now = cycle.release = clock.now();
+    }
+    void tell(udp::Twin& to, Bytes datagram) {
+        if (datagram.data() != room.data()) std::ranges::copy(datagram, room.begin());
+        last = std::span{room}.first(datagram.size());
+        if (to.tell(last) && !last.empty()) ++arrived;
+    }
+};
+
+} // namespace tappet::fuzz
