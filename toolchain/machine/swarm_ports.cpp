@@ -12,6 +12,7 @@ namespace {
 /// As long as what keeps a state may take until it has forgotten one value that is none.
 constexpr Duration forgets_within = 3s;
 constexpr std::uint64_t forgets_in = 100; // values
+constexpr Duration looks_every = 1ms;
 
 } // namespace
 
@@ -33,6 +34,7 @@ SwarmPorts::SwarmPorts(const AcceptedMachine& machine) : machine_{machine} {
 
 void SwarmPorts::begin(MachineInstance& instance) {
     instance_ = &instance;
+    next_ = {};
     for (Real& each : reals_) {
         each.none_since = never;
         for (std::size_t s = 0; s < machine_.table.extras->size(); ++s)
@@ -85,7 +87,8 @@ Sentence SwarmPorts::is_none(Real& each, Time now) const {
 }
 
 Sentence SwarmPorts::broken(Time now) {
-    if (instance_ == nullptr) return {};
+    if (instance_ == nullptr || now < next_) return {};
+    next_ = now + looks_every;
     for (const AtRest& each : at_rest_)
         if (Sentence why = misleads(each); !why.empty()) return why;
     for (Real& each : reals_)

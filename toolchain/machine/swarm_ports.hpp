@@ -38,6 +38,7 @@ private:
     MachineInstance* instance_ = nullptr;
     std::vector<AtRest> at_rest_{};
     std::vector<Real> reals_{};
+    Time next_{}; ///< look
 };
 
 } // namespace tappet

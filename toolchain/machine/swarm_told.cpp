@@ -11,6 +11,7 @@ namespace tappet {
 
 namespace {
 
+constexpr Duration looks_every = 5ms;
 constexpr Duration looks_within = 2s; // a bus that was off, for its restart
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double largest_float = std::numeric_limits<float>::max();
@@ -83,7 +84,8 @@ double SwarmWires::said(const Output& output) const {
 
 Sentence SwarmWires::told_otherwise(Output& output, const std::optional<std::uint64_t>& value,
                                     Time now) const {
-    if (!output.physical) return {};
+    if (!output.physical || now < output.told_looked + looks_every) return {};
+    output.told_looked = now;
     double wanted = said(output);
     for (const std::size_t o : output.together)
         if (!std::isfinite(said(outputs_[o]))) wanted = none;

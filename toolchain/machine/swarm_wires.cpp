@@ -56,6 +56,7 @@ void SwarmWires::begin(MachineInstance& instance) {
     for (Output& each : outputs_) {
         each.before = each.left = {};
         each.since = each.wanted_since = never;
+        each.told_looked = {};
         each.wanted = std::numeric_limits<double>::quiet_NaN();
         each.excused = {};
     }

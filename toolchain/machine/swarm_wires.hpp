@@ -85,6 +85,7 @@ private:
         std::vector<std::size_t> together{};             ///< outputs that go out with it, and itself
         double wanted = 0;
         Time wanted_since = never;
+        Time told_looked{};
     };
     /// A frame that the machine sends, as it was on the wire last.
     struct Sent {
