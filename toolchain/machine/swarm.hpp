@@ -142,6 +142,8 @@ private:
     void call_anything(std::size_t component);
     void stop_a_part(std::size_t component, Duration lasts);
     void flood();
+    void insist(const std::string& line, unsigned times);
+    void load_anything();
     void anyone_asks(SwarmBrowser& by, std::string request, const SwarmBrowser::Then& then = {});
     void execute(const std::string& line, bool is_again = false);
     [[nodiscard]] std::string any_state();

@@ -187,6 +187,24 @@ void SwarmRun::call_anything(std::size_t component) {
     anyone_asks(browser_, last_call_);
 }
 
+/// A script comes into a slot, or leaves it.
+void SwarmRun::load_anything() {
+    std::vector<const BehaviourRow*> slots;
+    for (const BehaviourRow& row : of_.machine.table.behaviours)
+        if (row.is_slot()) slots.push_back(&row);
+    if (slots.empty()) return;
+    const BehaviourRow& row = *slots[random_.below(slots.size())];
+    const std::string slot{row.component};
+    const std::uint64_t how = random_.below(8);
+    ++verdict_.faults["script"];
+    if (how < 2) return anyone_asks(browser_, (how == 0 ? "unload " : "roll_back ") + slot);
+    std::string quoted;
+    for (const char each : any_script(row)) quoted += (each == '"' ? "\\" : "") + std::string{each};
+    if (quoted.empty()) return;
+    anyone_asks(browser_, "script " + slot + " 0 \"" + quoted + "\"");
+    anyone_asks(browser_, "load " + slot + " anything.osd");
+}
+
 /// One request about a component, or about another one.
 void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
     const MachineView& table = of_.machine.table;
@@ -219,22 +237,7 @@ void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
         ++verdict_.faults["line"];
         return line.empty() ? anyone_asks(browser_, "break_off") : execute(line);
     }
-    if (what < 88) {
-        std::vector<const BehaviourRow*> slots;
-        for (const BehaviourRow& row : table.behaviours)
-            if (row.is_slot()) slots.push_back(&row);
-        if (slots.empty()) return;
-        const BehaviourRow& row = *slots[random_.below(slots.size())];
-        const std::string slot{row.component};
-        const std::uint64_t how = random_.below(8);
-        ++verdict_.faults["script"];
-        if (how < 2) return anyone_asks(browser_, (how == 0 ? "unload " : "roll_back ") + slot);
-        std::string quoted;
-        for (const char each : any_script(row)) quoted += (each == '"' ? "\\" : "") + std::string{each};
-        if (quoted.empty()) return;
-        anyone_asks(browser_, "script " + slot + " 0 \"" + quoted + "\"");
-        return anyone_asks(browser_, "load " + slot + " anything.osd");
-    }
+    if (what < 88) return load_anything();
     if (what < 94) {
         if (table.behaviours.empty()) return;
         const BehaviourRow& row = table.behaviours[random_.below(table.behaviours.size())];
@@ -305,32 +308,49 @@ void SwarmRun::strike_as_anyone(Duration lasts) {
 void SwarmRun::ask_of_lower_role(SwarmBrowser& by) {
     const std::string port = name_of(readable_[random_.below(readable_.size())]);
     const std::string state = any_state();
-    const bool operates = &by == visitors_.data();
-    const std::string call =
-        operates && !commands_.empty() ? any_call(commands_[random_.below(commands_.size())]) : std::string{};
-    switch (random_.below(6)) {
+    switch (random_.below(5)) {
     case 0: return anyone_asks(by, "set " + port + " 1");
     case 1: return anyone_asks(by, "execute \"" + port + "\"");
     case 2: return anyone_asks(by, state.empty() ? "behaviours" : "why " + state);
-    case 3:
-        if (call.empty() || call.contains('"')) break;
-        return anyone_asks(by, random_.one_in(3) ? "break_off" : "execute \"do " + call + ";\"");
-    default: break;
+    default: anyone_asks(by, "get " + port);
     }
-    anyone_asks(by, "get " + port);
 }
 
-/// People of lower roles ask for as much as fits: one of them, or all at once for the same.
+/// The operator's line, again and again until it is at work; then perhaps he breaks it off, and begins the
+/// next one.
+void SwarmRun::insist(const std::string& line, unsigned times) {
+    if (times == 0) return;
+    anyone_asks(visitors_[0], "execute \"" + line + "\"", [this, line, times](std::string_view answer) {
+        if (is_good(answer) && random_.one_in(2))
+            return anyone_asks(visitors_[0], "break_off",
+                               [this, line, times](std::string_view) { insist(line, times - 1); });
+        if (is_good(answer) || field_of(answer, "code") == "not_now") insist(line, times - 1);
+    });
+}
+
+/// People of lower roles ask for as much as fits, one of them or all at once, and an engineer for one thing.
 void SwarmRun::flood() {
     ++verdict_.faults["flood"];
-    if (const std::string state = any_state(); !state.empty() && random_.one_in(3)) {
+    const std::size_t component = random_.below(of_.machine.table.components.size());
+    const std::uint64_t how = random_.below(4);
+    if (const std::string state = any_state(); how == 0 && !state.empty()) {
         for (SwarmBrowser& each : visitors_)
             for (std::int64_t n = random_.between(1, 4); n > 0; --n) anyone_asks(each, "why " + state);
+        if (random_.one_in(2)) return load_anything();
+    } else if (how == 1 && !commands_.empty()) {
+        const End end = commands_[random_.below(commands_.size())];
+        const std::string call = any_call(end);
+        if (call.empty() || call.contains('"')) return;
+        const bool waits = random_.one_in(2);
+        insist((waits ? "wait(" + std::to_string(random_.below(1500)) + " ms); do " : "do ") + call + ";",
+               static_cast<unsigned>(random_.between(3, 30)));
+        if (std::string line = any_line(component); !line.empty()) execute(line);
+        return;
     } else {
         SwarmBrowser& by = visitors_[random_.below(visitors_.size())];
         for (std::int64_t n = random_.between(1, most_at_once); n > 0; --n) ask_of_lower_role(by);
     }
-    if (random_.one_in(2)) ask_anything(random_.below(of_.machine.table.components.size()), {});
+    if (random_.one_in(2)) ask_anything(component, {});
 }
 
 } // namespace tappet
