@@ -34,8 +34,8 @@ public:
 private:
     void take(Time now, double written, Time stamp) noexcept TAPPET_REALTIME {
         const double seconds = to_seconds(period_);
-        // Nobody read it meanwhile: a line from there leads from the past; from no number it leads nowhere.
-        is_first_ |= now - began_ > 2 * period_ || !is_number(from_) || !is_number(slope_);
+        // Nobody read it meanwhile: a line from there leads from the past.
+        is_first_ |= now - began_ > 2 * period_;
         if (how_ == RateTransition::interpolate) {
             from_ = is_first_ ? written
                               : from_ + slope_ * to_seconds(std::clamp(now - began_, Duration{}, period_));
@@ -50,7 +50,7 @@ private:
             from_ = written;
             began_ = stamp;
         }
-        // Two numbers may lie farther apart than any number says.
+        // From no number a line leads nowhere, and two may lie farther apart than any number says.
         if (!is_number(slope_)) from_ = written, slope_ = 0.0;
         is_first_ = false;
     }

@@ -89,7 +89,7 @@ struct Gate {
 struct Oven {
     Input<double> temperature;
     Output<double> power, fan, burner;
-    Property<double> wanted{0.0};
+    Property<double> wanted{30.0};
 
     void start(const Cycle&) noexcept TAPPET_REALTIME { write(); }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {

@@ -144,6 +144,7 @@ private:
     void flood();
     void insist(const std::string& line, unsigned times);
     void load_anything();
+    [[nodiscard]] bool sends_command(std::string_view line) const;
     void anyone_asks(SwarmBrowser& by, std::string request, const SwarmBrowser::Then& then = {});
     void execute(const std::string& line, bool is_again = false);
     [[nodiscard]] std::string any_state();

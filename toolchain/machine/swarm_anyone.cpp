@@ -152,21 +152,35 @@ void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
                       " ms ago"});
 }
 
+bool SwarmRun::sends_command(std::string_view line) const {
+    const auto rows = of_.machine.table.components;
+    for (std::size_t c = 0; c < rows.size(); ++c)
+        for (std::size_t f = 0; f < rows[c].type->facets.size(); ++f)
+            if (rows[c].type->facets[f].kind == FacetKind::command && line.contains(name_of({c, f}) + "("))
+                return true;
+    return false;
+}
+
 /// Nobody of a lower role keeps an engineer's line from its turn for long.
 void SwarmRun::execute(const std::string& line, bool is_again) {
     std::string quoted;
     for (const char each : line) quoted += (each == '"' || each == '\\' ? "\\" : "") + std::string{each};
     anyone_asks(browser_, "execute \"" + quoted + "\"", [this, line, is_again](std::string_view answer) {
         const std::string why = field_of(answer, "error");
-        if (is_good(answer)) ++lines_.at_work;
+        if (is_good(answer)) {
+            ++lines_.at_work;
+            lines_.left_commands |= sends_command(line);
+        }
         if (why.starts_with("commands of earlier lines") && !lines_.left_commands && !lines_.of_peers)
             deny(Sentence{"an engineer's line finds no place: commands of operators' lines have every one"});
         if (!why.starts_with("another line is at work") || lines_.at_work > 0 || lines_.of_peers) return;
         if (is_again)
             return deny(
                 Sentence{"an engineer who broke a line off finds the next one of a lower role at work"});
+        // Not at once: somebody else may be quicker.
         anyone_asks(browser_, "break_off", [this, line](std::string_view broken_off) {
-            if (is_good(broken_off)) execute(line, true);
+            if (!is_good(broken_off)) return;
+            anyone_asks(browser_, "hello", [this, line](std::string_view) { execute(line, true); });
         });
     });
 }
@@ -198,11 +212,16 @@ void SwarmRun::load_anything() {
     const std::uint64_t how = random_.below(8);
     ++verdict_.faults["script"];
     if (how < 2) return anyone_asks(browser_, (how == 0 ? "unload " : "roll_back ") + slot);
-    std::string quoted;
-    for (const char each : any_script(row)) quoted += (each == '"' ? "\\" : "") + std::string{each};
-    if (quoted.empty()) return;
-    anyone_asks(browser_, "script " + slot + " 0 \"" + quoted + "\"");
-    anyone_asks(browser_, "load " + slot + " anything.osd");
+    // One goes, and the next one but one comes into its memory.
+    const bool twice = random_.one_in(3);
+    if (twice) anyone_asks(browser_, "unload " + slot);
+    for (int n = 0; n < (twice ? 2 : 1); ++n) {
+        std::string quoted;
+        for (const char each : any_script(row)) quoted += (each == '"' ? "\\" : "") + std::string{each};
+        if (quoted.empty()) return;
+        anyone_asks(browser_, "script " + slot + " 0 \"" + quoted + "\"");
+        anyone_asks(browser_, "load " + slot + " anything.osd");
+    }
 }
 
 /// One request about a component, or about another one.
@@ -321,7 +340,7 @@ void SwarmRun::ask_of_lower_role(SwarmBrowser& by) {
 void SwarmRun::insist(const std::string& line, unsigned times) {
     if (times == 0) return;
     anyone_asks(visitors_[0], "execute \"" + line + "\"", [this, line, times](std::string_view answer) {
-        if (is_good(answer) && random_.one_in(2))
+        if (is_good(answer) && !random_.one_in(4))
             return anyone_asks(visitors_[0], "break_off",
                                [this, line, times](std::string_view) { insist(line, times - 1); });
         if (is_good(answer) || field_of(answer, "code") == "not_now") insist(line, times - 1);
@@ -338,7 +357,9 @@ void SwarmRun::flood() {
             for (std::int64_t n = random_.between(1, 4); n > 0; --n) anyone_asks(each, "why " + state);
         if (random_.one_in(2)) return load_anything();
     } else if (how == 1 && !commands_.empty()) {
-        const End end = commands_[random_.below(commands_.size())];
+        End end = commands_[random_.below(commands_.size())];
+        for (int n = 0; n < 4 && facet_at(of_.machine.table, end).kind != FacetKind::command; ++n)
+            end = commands_[random_.below(commands_.size())];
         const std::string call = any_call(end);
         if (call.empty() || call.contains('"')) return;
         const bool waits = random_.one_in(2);

@@ -58,7 +58,6 @@ void SwarmRun::find_what_people_may() {
     browser_.tell_by([this](std::string_view packet) {
         if (const std::string line = field_of(packet, "line"); !line.empty()) {
             lines_.at_work -= std::min(lines_.at_work, 1u);
-            lines_.left_commands |= line != "done";
         }
         if (field_of(packet, "event").empty()) return;
         ++watched_.told;

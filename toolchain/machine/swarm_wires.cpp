@@ -265,7 +265,7 @@ void SwarmWires::add_registers(std::size_t c) {
             };
             Output output{.driver = c,
                           .is_switch = one.kind == modbus::Kind::bit,
-                          .settles = request.every,
+                          .settles = request.every + modbus::Backoff{}.most,
                           .goes_in = request.first,
                           .numbers = numbers_of(one)};
             output.physical = [&one](std::uint64_t all) {
