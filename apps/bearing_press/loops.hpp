@@ -5,6 +5,7 @@
 #include "kernel/component/component.hpp"
 #include "kernel/motion/estimators.hpp"
 #include "kernel/motion/trajectory.hpp"
+#include "kernel/pieces/ramp.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -95,7 +96,8 @@ struct Jogging {
         const double h = to_seconds(cycle.period);
         const double now =
             speed_ + std::clamp(wanted_ - speed_, -slide.acceleration * h, slide.acceleration * h);
-        put(at_ + now * h, now);
+        const double place = at_ + now * h;
+        put(is_number(place) ? place : position.get(), now);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
     void at(double wanted) noexcept TAPPET_REALTIME {
@@ -169,7 +171,8 @@ struct Place {
         velocity.write(sent.get());
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        bump_ -= bump_ * kp.get() * to_seconds(cycle.period);
+        bump_ *= 1.0 - kp.get() * to_seconds(cycle.period);
+        if (!is_number(bump_)) bump_ = 0.0; // what came of a number that is too large
         velocity.write(wanted() + bump_);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
@@ -244,10 +247,12 @@ private:
 struct Ramp {
     Input<double> command, sent;
     Output<double> target;
-    void start(const Cycle&) noexcept TAPPET_REALTIME { target.write(at_ = sent.get()); }
+    void start(const Cycle&) noexcept TAPPET_REALTIME {
+        ramp_.reset(sent.get());
+        target.write(ramp_.value());
+    }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        const double most = 2.0 * slide.acceleration * to_seconds(cycle.period);
-        target.write(at_ += std::clamp(command.get() - at_, -most, most));
+        target.write(ramp_(command.get(), cycle.period));
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { target.write(0.0); }
     static constexpr auto interface() {
@@ -257,7 +262,7 @@ struct Ramp {
     }
 
 private:
-    double at_ = 0.0;
+    tappet::Ramp ramp_{2.0 * slide.acceleration};
 };
 
 /// Controller of the inner level: the speed itself, and what the drive lacks of it, summed up. What the
@@ -272,8 +277,8 @@ struct Trim {
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double now = wanted.last();
-        if (sent.get() == now) sum_ += ki.get() * (target.get() - velocity.get()) * to_seconds(cycle.period);
-        sum_ = std::clamp(sum_, -most, most);
+        const double more = ki.get() * (target.get() - velocity.get()) * to_seconds(cycle.period);
+        if (sent.get() == now && is_number(more)) sum_ = std::clamp(sum_ + more, -most, most);
         wanted.write(target.get() + sum_);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { wanted.write(0.0); }
