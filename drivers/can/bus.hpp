@@ -100,7 +100,7 @@ struct Bus {
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         may_repeat_ = {};
         was_faulted_ = false;
-        was_stopped_ ? forget_stopped_time(cycle.now) : demanded_at_.fill(Time::min());
+        was_stopped_ ? forget_stopped_time() : demanded_at_.fill(Time::min());
         if (was_stopped_ && !faulted(device_->state())) bus_recovered.emit();
         lost_ = taken_ = 0;
         too_often_ = 0;
@@ -340,7 +340,7 @@ private:
             bus_fault.emit();
             return;
         }
-        forget_demands(now);
+        forget_demands();
         for (std::size_t f = 0; f < frame_count; ++f)
             if (due_[f] <= now) next_period(f, now);
         bus_recovered.emit();
@@ -366,15 +366,14 @@ private:
         Time now_at{};
         const auto take = [&](auto& input, auto& value) noexcept TAPPET_REALTIME {
             const Flow flow = input.read(value);
-            const bool given = flow == Flow::stale && input.substituted(), is_now = given || input.forced();
-            found.usable &= flow == Flow::fresh || flow == Flow::old || given;
+            const bool is_now = input.forced() || (flow == Flow::stale && input.has_substitute());
+            found.usable &= flow == Flow::fresh || flow == Flow::old || is_now;
             found.fresh |= flow == Flow::fresh;
             if (is_now || found.at == never) (is_now ? now_at : found.at) = input.stamp();
             found.agreed &= is_now || input.stamp() == found.at;
         };
-        const FrameRow& row = map.frames[f];
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s)
-            if (is_selected(row, s))
+        for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s)
+            if (is_selected(map.frames[f], s))
                 is_integer(map.signals[s]) ? take(integer_in[s], integers_[s])
                                            : take(physical_in[s], physical_[s]);
         if (found.at == never) found.at = now_at;
@@ -417,11 +416,12 @@ private:
             if (!demanded_[f] || !found.usable || !found.agreed) continue;
             demanded_[f] = false;
             const Frame before = store_.encode(f, now);
-            const bool is_new = found.at > demanded_at_[f];
+            Time& last = demanded_at_[f]; // one that lies ahead hides no later one
+            const bool is_new = found.at > last || (last > now && found.at != last);
             if (!keep_inputs(f)) continue;
             // The end of a force shows the value of before: not again, and not as the last that is said.
             if (!is_new && (ends || store_.encode(f, now).data == before.data)) continue;
-            demanded_at_[f] = std::min(found.at, now); // what lies ahead hides no later one
+            last = found.at > now + ahead_at_most ? now : std::max(last, found.at);
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
             static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
@@ -437,15 +437,15 @@ private:
         }
     }
     /// What waited, what arrived and what was demanded while nobody served the bus.
-    void forget_stopped_time(Time now) noexcept TAPPET_REALTIME {
+    void forget_stopped_time() noexcept TAPPET_REALTIME {
         device_->purge();
         Frame ignored;
         for (int n = 0; n < max_passes; ++n)
             if (const Receive got = device_->receive(ignored); got.what == Received::none && got.lost == 0)
                 break;
-        forget_demands(now);
+        forget_demands();
     }
-    void forget_demands(Time now) noexcept TAPPET_REALTIME {
+    void forget_demands() noexcept TAPPET_REALTIME {
         if constexpr (protocol.any) {
             Frame forgotten;
             for (int n = 0; n < max_passes && to_send.pop(forgotten);) ++n;
@@ -453,7 +453,7 @@ private:
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             const Reading found = read_inputs(f);
-            if (found.usable && keep_inputs(f)) demanded_at_[f] = std::clamp(found.at, demanded_at_[f], now);
+            if (found.usable && keep_inputs(f)) demanded_at_[f] = found.at;
             demanded_[f] = false;
         }
     }

@@ -59,11 +59,13 @@ void SafeSender::close() noexcept {
     if (fd_ >= 0) ::close(fd_);
     fd_ = -1;
     confirmed_ = 0;
+    in_flight_ = of_before_ = 0;
 }
 
 void SafeSender::begin() noexcept {
     static_cast<void>(left()); // what waits at the socket is of before
     confirmed_ = 0;
+    of_before_ = in_flight_;
 }
 
 void SafeSender::send(Purpose purpose) noexcept {
@@ -72,9 +74,12 @@ void SafeSender::send(Purpose purpose) noexcept {
         canfd_frame raw;
         wire::encode(frames_[i], raw);
         // The kernel takes no more now. The rest waits for the next repetition: frames keep their order.
-        if (::write(fd_, &raw, purpose == Purpose::earnest ? wire::bytes_of(frames_[i]) : 0) < 0 &&
-            purpose == Purpose::earnest)
-            return;
+        if (purpose == Purpose::rehearsal) {
+            static_cast<void>(::write(fd_, &raw, 0));
+            continue;
+        }
+        if (::write(fd_, &raw, wire::bytes_of(frames_[i])) < 0) return;
+        ++in_flight_;
     }
 }
 
@@ -92,6 +97,11 @@ std::size_t SafeSender::left() noexcept {
         if (got < 0 && errno == ENETDOWN && !std::exchange(was_down, true)) continue;
         if (got != CAN_MTU && got != CANFD_MTU) break;
         if ((message.msg_flags & MSG_CONFIRM) == 0) continue; // of the machine, while it lived
+        in_flight_ -= std::min<std::size_t>(in_flight_, 1);
+        if (of_before_ > 0) {
+            --of_before_;
+            continue;
+        }
         Frame sent;
         if (!wire::decode(raw, static_cast<std::size_t>(got), State::active, sent)) continue;
         for (std::size_t i = 0; i < frames_.size(); ++i)

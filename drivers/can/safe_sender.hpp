@@ -39,6 +39,8 @@ public:
 private:
     std::span<const Frame> frames_{};
     std::uint64_t confirmed_ = 0; // a bit for each
+    std::size_t in_flight_ = 0;   // written, not confirmed
+    std::size_t of_before_ = 0;   // of these, before the last begin(): they are confirmed first
     int fd_ = -1;
 };
 

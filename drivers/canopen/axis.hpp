@@ -141,11 +141,11 @@ template <text unit> struct Axis {
 private:
     /// It is led by what was written since it was told to follow, and by nothing of before.
     void follow(Time now) noexcept TAPPET_REALTIME {
-        double wanted = 0;
-        const Flow flow = set_point.read(wanted);
         const std::int64_t ordered = mode.last();
         // What is written before the mode is ordered is of another unit.
         if (begins_ && ordered != follows_in_) return;
+        double wanted = 0;
+        const Flow flow = set_point.read(wanted);
         if (std::exchange(begins_, false)) is_led_ = false, led_at_ = now;
         const bool is_place = ordered == static_cast<std::int64_t>(OperationMode::cyclic_position);
         // A stale velocity or torque is what the row gives in its place. A stale place is not followed.

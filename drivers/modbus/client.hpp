@@ -171,9 +171,12 @@ private:
             double value = 0;
             const Flow flow = wanted[v].read(value);
             // One that is forced, and what the row gives for a stale one, is true now, in each cycle.
-            const Time stamp = wanted[v].substituted() ? now : wanted[v].stamp();
+            const bool is_given = flow == Flow::stale && wanted[v].has_substitute();
+            const Time stamp = is_given ? now : wanted[v].stamp();
             const bool is_newer = stamp > session_->value(v).stamp;
-            if (flow == Flow::never_written || (flow != Flow::fresh && is_set_[v] && !is_newer)) continue;
+            const bool is_other = !is_set_[v] || value != taken_[v]; // it stood behind a force
+            if (flow == Flow::never_written || (flow != Flow::fresh && !is_newer && !is_other)) continue;
+            taken_[v] = value;
             is_set_[v] = session_->set(v, value, stamp);
         }
     }
@@ -201,7 +204,8 @@ private:
         none.fill(Time::min());
         return none;
     }();
-    std::array<bool, count> is_set_{}; ///< in the client, since start
+    std::array<bool, count> is_set_{};  ///< in the client, since start
+    std::array<double, count> taken_{}; ///< so
     bool was_lost_ = false, was_stopped_ = false, stopped_safely_ = true;
     Trouble told_{};
 };

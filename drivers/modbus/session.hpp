@@ -119,7 +119,7 @@ public:
         if (encoded.refused) ++count_.saturated;
         if (encoded.refused || !map_->rows[r].write) return false;
         if (encoded.saturated) ++count_.saturated;
-        if (values_[v].stamp == Time::min() || words_[v] != encoded.words) {
+        if (values_[v].stamp == Time::min() || words_[v] != encoded.words || at_server_[v] == AtServer::was) {
             changed_at_[r] = std::min(changed_at_[r], now);
             at_server_[v] = AtServer::not_yet;
         }

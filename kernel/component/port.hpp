@@ -255,9 +255,9 @@ public:
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }
-    /// What its row gives in place of a stale value counts: it is true now.
-    [[nodiscard]] bool substituted() noexcept TAPPET_REALTIME {
-        return when_stale_ == WhenStale::substitute && flow() == Flow::stale;
+    /// In place of a stale value its row gives one that is true now.
+    [[nodiscard]] bool has_substitute() const noexcept TAPPET_REALTIME {
+        return when_stale_ == WhenStale::substitute;
     }
     /// Its component gets a forced value in place of what is written.
     [[nodiscard]] bool forced() const noexcept TAPPET_REALTIME { return forced_; }
@@ -321,12 +321,16 @@ private:
         if (flow == Flow::stale && when_stale_ == WhenStale::substitute) return substitute_;
         return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
-    /// By turns another one writes it: the writer that it had has stopped.
+    /// By turns another one writes it: what is forced stays, and ends with that one's stop, if the one before
+    /// has not stopped already.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
-        if (forced_ && output != local_) cached_generation_ = another_writer;
-        if (!forced_) seen_ = 0;
+        const bool ends = forced_ && stops_of_writer() != cached_generation_;
         local_ = output;
         writer_ = writer;
+        if (forced_)
+            cached_generation_ = ends ? has_stopped : stops_of_writer();
+        else
+            seen_ = 0;
         settle();
     }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh
@@ -359,7 +363,7 @@ private:
         return is_number(value) ? static_cast<T>(std::clamp(wanted, -most, most)) : value;
     }
 
-    static constexpr std::uint64_t forced_generation = ~std::uint64_t{0}, another_writer = forced_generation;
+    static constexpr std::uint64_t forced_generation = ~std::uint64_t{0}, has_stopped = forced_generation;
 
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
     std::uint64_t cached_generation_ = 0; ///< while it is forced: the stops of its writer before

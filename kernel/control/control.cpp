@@ -118,8 +118,9 @@ void Turns::link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REA
         const Writer& writer = each.writers[chain];
         if (writer.output == nullptr) continue;
         if ((writer.part & beginning) != 0) each.port->forget(writer.output);
-        each.port->link_local(each.input, writer.output,
-                              &engine->plan().parts[static_cast<std::size_t>(std::countr_zero(writer.part))].stops);
+        each.port->link_local(
+            each.input, writer.output,
+            &engine->plan().parts[static_cast<std::size_t>(std::countr_zero(writer.part))].stops);
     }
     for (const SharedCall& each : calls) each.operations->aim(each.call, &each.goals[chain]);
 }

@@ -89,18 +89,18 @@ Sentence SwarmWires::told_otherwise(Output& output, const std::optional<std::uin
     double wanted = said(output);
     for (const std::size_t o : output.together)
         if (!std::isfinite(said(outputs_[o]))) wanted = none;
-    const Duration settles = output.settles + (value ? Duration{} : looks_within);
+    const Duration recovers = output.settles + (value ? output.recovers : looks_within);
     const ComponentRow& driver = machine_.table.components[output.driver];
     const bool is_off =
         tappet::drives(driver, "can") && can::faulted(devices_.controller(driver.device).state());
     const bool is_whole = instance_->life().state_of(output.driver) == ComponentState::running && !is_off &&
-                          now >= output.excused && struck_.whole_for(output.driver, now) >= settles;
+                          now >= output.excused && struck_.whole_for(output.driver, now) >= recovers;
     if (!is_whole || wanted != output.wanted) {
         output.wanted = wanted;
         output.wanted_since = now;
         return {};
     }
-    if (now - output.wanted_since < settles) return {};
+    if (now - output.wanted_since < (value ? output.settles : recovers)) return {};
     const Numbers& numbers = output.numbers;
     const double nearest = std::clamp(wanted, numbers.least, numbers.most);
     Sentence text{"output \"", output.name, "\" "};

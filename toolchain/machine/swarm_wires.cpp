@@ -265,7 +265,8 @@ void SwarmWires::add_registers(std::size_t c) {
             };
             Output output{.driver = c,
                           .is_switch = one.kind == modbus::Kind::bit,
-                          .settles = request.every + modbus::Backoff{}.most,
+                          .settles = request.every,
+                          .recovers = modbus::Backoff{}.most,
                           .goes_in = request.first,
                           .numbers = numbers_of(one)};
             output.physical = [&one](std::uint64_t all) {
@@ -394,7 +395,8 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
     if (output.since == never) output.since = now;
     if (is_forced(output)) output.excused = std::max(output.excused, now + output.settles);
     const bool is_driven = instance_->life().state_of(output.driver) == ComponentState::running;
-    if (now < output.excused || !is_driven || struck_.whole_for(output.driver, now) < output.settles) {
+    if (now < output.excused || !is_driven ||
+        struck_.whole_for(output.driver, now) < output.settles + output.recovers) {
         output.before = output.left = {};
         output.since = now;
         return {};

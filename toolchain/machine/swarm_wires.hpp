@@ -70,7 +70,8 @@ private:
         std::optional<std::uint64_t> safe{};
         bool is_switch = false; ///< one bit
         bool is_line = false;
-        Duration settles{}; ///< longer than anything takes from a writer to the wire
+        Duration settles{};  ///< longer than anything takes from a writer to the wire
+        Duration recovers{}; ///< after a fault its driver may come to it so much later
         std::function<std::optional<std::uint64_t>()> read{};
         // Of this machine.
         std::optional<std::uint64_t> before{}, left{}; ///< while a writer ran; when all had stopped

@@ -34,9 +34,11 @@ struct FacetCall {
     MachineInstance* machine = nullptr;
     End end{};
     const Facet* facet = nullptr;
-    void* place = nullptr;      ///< of the port, or the component
-    bool refused = false;       ///< the engine's: the component had stopped by then
-    bool never_written = false; ///< likewise: an output that nobody wrote cannot be forced
+    void* place = nullptr; ///< of the port, or the component
+    bool refused = false;  ///< the engine's: the component had stopped by then
+    bool drives = false;   ///< the port of a driver that says what it sends
+    bool never_written =
+        false; ///< the engine's: an output, or what is sent, that nobody wrote, is not forced
     alignas(
         16) std::array<std::byte, max_value_bytes> value{}; ///< of a method: the result after the arguments
 };

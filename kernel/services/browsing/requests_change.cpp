@@ -34,7 +34,8 @@ void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
         is_input(*call.facet) ? !waits && !gate.admits(Entry::at_once) : !gate.admits(Entry::queued);
     if (call.refused) return;
     const bool was_forced = is_forced(call);
-    call.never_written = !call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
+    call.never_written = (call.drives && call.facet->port->flow(call.place) == Flow::never_written) ||
+                         !call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
     // The count is for observers: nobody decides by it, so its sum is not used here.
     if (!was_forced && !call.never_written)
         call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);
@@ -115,6 +116,9 @@ BrowserService::Verdict BrowserService::force(Client& client, const Request& req
                                                " bytes cannot be forced; force what it is made of"}};
     if (const Sentence fault = parse_value(type, request.arguments[1], call.value.data()); !fault.empty())
         return {Refusal::bad_value, Sentence{"\"", request.arguments[0], "\": ", fault}};
+    // It keeps what it sent last: where nothing was written, a release would leave it so.
+    call.drives =
+        is_input(facet_at(table, end)) && !table.components[end.component].type->device_kind.empty();
     return reach(*place, asker(client, request), end, &force_port);
 }
 
@@ -189,9 +193,8 @@ bool BrowserService::look_at_facet(Pending& place) {
         return answer_bad(
             place, Refusal::not_now,
             Sentence{"\"", machine_->machine().table.components[call.end.component].name, ".",
-                     call.facet->name,
-                     "\" was not written yet: a release would have nothing to go back to; force the "
-                     "inputs that read it"});
+                     call.facet->name, "\" was not written yet: a release would have nothing to go back to; ",
+                     call.drives ? "let its component write it first" : "force the inputs that read it"});
     const MethodOperations* method = call.facet->method;
     if (method == nullptr || method->result_bytes == 0) return answer_good(place);
     if (Client* client = who_waits(place)) {

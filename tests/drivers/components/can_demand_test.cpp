@@ -153,5 +153,19 @@ TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_cannot_be) {
     EXPECT_EQ(heard_of(0x080).size(), 3u);
 }
 
+TEST_F(ForcedDemand, repeats_no_demand_with_a_time_that_lies_a_little_ahead) {
+    run_until(10ms);
+    for (const bool is_ahead : {false, true}) {
+        heard.clear();
+        master->sync_at = is_ahead ? clock.now() + 900ms : Time::min();
+        master->sync_next = 1;
+        run_until(clock.now().time_since_epoch() + 20ms);
+        force("can.sync.count", FacetKind::input, 1);
+        release();
+        run_until(clock.now().time_since_epoch() + 20ms);
+        EXPECT_EQ(heard_of(0x080).size(), 2u) << is_ahead;
+    }
+}
+
 } // namespace
 } // namespace tappet::test

@@ -21,6 +21,7 @@ constexpr int bus = 777;
 
 struct Kernel {
     std::deque<can_frame> unconfirmed{};
+    std::size_t confirms = 1000; // so many more
     std::vector<canid_t> sent{};
 } kernel;
 
@@ -52,13 +53,14 @@ ssize_t write(int fd, const void* bytes, size_t size) {
 }
 ssize_t recvmsg(int fd, msghdr* message, int flags) {
     if (fd != bus) return own<ssize_t (*)(int, msghdr*, int)>("recvmsg")(fd, message, flags);
-    if (kernel.unconfirmed.empty()) {
+    if (kernel.unconfirmed.empty() || kernel.confirms == 0) {
         errno = EAGAIN;
         return -1;
     }
     std::memcpy(message->msg_iov->iov_base, &kernel.unconfirmed.front(), sizeof(can_frame));
     message->msg_flags = MSG_CONFIRM;
     kernel.unconfirmed.pop_front();
+    --kernel.confirms;
     return sizeof(can_frame);
 }
 }
@@ -82,6 +84,23 @@ TEST(SafeFrames, are_all_sent_once_more_when_they_are_asked_for_again) {
         EXPECT_EQ(send_safe_frames(buses, 1h), 0u);
         EXPECT_EQ(std::exchange(kernel.sent, {}), all);
     }
+}
+
+TEST(SafeFrames, are_not_confirmed_by_those_of_before) {
+    std::array<can::Frame, 1> frame{};
+    frame[0].id = 0x201;
+    can::SafeSender sender;
+    ASSERT_TRUE(sender.open("can0", frame));
+    kernel.confirms = 0;
+    sender.begin();
+    sender.send(can::SafeSender::Purpose::earnest);
+    EXPECT_EQ(sender.left(), 1u);
+    sender.begin(); // the first one still waits at the bus
+    sender.send(can::SafeSender::Purpose::earnest);
+    kernel.confirms = 1;
+    EXPECT_EQ(sender.left(), 1u);
+    kernel.confirms = 1;
+    EXPECT_EQ(sender.left(), 0u);
 }
 
 } // namespace

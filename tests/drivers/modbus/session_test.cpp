@@ -175,6 +175,12 @@ TEST_F(ModbusSession, writes_no_stale_value_to_a_server_that_may_have_begun_anew
     run_until(Time{31s});
     EXPECT_EQ(server.get(Table::holding_registers, 8), 0) << "with the other one goes what is safe";
     EXPECT_EQ(server.get(Table::holding_registers, 9), 2);
+    server.inject(Fault::down);
+    run_until(Time{33s});
+    server.set(Table::holding_registers, 9, 7);
+    server.inject(Fault::none);
+    for (; now < Time{40s}; run_until(now + 100ms)) session.set(wanted_humidity, 2, now);
+    EXPECT_EQ(server.get(Table::holding_registers, 9), 2) << "it is still said";
 }
 
 TEST(ModbusSessionOfSilence, lets_a_row_that_is_safe_by_silence_be_silent) {

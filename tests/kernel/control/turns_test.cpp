@@ -216,8 +216,8 @@ TEST(Turns, end_with_the_component_that_hands_over_and_begin_with_it) {
     EXPECT_EQ(rig.ask("softly"), CommandState::done);
 }
 
-/// What is forced goes with the writer that it was forced over, whichever row of the input comes last.
-TEST(Turns, end_what_is_forced_of_an_input_that_another_one_writes_then_and_nothing_else) {
+/// Whichever row of the input comes last in the table.
+TEST(Turns, leave_what_is_forced_until_the_one_stops_that_writes_it_then) {
     Rig rig;
     EXPECT_TRUE(rig.run(5ms));
     ASSERT_EQ(rig.ask("jog"), CommandState::done);
@@ -225,21 +225,19 @@ TEST(Turns, end_what_is_forced_of_an_input_that_another_one_writes_then_and_noth
     ASSERT_TRUE(resolve(rig.instance.machine().table, "limiter.velocity", FacetKind::input, input).empty());
     const PortOperations& port = *facet_at(rig.instance.machine().table, input).port;
     const auto is_forced = [&] { return *port.places(rig.instance.place_of(input), true).forced; };
-    const auto force = [&](double value) {
-        port.force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&value));
-        EXPECT_TRUE(rig.run(3ms));
-        EXPECT_TRUE(is_forced());
-    };
-    force(0.3);
-    ASSERT_EQ(rig.ask("softly"), CommandState::done);
-    EXPECT_FALSE(is_forced());
-    force(0.3);
-    ASSERT_EQ(rig.ask("jog"), CommandState::done);
-    EXPECT_FALSE(is_forced());
-    force(0.3);
+    const double slow = 0.3;
+    port.force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&slow));
     rig.change("gentle", LifeChange::stop); // which stands, and writes nothing
     EXPECT_TRUE(rig.run(5ms));
     EXPECT_TRUE(is_forced());
+    ASSERT_EQ(rig.ask("softly"), CommandState::done);
+    EXPECT_TRUE(is_forced());
+    rig.change("position", LifeChange::stop); // which wrote it before
+    EXPECT_TRUE(rig.run(5ms));
+    EXPECT_TRUE(is_forced());
+    rig.change("gentle", LifeChange::stop);
+    EXPECT_TRUE(rig.run(5ms));
+    EXPECT_FALSE(is_forced());
 }
 
 TEST(Turns, are_not_taken_alone) {

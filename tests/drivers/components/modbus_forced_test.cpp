@@ -1,0 +1,79 @@
+// What a Modbus server is told while a port on the way to it is forced, and afterwards.
+#include "tests/drivers/components/utility_machine.hpp"
+
+namespace tappet::test {
+namespace {
+
+/// Forced at the input, then at the output; released, and then its writer stops.
+TEST_F(HeldPump, is_told_what_stands_behind_a_force_though_that_is_stale) {
+    reader->leaves_safe = false;
+    run_until(1s);
+    reader->pump_next = 0; // once
+    run_until(2s);
+    const double on = 1;
+    Duration now = 2s;
+    for (const auto& [name, kind] :
+         {std::pair{"server.pump.on", FacetKind::input}, std::pair{"reader.pump", FacetKind::output}})
+        for (const bool stops : {false, true}) {
+            End end;
+            ASSERT_TRUE(resolve(instance.machine().table, name, kind, end).empty());
+            const PortOperations& port = *facet_at(instance.machine().table, end).port;
+            const bool is_input = kind == FacetKind::input;
+            port.force(instance.place_of(end), is_input, reinterpret_cast<const std::byte*>(&on));
+            run_until(now += 2s);
+            EXPECT_TRUE(pump_runs());
+            if (stops)
+                EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+            else
+                port.release(instance.place_of(end), is_input);
+            run_until(now += 2s);
+            EXPECT_FALSE(pump_runs()) << name << (stops ? ", stopped" : ", released");
+            if (stops) static_cast<void>(world.change_activity(1, LifeChange::start));
+        }
+}
+
+/// What the pump is told, forced at one end.
+struct ForcedPump : Utility {
+    void begin(std::string_view name, FacetKind kind) {
+        run_until(1s);
+        reader->pump_next = 0; // off, and that is all that its component says
+        run_until(20s);
+        ASSERT_TRUE(resolve(instance.machine().table, name, kind, end).empty());
+        is_input = kind == FacetKind::input;
+        const double yes = 1;
+        ASSERT_TRUE(port().force(instance.place_of(end), is_input, reinterpret_cast<const std::byte*>(&yes)));
+        run_until(22s);
+        ASSERT_TRUE(pump_runs());
+    }
+    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
+    End end;
+    bool is_input = false;
+};
+
+TEST_F(ForcedPump, is_told_what_stood_behind_the_force_however_old_that_is) {
+    begin("server.pump.on", FacetKind::input);
+    port().release(instance.place_of(end), is_input);
+    run_until(24s);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(ForcedPump, is_told_once_more_what_is_forced_when_its_server_was_away_for_long) {
+    begin("server.pump.on", FacetKind::input);
+    twin.inject(modbus::Fault::down);
+    run_until(32s); // longer than its row calls good
+    twin.set(modbus::Table::coils, 0, 0);
+    twin.inject(modbus::Fault::none);
+    run_until(60s);
+    EXPECT_TRUE(pump_runs());
+}
+
+TEST_F(ForcedPump, is_told_so_too_when_its_writer_stops) {
+    reader->leaves_safe = false;
+    begin("reader.pump", FacetKind::output);
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    run_until(24s);
+    EXPECT_FALSE(pump_runs());
+}
+
+} // namespace
+} // namespace tappet::test
