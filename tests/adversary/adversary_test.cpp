@@ -1,12 +1,16 @@
 // What holds of every machine is seen to be broken, and what a seed does is the same again. How each fault
 // that is kept in tests/planted is found says ci/planted.
+#include "kernel/services/browsing/protocol.hpp"
 #include "tests/adversary/machine.hpp"
 #include "tests/adversary/plant.hpp"
 #include "toolchain/machine/swarm.hpp"
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <functional>
+
+#include <unistd.h>
 
 namespace adversary {
 
@@ -95,6 +99,34 @@ TEST(Adversary, has_people_of_every_role_and_verb) {
                              "script ", "load ", "unload ", "roll_back ", "get ", "save", "break_off"})
         EXPECT_THAT(told, HasSubstr(std::string{"somebody asks: "} + verb)) << verb;
     EXPECT_THAT(told, HasSubstr("a visitor asks: "));
+}
+
+/// What it sent last it keeps: a release would leave it so.
+TEST(Bed, has_nothing_forced_of_a_driver_that_nobody_wrote) {
+    const std::string directory =
+        (std::filesystem::temp_directory_path() / ("tappet-bed-" + std::to_string(::getpid()))).string();
+    std::filesystem::create_directories(directory);
+    Plant plant{1};
+    VirtualRun run{on_host(), plant, 1};
+    run.browse_in(directory);
+    ASSERT_TRUE(run.start());
+    SwarmBrowser browser{directory + "/bed" + std::string{browsing::socket_suffix}};
+    const auto asked = [&](const std::string& request) {
+        std::string said;
+        static_cast<void>(browser.hear());
+        browser.ask(request, run.now(), [&](std::string_view answer) { said = answer; });
+        EXPECT_TRUE(run.run_for(200ms));
+        static_cast<void>(browser.hear());
+        return said;
+    };
+    EXPECT_TRUE(run.run_for(500ms));
+    EXPECT_THAT(asked("force io.valve true"),
+                HasSubstr("was not written yet: a release would have nothing to go "
+                          "back to; let its component write it first"));
+    EXPECT_THAT(asked("call valve.close"), HasSubstr("\"ok\": true"));
+    EXPECT_THAT(asked("force io.valve true"), HasSubstr("\"ok\": true"));
+    browser.leave();
+    std::filesystem::remove_all(directory);
 }
 
 } // namespace
