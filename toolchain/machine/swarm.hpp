@@ -146,7 +146,7 @@ private:
     void load_anything();
     [[nodiscard]] bool sends_command(std::string_view line) const;
     void anyone_asks(SwarmBrowser& by, std::string request, const SwarmBrowser::Then& then = {});
-    void execute(const std::string& line, bool is_again = false);
+    void execute(const std::string& line, std::optional<unsigned> begun_before = {});
     [[nodiscard]] std::string any_state();
     void ask_of_lower_role(SwarmBrowser& by);
     void judge_shown(const std::string& name, std::string_view answer);
@@ -203,8 +203,10 @@ private:
     /// Of the interpreter, as engineers know it.
     struct Lines {
         unsigned at_work = 0;       ///< theirs
+        unsigned begun = 0;         ///< of theirs
         bool left_commands = false; ///< theirs may have
         bool of_peers = false;      ///< whose role is not known
+        bool was_connected = false; ///< to this machine
     };
     Lines lines_{};
     SwarmVerdict verdict_{};

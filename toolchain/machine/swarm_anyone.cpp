@@ -162,25 +162,27 @@ bool SwarmRun::sends_command(std::string_view line) const {
 }
 
 /// Nobody of a lower role keeps an engineer's line from its turn for long.
-void SwarmRun::execute(const std::string& line, bool is_again) {
+void SwarmRun::execute(const std::string& line, std::optional<unsigned> begun_before) {
     std::string quoted;
     for (const char each : line) quoted += (each == '"' || each == '\\' ? "\\" : "") + std::string{each};
-    anyone_asks(browser_, "execute \"" + quoted + "\"", [this, line, is_again](std::string_view answer) {
+    anyone_asks(browser_, "execute \"" + quoted + "\"", [this, line, begun_before](std::string_view answer) {
         const std::string why = field_of(answer, "error");
         if (is_good(answer)) {
             ++lines_.at_work;
+            ++lines_.begun;
             lines_.left_commands |= sends_command(line);
         }
         if (why.starts_with("commands of earlier lines") && !lines_.left_commands && !lines_.of_peers)
             deny(Sentence{"an engineer's line finds no place: commands of operators' lines have every one"});
         if (!why.starts_with("another line is at work") || lines_.at_work > 0 || lines_.of_peers) return;
-        if (is_again)
+        if (begun_before && *begun_before == lines_.begun) // else it was theirs that he broke off
             return deny(
                 Sentence{"an engineer who broke a line off finds the next one of a lower role at work"});
+        if (begun_before) return;
         // Not at once: somebody else may be quicker.
-        anyone_asks(browser_, "break_off", [this, line](std::string_view broken_off) {
+        anyone_asks(browser_, "break_off", [this, line, begun = lines_.begun](std::string_view broken_off) {
             if (!is_good(broken_off)) return;
-            anyone_asks(browser_, "hello", [this, line](std::string_view) { execute(line, true); });
+            anyone_asks(browser_, "hello", [this, line, begun](std::string_view) { execute(line, begun); });
         });
     });
 }

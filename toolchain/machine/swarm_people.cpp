@@ -75,7 +75,8 @@ void SwarmRun::hear() {
         for (SwarmBrowser& each : visitors_) static_cast<void>(each.hear());
     if (!connected || connections != browser_.connections()) {
         watched_ = {};
-        lines_ = {.left_commands = true, .of_peers = true};
+        if (lines_.was_connected) lines_ = {.left_commands = true, .of_peers = true};
+        lines_.was_connected = true;
     }
     if (!connected) return;
     if (connections != browser_.connections()) watch();
