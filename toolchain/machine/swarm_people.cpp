@@ -17,8 +17,8 @@ namespace {
 
 constexpr Duration answered_within = BrowserService::patience + 1s; // while the service runs
 constexpr Duration told_within = 100ms;                             // an emission, to who watches
-constexpr double last = std::numeric_limits<double>::max();
-constexpr std::array largest{last, last, 1e306, 3.4e38}; // of what has no range
+constexpr double most_of_all = std::numeric_limits<double>::max();
+constexpr std::array largest{most_of_all, most_of_all, 1e306, 3.4e38}; // of what has no range
 
 std::string text_of(const TypeTag& type, const std::byte* value) {
     std::array<char, 256> text;
