@@ -11,8 +11,10 @@ TEST_F(SubstitutedPump, is_told_what_the_row_gives_for_a_stale_value) {
     EXPECT_TRUE(pump_runs());
     run_until(1500ms);
     EXPECT_FALSE(pump_runs());
+    run_until(18s);
+    twin.set(modbus::Table::coils, 0, 1); // by somebody else
     run_until(20s);
-    EXPECT_FALSE(pump_runs());
+    EXPECT_FALSE(pump_runs()) << "it is true now, and said again";
     reader->pump_next = 1;
     run_until(20'150ms);
     EXPECT_TRUE(pump_runs());
