@@ -351,7 +351,7 @@ private:
         bool usable = true; ///< each was written; what is stale has a substitute
         bool fresh = false; ///< one was written since the last reading
         bool agreed = true; ///< all are of the same time, but what is forced or substituted: that is true now
-        Time at = never;    ///< that time
+        Time at = never;    ///< that time; never: all is true now
     };
 
     /// By the values of multiplexors that were read before it.
@@ -363,20 +363,18 @@ private:
 
     Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         Reading found;
-        Time now_at{};
         const auto take = [&](auto& input, auto& value) noexcept TAPPET_REALTIME {
             const Flow flow = input.read(value);
             const bool is_now = input.forced() || (flow == Flow::stale && input.has_substitute());
             found.usable &= flow == Flow::fresh || flow == Flow::old || is_now;
             found.fresh |= flow == Flow::fresh;
-            if (is_now || found.at == never) (is_now ? now_at : found.at) = input.stamp();
+            if (!is_now && found.at == never) found.at = input.stamp();
             found.agreed &= is_now || input.stamp() == found.at;
         };
         for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s)
             if (is_selected(map.frames[f], s))
                 is_integer(map.signals[s]) ? take(integer_in[s], integers_[s])
                                            : take(physical_in[s], physical_[s]);
-        if (found.at == never) found.at = now_at;
         return found;
     }
 
@@ -416,12 +414,11 @@ private:
             if (!demanded_[f] || !found.usable || !found.agreed) continue;
             demanded_[f] = false;
             const Frame before = store_.encode(f, now);
-            Time& last = demanded_at_[f]; // one that lies ahead hides no later one
-            const bool is_new = found.at > last || (last > now && found.at != last);
+            const bool is_new = found.at != demanded_at_[f]; // in any order: a stamp may lie ahead
             if (!keep_inputs(f)) continue;
             // The end of a force shows the value of before: not again, and not as the last that is said.
             if (!is_new && (ends || store_.encode(f, now).data == before.data)) continue;
-            last = found.at > now + ahead_at_most ? now : std::max(last, found.at);
+            if (found.at != never) demanded_at_[f] = found.at;
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
             static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
@@ -453,7 +450,7 @@ private:
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             const Reading found = read_inputs(f);
-            if (found.usable && keep_inputs(f)) demanded_at_[f] = found.at;
+            if (found.usable && keep_inputs(f) && found.at != never) demanded_at_[f] = found.at;
             demanded_[f] = false;
         }
     }

@@ -148,6 +148,7 @@ private:
         const Flow flow = set_point.read(wanted);
         if (std::exchange(begins_, false)) is_led_ = false, led_at_ = now;
         const bool is_place = ordered == static_cast<std::int64_t>(OperationMode::cyclic_position);
+        if (flow == Flow::never_written && std::exchange(is_led_, false) && !is_place) motion_.follow(0);
         // A stale velocity or torque is what the row gives in its place. A stale place is not followed.
         if (flow != Flow::fresh && (flow != Flow::stale || is_place || !is_led_)) return;
         // One that stood behind a force, is of before, or is no number.

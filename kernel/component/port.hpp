@@ -321,16 +321,20 @@ private:
         if (flow == Flow::stale && when_stale_ == WhenStale::substitute) return substitute_;
         return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
-    /// By turns another one writes it: what is forced stays, and ends with that one's stop, if the one before
-    /// has not stopped already.
+    /// By turns another one writes it. What is forced stays, and is still the one's before: it may be refused
+    /// to the other. Linked once more it is that one's, and ends with its stop, if the one before had not
+    /// stopped by itself.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
-        const bool ends = forced_ && stops_of_writer() != cached_generation_;
-        local_ = output;
-        writer_ = writer;
-        if (forced_)
-            cached_generation_ = ends ? has_stopped : stops_of_writer();
-        else
+        if (!forced_) {
             seen_ = 0;
+            writer_ = writer;
+        } else if (output != local_) {
+            if (stops_of_writer() != cached_generation_) cached_generation_ = has_stopped;
+        } else if (cached_generation_ != has_stopped) {
+            writer_ = writer;
+            cached_generation_ = stops_of_writer();
+        }
+        local_ = output;
         settle();
     }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh

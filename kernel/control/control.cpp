@@ -113,14 +113,18 @@ Engine::Parts Turns::all() const noexcept TAPPET_REALTIME {
     return parts;
 }
 
+void Turns::aim(const SharedInput& input, std::size_t chain) const noexcept TAPPET_REALTIME {
+    const Writer& writer = input.writers[chain];
+    const auto part = static_cast<std::size_t>(std::countr_zero(writer.part));
+    input.port->link_local(input.input, writer.output, &engine->plan().parts[part].stops);
+}
+
 void Turns::link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REALTIME {
     for (const SharedInput& each : shared) {
         const Writer& writer = each.writers[chain];
         if (writer.output == nullptr) continue;
         if ((writer.part & beginning) != 0) each.port->forget(writer.output);
-        each.port->link_local(
-            each.input, writer.output,
-            &engine->plan().parts[static_cast<std::size_t>(std::countr_zero(writer.part))].stops);
+        aim(each, chain);
     }
     for (const SharedCall& each : calls) each.operations->aim(each.call, &each.goals[chain]);
 }
@@ -149,6 +153,9 @@ LifeAnswer Turns::hand_over(std::size_t next) noexcept TAPPET_REALTIME {
         return answer;
     }
     engine->leave(members[now] & ~members[next]);
+    for (const SharedInput& each : shared) // what is forced belongs to the next writer now
+        if (each.writers[next].output != nullptr && *each.port->places(each.input, true).forced)
+            aim(each, next);
     running.store(static_cast<std::uint32_t>(next), std::memory_order_release);
     times[next].fetch_add(1, std::memory_order_relaxed);
     return answer;
@@ -166,7 +173,7 @@ Engine::Parts Turns::told_by_another(std::size_t now, std::size_t next) const no
 LifeAnswer Turns::find_unwritten(std::size_t chain) const noexcept TAPPET_REALTIME {
     for (const SharedInput& each : shared)
         if (each.writers[chain].output != nullptr && (run_in(chain) & bit(each.part)) != 0 &&
-            each.port->flow(each.input) == Flow::never_written)
+            *each.port->places(each.writers[chain].output, false).writes == 0) // also behind a force
             return {LifeOutcome::refused, LifeRefusal::input_never_written,
                     static_cast<std::uint8_t>(each.part), each.facet};
     return {.outcome = LifeOutcome::done};

@@ -33,9 +33,11 @@ void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     call.refused =
         is_input(*call.facet) ? !waits && !gate.admits(Entry::at_once) : !gate.admits(Entry::queued);
     if (call.refused) return;
+    // One whose writer has stopped lets go at this look.
+    const bool is_unwritten = call.drives && call.facet->port->flow(call.place) == Flow::never_written;
     const bool was_forced = is_forced(call);
-    call.never_written = (call.drives && call.facet->port->flow(call.place) == Flow::never_written) ||
-                         !call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
+    call.never_written =
+        is_unwritten || !call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
     // The count is for observers: nobody decides by it, so its sum is not used here.
     if (!was_forced && !call.never_written)
         call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);

@@ -343,6 +343,16 @@ struct ForcedAxis : ServoAxis {
     End end;
 };
 
+TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
+    force(30);
+    EXPECT_EQ(axis->target_velocity.last(), 30);
+    release();
+    EXPECT_EQ(axis->target_velocity.last(), 0);
+}
+
 TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
     power();
     ASSERT_TRUE(client->synchronize.send(8));

@@ -141,6 +141,16 @@ TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_lies_a_little_ahead) {
     EXPECT_EQ(heard_of(0x080).size(), 4u);
 }
 
+TEST_F(OnDemand, sends_demands_whose_times_are_in_no_order) {
+    run_until(100ms);
+    for (const Time at : {at_ns(130'000'000), at_ns(110'000'000), at_ns(105'000'000)}) {
+        master->sync_at = at;
+        master->sync_next = 5;
+        run_until(clock.now().time_since_epoch() + 20ms);
+    }
+    EXPECT_EQ(heard_of(0x080).size(), 3u);
+}
+
 TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_cannot_be) {
     master->sync_at = at_ns(3'600'000'000'000);
     master->sync_next = 1;

@@ -240,6 +240,20 @@ TEST(Turns, leave_what_is_forced_until_the_one_stops_that_writes_it_then) {
     EXPECT_FALSE(is_forced());
 }
 
+TEST(Turns, are_refused_though_a_force_stands_for_what_nobody_wrote_and_leave_it) {
+    Rig rig;
+    EXPECT_TRUE(rig.run(5ms));
+    End input;
+    ASSERT_TRUE(resolve(rig.instance.machine().table, "position.target", FacetKind::input, input).empty());
+    const PortOperations& port = *facet_at(rig.instance.machine().table, input).port;
+    const double there = 0.3;
+    port.force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&there));
+    rig.part<Mover>("jogging").is_mute = true;
+    EXPECT_NE(rig.ask("jog"), CommandState::done);
+    EXPECT_EQ(rig.running(), "stand");
+    EXPECT_TRUE(*port.places(rig.instance.place_of(input), true).forced);
+}
+
 TEST(Turns, are_not_taken_alone) {
     Rig rig;
     EXPECT_TRUE(rig.run(3ms));
