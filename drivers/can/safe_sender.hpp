@@ -27,7 +27,7 @@ public:
     std::expected<void, Sentence> open(std::string_view interface, std::span<const Frame> frames);
     void close() noexcept;
 
-    /// What was confirmed so far counts no more: another one may have sent since.
+    /// Forgets what was confirmed, so that send() sends all frames again.
     void begin() noexcept;
     /// Hands over each frame that is not confirmed, in order. A rehearsal does the same with frames that the
     /// kernel refuses: nothing reaches the bus.

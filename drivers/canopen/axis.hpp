@@ -142,7 +142,7 @@ private:
     /// It is led by what was written since it was told to follow, and by nothing of before.
     void follow(Time now) noexcept TAPPET_REALTIME {
         const std::int64_t ordered = mode.last();
-        // What is written before the mode is ordered is of another unit.
+        // Until the mode is ordered, its writer still writes in the unit of the mode before.
         if (begins_ && ordered != follows_in_) return;
         double wanted = 0;
         const Flow flow = set_point.read(wanted);

@@ -291,7 +291,7 @@ private:
     }();
     std::array<Value, V> values_{};
     std::array<Words, V> words_{};
-    /// What is written. A server that was lost may have begun with values of its own.
+    /// Whether the server has a value. After an outage nobody knows: it may have restarted (`was`).
     enum class AtServer : std::uint8_t { not_yet, was, is };
     std::array<AtServer, V> at_server_{};
     std::array<std::uint16_t, most_words> buffer_{};

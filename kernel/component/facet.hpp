@@ -56,7 +56,7 @@ struct PortOperations {
     void (*link_shared)(void* input, const void* output, const Stops* writer);
     void (*set_clock)(void* port, bool is_input, const Time* now);
     void (*set_waker)(void* output, Waker waker);
-    /// Of an output: null opens it. In the port's activity. Who is woken by it looks once more at the close.
+    /// Of an output: null opens it. In the port's activity. A close wakes whom a value would wake.
     void (*close)(void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME;
     void (*set_filter)(void* output, PortFilter* filter);
     void (*set_policy)(void* input, const InputPolicy&);

@@ -82,8 +82,8 @@ inline void sine_cosine_of_two(double first, double second, SineCosine& of_first
     of_second = {both.sine[1], both.cosine[1]};
 }
 
-/// Of an angle in degrees: exact where it is a whole number of quarter turns, of at most 1e9 degrees either
-/// way. Real-time.
+/// Of an angle in degrees. Whole numbers of quarter turns are exact, up to 1e9 degrees either way.
+/// Real-time.
 constexpr SineCosine sine_cosine_of_degrees(double degrees) noexcept TAPPET_REALTIME {
     if (!(degrees <= 1e9 && degrees >= -1e9)) [[unlikely]]
         return sine_cosine(degrees * (3.14159265358979323846 / 180.0));

@@ -28,7 +28,7 @@ public:
     }
     /// What is missing between two samples is left out: call it when the value was not good.
     constexpr void pause() noexcept TAPPET_REALTIME { known_ = false; }
-    /// What is no number leaves the sum as it is.
+    /// Ignores a value that is no number.
     constexpr void reset(double value = 0.0) noexcept TAPPET_REALTIME {
         hold(value);
         known_ = false;

@@ -16,6 +16,12 @@ constexpr Duration told_late = 100ms;    // an answer that was made, to who aske
 constexpr std::size_t most_at_once = 24; // requests of somebody who floods the service
 using Kinds = std::initializer_list<FacetKind>;
 
+std::string in_quotes(std::string_view text) {
+    std::string quoted;
+    for (const char each : text) quoted += (each == '"' || each == '\\' ? "\\" : "") + std::string{each};
+    return "\"" + quoted + "\"";
+}
+
 } // namespace
 
 std::string SwarmRun::name_of(End end) const {
@@ -163,9 +169,7 @@ bool SwarmRun::sends_command(std::string_view line) const {
 
 /// Nobody of a lower role keeps an engineer's line from its turn for long.
 void SwarmRun::execute(const std::string& line, std::optional<unsigned> begun_before) {
-    std::string quoted;
-    for (const char each : line) quoted += (each == '"' || each == '\\' ? "\\" : "") + std::string{each};
-    anyone_asks(browser_, "execute \"" + quoted + "\"", [this, line, begun_before](std::string_view answer) {
+    anyone_asks(browser_, "execute " + in_quotes(line), [this, line, begun_before](std::string_view answer) {
         const std::string why = field_of(answer, "error");
         if (is_good(answer)) {
             ++lines_.at_work;
@@ -218,10 +222,9 @@ void SwarmRun::load_anything() {
     const bool twice = random_.one_in(3);
     if (twice) anyone_asks(browser_, "unload " + slot);
     for (int n = 0; n < (twice ? 2 : 1); ++n) {
-        std::string quoted;
-        for (const char each : any_script(row)) quoted += (each == '"' ? "\\" : "") + std::string{each};
-        if (quoted.empty()) return;
-        anyone_asks(browser_, "script " + slot + " 0 \"" + quoted + "\"");
+        const std::string script = any_script(row);
+        if (script.empty()) return;
+        anyone_asks(browser_, "script " + slot + " 0 " + in_quotes(script));
         anyone_asks(browser_, "load " + slot + " anything.osd");
     }
 }
