@@ -67,6 +67,7 @@ struct Standing {
         step(cycle);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        if (!is_number(profile_.end().position)) profile_ = motion::Profile{{.position = position.get()}};
         const motion::AxisState next = profile_.at(cycle.now - began_);
         target.write(next.position);
         speed.write(next.velocity);
@@ -97,7 +98,7 @@ struct Jogging {
         const double now =
             speed_ + std::clamp(wanted_ - speed_, -slide.acceleration * h, slide.acceleration * h);
         const double place = at_ + now * h;
-        put(is_number(place) ? place : position.get(), now);
+        put(is_number(place) ? place : position.get(), is_number(now) ? now : 0.0);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
     void at(double wanted) noexcept TAPPET_REALTIME {
@@ -132,6 +133,7 @@ struct Path {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         if (begins_) began_ = cycle.now;
         begins_ = false;
+        if (!is_number(profile_.end().position)) profile_ = motion::Profile{{.position = position.get()}};
         const motion::AxisState next = profile_.at(cycle.now - began_);
         target.write(next.position);
         speed.write(next.velocity);
@@ -221,7 +223,7 @@ struct Press {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double lacking = target.get() - force.get();
         velocity.write(std::clamp(kf.get() * lacking, -slide.velocity, slide.velocity));
-        if (std::abs(lacking) > 0.02 * target.get())
+        if (!(std::abs(lacking) <= 0.02 * target.get())) // what is no number is not within either
             since_ = never;
         else if (since_ == never)
             since_ = cycle.now;
@@ -248,7 +250,7 @@ struct Ramp {
     Input<double> command, sent;
     Output<double> target;
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        ramp_.reset(sent.get());
+        ramp_.reset(is_number(sent.get()) ? sent.get() : 0.0);
         target.write(ramp_.value());
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {

@@ -17,41 +17,52 @@
 
 namespace tappet::can {
 
+namespace {
+
+/// -1 and errno: the kernel gave none.
+int socket_for(int interface, std::span<const Frame> frames) noexcept {
+    can_filter filters[SafeSender::most_frames];
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        filters[i] = wire::exactly({frames[i].id, frames[i].extended});
+    const bool sends_fd = std::ranges::any_of(frames, &Frame::fd);
+    const int yes = 1;
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = interface;
+    const int fd = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
+    const bool good =
+        fd >= 0 &&
+        ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters,
+                     static_cast<socklen_t>(frames.size() * sizeof filters[0])) == 0 &&
+        ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &yes, sizeof yes) == 0 &&
+        (!sends_fd || ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &yes, sizeof yes) == 0) &&
+        ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    if (good || fd < 0) return fd;
+    const int why = errno;
+    ::close(fd);
+    errno = why;
+    return -1;
+}
+
+} // namespace
+
 std::expected<void, Sentence> SafeSender::open(std::string_view interface, std::span<const Frame> frames) {
     close();
     frames_ = frames;
     if (frames.empty()) return {};
     const auto refused = [&](std::string_view why) {
-        close();
         return std::unexpected(
             Sentence{"CAN interface \"", interface, "\": the guardian cannot send there: ", why});
     };
-    if (frames.size() > 64)
+    if (frames.size() > most_frames)
         return refused("its map has more than 64 frames with safe values; use a second bus");
     const auto link = find_link(interface);
     if (!link) return std::unexpected{link.error()};
-    fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
-    can_filter filters[64];
-    for (std::size_t i = 0; i < frames.size(); ++i)
-        filters[i] = wire::exactly({frames[i].id, frames[i].extended});
-    const bool sends_fd = std::ranges::any_of(frames, &Frame::fd);
-    if (sends_fd)
-        if (auto good = fit_for_fd(*link, interface); !good) {
-            close();
-            return good;
-        }
-    const int yes = 1;
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = link->index;
-    const bool good =
-        fd_ >= 0 &&
-        ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, filters,
-                     static_cast<socklen_t>(frames.size() * sizeof filters[0])) == 0 &&
-        ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &yes, sizeof yes) == 0 &&
-        (!sends_fd || ::setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &yes, sizeof yes) == 0) &&
-        ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    if (!good) return refused(strerrordesc_np(errno));
+    if (std::ranges::any_of(frames, &Frame::fd))
+        if (auto good = fit_for_fd(*link, interface); !good) return good;
+    interface_ = link->index;
+    fd_ = socket_for(interface_, frames_);
+    if (fd_ < 0) return refused(strerrordesc_np(errno));
     return {};
 }
 
@@ -59,13 +70,15 @@ void SafeSender::close() noexcept {
     if (fd_ >= 0) ::close(fd_);
     fd_ = -1;
     confirmed_ = 0;
-    in_flight_ = of_before_ = 0;
+    tells_ = true;
 }
 
 void SafeSender::begin() noexcept {
-    static_cast<void>(left()); // what waits at the socket is of before
     confirmed_ = 0;
-    of_before_ = in_flight_;
+    if (fd_ < 0) return;
+    const int fresh = socket_for(interface_, frames_);
+    tells_ = fresh >= 0;
+    if (tells_) ::close(std::exchange(fd_, fresh));
 }
 
 void SafeSender::send(Purpose purpose) noexcept {
@@ -79,7 +92,6 @@ void SafeSender::send(Purpose purpose) noexcept {
             continue;
         }
         if (::write(fd_, &raw, wire::bytes_of(frames_[i])) < 0) return;
-        ++in_flight_;
     }
 }
 
@@ -96,12 +108,7 @@ std::size_t SafeSender::left() noexcept {
         const ssize_t got = ::recvmsg(fd_, &message, MSG_DONTWAIT);
         if (got < 0 && errno == ENETDOWN && !std::exchange(was_down, true)) continue;
         if (got != CAN_MTU && got != CANFD_MTU) break;
-        if ((message.msg_flags & MSG_CONFIRM) == 0) continue; // of the machine, while it lived
-        in_flight_ -= std::min<std::size_t>(in_flight_, 1);
-        if (of_before_ > 0) {
-            --of_before_;
-            continue;
-        }
+        if ((message.msg_flags & MSG_CONFIRM) == 0 || !tells_) continue; // of the machine, or of before
         Frame sent;
         if (!wire::decode(raw, static_cast<std::size_t>(got), State::active, sent)) continue;
         for (std::size_t i = 0; i < frames_.size(); ++i)

@@ -17,17 +17,20 @@ namespace tappet::can {
 class SafeSender {
 public:
     static constexpr Duration repeat_after = 5ms;
+    static constexpr std::size_t most_frames = 64; // a bit for each
 
     SafeSender() = default;
     SafeSender(const SafeSender&) = delete;
     SafeSender& operator=(const SafeSender&) = delete;
     ~SafeSender() { close(); }
 
-    /// `frames`, 64 at most, outlive it. The error names the cure.
+    /// `frames`, `most_frames` at most, outlive it. The error names the cure.
     std::expected<void, Sentence> open(std::string_view interface, std::span<const Frame> frames);
     void close() noexcept;
 
-    /// Forgets what was confirmed, so that send() sends all frames again.
+    /// Forgets what was confirmed, so that send() sends all frames again. What was sent before confirms none
+    /// of them: they have a socket of their own, because a confirmation says whose frame it is, but not
+    /// which. Without one (the kernel has none left), frames are sent and left() says that none is confirmed.
     void begin() noexcept;
     /// Hands over each frame that is not confirmed, in order. A rehearsal does the same with frames that the
     /// kernel refuses: nothing reaches the bus.
@@ -38,10 +41,10 @@ public:
 
 private:
     std::span<const Frame> frames_{};
-    std::uint64_t confirmed_ = 0; // a bit for each
-    std::size_t in_flight_ = 0;   // written, not confirmed
-    std::size_t of_before_ = 0;   // of these, before the last begin(): they are confirmed first
+    std::uint64_t confirmed_ = 0;
+    int interface_ = 0;
     int fd_ = -1;
+    bool tells_ = true; // what the socket confirms was sent since begin()
 };
 
 } // namespace tappet::can

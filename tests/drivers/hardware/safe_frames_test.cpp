@@ -1,5 +1,5 @@
-// What the guardian sends to its buses. The kernel's side of them is this file's own: a socket that confirms
-// each frame that is written to it.
+// What the guardian sends to its buses. The kernel's side of them is this file's own: a bus that confirms
+// each frame to the socket that sent it.
 #include "drivers/can/link.hpp"
 #include "drivers/hardware/open.hpp"
 
@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include <dlfcn.h>
@@ -17,11 +18,18 @@
 
 namespace {
 
-constexpr int bus = 777;
+constexpr int first_socket = 7770, last_socket = 7799;
+constexpr bool is_socket(int fd) { return fd >= first_socket && fd <= last_socket; }
 
 struct Kernel {
-    std::deque<can_frame> unconfirmed{};
+    struct Sent {
+        int from;
+        can_frame frame;
+    };
+    std::deque<Sent> unconfirmed{};
     std::size_t confirms = 1000; // so many more
+    bool has_sockets = true;
+    int next_socket = first_socket;
     std::vector<canid_t> sent{};
 } kernel;
 
@@ -34,34 +42,41 @@ Function own(const char* name) {
 
 extern "C" {
 int socket(int domain, int type, int protocol) noexcept {
-    return domain == PF_CAN ? bus : own<int (*)(int, int, int)>("socket")(domain, type, protocol);
+    if (domain != PF_CAN) return own<int (*)(int, int, int)>("socket")(domain, type, protocol);
+    if (kernel.has_sockets) return kernel.next_socket++;
+    errno = ENFILE;
+    return -1;
 }
 int setsockopt(int fd, int level, int name, const void* value, socklen_t size) noexcept {
-    if (fd == bus) return 0;
+    if (is_socket(fd)) return 0;
     return own<int (*)(int, int, int, const void*, socklen_t)>("setsockopt")(fd, level, name, value, size);
 }
 int bind(int fd, const sockaddr* address, socklen_t size) noexcept {
-    return fd == bus ? 0 : own<int (*)(int, const sockaddr*, socklen_t)>("bind")(fd, address, size);
+    return is_socket(fd) ? 0 : own<int (*)(int, const sockaddr*, socklen_t)>("bind")(fd, address, size);
 }
-int close(int fd) { return fd == bus ? 0 : own<int (*)(int)>("close")(fd); }
+int close(int fd) { return is_socket(fd) ? 0 : own<int (*)(int)>("close")(fd); }
 ssize_t write(int fd, const void* bytes, size_t size) {
-    if (fd != bus) return own<ssize_t (*)(int, const void*, size_t)>("write")(fd, bytes, size);
+    if (!is_socket(fd)) return own<ssize_t (*)(int, const void*, size_t)>("write")(fd, bytes, size);
     if (size != sizeof(can_frame)) return -1;
-    std::memcpy(&kernel.unconfirmed.emplace_back(), bytes, sizeof(can_frame));
-    kernel.sent.push_back(kernel.unconfirmed.back().can_id);
+    kernel.unconfirmed.push_back({.from = fd, .frame = {}});
+    std::memcpy(&kernel.unconfirmed.back().frame, bytes, sizeof(can_frame));
+    kernel.sent.push_back(kernel.unconfirmed.back().frame.can_id);
     return static_cast<ssize_t>(size);
 }
+// Whoever asks makes the bus go on; what is confirmed to a socket that is no more, nobody learns.
 ssize_t recvmsg(int fd, msghdr* message, int flags) {
-    if (fd != bus) return own<ssize_t (*)(int, msghdr*, int)>("recvmsg")(fd, message, flags);
-    if (kernel.unconfirmed.empty() || kernel.confirms == 0) {
-        errno = EAGAIN;
-        return -1;
+    if (!is_socket(fd)) return own<ssize_t (*)(int, msghdr*, int)>("recvmsg")(fd, message, flags);
+    while (!kernel.unconfirmed.empty() && kernel.confirms > 0) {
+        const Kernel::Sent next = kernel.unconfirmed.front();
+        kernel.unconfirmed.pop_front();
+        --kernel.confirms;
+        if (next.from != fd) continue;
+        std::memcpy(message->msg_iov->iov_base, &next.frame, sizeof next.frame);
+        message->msg_flags = MSG_CONFIRM;
+        return sizeof next.frame;
     }
-    std::memcpy(message->msg_iov->iov_base, &kernel.unconfirmed.front(), sizeof(can_frame));
-    message->msg_flags = MSG_CONFIRM;
-    kernel.unconfirmed.pop_front();
-    --kernel.confirms;
-    return sizeof(can_frame);
+    errno = EAGAIN;
+    return -1;
 }
 }
 
@@ -86,19 +101,54 @@ TEST(SafeFrames, are_all_sent_once_more_when_they_are_asked_for_again) {
     }
 }
 
-TEST(SafeFrames, are_not_confirmed_by_those_of_before) {
+class SafeFrame : public testing::Test {
+protected:
+    SafeFrame() {
+        kernel = {};
+        kernel.confirms = 0;
+        frame[0].id = 0x201;
+        EXPECT_TRUE(sender.open("can0", frame));
+        send();
+    }
+    void send() {
+        sender.begin();
+        sender.send(can::SafeSender::Purpose::earnest);
+    }
     std::array<can::Frame, 1> frame{};
-    frame[0].id = 0x201;
     can::SafeSender sender;
-    ASSERT_TRUE(sender.open("can0", frame));
-    kernel.confirms = 0;
-    sender.begin();
-    sender.send(can::SafeSender::Purpose::earnest);
+};
+
+TEST_F(SafeFrame, is_not_confirmed_by_that_of_before) {
     EXPECT_EQ(sender.left(), 1u);
-    sender.begin(); // the first one still waits at the bus
-    sender.send(can::SafeSender::Purpose::earnest);
+    send(); // the first one still waits at the bus
     kernel.confirms = 1;
     EXPECT_EQ(sender.left(), 1u);
+    kernel.confirms = 1;
+    EXPECT_EQ(sender.left(), 0u);
+}
+
+TEST_F(SafeFrame, is_confirmed_though_the_kernel_dropped_that_of_before) {
+    kernel.unconfirmed.clear();
+    send();
+    kernel.confirms = 1;
+    EXPECT_EQ(sender.left(), 0u);
+}
+
+TEST_F(SafeFrame, is_confirmed_though_the_bus_sent_it_before_that_of_before) {
+    send();
+    std::swap(kernel.unconfirmed[0], kernel.unconfirmed[1]);
+    kernel.confirms = 1;
+    EXPECT_EQ(sender.left(), 0u);
+}
+
+TEST_F(SafeFrame, is_sent_and_never_confirmed_while_the_kernel_has_no_socket_for_it) {
+    kernel.has_sockets = false;
+    send();
+    EXPECT_EQ(kernel.sent.size(), 2u);
+    kernel.confirms = 2;
+    EXPECT_EQ(sender.left(), 1u);
+    kernel.has_sockets = true;
+    send();
     kernel.confirms = 1;
     EXPECT_EQ(sender.left(), 0u);
 }
