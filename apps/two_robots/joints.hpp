@@ -42,8 +42,9 @@ struct JointSensor {
         for (std::size_t i = 0; i < 6; ++i) {
             if (!inputs[i]->good()) return; // nothing is written: who reads it grows stale
             const auto way = static_cast<double>(counts_[i].take(inputs[i]->get(), 32));
-            now[static_cast<int>(i)] =
-                way / counts_per_rad.get()[static_cast<int>(i)] + zero_[static_cast<int>(i)];
+            const double angle = way / counts_per_rad.get()[static_cast<int>(i)] + zero_[static_cast<int>(i)];
+            if (!is_angle(angle)) return; // likewise
+            now[static_cast<int>(i)] = angle;
         }
         if (!has_seen_ || !(cycle.period > Duration::zero())) seen_ = now;
         positions.write(now);
@@ -57,7 +58,7 @@ struct JointSensor {
     /// Joint `axis` (1 to 6) is at `angle` now.
     void calibrate(int axis, double angle) noexcept TAPPET_REALTIME {
         const int i = axis - 1;
-        if (i < 0 || i >= 6 || angle - angle != 0.0) return; // no joint, or no number
+        if (i < 0 || i >= 6 || !is_angle(angle)) return; // no joint, or none of its angles
         const double moved = angle - seen_[i];
         zero_[i] += moved;
         seen_[i] += moved; // which is no motion
@@ -76,7 +77,7 @@ struct JointSensor {
             output<&JointSensor::positions>("positions", "rad", "of the joints"),
             output<&JointSensor::rates>("rates", "rad/s", "of the joints"),
             output<&JointSensor::calibrated>("calibrated", "", "the positions are angles of the arm"),
-            method<&JointSensor::calibrate>("calibrate", "joint 1 to 6, and its angle in rad"),
+            method<&JointSensor::calibrate>("calibrate", "joint 1 to 6, and its angle in rad; heard within 10000"),
             method<&JointSensor::is_calibrated>("is_calibrated", "that joint, 1 to 6"),
             property<&JointSensor::counts_per_rad>("counts_per_rad", "1/rad", "negative: it counts the other way", range(-1e9, 1e9)),
             property<&JointSensor::absolute>("absolute", "", "the encoders know their zero"));
@@ -85,6 +86,8 @@ struct JointSensor {
 
 private:
     static constexpr unsigned all = 0b111111;
+    /// No joint turns further, by far.
+    static constexpr bool is_angle(double angle) noexcept { return std::abs(angle) <= 1e4; }
     std::array<UnwrappedCount, 6> counts_{};
     Joints zero_ = Joints::Zero(), seen_ = Joints::Zero();
     unsigned known_ = 0;

@@ -2,7 +2,7 @@
 // compiler, and tables walked in memory, as a script that is loaded is executed.
 #include "apps/car_tracking/machine.hpp"
 #include "board/host/board.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "tests/apps/car_tracking/car_run.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::uint64_t digest_of(CarRun& run) {
 TEST(CarTrackingForms, native_and_walked_are_the_same_day) {
     for (const std::uint64_t seed : {1u, 8u}) {
         CarRun native{seed};
-        CarRun walked{seed, Firmware<with_tables_walked, board::host>::machine()};
+        CarRun walked{seed, AtRunTime<with_tables_walked, board::host>::machine()};
         EXPECT_EQ(digest_of(native), digest_of(walked)) << "seed " << seed;
     }
 }
