@@ -35,24 +35,6 @@ constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B, E...>& table
     return plan;
 }
 
-constexpr Sentence over_budget(const MachineView& m, const Board& board, std::size_t machine_bytes,
-                               std::size_t stack_bytes) {
-    const std::size_t bytes = machine_bytes + board.heap_bytes;
-    if (bytes <= board.memory_budget_bytes) return {};
-    return Sentence{m.name,
-                    ": board \"",
-                    board.name,
-                    "\": the machine takes ",
-                    bytes,
-                    " bytes of static memory (",
-                    stack_bytes,
-                    " of them stacks, ",
-                    board.heap_bytes,
-                    " the heap) but the board's budget is ",
-                    board.memory_budget_bytes,
-                    "; shorten stacks, buffers or slots, or raise memory_budget_bytes"};
-}
-
 namespace detail {
 
 template <const auto& table, const Board& board, const Binding& binding>
@@ -69,9 +51,14 @@ struct Mapped {
 
 template <const auto& table, const Board& board, const Binding& binding>
 struct Mapped<table, board, binding, true> {
-    static constexpr auto& index = Judged<table, board, binding>::verdict.index;
-    static constexpr map::Counts counts = map::count(table.view(), board, binding, index);
-    static constexpr auto drawn = map::draw<counts>(table.view(), board, binding, index);
+    static constexpr map::Counts counts = [] {
+        auto index = Judged<table, board, binding>::verdict.index;
+        return map::count(table.view(), board, binding, index.view());
+    }();
+    static constexpr auto drawn = [] {
+        auto index = Judged<table, board, binding>::verdict.index;
+        return map::draw<counts>(table.view(), board, binding, index.view());
+    }();
     static constexpr std::size_t bytes = sizeof drawn.map;
     static_assert(drawn.map.header.map_bytes == bytes, "no gap stands between the map's sections");
     static std::span<const std::byte> map() { return std::as_bytes(std::span{&drawn.map, 1}); }
@@ -89,9 +76,8 @@ struct Planned<table, board, binding, true> {
     using Map = Mapped<table, board, binding, find_observer(table.view()) != nowhere>;
     static constexpr auto plan =
         plan_for<count_subscriptions(table.view())>(table, board, binding, verdict.index, Map::bytes);
-    static constexpr Sentence listeners = over_subscribed(table.view(), plan.subscriptions);
     static constexpr Sentence refusal =
-        listeners.empty() ? over_budget(table.view(), board, plan.bytes, plan.stack_bytes) : listeners;
+        check_plan(table.view(), board, plan.subscriptions, plan.bytes, plan.stack_bytes);
 };
 
 template <const auto& table, const Board& board, const Binding& binding, bool good>

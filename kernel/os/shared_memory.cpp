@@ -52,6 +52,12 @@ std::span<const std::byte> map_to_read(int descriptor) noexcept {
     return {static_cast<const std::byte*>(at), bytes};
 }
 
+std::span<std::byte> map_pages(std::size_t bytes) noexcept {
+    void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (at == MAP_FAILED) return {};
+    return {static_cast<std::byte*>(at), bytes};
+}
+
 void unmap(std::span<const std::byte> range) noexcept {
     if (!range.empty()) munmap(const_cast<std::byte*>(range.data()), range.size());
 }

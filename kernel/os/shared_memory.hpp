@@ -30,6 +30,9 @@ private:
     int descriptor_ = -1;
 };
 
+/// Fresh, zeroed pages that no other process sees; at an address of their own, so that memory may be laid
+/// under them. Empty when the kernel has none. Not real-time.
+[[nodiscard]] std::span<std::byte> map_pages(std::size_t bytes) noexcept;
 /// Maps memory that was given as a descriptor, to read. Empty when it is refused. Not real-time.
 [[nodiscard]] std::span<const std::byte> map_to_read(int descriptor) noexcept;
 void unmap(std::span<const std::byte> range) noexcept;

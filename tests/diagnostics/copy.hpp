@@ -1,9 +1,8 @@
 // A table whose rows can be changed while a program runs, and what the check of the compiler says of it.
 #pragma once
 
-#include "kernel/machine/check/check.hpp"
+#include "kernel/machine/accept.hpp"
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,32 +33,7 @@ struct Copy {
 
 /// What the check says of a table; empty: it is accepted.
 inline std::string refusal_of(const MachineView& m, const Board& board, const Binding& binding = unbound) {
-    const std::size_t components = m.components.size();
-    std::vector<std::size_t> by_name(components), activity(components), position(components),
-        in_order(components), waits_for(components);
-    std::vector<Link> connections(m.connections.size()), reactions(m.reactions.size());
-    std::vector<std::size_t> first_into(components), next_into(m.connections.size());
-    std::vector<std::size_t> first_from(components), next_from(m.connections.size());
-    std::vector<std::size_t> first_reaction(components), next_reaction(m.reactions.size());
-    std::vector<std::uint64_t> reach(components);
-    std::vector<std::size_t> rank(m.activities.size()), by_rank(m.activities.size());
-    std::vector<std::int64_t> worst(m.activities.size());
-    return std::string{check(m, board, binding,
-                             {.by_name = by_name,
-                              .activity = activity,
-                              .position = position,
-                              .connections = connections,
-                              .reactions = reactions,
-                              .rank = rank,
-                              .by_rank = by_rank,
-                              .in_order = in_order,
-                              .waits_for = waits_for,
-                              .connections_into = {first_into, next_into},
-                              .connections_from = {first_from, next_from},
-                              .reactions_into = {first_reaction, next_reaction},
-                              .reach = reach,
-                              .worst_response_ns = worst})
-                           .view()};
+    return std::string{Accepted{m, board, binding}.refusal().view()};
 }
 
 } // namespace tappet::diagnostics

@@ -3,7 +3,7 @@
 
 #include "tests/kernel/services/browsing/press_machine.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/os/local_socket.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 
@@ -20,7 +20,7 @@ inline void demand(bool holds) {
 
 template <const auto& machine_table> struct BrowsedPress {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<machine_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<machine_table, board>::machine(), clock};
     VirtualWorld world{instance};
     PropertyFiles files{{}}; // none are kept
 

@@ -2,7 +2,7 @@
 // refused with a sentence or come to an end, and leave a machine that goes on.
 #include "tests/kernel/services/interpreter/line_machine.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 
 #include <cstdlib>
 #include <optional>
@@ -21,7 +21,7 @@ void demand(bool holds) {
 
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<press::line_table, press::board>::machine(), clock};
+    MachineInstance instance{AtRunTime<press::line_table, press::board>::machine(), clock};
     VirtualWorld world{instance};
 
     void run(Duration time) { demand(world.run_until(clock.now() + time)); }

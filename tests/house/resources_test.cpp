@@ -84,6 +84,8 @@ constexpr std::array exceptions{
     Exception{"kernel/os/heap_symbols.cpp", "calloc",  "the heap itself: the program's symbols"},
     Exception{"kernel/os/heap_symbols.cpp", "realloc", "the heap itself: the program's symbols"},
     Exception{"kernel/os/terminal.cpp",     "std::mutex", "two threads write, none of them real-time; held for calls that do not wait"},
+    Exception{"kernel/machine/accept.hpp", "std::unique_ptr",  "tables accepted while a test or a tool runs; no firmware has it"},
+    Exception{"kernel/machine/accept.cpp", "std::make_unique", "the same"},
     Exception{"drivers/gpio/chip.hpp",  "std::unique_ptr", "holds libgpiod's chip, opened while configuring"},
     Exception{"drivers/gpio/chip.cpp",  "std::unique_ptr", "holds libgpiod's objects while configuring"},
     Exception{"drivers/gpio/chip.cpp",  "std::string",     "paths of devices, while configuring"},

@@ -20,11 +20,14 @@ struct Counts {
     std::size_t types = 0, fields = 0, enumerators = 0, figures = 0, characters = 0;
 };
 
-/// The map's memory, in the order in which it is read. Every record's size is a multiple of 8 and no array is
-/// empty, so that nothing stands between them.
+/// Of how many records a section has room: no array is empty.
+constexpr std::size_t room(std::size_t n) noexcept { return std::max<std::size_t>(n, 1); }
+constexpr std::size_t room_of_texts(std::size_t n) noexcept { return (n / 8 + 1) * 8; }
+
+/// The map's memory, in the order in which it is read. Every record's size is a multiple of 8, so that
+/// nothing stands between them.
 template <Counts counts>
 struct Storage {
-    static constexpr std::size_t room(std::size_t n) noexcept { return std::max<std::size_t>(n, 1); }
     Header header{};
     std::array<Component, room(counts.components)> components{};
     std::array<Facet, room(counts.facets)> facets{};
@@ -36,7 +39,7 @@ struct Storage {
     std::array<Field, room(counts.fields)> fields{};
     std::array<Enumerator, room(counts.enumerators)> enumerators{};
     std::array<Figure, room(counts.figures)> figures{};
-    std::array<char, (counts.characters / 8 + 1) * 8> characters{};
+    std::array<char, room_of_texts(counts.characters)> characters{};
 
     /// A text of this map.
     [[nodiscard]] constexpr std::string_view text(const Text& text) const noexcept {
@@ -49,7 +52,7 @@ struct Storage {
 template <Counts counts>
 struct Drawn {
     Storage<counts> map{};
-    std::array<TypeId, std::max<std::size_t>(counts.types, 1)> types{};
+    std::array<TypeId, room(counts.types)> types{};
 };
 
 /// Where records go; a section without room is only counted.
@@ -327,55 +330,64 @@ constexpr void Cartographer::draw_types() {
     }
 }
 
-template <std::size_t C, std::size_t A, std::size_t X, std::size_t R>
 constexpr Counts count(const MachineView& table, const Board& board, const Binding& binding,
-                       TableIndex<C, A, X, R> index) {
+                       const TableIndexView& index) {
     Header header;
-    const TableIndexView view = index.view();
-    Cartographer counted{table, view, {}};
+    Cartographer counted{table, index, {}};
     counted.draw(header, board, binding);
     return counted.counts();
 }
 
-template <Counts counts, std::size_t C, std::size_t A, std::size_t X, std::size_t R>
-constexpr Drawn<counts> draw(const MachineView& table, const Board& board, const Binding& binding,
-                             TableIndex<C, A, X, R> index) {
-    Drawn<counts> drawn;
-    Storage<counts>& map = drawn.map;
-    Header& header = map.header;
+/// Where the sections of a map stand that has so many records.
+constexpr Header outline(const Counts& counts) {
+    Header header;
     header.magic = magic;
     header.layout_version = layout_version;
     header.header_bytes = sizeof header;
     std::size_t at = sizeof header;
-    const auto place = [&at](Section& section, const auto& records, std::size_t used) {
-        section = {static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(used), sizeof records[0], 0};
-        at += sizeof records;
+    const auto place = [&at](Section& section, std::size_t stride, std::size_t used, std::size_t room) {
+        section = {static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(used),
+                   static_cast<std::uint32_t>(stride), 0};
+        at += stride * room;
     };
-    place(header.components, map.components, counts.components);
-    place(header.facets, map.facets, counts.facets);
-    place(header.activities, map.activities, counts.activities);
-    place(header.connections, map.connections, counts.connections);
-    place(header.reactions, map.reactions, counts.reactions);
-    place(header.behaviours, map.behaviours, counts.behaviours);
-    place(header.types, map.types, counts.types);
-    place(header.fields, map.fields, counts.fields);
-    place(header.enumerators, map.enumerators, counts.enumerators);
-    place(header.figures, map.figures, counts.figures);
-    place(header.texts, map.characters, counts.characters);
+    place(header.components, sizeof(Component), counts.components, room(counts.components));
+    place(header.facets, sizeof(Facet), counts.facets, room(counts.facets));
+    place(header.activities, sizeof(Activity), counts.activities, room(counts.activities));
+    place(header.connections, sizeof(Connection), counts.connections, room(counts.connections));
+    place(header.reactions, sizeof(Reaction), counts.reactions, room(counts.reactions));
+    place(header.behaviours, sizeof(Behaviour), counts.behaviours, room(counts.behaviours));
+    place(header.types, sizeof(Type), counts.types, room(counts.types));
+    place(header.fields, sizeof(Field), counts.fields, room(counts.fields));
+    place(header.enumerators, sizeof(Enumerator), counts.enumerators, room(counts.enumerators));
+    place(header.figures, sizeof(Figure), counts.figures, room(counts.figures));
+    place(header.texts, sizeof(char), counts.characters, room_of_texts(counts.characters));
     header.map_bytes = at;
-    const TableIndexView view = index.view();
-    Cartographer cartographer{table,
-                              view,
-                              {map.components, map.facets, map.activities, map.connections, map.reactions,
-                               map.behaviours, map.types, map.fields, map.enumerators, map.figures,
-                               map.characters, drawn.types, header.texts.at}};
-    cartographer.draw(header, board, binding);
+    return header;
+}
+
+/// Fills the room behind a header that was outlined.
+constexpr void draw(Header& header, const Room& into, const MachineView& table, const Board& board,
+                    const Binding& binding, const TableIndexView& index) {
+    Cartographer{table, index, into}.draw(header, board, binding);
     Digest structure;
-    for (const char character : map.characters) structure.add(static_cast<std::uint64_t>(character));
-    for (const Connection& row : map.connections) structure.add(std::uint64_t{row.from} << 32 | row.to);
-    for (const Reaction& row : map.reactions) structure.add(std::uint64_t{row.from} << 32 | row.to);
-    for (const Type& row : map.types) structure.add(row.size);
+    for (const char character : into.characters) structure.add(static_cast<std::uint64_t>(character));
+    for (const Connection& row : into.connections) structure.add(std::uint64_t{row.from} << 32 | row.to);
+    for (const Reaction& row : into.reactions) structure.add(std::uint64_t{row.from} << 32 | row.to);
+    for (const Type& row : into.types) structure.add(row.size);
     header.structure = structure.value();
+}
+
+template <Counts counts>
+constexpr Drawn<counts> draw(const MachineView& table, const Board& board, const Binding& binding,
+                             const TableIndexView& index) {
+    Drawn<counts> drawn;
+    Storage<counts>& map = drawn.map;
+    map.header = outline(counts);
+    draw(map.header,
+         {map.components, map.facets, map.activities, map.connections, map.reactions, map.behaviours,
+          map.types, map.fields, map.enumerators, map.figures, map.characters, drawn.types,
+          map.header.texts.at},
+         table, board, binding, index);
     return drawn;
 }
 

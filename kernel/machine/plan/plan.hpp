@@ -210,6 +210,26 @@ constexpr void make_plan(const MachineView& m, const Board& board, const Binding
     p.stack_bytes = layout.used() - before_stacks;
 }
 
+/// What only a plan shows.
+constexpr Sentence check_plan(const MachineView& m, const Board& board, std::span<const Subscription> list,
+                              std::size_t machine_bytes, std::size_t stack_bytes) {
+    if (const Sentence listeners = over_subscribed(m, list); !listeners.empty()) return listeners;
+    const std::size_t bytes = machine_bytes + board.heap_bytes;
+    if (bytes <= board.memory_budget_bytes) return {};
+    return Sentence{m.name,
+                    ": board \"",
+                    board.name,
+                    "\": the machine takes ",
+                    bytes,
+                    " bytes of static memory (",
+                    stack_bytes,
+                    " of them stacks, ",
+                    board.heap_bytes,
+                    " the heap) but the board's budget is ",
+                    board.memory_budget_bytes,
+                    "; shorten stacks, buffers or slots, or raise memory_budget_bytes"};
+}
+
 /// The storage of a plan, of the table's own sizes.
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t S, std::size_t B>
 struct Plan {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernel/component/loop.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/os/sleep.hpp"
 #include "tests/toolchain/machine/firmware_on_host.hpp"

@@ -2,6 +2,7 @@
 // The adversary in real time: seed after seed a firmware in its two processes, whose makers' functions take
 // their time while people restart its activities and something asks for the stop. Rules judge from outside.
 #include "kernel/base/random.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/os/arming.hpp"
 #include "kernel/os/terminal.hpp"
 #include "tests/adversary/stops/machine.hpp"
@@ -165,7 +166,7 @@ Sentence run(std::uint64_t seed) {
     const pid_t guardian = ::fork();
     if (guardian == 0) {
         ::setpgid(0, 0);
-        test::be_firmware(Firmware<table, test::board_of_host>::machine(), *page,
+        test::be_firmware(AtRunTime<table, test::board_of_host>::machine(), *page,
                           {.configured = [](MachineInstance& configured) {
                               instance = &configured;
                               ::signal(SIGRTMIN, [](int) { os::sleep_for(supervisor_sleeps_for); });

@@ -1,6 +1,7 @@
 // A thousand seeds of a clock that is told over a bus: clocks that drift, stamps that are late, frames that
 // wait, are lost and come twice, tellers that begin anew with another time. What is told is never further
 // from the truth than it says.
+#include "kernel/machine/accept.hpp"
 #include "tests/drivers/can/clock_machines.hpp"
 #include "toolchain/machine/system_run.hpp"
 
@@ -28,7 +29,7 @@ class Story {
 public:
     Story(const AcceptedMachine& told, std::uint64_t seed)
         : random_{seed},
-          machines_{Firmware<telling_machine, board>::machine(), told},
+          machines_{AtRunTime<telling_machine, board>::machine(), told},
           run_{bus, machines_, {}, seed} {
         for (ClockFault& clock : clocks_) {
             clock.drift_ppm = static_cast<double>(random_.between(-100, 100));
@@ -122,7 +123,7 @@ Judgement judge(const AcceptedMachine& told, std::uint64_t seeds) {
 }
 
 TEST(ClockBound, holds_over_a_thousand_seeds) {
-    const Judgement found = judge(Firmware<told_machine, board>::machine(), 1000);
+    const Judgement found = judge(AtRunTime<told_machine, board>::machine(), 1000);
     std::printf("%ld looks, %ld exchanges, %ld discarded, %ld restarts, nearest %.3f, worst error %.1f us\n",
                 found.looks, found.exchanges, found.discarded, found.restarts, found.nearest,
                 to_seconds(found.worst_error) * 1e6);
@@ -137,16 +138,16 @@ TEST(ClockBound, holds_over_a_thousand_seeds) {
 
 // What each part of the bound is for.
 TEST(ClockBound, is_broken_without_drift_and_without_either_stamp) {
-    EXPECT_GT(judge(Firmware<told_without_drift, board>::machine(), 100).broken, 0);
-    EXPECT_GT(judge(Firmware<told_without_own_late, board>::machine(), 100).broken, 0);
-    EXPECT_GT(judge(Firmware<told_without_teller_late, board>::machine(), 100).broken, 0);
+    EXPECT_GT(judge(AtRunTime<told_without_drift, board>::machine(), 100).broken, 0);
+    EXPECT_GT(judge(AtRunTime<told_without_own_late, board>::machine(), 100).broken, 0);
+    EXPECT_GT(judge(AtRunTime<told_without_teller_late, board>::machine(), 100).broken, 0);
 }
 
 // The SYNC of one start of the teller, and the FUP of the next one with the same number, do not belong
 // together.
 TEST(ClockTeller, that_begins_anew_at_once_is_not_mistaken_for_the_one_before) {
-    const std::array machines{Firmware<telling_machine, board>::machine(),
-                              Firmware<told_machine, board>::machine()};
+    const std::array machines{AtRunTime<telling_machine, board>::machine(),
+                              AtRunTime<told_machine, board>::machine()};
     SystemRun run{bus, machines, {}, 1};
     ASSERT_TRUE(run.start());
     while (run.wire().next() == never && run.now() < Time{1s}) run.run_for(100us); // its first SYNC leaves

@@ -3,7 +3,7 @@
 
 #include "drivers/can/bus.hpp"
 #include "drivers/can/clock.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "tests/drivers/components/board.hpp"
 
 #include <vector>

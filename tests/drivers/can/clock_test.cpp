@@ -1,5 +1,6 @@
 // What is made of the frames that tell a clock: which exchanges count, which do not, and what is told
 // meanwhile.
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/can/clock_machines.hpp"
 
@@ -68,7 +69,7 @@ struct ToldClock : testing::Test {
     }
 
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<fed_machine, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<fed_machine, board>::machine(), clock};
     VirtualWorld world{instance};
     Told* told = nullptr;
     ClockFeeder* feeder = nullptr;

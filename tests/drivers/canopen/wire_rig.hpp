@@ -5,7 +5,7 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/twin_bus.hpp"
 #include "drivers/canopen/simulated_node.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 
@@ -66,7 +66,7 @@ template <const auto& table, class Bus> struct WireRig : canopen::FrameSink {
     os::Clock clock{os::Clock::Kind::virtual_time};
     can::TwinBus wire{1};
     can::Twin twin, far_end;
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     bool good = true; ///< all that must be so to test anything
     int refused = 0;  ///< frames of the nodes that found no room

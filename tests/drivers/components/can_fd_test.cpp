@@ -2,7 +2,7 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/far_end.hpp"
 #include "drivers/plant/simulation.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ struct PlaningMachine : testing::Test {
 
     Scanner plant;
     SimulatedDevices devices{plant, 1};
-    AcceptedMachine machine = Firmware<planing_machine, box, on_box>::machine();
+    AcceptedMachine machine = AtRunTime<planing_machine, box, on_box>::machine();
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{machine, clock};
     VirtualWorld world{instance};

@@ -5,7 +5,7 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/restarter.hpp"
 #include "drivers/can/twin_bus.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 #include "tests/drivers/components/unheard.hpp"
@@ -232,7 +232,7 @@ struct CanMachine : testing::Test {
     can::TwinBus wire{1};
     can::Twin twin;
     can::Twin far_end;
-    MachineInstance instance{Firmware<can_machine, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<can_machine, board>::machine(), clock};
     VirtualWorld world{instance};
     bool started = false;
     Time next_tick{};

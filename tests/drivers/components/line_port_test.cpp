@@ -1,7 +1,7 @@
 // Digital lines as a component: edges and their times, levels, losses, and what stays behind at stop.
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/gpio/twin.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 #include "tests/drivers/components/unheard.hpp"
@@ -157,7 +157,7 @@ struct Lines : testing::Test {
 
     os::Clock clock{os::Clock::Kind::virtual_time};
     gpio::Twin twin{7};
-    MachineInstance instance{Firmware<line_machine, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<line_machine, board>::machine(), clock};
     VirtualWorld world{instance};
     Listener* listener = nullptr;
     bool started = false;

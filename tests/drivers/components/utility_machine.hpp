@@ -3,7 +3,7 @@
 
 #include "drivers/modbus/client.hpp"
 #include "drivers/modbus/twin.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 #include "tests/drivers/components/unheard.hpp"
@@ -104,7 +104,7 @@ struct UtilityOf : testing::Test {
 
     os::Clock clock{os::Clock::Kind::virtual_time};
     modbus::Twin twin{300ms, 2ms};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Reader* reader = nullptr;
     Client* server = nullptr;

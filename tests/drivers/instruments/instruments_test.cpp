@@ -6,7 +6,7 @@
 #include "drivers/instruments/simulated.hpp"
 #include "drivers/instruments/velocity_axis.hpp"
 #include "kernel/base/random.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
 
@@ -73,7 +73,7 @@ constexpr auto table = machine("instruments",
 
 struct Instruments : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, test::board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, test::board>::machine(), clock};
     VirtualWorld world{instance};
     Instruments() {
         EXPECT_TRUE(instance.configure({}));

@@ -1,4 +1,5 @@
 // The same system with its wire and without: what its components do and get is the same.
+#include "kernel/machine/accept.hpp"
 #include "kernel/system/collocated.hpp"
 #include "tests/drivers/system/pair.hpp"
 #include "toolchain/machine/system_run.hpp"
@@ -9,7 +10,7 @@ namespace tappet::pair {
 namespace {
 
 inline constexpr auto in_one_box = collocated<pair, giver_table, taker_table>;
-using LocalFirmware = Firmware<in_one_box, board::host>;
+using LocalFirmware = AtRunTime<in_one_box, board::host>;
 
 struct NoPlant final : Plant {
     Time move(Time) override { return never; }

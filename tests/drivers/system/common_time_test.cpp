@@ -2,7 +2,7 @@
 // clocks show, to within the bound that the compiler has proven.
 #include "board/host/board.hpp"
 #include "drivers/system/station.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "toolchain/machine/system_run.hpp"
 
 #include <gtest/gtest.h>
@@ -50,9 +50,9 @@ constexpr auto clocked_wire = wire("wire", bit_rate(500'000), beats(20ms), silen
                                    common_clock("clock", every(100ms), within(200us)));
 constexpr auto clocked = system("clocked", three, clocked_wire, crossings(row));
 // clang-format on
-using Speaks = Firmware<station<clocked, "a", speaks>, board::host>;
-using Listens = Firmware<station<clocked, "b", listens>, board::host>;
-using Tells = Firmware<station<clocked, "clock", tells>, board::host>;
+using Speaks = AtRunTime<station<clocked, "a", speaks>, board::host>;
+using Listens = AtRunTime<station<clocked, "b", listens>, board::host>;
+using Tells = AtRunTime<station<clocked, "clock", tells>, board::host>;
 using ClockOfB = can::ToldClock<systems::StationRows<clocked, 1>::clock_row>;
 
 struct Rig {

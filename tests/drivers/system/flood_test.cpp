@@ -2,7 +2,7 @@
 // up to its budget and the most urgent activity runs. The wire's own activity is woken as often as its row
 // says at most, while all keep their rates; when somebody does not, more often, which is told.
 #include "board/host/board.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "tests/drivers/system/flood.hpp"
 #include "toolchain/machine/system_run.hpp"
 
@@ -81,8 +81,8 @@ private:
         liar_.service(run_.now());
     }
 
-    std::array<AcceptedMachine, 2> machines_{Firmware<station<system, "a", table>, board::host>::machine(),
-                                             Firmware<station<system, "b", table>, board::host>::machine()};
+    std::array<AcceptedMachine, 2> machines_{AtRunTime<station<system, "a", table>, board::host>::machine(),
+                                             AtRunTime<station<system, "b", table>, board::host>::machine()};
     SystemRun run_;
     Bounded<can::Identifier, plan.frames.size()> identifiers_{};
     can::Twin liar_{};

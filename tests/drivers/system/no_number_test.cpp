@@ -2,7 +2,7 @@
 // steps or as it is.
 #include "board/host/board.hpp"
 #include "drivers/system/station.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "toolchain/machine/system_run.hpp"
 
 #include <gtest/gtest.h>
@@ -94,8 +94,8 @@ struct TwoMachines : testing::Test {
         run.run_for(500ms);
     }
     const std::array<AcceptedMachine, 2> machines{
-        Firmware<station<two, "a", lead_table>, board::host>::machine(),
-        Firmware<station<two, "b", follow_table>, board::host>::machine()};
+        AtRunTime<station<two, "a", lead_table>, board::host>::machine(),
+        AtRunTime<station<two, "b", follow_table>, board::host>::machine()};
     SystemRun run{two.view(), machines, {}, 1};
     Lead* a = nullptr;
     Follow* b = nullptr;

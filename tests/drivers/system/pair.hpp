@@ -3,7 +3,7 @@
 
 #include "board/host/board.hpp"
 #include "drivers/system/station.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 
 #include <vector>
 
@@ -94,7 +94,7 @@ inline constexpr auto pair = system("pair",
         stops("a", "b.taker.other_is_there", within(85ms))));
 // clang-format on
 
-using GiverFirmware = Firmware<station<pair, "a", giver_table>, board::host>;
-using TakerFirmware = Firmware<station<pair, "b", taker_table>, board::host>;
+using GiverFirmware = AtRunTime<station<pair, "a", giver_table>, board::host>;
+using TakerFirmware = AtRunTime<station<pair, "b", taker_table>, board::host>;
 
 } // namespace tappet::pair

@@ -3,7 +3,7 @@
 
 #include "board/host/board.hpp"
 #include "drivers/system/station.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "tests/drivers/system/history.hpp"
 #include "toolchain/machine/system_run.hpp"
 
@@ -155,8 +155,8 @@ inline constexpr auto trio = system("trio",
 // clang-format on
 inline constexpr std::size_t taker_node = 2;
 
-using OneFirmware = Firmware<station<trio, "one", sender_table>, board::host>;
-using TwoFirmware = Firmware<station<trio, "two", sender_table>, board::host>;
-using TakerFirmware = Firmware<station<trio, "taker", taker_table>, board::host>;
+using OneFirmware = AtRunTime<station<trio, "one", sender_table>, board::host>;
+using TwoFirmware = AtRunTime<station<trio, "two", sender_table>, board::host>;
+using TakerFirmware = AtRunTime<station<trio, "taker", taker_table>, board::host>;
 
 } // namespace tappet::trio

@@ -1,4 +1,5 @@
 // A node of another version of the system: what is the same there works, what differs is refused by name.
+#include "kernel/machine/accept.hpp"
 #include "tests/drivers/system/pair.hpp"
 #include "toolchain/machine/system_run.hpp"
 
@@ -19,7 +20,7 @@ inline constexpr auto newer_pair = system("pair",
         presence("b", "a.giver.other_is_there"),
         presence("a", "b.taker.other_is_there")));
 // clang-format on
-using NewerTaker = Firmware<station<newer_pair, "b", taker_table>, board::host>;
+using NewerTaker = AtRunTime<station<newer_pair, "b", taker_table>, board::host>;
 
 TEST(Versions, what_is_the_same_works_and_what_differs_is_refused_by_name) {
     const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), NewerTaker::machine()};

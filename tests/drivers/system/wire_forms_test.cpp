@@ -1,4 +1,5 @@
 // The same rows on other wires: CAN FD, which takes wide values, and identifiers that no row moves.
+#include "kernel/machine/accept.hpp"
 #include "tests/drivers/system/pair.hpp"
 #include "toolchain/machine/system_run.hpp"
 
@@ -63,8 +64,8 @@ constexpr auto wide = system("wide",
         across(when("a.arm.reached", tell("b.desk.arrive")), at_most(1, 40ms), within(30ms)),
         across(uses("a.arm.mirror", "b.desk.mirror"), at_most(1, 100ms), within(20ms))));
 // clang-format on
-using ArmFirmware = Firmware<station<wide, "a", arm_table>, board::host>;
-using DeskFirmware = Firmware<station<wide, "b", desk_table>, board::host>;
+using ArmFirmware = AtRunTime<station<wide, "a", arm_table>, board::host>;
+using DeskFirmware = AtRunTime<station<wide, "b", desk_table>, board::host>;
 
 TEST(CanFd, takes_values_arguments_and_results_that_no_classical_frame_takes) {
     const std::array<AcceptedMachine, 2> machines{ArmFirmware::machine(), DeskFirmware::machine()};
@@ -129,8 +130,8 @@ constexpr auto older = system("fixed", nodes(node<giver_table>("a"), node<taker_
 constexpr auto newer = system("fixed", nodes(node<giver_table>("a"), node<taker_table>("b")), fixed_wire,
     crossings(sent_row, level_row, doubled_row, a_row, b_row));
 // clang-format on
-using OlderTaker = Firmware<station<older, "b", taker_table>, board::host>;
-using NewerGiver = Firmware<station<newer, "a", giver_table>, board::host>;
+using OlderTaker = AtRunTime<station<older, "b", taker_table>, board::host>;
+using NewerGiver = AtRunTime<station<newer, "a", giver_table>, board::host>;
 
 TEST(FixedIdentifiers, a_version_with_other_rows_works_in_all_that_both_have) {
     for (const WireFrame& frame : systems::plan_of<older>.frames) {
@@ -263,7 +264,7 @@ constexpr auto second_wire = system("second", nodes(node<on_first_wire>("m"), no
     crossings(across(data("m.bridge.doubled", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
               presence("m", "b.taker.other_is_there")));
 // clang-format on
-using BridgeFirmware = Firmware<station<second_wire, "m", on_first_wire>, board::host>;
+using BridgeFirmware = AtRunTime<station<second_wire, "m", on_first_wire>, board::host>;
 
 TEST(TwoWires, a_node_of_two_systems_stands_on_both) {
     const AcceptedMachine machine = BridgeFirmware::machine();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernel/control/control.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <algorithm>

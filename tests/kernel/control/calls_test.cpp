@@ -1,5 +1,6 @@
 // Method calls that components answer by turns: whoever asks, in whatever activity, is answered in each of
 // its steps by the one that runs.
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/control/axis.hpp"
 
 #include <gmock/gmock.h>
@@ -62,7 +63,7 @@ constexpr auto table = machine("axis",
 
 struct Calls : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, box>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, box>::machine(), clock};
     VirtualWorld world{instance};
     Calls() {
         EXPECT_TRUE(instance.configure({}));

@@ -1,4 +1,5 @@
 // A level that commands a faster one: the command arrives as the row says, and its silence does too.
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/control/axis.hpp"
 
 #include <gtest/gtest.h>
@@ -65,7 +66,7 @@ constexpr auto cascade = machine(
 template <RateTransition how>
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<cascade<how>, box>::machine(), clock};
+    MachineInstance instance{AtRunTime<cascade<how>, box>::machine(), clock};
     VirtualWorld world{instance};
     Inner* inner = nullptr;
     Rig() {

@@ -1,5 +1,6 @@
 // Components that run by turns: one writer in every cycle, a hand-over within one cycle and without a bump,
 // and what happens when a part fails.
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/control/axis.hpp"
 
 #include "kernel/base/random.hpp"
@@ -16,7 +17,7 @@ constexpr auto table = axis_machine(control(axis_level, process("watcher"), axis
 
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, box>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, box>::machine(), clock};
     VirtualWorld world{instance};
     explicit Rig(bool measures = true) {
         EXPECT_TRUE(instance.configure({}));

@@ -2,7 +2,7 @@
 // within its limits. Ends that a port cannot have are refused.
 #include "kernel/limits/limits.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/kernel/base/hostile.hpp"
 
@@ -59,7 +59,7 @@ constexpr auto held = machine_with(limit("drive.speed", 5.0, 40.0), rate("drive.
 
 struct Drives : test::Hostile {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<held, box>::machine(), clock};
+    MachineInstance instance{AtRunTime<held, box>::machine(), clock};
     VirtualWorld world{instance};
     Drive* drive = nullptr;
 
@@ -115,7 +115,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN(),
 template <const auto&... tables>
 void expect_refused() {
     int row = 0;
-    for (const auto& said : {judge(tables, box).refusal...}) {
+    for (const auto& said : {Sentence{Accepted{tables.view(), box}.refusal()}...}) {
         EXPECT_FALSE(said.empty()) << "row " << row;
         ++row;
     }
@@ -140,7 +140,7 @@ constexpr auto to_the_ends = machine_with(limit("drive.speed", -std::numeric_lim
 TEST(Rows, with_ends_that_a_port_cannot_have_are_refused) {
     expect_refused<none_low, none_high, only_above, only_below, same, none_rate, backwards, endless_rate,
                    beyond_float, between_floats, beyond_byte, beyond_word, below_nought>();
-    EXPECT_TRUE(judge(to_the_ends, box).refusal.empty());
+    EXPECT_TRUE(Accepted(to_the_ends.view(), box).refusal().empty());
 }
 
 } // namespace

@@ -2,7 +2,7 @@
 // are refused.
 #include "kernel/limits/limits.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gmock/gmock.h>
@@ -74,7 +74,8 @@ constexpr auto machine_with(const Extra&... extra) {
 template <const auto& table>
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, box>::machine(), clock};
+    Accepted accepted{table.view(), box};
+    MachineInstance instance{accepted.machine(), clock};
     VirtualWorld world{instance};
     Source* source = nullptr;
     Sink* sink = nullptr;
@@ -316,7 +317,7 @@ constexpr auto twice = machine_with(
 
 template <const auto& table>
 std::string refusal() {
-    return std::string{judge(table, box).refusal.view()};
+    return std::string{Accepted{table.view(), box}.refusal().view()};
 }
 
 TEST(LimitRows, are_refused_with_row_fault_and_cure) {

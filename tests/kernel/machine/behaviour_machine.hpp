@@ -2,7 +2,7 @@
 // one.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/script/compiled.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernel/base/contract.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/os/sleep.hpp"

@@ -1,5 +1,5 @@
 // A cam table as a component of a machine, under virtual time: what fires where, and what does not.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/pieces/cam_shaft.hpp"
 #include "tests/kernel/base/hostile.hpp"
@@ -94,7 +94,7 @@ inline constexpr auto absolute = TAPPET_CAM_TABLE("encoder.code");
 inline constexpr auto counting = TAPPET_CAM_TABLE("encoder.counter", set("counter_bits", 16));
 
 struct Turning : test::Hostile {
-    explicit Turning(const AcceptedMachine& machine = Firmware<absolute, board>::machine())
+    explicit Turning(const AcceptedMachine& machine = AtRunTime<absolute, board>::machine())
         : instance{machine, clock} {
         const auto configured = instance.configure({});
         EXPECT_TRUE(configured) << (configured ? "" : configured.error().view());
@@ -250,7 +250,7 @@ TEST_F(Turning, windows_are_told_to_be_left_at_start_and_stop) {
 }
 
 struct Counting : Turning {
-    Counting() : Turning{Firmware<counting, board>::machine()} {}
+    Counting() : Turning{AtRunTime<counting, board>::machine()} {}
 };
 
 TEST_F(Counting, a_turn_begins_where_a_counter_was_seen_first_and_wraps_do_not_matter) {

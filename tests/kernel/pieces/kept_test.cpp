@@ -1,5 +1,5 @@
 // Totals that survive the main switch, with files below them, over two lives of a machine.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/pieces/kept.hpp"
 #include "kernel/services/configuration/property_files.hpp"
@@ -56,7 +56,7 @@ constexpr std::size_t aside = 1; ///< the activity
 /// One life of the machine, which ends without a word, as by the main switch.
 struct Life {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     PropertyFiles files;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A firmware in its two processes, on this host: a stop that is asked for is complete within the board's
 // bound, by the machine or, where something of it hangs, by its guardian.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/os/arming.hpp"
 #include "kernel/os/guard.hpp"
 #include "kernel/os/sleep.hpp"
@@ -123,7 +123,7 @@ struct AFirmware : testing::Test {
         page->ill = ill;
         guardian = ::fork();
         if (guardian == 0)
-            test::be_firmware(Firmware<table, test::board_of_host>::machine(), *page,
+            test::be_firmware(AtRunTime<table, test::board_of_host>::machine(), *page,
                               {.configured = [](MachineInstance& instance) {
                                   the_instance = &instance;
                                   ::signal(SIGRTMIN,

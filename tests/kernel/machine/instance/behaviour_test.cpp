@@ -1,5 +1,6 @@
 // A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script, in the
 // component's activity, after its commands and events; what it may touch the table checks.
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -46,7 +47,7 @@ constexpr auto threads = activities(
 constexpr auto table = machine("bakery", parts, threads, connections(), reactions(),
     behaviours(behaviour("oven", compiled_script<baking, reach>, {})));
 // clang-format on
-using Bakery = Rig<Firmware<table, board>>;
+using Bakery = Rig<AtRunTime<table, board>>;
 
 constexpr ScriptSource cooking{"cooking.osd", R"(
 StateMachine Cooking {
@@ -68,7 +69,7 @@ constexpr auto cooking_table = machine("bakery", parts, threads, connections(), 
                                        behaviours(behaviour("oven", compiled_script<cooking, reach>, {})));
 
 TEST(Behaviour, hears_events_whose_arguments_a_message_has_no_room_for) {
-    Rig<Firmware<cooking_table, board>> rig;
+    Rig<AtRunTime<cooking_table, board>> rig;
     rig.run(10ms);
     rig.oven().told.clear();
     for (std::int64_t n = 1; n <= 4; ++n) // they wait together
@@ -135,7 +136,7 @@ constexpr auto cooled = machine("cooled", parts, threads, connections(), reactio
 
 TEST(Behaviour, that_takes_its_time_to_end_comes_to_its_end_before_its_component_begins_anew) {
     for (const Duration stopped_for : {0ms, 1ms, 50ms}) {
-        Rig<Firmware<cooled, board>> rig;
+        Rig<AtRunTime<cooled, board>> rig;
         rig.run(10ms);
         const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
         EXPECT_EQ(rig.state(unit), "Cold");
@@ -165,7 +166,7 @@ constexpr auto failed = machine("failed", parts, threads, connections(), reactio
 // clang-format on
 
 TEST(Behaviour, that_fails_on_its_way_to_the_end_does_not_begin_anew_by_itself) {
-    Rig<Firmware<failed, board>> rig;
+    Rig<AtRunTime<failed, board>> rig;
     rig.run(10ms);
     const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
     rig.oven().told.clear();
@@ -195,8 +196,7 @@ TEST(Behaviour, an_error_stops_the_machine_and_the_report_names_the_line) {
 template <class... Rows>
 std::string refusal_of(const Rows&... rows) {
     const auto wrong = machine("bakery", parts, threads, connections(), reactions(), behaviours(rows...));
-    auto verdict = judge(wrong, board);
-    return std::string{verdict.refusal.view()};
+    return std::string{Accepted{wrong.view(), board}.refusal().view()};
 }
 
 TEST(BehaviourChecks, a_script_compiled_for_one_activity_is_refused_where_two_run_its_peers) {

@@ -1,5 +1,6 @@
 // Programs of a script command those that stand before them (thesis 5.1.6: from activities of the same task,
 // too), and what comes of it is the same in native code, with walked tables and in a slot.
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include "kernel/machine/table/compiled.hpp"
@@ -101,7 +102,7 @@ constexpr auto woken = machine("bakery",
     connections(), reactions(), behaviours(row<Form>()));
 // clang-format on
 
-template <const auto& Machine> struct Bakery : Rig<Firmware<Machine, board>> {
+template <const auto& Machine> struct Bakery : Rig<AtRunTime<Machine, board>> {
     void load() {
         BehaviourSlot* const slot = this->instance.slot_of("oven");
         if (slot == nullptr) return;

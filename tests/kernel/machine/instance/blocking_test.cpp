@@ -1,7 +1,7 @@
 // Methods and commands that may block (thesis 4.5.2): where they run, and for whom.
 #include "kernel/machine/worlds/virtual_world.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 
 
 struct WhatMayBlock : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     WhatMayBlock() {
         EXPECT_TRUE(instance.configure({}));

@@ -1,6 +1,6 @@
 // Parts that need each other's values (a drive's component and its bus) were stopped together, and start
 // again one by one: whichever is the first starts without, as it did with the machine.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gmock/gmock.h>
@@ -46,7 +46,7 @@ constexpr std::size_t wires = 0, motion = 1;
 class Circle : public testing::Test {
 protected:
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
 
     void SetUp() override {

@@ -2,7 +2,8 @@
 // several emitting activities, waits, and the observer of everything.
 #include "kernel/machine/worlds/virtual_world.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
+#include "kernel/machine/plan/subscription.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -158,7 +159,7 @@ constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 
 
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Shaft& shaft;
     Panel& panel;

@@ -1,7 +1,8 @@
 // Data flow between the components of a machine (thesis 4.4): whatever the type, inside one activity and
 // across two, from one to many and from many to one, with every policy that a row may state.
 #include "kernel/base/random.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
+#include "kernel/machine/check/flow.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
@@ -139,7 +140,7 @@ protected:
     Sink<T>& sink(std::string_view name) { return *instance.template find<Sink<T>>(name); }
 
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table<T>, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table<T>, board>::machine(), clock};
     VirtualWorld world{instance};
     Time now = at_ns(0);
     Random random{static_cast<std::uint64_t>(testing::UnitTest::GetInstance()->random_seed())};
@@ -282,7 +283,7 @@ TYPED_TEST(Flows, give_every_reader_of_buffers_each_value_of_each_writer_in_orde
 
 TEST(Flow, through_a_buffer_orders_the_components_of_an_activity_as_data_does) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table<double>, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table<double>, board>::machine(), clock};
     const auto place = [&](std::string_view name) {
         return instance.machine().index.position[find_component(instance.machine().table, name)];
     };
@@ -370,7 +371,7 @@ struct Running {
         return *instance.template find<C>(name);
     }
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<machine_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<machine_table, board>::machine(), clock};
     VirtualWorld world{instance};
     Time now = at_ns(0);
 };

@@ -1,6 +1,6 @@
 // A forced input of who is woken by what is written lets go when its writer stops: nothing else would wake
 // it.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 
 template <const auto& table>
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Rig() {
         EXPECT_TRUE(instance.configure({}));

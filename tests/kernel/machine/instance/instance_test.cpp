@@ -4,7 +4,7 @@
 #include "kernel/machine/instance/instance.hpp"
 
 #include "kernel/base/random.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/statechart/rows.hpp"
 
@@ -152,7 +152,7 @@ constexpr std::size_t field = 0, motion = 1, slow = 2, office = 3;
 
 struct Machine : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
 
     Machine() {
@@ -340,7 +340,7 @@ TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_oth
 std::uint64_t under_random_wishes(std::uint64_t seed) {
     Random random{seed};
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     EXPECT_TRUE(instance.configure({}));
     EXPECT_EQ(world.start().view(), "");

@@ -3,7 +3,8 @@
 // on.
 #include "kernel/machine/worlds/virtual_world.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
+#include "kernel/machine/plan/operations.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -164,7 +165,7 @@ constexpr std::size_t motion = 0;
 
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Axis& axis;
     Panel& panel;

@@ -1,6 +1,6 @@
 // From the edge to what it caused: each row that tells or wakes knows how often and how long, in virtual time
 // to the nanosecond.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
@@ -89,7 +89,7 @@ constexpr std::size_t wakes_logic = 0, tells_logic = 0, tells_brake = 1; ///< ro
 class Reactions : public testing::Test {
 protected:
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     bool configured = instance.configure({}).has_value();
     Lines& lines = *instance.find<Lines>("lines");

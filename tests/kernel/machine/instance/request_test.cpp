@@ -2,7 +2,8 @@
 // between two of its steps, and a flood of them takes no place from anybody.
 #include "kernel/machine/worlds/virtual_world.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
+#include "kernel/machine/plan/operations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +73,7 @@ constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 
 
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Rig() {
         EXPECT_TRUE(instance.configure({}));

@@ -1,5 +1,5 @@
 // Values that are scaled on their way: one multiplication between two units, inside an activity and across.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ inline constexpr auto table = machine("pumps",
 
 struct Scaling : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Pump& pump = *instance.find<Pump>("pump");
     Dosing& near = *instance.find<Dosing>("near");

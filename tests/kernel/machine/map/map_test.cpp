@@ -2,15 +2,18 @@
 // and another process reads every name, row and live value by it.
 #include "kernel/machine/map/view.hpp"
 
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace tappet {
@@ -105,6 +108,24 @@ static_assert(drawn.text(drawn.facets[5].name) == "gain" && drawn.facets[5].high
 constexpr auto& unseen = Firmware<blind, board>::map();
 static_assert(unseen.text(unseen.header.machine) == "blind",
               "any table has one, also when nothing sees the machine");
+
+TEST(Accepted, at_run_time_a_table_has_the_map_and_the_memory_that_the_compiler_gives_it) {
+    for (const auto& [of, compiled] :
+         {std::pair{table.view(), Cart::machine()}, {blind.view(), Firmware<blind, board>::machine()}}) {
+        Accepted accepted{of, board};
+        ASSERT_EQ(accepted.refusal().view(), "");
+        const AcceptedMachine made = accepted.machine();
+        EXPECT_TRUE(std::ranges::equal(made.map, compiled.map));
+        EXPECT_TRUE(std::ranges::equal(made.map_types, compiled.map_types));
+        EXPECT_TRUE(std::ranges::equal(made.index.position, compiled.index.position));
+        EXPECT_TRUE(std::ranges::equal(made.plan.component_at, compiled.plan.component_at));
+        EXPECT_EQ(made.memory.size(), compiled.memory.size());
+        EXPECT_EQ(made.plan.shared_bytes, compiled.plan.shared_bytes);
+    }
+    constexpr Board small{.name = "small", .world = "host", .memory_budget_bytes = 4096};
+    EXPECT_NE((Accepted{table.view(), small}.refusal().view().find("the board's budget is 4096")),
+              std::string_view::npos);
+}
 
 class Map : public testing::Test {
 protected:

@@ -1,4 +1,5 @@
 // A slot that begins with what was compiled: it is at work from the start, and gives way to what is loaded.
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "tests/kernel/machine/slots/slot_rig.hpp"
 
@@ -49,7 +50,7 @@ template <class Firmware> struct Begun : testing::Test, Rig<Firmware> {
     }
     std::string state_now() { return slot.active() == nullptr ? "none" : this->state(*slot.active()); }
 };
-using Kinds = testing::Types<Firmware<native, board>, Firmware<interpreted, board>>;
+using Kinds = testing::Types<AtRunTime<native, board>, AtRunTime<interpreted, board>>;
 TYPED_TEST_SUITE(Begun, Kinds);
 
 TYPED_TEST(Begun, is_at_work_from_the_start) {
@@ -115,7 +116,7 @@ constexpr auto shut = state_machine<Oven>(
     transitions(transition("closed", "open", on("tick")), transition("open", "closed", on("door.moved"))));
 constexpr auto of_a_table = bakery(behaviour("oven", compiled<shut>, room));
 
-struct BegunTable : Begun<Firmware<of_a_table, board>> {};
+struct BegunTable : Begun<AtRunTime<of_a_table, board>> {};
 
 TEST_F(BegunTable, is_at_work_until_a_script_takes_over) {
     EXPECT_EQ(state_now(), "closed");

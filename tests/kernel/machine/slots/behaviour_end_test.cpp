@@ -1,4 +1,5 @@
 // The end of a behaviour that takes its time, in an activity that nothing wakes but the behaviour's own wait.
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ constexpr auto sporadic = machine("gate",
     behaviours(behaviour("door", slot(nodes(40), data_bytes(512), depth(3), timers(2), text_bytes(2000), trial(2)))));
 // clang-format on
 
-struct Gate : testing::Test, Rig<Firmware<sporadic, board>> {
+struct Gate : testing::Test, Rig<AtRunTime<sporadic, board>> {
     Door& gate = *instance.find<Door>("door");
     BehaviourSlot& slot = *instance.slot_of("door");
     Gate() {

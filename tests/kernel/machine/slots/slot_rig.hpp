@@ -1,6 +1,7 @@
 // A machine with a slot, and what loads behaviours into it.
 #pragma once
 
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -44,7 +45,7 @@ inline std::string numbered(int number, std::string_view more = {}) {
            "}\n";
 }
 
-class BehaviourSlotTest : public testing::Test, protected Rig<Firmware<table, board>> {
+class BehaviourSlotTest : public testing::Test, protected Rig<AtRunTime<table, board>> {
 protected:
     BehaviourSlot& slot = *instance.slot_of("oven");
     BehaviourSlotTest() { run(5ms); }

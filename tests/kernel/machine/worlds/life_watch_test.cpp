@@ -2,7 +2,7 @@
 // Who owes a sign of life, and for how long it may.
 #include "kernel/machine/worlds/life_watch.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/table/machine.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
@@ -65,7 +65,7 @@ protected:
     Time looked = begin;
 
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     LifeWatch watch{instance, 100ms};
 };
 

@@ -2,7 +2,7 @@
 // its messages where it waits, and comes back when its activity stops; under real and under virtual time.
 #include "kernel/component/loop.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/os/sleep.hpp"
@@ -119,7 +119,7 @@ constexpr std::size_t blocks = 0;
 
 struct ALoopInVirtualTime : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     ALoopInVirtualTime() { EXPECT_TRUE(instance.configure({})); }
     ~ALoopInVirtualTime() override { world.stop(); }
@@ -187,7 +187,7 @@ TEST_F(ALoopInVirtualTime, a_wish_to_its_component_is_a_wish_to_its_activity) {
 TEST_F(ALoopInVirtualTime, is_the_same_in_every_run) {
     const auto digest = [](int words) {
         os::Clock its_clock{os::Clock::Kind::virtual_time};
-        MachineInstance again{Firmware<table, board>::machine(), its_clock};
+        MachineInstance again{AtRunTime<table, board>::machine(), its_clock};
         VirtualWorld its_world{again};
         EXPECT_TRUE(again.configure({}));
         again.find<Reader>("reader")->nap = 700us;
@@ -203,7 +203,7 @@ TEST_F(ALoopInVirtualTime, is_the_same_in_every_run) {
 
 struct ALoopInRealTime : testing::Test {
     os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{Firmware<real_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<real_table, board>::machine(), clock};
     RealWorld world{instance};
     os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
     Reader* reader = nullptr;

@@ -3,7 +3,7 @@
 #include "kernel/machine/worlds/real_world.hpp"
 
 #include "kernel/base/random.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/sleep.hpp"
 #include "tests/kernel/machine/watched_machine.hpp"
@@ -27,7 +27,7 @@ template <const auto& table>
 class Rig {
 public:
     os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{Firmware<table, watched::board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, watched::board>::machine(), clock};
     std::unique_ptr<RealWorld> world = std::make_unique<RealWorld>(instance);
     std::unique_ptr<os::ArmingReport> report = std::make_unique<os::ArmingReport>(
         std::span{watched::board.only_warned.begin(), watched::board.only_warned.end()});

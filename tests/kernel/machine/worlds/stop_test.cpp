@@ -2,7 +2,7 @@
 // Whatever a maker's function does for seconds, a stop that is asked for meanwhile leaves the outputs safe
 // within the board's bound: for each cause of a stop, in each such situation.
 #include "kernel/component/loop.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/os/sleep.hpp"
 
@@ -161,7 +161,7 @@ constexpr std::array causes{Cause::stale_row, Cause::missed_deadline, Cause::ter
 
 template <const auto& of_table> struct Rig {
     os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{Firmware<of_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<of_table, board>::machine(), clock};
     RealWorld world{instance};
     os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
     Valve* valve = nullptr;
@@ -428,7 +428,7 @@ TEST(StopOfWhatBlocks, reaches_the_wire_or_is_told_as_unsafe) {
     for (const int blocks_ms : {5, 150, 400}) {
         SCOPED_TRACE(blocks_ms);
         os::Clock clock{os::Clock::Kind::real};
-        MachineInstance instance{Firmware<oven_table, board>::machine(), clock};
+        MachineInstance instance{AtRunTime<oven_table, board>::machine(), clock};
         RealWorld world{instance};
         os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
         ASSERT_TRUE(instance.configure({}));

@@ -1,5 +1,7 @@
 // A machine under virtual time: nothing sleeps, every run of a seed is the same, and an overrun is laid at
 // the door of whoever caused it.
+#include "kernel/machine/accept.hpp"
+#include "kernel/machine/check/time.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include "kernel/base/random.hpp"
@@ -23,7 +25,7 @@ std::string_view culprit(const Engine& engine, const Miss& miss) {
 template <const auto& table>
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, watched::board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, watched::board>::machine(), clock};
     VirtualWorld world{instance};
     /// `seed`: cycles take times.
     explicit Rig(std::optional<std::uint64_t> seed = {}) {
@@ -62,7 +64,7 @@ TEST(VirtualWorld, keeps_an_activity_that_hangs_from_its_cycles_and_no_other) {
 
 /// Cycles that take time, as long as the analysis says at most.
 TEST(VirtualWorld, lets_cycles_take_up_to_their_budgets_and_none_respond_later_than_analysed) {
-    const AcceptedMachine machine = Firmware<watched::table, watched::board>::machine();
+    const AcceptedMachine machine = AtRunTime<watched::table, watched::board>::machine();
     std::vector<int> processors;
     for (const ActivityPlan& plan : machine.plan.activities) processors.push_back(plan.processor);
     Duration longest{};
@@ -145,7 +147,7 @@ TEST(VirtualWorld, stops_within_no_time_while_makers_functions_take_theirs_and_n
 
 TEST(VirtualWorld, does_not_do_later_what_it_refused_before_the_start) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<watched::table, watched::board>::machine(), clock};
+    MachineInstance instance{AtRunTime<watched::table, watched::board>::machine(), clock};
     VirtualWorld world{instance};
     ASSERT_TRUE(instance.configure({}));
     const std::size_t middle = find_component(instance.machine().table, "middle");

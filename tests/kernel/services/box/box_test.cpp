@@ -1,7 +1,7 @@
 // How a box is: read from a made-up tree of the kernel's, and shown by a machine.
 #include "kernel/services/box/box.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ constexpr Board board{.name = "host", .world = "host", .heap_bytes = 65536, .sim
 
 TEST(Box, tells_a_machine_how_it_is) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     ASSERT_TRUE(instance.configure({}));
     VirtualWorld world{instance};
     world.start();

@@ -2,7 +2,7 @@
 // of each cycle for everybody, and nothing that one client does reaches another.
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/services/browsing/access.hpp"
 
 #include <memory>
@@ -201,7 +201,7 @@ TEST_F(Press, a_client_that_dies_in_the_middle_leaves_nothing_behind) {
 
 TEST(Access, without_a_directory_the_machine_runs_and_has_no_door) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     ASSERT_TRUE(instance.browsing_directory().empty()) << "the board names none";
     PropertyFiles none{{}};
     instance.read_properties_from(none.store());

@@ -1,5 +1,7 @@
 // A browser sees behaviours, commands them, and loads scripts into a slot of the running machine (thesis 4.8,
 // 5.1.6, 5.2.5): what it may not do, or did not spell well, is said with its cure.
+#include "kernel/machine/accept.hpp"
+#include "kernel/machine/plan/operations.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +56,7 @@ class Behaviours : public testing::Test {
 protected:
     std::string directory = testing::TempDir() + "tappet-behaviours-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<with_behaviours, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<with_behaviours, board>::machine(), clock};
     VirtualWorld world{instance};
 
     void SetUp() override {

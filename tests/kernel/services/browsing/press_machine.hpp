@@ -1,7 +1,7 @@
 // A small machine with a browser service: a ram that goes where it is told, and the table that limits it.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 

@@ -1,7 +1,7 @@
 // The press under virtual time, and a client that talks to it.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 #include "tests/kernel/services/browsing/press_machine.hpp"
 
@@ -61,7 +61,7 @@ class Press : public testing::Test {
 protected:
     std::string directory = testing::TempDir() + "tappet-browsing-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     PropertyFiles files{directory};
 

@@ -1,4 +1,5 @@
 // Events that are told to browsers: what one client asks for costs no other of a higher role its own.
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include <gmock/gmock.h>
@@ -41,7 +42,7 @@ TEST(Subscriptions, of_observers_cost_nobody_of_a_higher_role_an_event_and_count
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     const std::string directory = testing::TempDir() + "tappet-ticking-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, press::board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, press::board>::machine(), clock};
     VirtualWorld world{instance};
     instance.browse_in(directory);
     ASSERT_TRUE(instance.configure({}));

@@ -2,7 +2,7 @@
 // that a wrong one keeps it from arming; changed while it runs; saved while it runs and when it has stopped.
 #include "kernel/services/configuration/property_files.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/configuration/property_saving.hpp"
 
@@ -108,7 +108,7 @@ struct PropertyFilesOfAMachine : testing::Test {
     std::string directory_name;
     std::unique_ptr<PropertyFiles> files;
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
 
     PropertyFilesOfAMachine() {
         std::string pattern = (std::filesystem::temp_directory_path() / "tappet-properties-XXXXXX").string();
@@ -207,7 +207,7 @@ TEST_F(PropertyFilesOfAMachine, need_a_directory_unless_all_are_optional) {
 
 TEST(PropertiesOfARow, are_validated_by_their_component_too) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<refused_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<refused_table, board>::machine(), clock};
     const auto configured = instance.configure({});
     ASSERT_FALSE(configured);
     EXPECT_THAT(std::string{configured.error().view()},

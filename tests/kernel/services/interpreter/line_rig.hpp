@@ -1,6 +1,7 @@
 // The press with an interpreter under virtual time, and somebody who types lines.
 #pragma once
 
+#include "kernel/machine/accept.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 #include "tests/kernel/services/interpreter/line_machine.hpp"
 
@@ -14,7 +15,7 @@ class Lines : public testing::Test {
 protected:
     std::string directory = testing::TempDir() + "tappet-lines-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<line_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<line_table, board>::machine(), clock};
     VirtualWorld world{instance};
     std::unique_ptr<Talker> talker;
 

@@ -1,6 +1,6 @@
 // Nothing reaches a component that was stopped, and what it left on its outputs stays: whatever way is tried,
 // and whether it was begun before the stop or after it.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/services/interpreter/command_interpreter.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
@@ -143,7 +143,7 @@ class AStoppedComponent : public testing::Test {
 protected:
     std::string directory = testing::TempDir() + "tappet-stopped-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     std::unique_ptr<Talker> talker;
 

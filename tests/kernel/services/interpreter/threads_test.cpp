@@ -1,5 +1,6 @@
 // Lines in a machine of threads: they run in one activity after the other, all of which send to the same
 // engine through the same mailbox; some are broken off on their way.
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "tests/kernel/services/interpreter/line_machine.hpp"
 
@@ -65,7 +66,7 @@ constexpr Board any{.name = "test", .world = "host", .memory_budget_bytes = 4 * 
 
 TEST(LinesInThreads, end_one_after_the_other_wherever_they_run) {
     os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{Firmware<threads, any>::machine(), clock};
+    MachineInstance instance{AtRunTime<threads, any>::machine(), clock};
     RealWorld world{instance};
     os::ArmingReport report{std::span{any.only_warned.begin(), any.only_warned.end()}};
     const int nowhere_to_print = open("/dev/null", O_WRONLY);

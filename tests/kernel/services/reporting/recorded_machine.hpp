@@ -1,7 +1,7 @@
 // A machine whose values are recorded in every way that a row can say, and which knows what they were.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/reporting/reporting.hpp"
 
@@ -104,7 +104,7 @@ constexpr auto machine_with(const Extra&... extra) {
 template <const auto& table>
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, box>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, box>::machine(), clock};
     VirtualWorld world{instance};
     Axis* axis = nullptr;
 

@@ -2,7 +2,7 @@
 // what its components consume.
 #include "kernel/services/scope/thread_scope.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ constexpr std::size_t motion = 0, logic = 1, background = 2;
 
 struct Scope : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     Worker* first = nullptr;
     ThreadScope* scope = nullptr;
@@ -244,7 +244,7 @@ TEST_F(Scope, an_activity_that_is_stopped_and_started_goes_on_with_its_tape) {
 }
 
 TEST(ScopeTable, two_recorders_in_one_table_are_refused) {
-    const Sentence refusal = judge(two_scopes, board).refusal;
+    const Sentence refusal = Accepted{two_scopes.view(), board}.refusal();
     EXPECT_NE(refusal.view().find("\"other\" records the machine's cycles as \"scope\" does already"),
               std::string_view::npos)
         << refusal.view();

@@ -5,7 +5,7 @@
 #include "kernel/services/tasks/component_life.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -129,7 +129,7 @@ constexpr auto begun = machine("bakery",
 struct Bakery {
     PropertyFiles files;
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
 
     explicit Bakery(const std::string& directory) : files{directory} {
@@ -349,7 +349,7 @@ TEST(What_is_loaded, goes_on_where_the_machine_was_switched_off) {
     }
 }
 
-struct Begun : testing::Test, Rig<Firmware<begun, board>> {
+struct Begun : testing::Test, Rig<AtRunTime<begun, board>> {
     template <class T> T& property(std::string_view task, std::string_view name) {
         const MachineView& of = instance.machine().table;
         const std::size_t c = find_component(of, task);

@@ -1,5 +1,6 @@
 // What browsers see, set and command of behaviours as tasks is the same whether a script is compiled with the
 // machine or loaded into its slot (thesis 4.8, 5.1.6, 5.2.5).
+#include "kernel/machine/accept.hpp"
 #include "kernel/script/compiled.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
@@ -53,7 +54,7 @@ class Task : public testing::TestWithParam<const char*> {
 protected:
     std::string directory = testing::TempDir() + "tappet-tasks-" + std::to_string(getpid());
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<with_tasks, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<with_tasks, board>::machine(), clock};
     VirtualWorld world{instance};
     std::unique_ptr<Talker> talker{};
     std::string form = GetParam();

@@ -5,7 +5,7 @@
 #include "kernel/services/tasks/component_life.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/table/compiled.hpp"
 
 #include <algorithm>
@@ -114,7 +114,7 @@ constexpr auto table = machine("bakery",
     behaviours(behaviour("oven", compiled<script>, on_error(OnError::report)), behaviour("door", beside, {})));
 // clang-format on
 
-struct Tasks : Rig<Firmware<table, board>> {
+struct Tasks : Rig<AtRunTime<table, board>> {
     Panel& panel() { return *instance.find<Panel>("panel"); }
     const BehaviourUnit& unit() { return *instance.behaviour_of("oven"); }
     template <class T> T property(std::string_view task, std::string_view name) {
@@ -195,7 +195,7 @@ constexpr auto woken = machine("woken",
 // clang-format on
 
 TEST(A_task, answers_in_an_activity_that_nothing_else_wakes) {
-    Rig<Firmware<woken, board>> rig;
+    Rig<AtRunTime<woken, board>> rig;
     Panel& panel = *rig.instance.find<Panel>("panel");
     rig.run(20ms);
     ASSERT_TRUE(panel.clean.send());
@@ -247,7 +247,7 @@ TEST(A_task_of_a_machine, keeps_variables_in_its_properties_file) {
     };
     for (const Values expected :
          {Values{}, Values{12, {1, 2, 3}, Colour::red}}) { // the script's, then those kept
-        MachineInstance instance{Firmware<kept, board>::machine(), clock};
+        MachineInstance instance{AtRunTime<kept, board>::machine(), clock};
         instance.read_properties_from(files->store());
         const auto standing = instance.configure({});
         ASSERT_TRUE(standing) << standing.error().view();

@@ -4,7 +4,7 @@
 #include "kernel/services/time/watchdog.hpp"
 
 #include "kernel/base/random.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
@@ -114,7 +114,7 @@ constexpr std::size_t motion = 0, worker = 0;
 
 struct TimeService : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
     TimeService() {
         EXPECT_TRUE(instance.configure({}));
@@ -329,7 +329,7 @@ constexpr auto virtual_sleeping_table = sleeping_table; // in memory of its own
 
 TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_that_it_does_not_come) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<virtual_sleeping_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<virtual_sleeping_table, board>::machine(), clock};
     VirtualWorld world{instance};
     ASSERT_TRUE(instance.configure({}));
     ASSERT_EQ(world.start().view(), "");
@@ -358,7 +358,7 @@ constexpr auto rousing_table = machine("rousing", // it is woken just before the
 
 TEST(AWatchdogOfAnActivityWithoutAPeriod, takes_no_rest_for_silence_whose_limit_is_below_its_own_period) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<rousing_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<rousing_table, board>::machine(), clock};
     VirtualWorld world{instance};
     ASSERT_TRUE(instance.configure({}));
     ASSERT_EQ(world.start().view(), "");
@@ -372,7 +372,7 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, takes_no_rest_for_silence_whose_limit_
 
 TEST(AWatchdogOfAnActivityWithoutAPeriod, hears_that_it_does_not_come_for_a_timer_that_is_due) {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<virtual_sleeping_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<virtual_sleeping_table, board>::machine(), clock};
     VirtualWorld world{instance};
     ASSERT_TRUE(instance.configure({}));
     ASSERT_EQ(world.start().view(), "");
@@ -390,7 +390,7 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, hears_that_it_does_not_come_for_a_time
 TEST(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) {
     if (os::observe_process(1).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
     os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{Firmware<sleeping_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<sleeping_table, board>::machine(), clock};
     RealWorld world{instance};
     os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
     const int nowhere_to_print = open("/dev/null", O_WRONLY);
@@ -414,7 +414,7 @@ TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
     const auto digest = [](std::uint64_t seed) {
         Random random{seed};
         os::Clock its_clock{os::Clock::Kind::virtual_time};
-        MachineInstance again{Firmware<table, board>::machine(), its_clock};
+        MachineInstance again{AtRunTime<table, board>::machine(), its_clock};
         VirtualWorld its_world{again};
         EXPECT_TRUE(again.configure({}));
         EXPECT_EQ(its_world.start().view(), "");
@@ -431,7 +431,7 @@ TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
 TEST(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cycle_and_its_revival) {
     if (os::observe_process(1).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
     os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{Firmware<real_time_table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<real_time_table, board>::machine(), clock};
     RealWorld world{instance};
     os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
     const int nowhere_to_print = open("/dev/null", O_WRONLY);
