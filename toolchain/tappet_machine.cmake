@@ -85,12 +85,19 @@ function(tappet_machine name)
         endif()
     endforeach()
 
+    # What all of its programs link: nothing of it depends on the board.
+    add_library(${name}_code STATIC "${mains}/code.cpp")
+    target_compile_definitions(${name}_code PRIVATE ${definitions})
+    target_compile_options(${name}_code PRIVATE -ffunction-sections -fdata-sections)
+    target_link_libraries(${name}_code PUBLIC ${name}_table PRIVATE tappet_warnings)
+    tappet_language(${name}_code)
+
     if(machine_PLANT)
         add_library(${name}_host STATIC "${mains}/on_host.cpp" ${machine_PLANT_SOURCES})
         target_compile_definitions(${name}_host PRIVATE ${definitions})
         target_link_libraries(
             ${name}_host
-            PUBLIC ${name}_table tappet_host ${machine_PLANT_LIBRARIES}
+            PUBLIC ${name}_code tappet_host ${machine_PLANT_LIBRARIES}
             PRIVATE tappet_warnings)
         add_executable(${name} "${mains}/host_main.cpp")
         target_compile_definitions(${name} PRIVATE ${definitions})
@@ -115,7 +122,7 @@ function(tappet_machine name)
 
     # Its charts: nobody waits for them who does not ask. It reads scripts back from their instructions and finds the
     # names of C++ programs among its symbols.
-    add_executable(${name}-chart EXCLUDE_FROM_ALL "${mains}/chart_main.cpp" "${mains}/on_host.cpp")
+    add_executable(${name}-chart EXCLUDE_FROM_ALL "${mains}/chart_main.cpp" "${mains}/on_host.cpp" "${mains}/code.cpp")
     target_compile_definitions(${name}-chart PRIVATE ${definitions} TAPPET_KEEPS_INSTRUCTIONS)
     target_link_libraries(${name}-chart PRIVATE ${name}_table tappet_chart tappet_warnings)
     set_target_properties(${name}-chart PROPERTIES ENABLE_EXPORTS ON)
@@ -159,12 +166,12 @@ function(tappet_machine name)
         if(machine_PLANT AND board_name STREQUAL bench AND TARGET tappet_sealed_heap)
             add_executable(${name}-plant "${mains}/plant_main.cpp" ${machine_PLANT_SOURCES})
             target_compile_definitions(${name}-plant PRIVATE ${on_board})
-            target_link_libraries(${name}-plant PRIVATE ${name}_table tappet_bench_plant ${machine_PLANT_LIBRARIES} tappet_warnings)
+            target_link_libraries(${name}-plant PRIVATE ${name}_code tappet_bench_plant ${machine_PLANT_LIBRARIES} tappet_warnings)
             target_link_options(${name}-plant PRIVATE -static)
             tappet_language(${name}-plant)
         endif()
         target_compile_definitions(${firmware} PRIVATE ${on_board})
-        target_link_libraries(${firmware} PRIVATE ${name}_table tappet_firmware tappet_warnings)
+        target_link_libraries(${firmware} PRIVATE ${name}_code tappet_firmware tappet_warnings)
         tappet_language(${firmware})
     endforeach()
 endfunction()

@@ -31,8 +31,8 @@ private:
     std::unique_ptr<Tables> tables_;
 };
 
-/// In place of Firmware where the table is a constant all the same. As there, all that is made of it share one
-/// memory: one at a time.
+/// In place of Firmware where the table is a constant all the same. As there, all that is made of it share
+/// one memory: one at a time.
 template <const auto& table, const Board& board, const Binding& binding = unbound>
 struct AtRunTime {
     static AcceptedMachine machine() {

@@ -82,7 +82,7 @@ struct Planned<table, board, binding, true> {
 
 template <const auto& table, const Board& board, const Binding& binding, bool good>
 struct Instance {
-    static AcceptedMachine machine() { return {}; }
+    static AcceptedMachine machine(const MachineView&) { return {}; }
 };
 
 template <const auto& table, const Board& board, const Binding& binding>
@@ -94,9 +94,9 @@ struct Instance<table, board, binding, true> {
     [[gnu::section(".bss.tappet_instance")]] alignas(
         4096) static inline constinit std::byte memory[From::plan.bytes]{};
 
-    static AcceptedMachine machine() {
-        return {table.view(), &board, &binding,         index.view(),
-                plan.view(),  memory, From::Map::map(), From::Map::types()};
+    static AcceptedMachine machine(const MachineView& view) {
+        return {view,        &board, &binding,         index.view(),
+                plan.view(), memory, From::Map::map(), From::Map::types()};
     }
 };
 
@@ -116,7 +116,12 @@ struct Firmware {
     static_assert(refused<text<refusal.size()>{refusal.view()}>::accepted);
 #endif
 
-    static AcceptedMachine machine() { return detail::Instance<table, board, binding, accepted>::machine(); }
+    static AcceptedMachine machine() { return machine(table.view()); }
+    /// `view` is the table's. Of another object file it saves this one the code of all components, to which
+    /// the rows lead.
+    static AcceptedMachine machine(const MachineView& view) {
+        return detail::Instance<table, board, binding, accepted>::machine(view);
+    }
 
     /// The machine's map (thesis 4.7.2) as a constant: map::Storage. Of any accepted table, also of one that
     /// nothing sees.

@@ -17,5 +17,6 @@ int main(int count, char** words) {
 #else
     constexpr tappet::FirmwareHooks hooks;
 #endif
-    return tappet::run_firmware(TAPPET_NAMESPACE::OnBoard::machine(), hardware, count, words, hooks);
+    return tappet::run_firmware(TAPPET_NAMESPACE::OnBoard::machine(TAPPET_NAMESPACE::view()), hardware, count,
+                                words, hooks);
 }

@@ -12,6 +12,7 @@
 #endif
 
 #include "kernel/machine/firmware.hpp"
+#include "toolchain/machine/code.hpp"
 
 namespace TAPPET_NAMESPACE {
 

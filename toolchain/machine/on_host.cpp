@@ -4,9 +4,10 @@
 #include "toolchain/machine/on_host.hpp"
 #include "board/host/board.hpp"
 #include "kernel/machine/firmware.hpp"
+#include "toolchain/machine/code.hpp"
 
 namespace TAPPET_NAMESPACE {
 
-tappet::AcceptedMachine on_host() { return tappet::Firmware<table, tappet::board::host>::machine(); }
+tappet::AcceptedMachine on_host() { return tappet::Firmware<table, tappet::board::host>::machine(view()); }
 
 } // namespace TAPPET_NAMESPACE

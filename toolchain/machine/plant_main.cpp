@@ -10,7 +10,7 @@ static_assert(TAPPET_NAMESPACE::OnBoard::accepted);
 
 int main(int count, char** words) {
     return tappet::run_plant(
-        TAPPET_NAMESPACE::table.view(), tappet::board::TAPPET_BOARD, TAPPET_BINDING,
+        TAPPET_NAMESPACE::view(), tappet::board::TAPPET_BOARD, TAPPET_BINDING,
         [](std::uint64_t seed) -> std::unique_ptr<tappet::Plant> {
             return std::make_unique<TAPPET_NAMESPACE::Plant>(seed);
         },

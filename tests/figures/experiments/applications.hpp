@@ -158,7 +158,7 @@ inline constexpr auto large = machine("large",
 
 struct Application {
     std::string_view name;
-    AcceptedMachine (*machine)();
+    AcceptedMachine (*machine)(); ///< of a Firmware: what is measured is what is flashed
 };
 /// All four, as the compiler accepted them.
 std::span<const Application> applications();
