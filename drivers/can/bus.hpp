@@ -23,15 +23,15 @@ namespace tappet::can {
 ///
 /// A cyclic frame goes out at its period, with the last values of its inputs. When a writer was interrupted
 /// between two of them (their stamps differ where they agreed before), the values sent last go out once more.
-/// A frame on demand goes out once for each writing; all of its signals are written in one cycle of one
-/// writer, so that no command leaves with the arguments of another. A row that wakes makes it leave at once.
-/// A frame with an input that was never written, is no number, or is stale without a substitute does not go
-/// out: the receiver's own time-out notices. What arrives and is no number is counted: its output grows
-/// stale. Of a multiplexed frame what its multiplexors select is written, read and sent.
+/// A frame on demand goes out once for each writing that has a time of its own; all of its signals are
+/// written in one cycle of one writer: no command leaves with another's arguments. A row that wakes makes it
+/// leave at once. What was demanded behind a force leaves after it, but not at the bus' own stop. A frame
+/// with an input that was never written, is no number, or is stale without a substitute does not go out: the
+/// receiver's own time-out notices. What arrives and is no number is counted: its output grows stale. Of a
+/// multiplexed frame what its multiplexors select is written, read and sent.
 ///
-/// A faulted bus sends nothing, and what is demanded meanwhile is dropped, not kept: after the restart only
-/// what is written after it leaves. It looks for that restart every now and then and rests in between.
-/// Likewise a bus that was stopped begins anew: what arrived, waited or was demanded before is forgotten.
+/// A bus that was faulted, or stopped, begins anew: what arrived, waited or was demanded before is forgotten.
+/// Faulted, it looks for its restart every now and then and rests in between.
 ///
 /// With services, what they receive leaves by the buffered output `services`, and what comes in by the
 /// buffered input `to_send` goes out, all of it in order.
@@ -100,7 +100,7 @@ struct Bus {
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         may_repeat_ = {};
         was_faulted_ = false;
-        was_stopped_ ? forget_stopped_time() : demanded_at_.fill(Time::min());
+        was_stopped_ ? forget_stopped_time(cycle.now) : demanded_at_.fill(Time::min());
         if (was_stopped_ && !faulted(device_->state())) bus_recovered.emit();
         lost_ = taken_ = 0;
         too_often_ = 0;
@@ -227,6 +227,11 @@ private:
         return map.frames[f].direction == Direction::transmit && map.frames[f].every == Duration::zero();
     }
 
+    template <auto ports>
+    static void* port_at(void* bus, std::size_t i) noexcept {
+        return &(static_cast<Bus*>(bus)->*ports)[i];
+    }
+
     static constexpr Facet signal_facet(std::size_t s) {
         const Signal& signal = map.signals[s];
         const bool sent = map.frames[map.frame_of[s]].direction == Direction::transmit;
@@ -239,25 +244,11 @@ private:
         if (is_integer(signal)) {
             facet.type = type_id<std::int64_t>;
             facet.port = &PortAccess::data<std::int64_t>;
-            if (sent)
-                facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Bus*>(c)->integer_in[i];
-                };
-            else
-                facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Bus*>(c)->integer_out[i];
-                };
+            facet.at = sent ? &port_at<&Bus::integer_in> : &port_at<&Bus::integer_out>;
         } else {
             facet.type = type_id<double>;
             facet.port = &PortAccess::data<double>;
-            if (sent)
-                facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Bus*>(c)->physical_in[i];
-                };
-            else
-                facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Bus*>(c)->physical_out[i];
-                };
+            facet.at = sent ? &port_at<&Bus::physical_in> : &port_at<&Bus::physical_out>;
         }
         return facet;
     }
@@ -340,7 +331,7 @@ private:
             bus_fault.emit();
             return;
         }
-        forget_demands();
+        forget_demands(now);
         for (std::size_t f = 0; f < frame_count; ++f)
             if (due_[f] <= now) next_period(f, now);
         bus_recovered.emit();
@@ -351,7 +342,8 @@ private:
         bool usable = true; ///< each was written; what is stale has a substitute
         bool fresh = false; ///< one was written since the last reading
         bool agreed = true; ///< all are of the same time, but what is forced or substituted: that is true now
-        Time at = never;    ///< that time; never: all is true now
+        bool forced = false; ///< one of them
+        Time at = never;     ///< that time; never: all is true now
     };
 
     /// By the values of multiplexors that were read before it.
@@ -365,6 +357,7 @@ private:
         Reading found;
         const auto take = [&](auto& input, auto& value) noexcept TAPPET_REALTIME {
             const Flow flow = input.read(value);
+            found.forced |= input.forced();
             const bool is_now = input.forced() || (flow == Flow::stale && input.has_substitute());
             found.usable &= flow == Flow::fresh || flow == Flow::old || is_now;
             found.fresh |= flow == Flow::fresh;
@@ -411,14 +404,16 @@ private:
             if (!is_on_demand(f)) continue;
             const Reading found = read_inputs(f);
             demanded_[f] |= found.fresh;
+            const bool was_hidden = std::exchange(hidden_[f], found.forced) && !found.forced;
+            const bool is_forgotten = was_hidden && (ends || found.at <= forgot_at_);
             if (!demanded_[f] || !found.usable || !found.agreed) continue;
             demanded_[f] = false;
             const Frame before = store_.encode(f, now);
             const bool is_new = found.at != demanded_at_[f]; // in any order: a stamp may lie ahead
             if (!keep_inputs(f)) continue;
-            // The end of a force shows the value of before: not again, and not as the last that is said.
-            if (!is_new && (ends || store_.encode(f, now).data == before.data)) continue;
             if (found.at != never) demanded_at_[f] = found.at;
+            // The end of a force shows the value of before: not again, and not as the last that is said.
+            if (is_forgotten || (!is_new && (ends || store_.encode(f, now).data == before.data))) continue;
             if (now < may_follow_[f]) sent_too_often.write(++too_often_);
             may_follow_[f] = now + map.frames[f].apart;
             static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
@@ -434,15 +429,17 @@ private:
         }
     }
     /// What waited, what arrived and what was demanded while nobody served the bus.
-    void forget_stopped_time() noexcept TAPPET_REALTIME {
+    void forget_stopped_time(Time now) noexcept TAPPET_REALTIME {
         device_->purge();
         Frame ignored;
-        for (int n = 0; n < max_passes; ++n)
-            if (const Receive got = device_->receive(ignored); got.what == Received::none && got.lost == 0)
-                break;
-        forget_demands();
+        for (int n = 0; n < max_passes; ++n) {
+            const Receive got = device_->receive(ignored);
+            if (got.what == Received::none && got.lost == 0) break;
+        }
+        forget_demands(now);
     }
-    void forget_demands() noexcept TAPPET_REALTIME {
+    void forget_demands(Time now) noexcept TAPPET_REALTIME {
+        forgot_at_ = now;
         if constexpr (protocol.any) {
             Frame forgotten;
             for (int n = 0; n < max_passes && to_send.pop(forgotten);) ++n;
@@ -450,6 +447,7 @@ private:
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             const Reading found = read_inputs(f);
+            hidden_[f] = found.forced;
             if (found.usable && keep_inputs(f) && found.at != never) demanded_at_[f] = found.at;
             demanded_[f] = false;
         }
@@ -484,7 +482,9 @@ private:
     std::array<Time, frame_count> due_{};
     std::array<Time, frame_count> may_follow_{}; // on demand
     std::array<Time, frame_count> demanded_at_{};
-    std::array<bool, frame_count> demanded_{};   // written since it was last sent
+    std::array<bool, frame_count> demanded_{}; // written since it was last sent
+    std::array<bool, frame_count> hidden_{};   // behind a force: it may have been demanded before
+    Time forgot_at_{};
     std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;

@@ -156,7 +156,7 @@ private:
             if (!is_place) motion_.follow(0);
             return;
         }
-        led_at_ = set_point.stamp();
+        led_at_ = std::min(set_point.stamp(), now); // a time ahead keeps nothing out that is written since
         is_led_ = true;
         motion_.follow(wanted);
     }

@@ -72,8 +72,11 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
         for (SafeServer& each : servers) {
             const bool is_quick = round == 0;
             if (each.is_safe || (is_quick && each.server->is_serial())) continue;
-            if (os::Clock::monotonic() >= end) return left;
-            each.is_safe = try_once(each, {is_quick ? quick_answer_within : within, end, meanwhile});
+            const Time now = os::Clock::monotonic();
+            if (now >= end) return left;
+            // None takes the time of those after it.
+            const Time until = is_quick ? end : now + (end - now) / static_cast<std::int64_t>(left);
+            each.is_safe = try_once(each, {is_quick ? quick_answer_within : within, until, meanwhile});
             left -= each.is_safe ? 1u : 0u;
         }
     }

@@ -134,6 +134,7 @@ std::expected<void, Sentence> LibmodbusTransport::open(const TransportSettings& 
 
 void LibmodbusTransport::wait_at_most(Duration limit) noexcept {
     limit_ = std::min(std::max<Duration>(limit, 1ms), answer_within_);
+    ends_ = now() + std::max<Duration>(limit, 1ms);
     if (context_) static_cast<void>(set_answer_time(context_.get(), limit_));
 }
 
@@ -175,10 +176,15 @@ bool LibmodbusTransport::recover() noexcept {
     return false;
 }
 
-void LibmodbusTransport::settle() noexcept {
-    if (!is_serial_) return;
-    for (Time at = now(); at < quiet_until_; at = now()) os::sleep_for(quiet_until_ - at);
+bool LibmodbusTransport::settle() noexcept {
+    if (!is_serial_) return true;
+    const Time until = std::min(quiet_until_, ends_);
+    for (Time at = now(); at < until; at = now()) os::sleep_for(until - at);
+    if (until < quiet_until_) return false;
+    if (ends_ != never)
+        static_cast<void>(set_answer_time(context_.get(), std::clamp<Duration>(ends_ - now(), 1ms, limit_)));
     static_cast<void>(modbus_flush(context_.get())); // what is left there belongs to an old question
+    return true;
 }
 
 Answer LibmodbusTransport::end(int result, int expected, int error, Time began) noexcept {
@@ -198,7 +204,7 @@ Answer LibmodbusTransport::read(Table table, std::uint16_t address,
     modbus_t* m = context_.get();
     std::array<std::uint8_t, most_values> bits{};
     const Time begin = now();
-    settle();
+    if (!settle()) return {.outcome = Outcome::timeout, .took = now() - begin};
     int result = -1;
     switch (table) {
     case Table::coils: result = modbus_read_bits(m, address, count, bits.data()); break;
@@ -222,7 +228,7 @@ Answer LibmodbusTransport::write(Table table, std::uint16_t address,
     const int count = static_cast<int>(values.size());
     std::array<std::uint8_t, most_values> bits{};
     const Time begin = now();
-    settle();
+    if (!settle()) return {.outcome = Outcome::timeout, .took = now() - begin};
     int result = -1;
     if (is_serial_) {
         result = write_on_serial(context_.get(), table, address, values);

@@ -46,7 +46,7 @@ public:
     /// Checks and prepares; does not connect. The error says what is wrong and how to cure it.
     std::expected<void, Sentence> open(const TransportSettings& settings);
     void close() noexcept;
-    /// From here on no call holds its caller longer, nor longer than the settings say.
+    /// The next call holds its caller no longer, nor longer than the settings say.
     void wait_at_most(Duration limit) noexcept;
     [[nodiscard]] bool is_serial() const noexcept { return is_serial_; }
 
@@ -57,9 +57,9 @@ public:
     Answer write(Table table, std::uint16_t address, std::span<const std::uint16_t> values) noexcept override;
 
 private:
-    /// Before each request.
     [[nodiscard]] bool forgets_what_is_lost() const noexcept;
-    void settle() noexcept;
+    /// Before each request. False: the time is over before the line may be asked.
+    [[nodiscard]] bool settle() noexcept;
     Answer end(int result, int expected, int error, Time began) noexcept;
     struct Free {
         void operator()(_modbus* context) const noexcept;
@@ -69,6 +69,7 @@ private:
     Duration limit_{};   ///< of a call, at most answer_within_
     Duration silence_{}; ///< of 3.5 characters; none: no serial line
     Time quiet_until_{};
+    Time ends_ = never; ///< the next call, when wait_at_most said so
     bool is_serial_ = false;
     bool connected_ = false;
 };

@@ -51,6 +51,8 @@ struct PortOperations {
     /// Also while both run by turns with others: in their activity, between two steps. `writer`: of the
     /// component whose output it is; null: it never stops.
     void (*link_local)(void* input, const void* output, const Stops* writer) noexcept TAPPET_REALTIME;
+    /// After link_local, when the turn was not refused to the writer.
+    void (*hand_force_to)(void* input, const Stops* writer) noexcept TAPPET_REALTIME;
     /// The output is as if it had never been written, for readers of its own activity; likewise.
     void (*forget)(void* output) noexcept TAPPET_REALTIME;
     void (*link_shared)(void* input, const void* output, const Stops* writer);
@@ -199,6 +201,8 @@ struct PortAccess {
             [](void* input, const void* output, const Stops* writer) noexcept TAPPET_REALTIME {
                 static_cast<Input<T>*>(input)->link(static_cast<const Output<T>*>(output), writer);
             },
+        .hand_force_to = [](void* input, const Stops* writer) noexcept
+        TAPPET_REALTIME { static_cast<Input<T>*>(input)->hand_force_to(writer); },
         .forget = [](void* output) noexcept
         TAPPET_REALTIME { static_cast<Output<T>*>(output)->generation_ = 0; },
         .link_shared =

@@ -321,21 +321,24 @@ private:
         if (flow == Flow::stale && when_stale_ == WhenStale::substitute) return substitute_;
         return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
-    /// By turns another one writes it. What is forced stays, and is still the one's before: it may be refused
-    /// to the other. Linked once more it is that one's, and ends with its stop, if the one before had not
-    /// stopped by itself.
+    /// By turns another one writes it. What is forced stays, and is still the one's before: the turn may be
+    /// refused to the other.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
         if (!forced_) {
             seen_ = 0;
             writer_ = writer;
-        } else if (output != local_) {
-            if (stops_of_writer() != cached_generation_) cached_generation_ = has_stopped;
-        } else if (cached_generation_ != has_stopped) {
-            writer_ = writer;
-            cached_generation_ = stops_of_writer();
+        } else if (stops_of_writer() != cached_generation_) {
+            cached_generation_ = has_stopped;
         }
         local_ = output;
         settle();
+    }
+    /// The turn is that one's now: what is forced ends with its stop, if the one before had not stopped by
+    /// itself when the input was linked.
+    void hand_force_to(const Stops* writer) noexcept TAPPET_REALTIME {
+        if (!forced_ || cached_generation_ == has_stopped) return;
+        writer_ = writer;
+        cached_generation_ = stops_of_writer();
     }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh
     /// once and never stale, until it is released, or its writer stops: that one's safe values count then.

@@ -113,10 +113,8 @@ Engine::Parts Turns::all() const noexcept TAPPET_REALTIME {
     return parts;
 }
 
-void Turns::aim(const SharedInput& input, std::size_t chain) const noexcept TAPPET_REALTIME {
-    const Writer& writer = input.writers[chain];
-    const auto part = static_cast<std::size_t>(std::countr_zero(writer.part));
-    input.port->link_local(input.input, writer.output, &engine->plan().parts[part].stops);
+const Stops* Turns::stops_of(const Writer& writer) const noexcept TAPPET_REALTIME {
+    return &engine->plan().parts[static_cast<std::size_t>(std::countr_zero(writer.part))].stops;
 }
 
 void Turns::link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REALTIME {
@@ -124,7 +122,7 @@ void Turns::link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REA
         const Writer& writer = each.writers[chain];
         if (writer.output == nullptr) continue;
         if ((writer.part & beginning) != 0) each.port->forget(writer.output);
-        aim(each, chain);
+        each.port->link_local(each.input, writer.output, stops_of(writer));
     }
     for (const SharedCall& each : calls) each.operations->aim(each.call, &each.goals[chain]);
 }
@@ -153,9 +151,9 @@ LifeAnswer Turns::hand_over(std::size_t next) noexcept TAPPET_REALTIME {
         return answer;
     }
     engine->leave(members[now] & ~members[next]);
-    for (const SharedInput& each : shared) // what is forced belongs to the next writer now
-        if (each.writers[next].output != nullptr && *each.port->places(each.input, true).forced)
-            aim(each, next);
+    for (const SharedInput& each : shared)
+        if (const Writer& writer = each.writers[next]; writer.output != nullptr)
+            each.port->hand_force_to(each.input, stops_of(writer));
     running.store(static_cast<std::uint32_t>(next), std::memory_order_release);
     times[next].fetch_add(1, std::memory_order_relaxed);
     return answer;

@@ -71,8 +71,8 @@ struct Turns {
     }
     /// Inputs read what a chain's members write, and calls reach them; those of `beginning` have written
     /// nothing yet.
-    void aim(const SharedInput& input, std::size_t chain) const noexcept TAPPET_REALTIME;
     void link(std::size_t chain, Engine::Parts beginning) noexcept TAPPET_REALTIME;
+    [[nodiscard]] const Stops* stops_of(const Writer& writer) const noexcept TAPPET_REALTIME;
     /// Before the engine's parts start: the first chain.
     void begin() noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer hand_over(std::size_t next) noexcept TAPPET_REALTIME;

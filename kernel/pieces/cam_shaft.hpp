@@ -61,8 +61,9 @@ template <const auto& cams> struct CamShaft {
         if (flow == Flow::fresh) sample(now);
         trust_.watch(estimator_.counters().implausible, cycle.now);
         const bool believes = trust_.believes(cycle.now);
-        if (seen_ && (estimator_.epoch() != 0 || flow == Flow::stale || (knows_ && !believes)))
-            lose(cycle.now);
+        // Never written: what was forced, where nobody writes, is over.
+        const bool is_silent = flow == Flow::stale || flow == Flow::never_written;
+        if (seen_ && (estimator_.epoch() != 0 || is_silent || (knows_ && !believes))) lose(cycle.now);
         if (!knows_ && believes && estimator_.valid(cycle.now)) knows_ = true;
         if (knows_) follow(cycle.now);
         valid_.write(valid, knows_);

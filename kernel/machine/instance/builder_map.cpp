@@ -80,20 +80,19 @@ void MachineBuilder::place_map() {
 
 void MachineBuilder::place_facet(End end, map::Facet& record) {
     const Facet& row = facet_at(machine_.table, end);
-    // An input that several write by turns is seen at its writers: nobody outside knows which of them it
-    // reads.
-    if (machine_.table.extras->size() != 0 && row.kind == FacetKind::input) {
-        std::size_t writers = 0;
-        for (const Link& link : machine_.index.connections) writers += link.to == end ? 1u : 0u;
-        if (writers > 1) return;
-    }
     if (row.port != nullptr) {
         const PortPlaces places = row.port->places(instance_.facet(end), row.kind == FacetKind::input);
+        record.forced_at = offset_of(places.forced);
+        record.forced_value_at = offset_of(places.forced_value);
+        // An input that several write by turns is seen at its writers: nobody outside knows which of them it
+        // reads. What is forced stands in the input itself.
+        std::size_t writers = 0;
+        if (machine_.table.extras->size() != 0 && row.kind == FacetKind::input)
+            for (const Link& link : machine_.index.connections) writers += link.to == end ? 1u : 0u;
+        if (writers > 1) return;
         record.value_at = offset_of(places.value);
         record.stamp_at = offset_of(places.stamp);
         record.writes_at = offset_of(places.writes);
-        record.forced_at = offset_of(places.forced);
-        record.forced_value_at = offset_of(places.forced_value);
     } else if (row.property != nullptr) {
         record.value_at = offset_of(instance_.facet(end));
     }

@@ -2,6 +2,7 @@
 // when another controller takes over, and what fails leaves the slide at rest.
 #include "apps/bearing_press/axis.hpp"
 #include "kernel/control/chain_switch.hpp"
+#include "kernel/machine/map/view.hpp"
 #include "toolchain/machine/test.hpp"
 
 namespace bearing_press {
@@ -158,6 +159,26 @@ TEST_P(BearingPress, does_not_start_by_itself_at_an_end_and_goes_on_when_it_is_f
     EXPECT_EQ(state(), "Standstill");
     plant.hold_lower_end(false);
     EXPECT_TRUE(run.run_until([this] { return plant.bearings() > 0; }, 20s)) << state();
+}
+
+TEST_P(BearingPress, shows_what_is_forced_where_several_write_by_turns) {
+    const AcceptedMachine& machine = run.instance().machine();
+    const auto view = map::View::open(run.instance().observation().shared_memory());
+    ASSERT_TRUE(view) << view.error().view();
+    for (const std::string_view name : {"place.target", "trim.target"}) {
+        End end;
+        ASSERT_TRUE(resolve(machine.table, name, FacetKind::input, end).empty());
+        const PortOperations& port = *facet_at(machine.table, end).port;
+        const double place = 0.25;
+        port.force(run.instance().place_of(end), true, reinterpret_cast<const std::byte*>(&place));
+        const map::Facet& shown = view->facets()[view->components()[end.component].first_facet + end.facet];
+        EXPECT_EQ(view->word<std::uint8_t>(shown.forced_at), 1) << name;
+        double value = 0.0;
+        EXPECT_TRUE(view->copy(shown.forced_value_at, std::as_writable_bytes(std::span{&value, 1}))) << name;
+        EXPECT_EQ(value, place);
+        port.release(run.instance().place_of(end), true);
+        EXPECT_EQ(view->word<std::uint8_t>(shown.forced_at), 0) << name;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(seeds, BearingPress, testing::Values(1, 2, 3));

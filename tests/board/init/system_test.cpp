@@ -21,11 +21,11 @@ TEST(Children, are_those_of_one_process_and_not_those_of_its_children) {
         ::prctl(PR_SET_NAME, "a) S 1 (");
         const pid_t grandchild = ::fork();
         if (grandchild == 0) {
-            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-            ::pause();
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL); // before anybody kills its parent
+            const pid_t own = ::getpid();
+            [[maybe_unused]] const auto n = ::write(ready[1], &own, sizeof own);
         }
-        [[maybe_unused]] const auto n = ::write(ready[1], &grandchild, sizeof grandchild);
-        ::pause();
+        for (;;) ::pause();
     }
     pid_t grandchild = 0;
     ASSERT_EQ(::read(ready[0], &grandchild, sizeof grandchild), static_cast<ssize_t>(sizeof grandchild));

@@ -56,6 +56,7 @@ struct Client {
     Output<double> set_point;
     bool oscillates = false;
     std::optional<double> once{};
+    Duration ahead{}; ///< of the next one
     int errors = 0;
     double worst_lag = 0;
     Input<double> position;
@@ -65,11 +66,11 @@ struct Client {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         if (!oscillates) {
             began = cycle.now;
-            if (once) set_point.write(*std::exchange(once, {}));
+            if (once) set_point.write(*std::exchange(once, {}), cycle.now + std::exchange(ahead, {}));
             return;
         }
         const double wanted = 10.0 * std::sin(6.283185307179586 * to_seconds(cycle.now - began));
-        set_point.write(wanted);
+        set_point.write(wanted, cycle.now + std::exchange(ahead, {}));
         if (cycle.now - began > 50ms) worst_lag = std::max(worst_lag, std::abs(wanted - position.get()));
     }
     static constexpr auto interface() {
@@ -454,6 +455,40 @@ TEST_F(ServoAxis, rejects_what_its_state_has_no_way_for) {
     EXPECT_EQ(client->move_at.state(), CommandState::rejected);
     ASSERT_TRUE(client->move_to.send(std::nan(""), 5.0));
     EXPECT_FALSE(ends(client->move_to));
+}
+
+TEST_F(ServoAxis, is_led_by_what_is_written_after_a_set_point_with_a_time_ahead) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
+    client->once = 30;
+    client->ahead = 900ms;
+    run(3ms);
+    EXPECT_EQ(axis->target_velocity.last(), 30.0);
+    int stood = 0;
+    for (int i = 0; i < 100; ++i) {
+        client->once = 20;
+        run(1ms);
+        stood += axis->target_velocity.last() == 0;
+    }
+    EXPECT_EQ(axis->target_velocity.last(), 20.0);
+    EXPECT_EQ(stood, 0);
+}
+
+TEST_F(ServoAxis, does_not_jump_after_a_place_with_a_time_ahead) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    client->oscillates = true;
+    run(1000ms);
+    client->ahead = 740ms;
+    double before = axis->target_position.last(), largest = 0;
+    for (int i = 0; i < 1000; ++i) {
+        run(1ms);
+        largest = std::max(largest, std::abs(std::exchange(before, axis->target_position.last()) -
+                                             axis->target_position.last()));
+    }
+    EXPECT_LT(largest, 0.1) << "of the oscillation: 0.063";
 }
 
 } // namespace

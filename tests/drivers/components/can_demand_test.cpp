@@ -177,5 +177,44 @@ TEST_F(ForcedDemand, repeats_no_demand_with_a_time_that_lies_a_little_ahead) {
     }
 }
 
+TEST_F(ForcedDemand, does_not_send_after_a_force_what_a_fault_dropped_behind_it) {
+    run_until(10ms);
+    write(1);
+    force("can.sync.count", FacetKind::input, 7);
+    wire.bus_off(twin);
+    run_until(clock.now().time_since_epoch() + 20ms);
+    master->sync_next = 7; // dropped: the bus is off
+    run_until(clock.now().time_since_epoch() + 400ms);
+    ASSERT_FALSE(bus->is_faulted.last());
+    heard.clear();
+    release();
+    run_until(clock.now().time_since_epoch() + 20ms);
+    EXPECT_TRUE(sent().empty());
+    write(8);
+    EXPECT_EQ(sent(), std::vector{8});
+}
+
+TEST_F(HalfForced, does_not_send_after_a_force_what_a_fault_dropped_behind_it) {
+    wire.bus_off(twin);
+    run_until(clock.now().time_since_epoch() + 20ms);
+    demand(129, 6); // dropped: the bus is off
+    run_until(clock.now().time_since_epoch() + 400ms);
+    heard.clear();
+    release();
+    run_until(clock.now().time_since_epoch() + 20ms);
+    EXPECT_EQ(demanded(), All{});
+}
+
+TEST_F(ForcedDemand, does_not_send_at_its_stop_what_a_force_hid) {
+    demand_each_once();
+    force("can.sync.count", FacetKind::input, 7);
+    write(5);
+    run_until(clock.now().time_since_epoch() + 3s);
+    heard.clear();
+    change(0, LifeChange::stop);
+    wait();
+    EXPECT_TRUE(sent().empty());
+}
+
 } // namespace
 } // namespace tappet::test

@@ -87,5 +87,46 @@ TEST_F(SafeRegisters, that_a_server_refuses_keep_none_behind_them_from_it) {
     EXPECT_FALSE(to[0].is_safe);
 }
 
+/// Silent servers on TCP, and behind them a serial one that answers.
+struct BehindSilentServers : testing::Test {
+    bool comes_to_the_serial_one(std::size_t silent, Duration answer_within, Duration within) {
+        std::array tcp{RawServer{RawServer::Line::tcp}, RawServer{RawServer::Line::tcp},
+                       RawServer{RawServer::Line::tcp}};
+        RawServer serial{RawServer::Line::serial};
+        std::array<modbus::LibmodbusTransport, 4> transports{};
+        std::array<SafeServer, 4> to{};
+        for (std::size_t i = 0; i < silent; ++i) {
+            tcp[i].manner = Manner::silent;
+            EXPECT_TRUE(transports[i].open(
+                {.line = modbus::Tcp{"127.0.0.1", tcp[i].port()}, .answer_within = answer_within}));
+            to[i] = {&transports[i], {requests, safe_word}};
+        }
+        EXPECT_TRUE(transports[3].open(
+            {.line = modbus::Serial{serial.terminal(), 115200, 'N', 1}, .answer_within = 300ms}));
+        to[silent] = {&transports[3], {requests, safe_word}};
+        EXPECT_EQ(write_safe_registers(std::span{to}.first(silent + 1), within, {}), silent);
+        return to[silent].is_safe;
+    }
+};
+
+TEST_F(BehindSilentServers, a_server_has_its_share_of_the_time) {
+    EXPECT_TRUE(comes_to_the_serial_one(1, 6s, 5s));
+    EXPECT_TRUE(comes_to_the_serial_one(3, 400ms, 1s));
+    EXPECT_TRUE(comes_to_the_serial_one(1, 1s, 1s));
+}
+
+TEST(SilentLine, takes_no_longer_than_all_servers_may) {
+    RawServer serial{RawServer::Line::serial};
+    serial.manner = Manner::silent;
+    modbus::LibmodbusTransport transport;
+    EXPECT_TRUE(
+        transport.open({.line = modbus::Serial{serial.terminal(), 115200, 'N', 1}, .answer_within = 400ms}));
+    std::array to{SafeServer{&transport, {requests, safe_word}}};
+    const Time begin = os::Clock::monotonic();
+    EXPECT_EQ(write_safe_registers(to, 1s, {}), 1u);
+    // Without a bound on the line's own rest it would be another 0.4 s.
+    EXPECT_LT(os::Clock::monotonic() - begin, 1300ms);
+}
+
 } // namespace
 } // namespace tappet

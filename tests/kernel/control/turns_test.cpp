@@ -277,5 +277,54 @@ TEST(Turns, begin_anew_with_their_activity) {
     EXPECT_EQ(rig.state("standing"), ComponentState::running);
 }
 
+// ---- what is forced where several write by turns
+
+struct ForcedTurn : testing::Test {
+    Rig rig;
+    End input;
+    const PortOperations* port = nullptr;
+    void SetUp() override {
+        EXPECT_TRUE(rig.run(5ms));
+        ASSERT_TRUE(
+            resolve(rig.instance.machine().table, "limiter.velocity", FacetKind::input, input).empty());
+        port = facet_at(rig.instance.machine().table, input).port;
+        const double fast = 1.5;
+        port->force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&fast));
+        EXPECT_TRUE(rig.run(3ms));
+        EXPECT_EQ(rig.part<Limiter>("limiter").sent.last(), 1.5);
+    }
+    bool is_forced() { return *port->places(rig.instance.place_of(input), true).forced; }
+    void expect_it_ends() {
+        EXPECT_TRUE(rig.run(20ms));
+        EXPECT_FALSE(is_forced());
+        EXPECT_NE(rig.part<Limiter>("limiter").sent.last(), 1.5);
+    }
+};
+
+TEST_F(ForcedTurn, ends_with_a_stop_of_its_writer) {
+    rig.change("position", LifeChange::restart);
+    expect_it_ends();
+}
+
+TEST_F(ForcedTurn, ends_with_a_stop_of_its_writer_before_a_turn_that_it_writes_too) {
+    rig.change("position", LifeChange::restart);
+    ScriptText jog{"jog"};
+    EXPECT_TRUE(rig.part<ChainSwitch>("mode").run(jog));
+    expect_it_ends();
+    EXPECT_EQ(rig.running(), "jog");
+}
+
+TEST_F(ForcedTurn, ends_with_a_restart_of_the_switch) {
+    rig.change("mode", LifeChange::restart);
+    expect_it_ends();
+}
+
+TEST_F(ForcedTurn, ends_with_a_restart_of_the_switch_in_another_turn) {
+    ASSERT_EQ(rig.ask("jog"), CommandState::done);
+    EXPECT_TRUE(is_forced()) << "it is the next writer's now";
+    rig.change("mode", LifeChange::restart);
+    expect_it_ends();
+}
+
 } // namespace
 } // namespace tappet

@@ -295,5 +295,26 @@ TEST_F(Counting, backwards_nothing_fires) {
     EXPECT_NEAR(shaft.speed_rpm.last(), -60.0, 0.5);
 }
 
+TEST_F(Turning, a_code_that_was_forced_where_nobody_wrote_one_is_believed_no_longer_than_the_force) {
+    encoder.silent = true;
+    run(5ms);
+    End end;
+    ASSERT_TRUE(resolve(instance.machine().table, "shaft.code", FacetKind::input, end).empty());
+    const PortOperations& port = *facet_at(instance.machine().table, end).port;
+    const auto look = [&](Duration time) {
+        instance.engines()[instance.machine().index.activity[end.component]].waiter().wake();
+        run(time);
+    };
+    for (std::int64_t code = 0; code < 1200; code += 4) {
+        port.force(instance.place_of(end), true, reinterpret_cast<const std::byte*>(&code));
+        look(1ms);
+    }
+    EXPECT_TRUE(shaft.valid.last());
+    port.release(instance.place_of(end), true);
+    look(1s);
+    EXPECT_FALSE(shaft.valid.last());
+    EXPECT_EQ(shaft.speed_rpm.last(), 0);
+}
+
 } // namespace
 } // namespace tappet
