@@ -189,8 +189,10 @@ struct Place {
 
 private:
     [[nodiscard]] double wanted() noexcept TAPPET_REALTIME {
-        return speed.get() + kp.get() * (target.get() - position.get());
+        const double all = speed.get() + kp.get() * (target.get() - position.get());
+        return std::clamp(all, -fastest, fastest); // a place may be so far that its way is no number
     }
+    static constexpr double fastest = 1e6; // m/s; the Effector's limit is another
     double bump_ = 0.0;
 };
 

@@ -64,6 +64,21 @@ TEST_F(Loops, recover_from_whatever_they_began_with) {
     recover<Trim>({&Trim::target, &Trim::velocity, &Trim::sent}, {&Trim::wanted}, 0.03);
 }
 
+TEST_F(Loops, of_places_ask_for_a_number_however_far_the_place_is) {
+    Output<double> target, speed, position, sent;
+    Place place;
+    PortAccess::data<double>.link_local(&place.target, &target, nullptr);
+    PortAccess::data<double>.link_local(&place.speed, &speed, nullptr);
+    PortAccess::data<double>.link_local(&place.position, &position, nullptr);
+    PortAccess::data<double>.link_local(&place.sent, &sent, nullptr);
+    for (int n = 0; n < 2000; ++n) {
+        for (Output<double>* each : {&target, &speed, &position, &sent}) each->write(number());
+        if (n % 9 == 0) place.start({});
+        place.step({.period = 1ms});
+        ASSERT_TRUE(is_number(place.velocity.last()));
+    }
+}
+
 TEST_F(Loops, begin_from_rest_when_they_were_sent_what_is_no_number) {
     for (const double none :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
