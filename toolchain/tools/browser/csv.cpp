@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <utility>
 
 namespace tappet::browser {
 
@@ -46,8 +47,8 @@ std::string as_csv(const mcap::Contents& recording) {
     text += "\r\n";
     std::vector<const mcap::Message*> messages;
     for (const mcap::Message& each : recording.messages) messages.push_back(&each);
-    // What was kept from before an event stands behind it in the file.
-    std::ranges::stable_sort(messages, {}, [](const mcap::Message* each) { return each->log_ns; });
+    // What was kept from before an event stands behind it in the file. Of one time: in the file's order.
+    std::ranges::sort(messages, {}, [](const mcap::Message* each) { return std::pair{each->log_ns, each}; });
     std::vector<std::string> cells(column.size());
     std::vector<bool> used(column.size());
     const auto end_line = [&](std::uint64_t ns) {

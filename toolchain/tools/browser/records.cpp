@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 
 namespace tappet::browser {
 
@@ -98,6 +99,16 @@ std::optional<RecordedSample> RecordReader::standing(std::uint32_t channel) cons
     return is_whole ? std::optional{std::move(sample)} : std::nullopt;
 }
 
+namespace {
+
+void sort(std::vector<RecordedSample>& samples) {
+    std::ranges::sort(samples, {}, [](const RecordedSample& each) {
+        return std::tuple{each.at_ns, each.channel, each.sequence};
+    });
+}
+
+} // namespace
+
 std::vector<RecordedSample> RecordReader::begin() {
     std::vector<RecordedSample> samples;
     for (std::uint32_t c = 0; c < channels_.size(); ++c) {
@@ -108,7 +119,7 @@ std::vector<RecordedSample> RecordReader::begin() {
         --sample->sequence;
         samples.push_back(std::move(*sample));
     }
-    std::ranges::stable_sort(samples, {}, &RecordedSample::at_ns);
+    sort(samples);
     return samples;
 }
 
@@ -116,7 +127,7 @@ std::vector<RecordedSample> RecordReader::follow() {
     std::vector<RecordedSample> samples;
     for (std::uint32_t t = 0; t < tapes_.size(); ++t)
         if (!follow(tapes_[t], samples)) catch_up(t, samples);
-    std::ranges::stable_sort(samples, {}, &RecordedSample::at_ns);
+    sort(samples);
     return samples;
 }
 

@@ -1,0 +1,68 @@
+// What people are told to type works: ci/test runs each command of ci/, in a short form at least when it runs
+// all.
+#include "tests/house/tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace tappet::house {
+namespace {
+
+/// The rest of the file name that `ci/` begins there.
+std::string command_at(std::string_view line, std::size_t at) {
+    std::string name{"ci/"};
+    for (at += 3;
+         at < line.size() && (std::islower(line[at]) != 0 || std::isdigit(line[at]) != 0 || line[at] == '_');
+         ++at)
+        name += line[at];
+    return name;
+}
+
+/// Of the table in ci/test. It runs what is in place by the first, and is the second.
+std::vector<std::string> tried(const Tree& files) {
+    std::vector<std::string> names{"ci/setup", "ci/test"};
+    for (const File& file : files)
+        if (file.path == "ci/test")
+            for (const std::string& line : file.lines)
+                if (line.starts_with("    \"ci/")) names.push_back(command_at(line, 5));
+    return names;
+}
+
+Findings untried(const Tree& files) {
+    const std::vector<std::string> known = tried(files);
+    Findings found;
+    const auto look = [&](const File& file, std::size_t line, const std::string& name) {
+        if (std::ranges::find(known, name) == known.end())
+            found.push_back({file.path, line, name + " is run by no test",
+                             "write a short form of it into ci/test's commands"});
+    };
+    for (const File& file : files) {
+        if (file.folder() == "ci") look(file, 1, file.path);
+        if (!file.path.ends_with(".md")) continue;
+        for (std::size_t i = 0; i < file.lines.size(); ++i)
+            for (const std::string_view before : {"`ci/", "    ci/"})
+                if (const auto at = file.lines[i].find(before); at != std::string::npos)
+                    if (const std::string name = command_at(file.lines[i], at + before.size() - 3);
+                        name != "ci/")
+                        look(file, i + 1, name);
+    }
+    return found;
+}
+
+TEST(Commands, that_people_are_told_to_type_are_tried) { expect_none(untried(tree())); }
+
+TEST(CommandsRule, finds_what_is_there_or_printed_and_never_run) {
+    const File test = file("ci/test", "commands=(\n    \"ci/demo --plain\"\n)\n");
+    EXPECT_TRUE(untried({test, file("ci/demo", "true\n"),
+                         file("a.md", "Type `ci/demo`, after `ci/setup`.\n    ci/test\n")})
+                    .empty());
+    EXPECT_EQ(untried({test, file("ci/lost", "true\n")}).size(), 1u);
+    EXPECT_EQ(untried({test, file("a.md", "Type `ci/demos --fast`.\n")}).size(), 1u);
+    EXPECT_EQ(untried({test, file("b/README.md", "    ci/own --keep\n")}).size(), 1u);
+    EXPECT_TRUE(untried({test, file("a.md", "The folder `ci/` holds them.\n")}).empty());
+}
+
+} // namespace
+} // namespace tappet::house
