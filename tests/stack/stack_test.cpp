@@ -24,7 +24,7 @@ const Rules rules{
         {"a restart, which blocks", {"can::SocketCan::restart"}, 1, "describe<tappet::can::Restarter"},
         {"ports, properties, filters, devices and signs of life",
          {"PortAccess::", "tappet::Output<", "tappet::Input<", "limits_detail::", "can::SocketCan::", "can::Device::", "gpio::Lines::", "modbus::LibmodbusTransport::", "detail::MemberOf",
-          "detail::PropertyAccess", "detail::BagMember", "detail::command_call_of", "::interface()::{lambda", "::signal_facet(", "::add_line<",
+          "detail::PropertyAccess", "detail::BagMember", "detail::command_call_of", "::interface()::{lambda", "::signal_facet(", "::port_at<", "::add_line<",
           "::cycles_of(", "::rests(", "::is_part_expected(", "::is_engine_expected("}},
         {"posting; values as texts",
          {"detail::post<", "EventWaitState::receive", "(anonymous namespace)::ValueReader::", "(anonymous namespace)::ValueWriter::",
