@@ -11,6 +11,9 @@
 # sanitizer there is no bench, and the function does nothing.
 include_guard(GLOBAL)
 
+# Minutes each, for what shorter ones look at too: ci/test --all runs them.
+set(bench_tests_left_to_all campaign campaign_without_guardian loom_people loom_faults loom_foreign_nodes two_robots bearing_press cut_to_length)
+
 function(tappet_bench_test name)
     cmake_parse_arguments(PARSE_ARGV 1 test "" "EXIT;TIMEOUT" "EXPECT;GOLDEN;RUN")
     if(NOT TARGET tappet-bench)
@@ -37,5 +40,9 @@ function(tappet_bench_test name)
                      $<TARGET_FILE:tappet-bench> --verbose --timeout ${test_TIMEOUT}
                      ${test_RUN})
     math(EXPR hard_limit "${test_TIMEOUT} + 330") # to boot on a busy host, and to end
-    set_tests_properties("bench.${name}" PROPERTIES LABELS bench TIMEOUT ${hard_limit})
+    set(labels bench)
+    if(TAPPET_TESTS STREQUAL usual AND name IN_LIST bench_tests_left_to_all)
+        list(APPEND labels all)
+    endif()
+    set_tests_properties("bench.${name}" PROPERTIES LABELS "${labels}" TIMEOUT ${hard_limit})
 endfunction()
