@@ -122,13 +122,28 @@ std::string_view SwarmWires::state_of(const Axis& axis) const {
                                              : std::string_view{};
 }
 
+/// An axis is home when its drive has said so of this homing: the bits of the one before were seen to go.
+void SwarmWires::hear_homing(Axis& axis, std::string_view device, const can::Frame& frame) {
+    constexpr std::uint64_t ended = 0x3000; // attained, or failed
+    const std::string_view state = state_of(axis);
+    const bool is_whole = !can::faulted(devices_.controller(device).state()) &&
+                          struck_.whole_for(axis.driver, frame.stamp) >= Duration{} &&
+                          frame.stamp >= axis.excused;
+    if (state == "Standstill" && std::exchange(axis.goes_home, false) && !axis.goes_anew)
+        heard_ = Sentence{"axis \"", axis.name, "\" is home, and its drive said so of the homing before"};
+    axis.goes_anew = state == "Homing" &&
+                     (axis.goes_anew || !is_whole ||
+                      (axis.shows_homing && (can::extract(frame.data, *axis.word.signal) & ended) == 0));
+    axis.goes_home = state == "Homing";
+}
+
 /// An enabled drive whose axis is in no motion stays where it is, and one that follows positions is sent to
 /// none that is far from the one before: it would go there as fast as it can. What goes to a place by itself
 /// follows nobody, and an error leaves no power.
 void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame& frame) {
     constexpr std::uint64_t enabled_bits = 0x6F, enabled = 0x27; // of CiA 402's words
     constexpr std::uint64_t told_bits = 0x8F, told = 0x0F;
-    constexpr std::uint64_t cyclic_position = 8;
+    constexpr std::uint64_t cyclic_position = 8, homing = 6;
     constexpr Duration comes_to_rest = 300ms, changes_mode = 2s;
     constexpr unsigned longest_lie = 5; // of a wire that says anything, in frames
     constexpr double far = 1000;        // times what counts as standing
@@ -141,6 +156,9 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
             axis.is_enabled && can::extract(frame.data, *axis.mode.signal) == cyclic_position;
         axis.follows = says_so ? axis.follows + 1 : 0;
     }
+    if (identifier == axis.mode.frame)
+        axis.shows_homing = can::extract(frame.data, *axis.mode.signal) == homing;
+    if (identifier == axis.word.frame) hear_homing(axis, device, frame);
     if (identifier == axis.control.frame)
         axis.is_told = (can::extract(frame.data, *axis.control.signal) & told_bits) == told;
     const bool follows = axis.is_told && axis.follows > longest_lie && frame.stamp >= axis.excused;

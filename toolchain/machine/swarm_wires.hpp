@@ -108,6 +108,9 @@ private:
         std::size_t driver = 0;          ///< of its wires
         bool is_enabled = false;         ///< the drive says so
         bool is_told = false;            ///< so is the drive
+        bool shows_homing = false;       ///< the drive
+        bool goes_home = false;          ///< the axis, at the frame before
+        bool goes_anew = false;          ///< and its drive says that this homing has not ended
         unsigned follows = 0;            ///< frames one after the other that say it follows positions
         std::optional<double> sent_to{}; ///< while it follows
         Time rests_since = never;        ///< by its state, which names no motion
@@ -121,6 +124,7 @@ private:
     void add_axes();
     [[nodiscard]] static Axis::Wire wire_of(const can::Identifiers& map, std::string_view facet);
     void hear_axis(Axis& axis, std::string_view device, const can::Frame& frame);
+    void hear_homing(Axis& axis, std::string_view device, const can::Frame& frame);
     [[nodiscard]] std::string_view state_of(const Axis& axis) const;
     void add_lines(std::size_t component);
     void add_signals(std::size_t component);
