@@ -125,7 +125,19 @@ private:
     };
 
     template <class... Pieces> constexpr void refuse(std::uint32_t line, const Pieces&... pieces) {
-        if (fault.empty()) fault = Sentence{source_.name, ":", line, ": ", pieces...};
+        if (fault.empty()) fault = Sentence{source_.name, ":", line, ": ", shown(pieces)...};
+    }
+    /// What stands in the file may be longer than any sentence.
+    template <class Piece> static constexpr auto shown(const Piece& piece) {
+        if constexpr (std::is_same_v<Piece, std::string_view>) {
+            Sentence text;
+            add_readable(text, piece.substr(0, 60));
+            return text;
+        } else if constexpr (std::is_array_v<Piece>) {
+            return std::string_view{piece};
+        } else {
+            return piece;
+        }
     }
 
     constexpr void read_sections() {
@@ -133,12 +145,9 @@ private:
         IniLines lines{source_.text};
         for (IniLine line = lines.next(); fault.empty(); line = lines.next()) {
             switch (line.kind) {
-            case IniLine::Kind::nonsense: {
-                Sentence shown;
-                add_readable(shown, line.name.substr(0, 60));
-                return refuse(line.line, "\"", shown,
+            case IniLine::Kind::nonsense:
+                return refuse(line.line, "\"", line.name,
                               "\" is neither a [section] nor an entry Key=Value; begin a comment with ;");
-            }
             case IniLine::Kind::entry: read_entry(section, line); break;
             case IniLine::Kind::section:
             case IniLine::Kind::end:

@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         659},
     {"kernel/services",       5879},
     {"kernel/system",         2065},
-    {"drivers",               18298},
+    {"drivers",               18307},
     {"board",                 4350},
     {"apps/carpet_loom",      6325},
     {"apps/bearing_press",    772},
