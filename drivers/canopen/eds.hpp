@@ -127,7 +127,7 @@ private:
     template <class... Pieces> constexpr void refuse(std::uint32_t line, const Pieces&... pieces) {
         if (fault.empty()) fault = Sentence{source_.name, ":", line, ": ", shown(pieces)...};
     }
-    /// What stands in the file may be longer than any sentence.
+    /// Quotes 60 characters at most: a name or value in the file may be longer than a sentence.
     template <class Piece> static constexpr auto shown(const Piece& piece) {
         if constexpr (std::is_same_v<Piece, std::string_view>) {
             Sentence text;

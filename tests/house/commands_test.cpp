@@ -1,5 +1,4 @@
-// What people are told to type works: ci/test runs each command of ci/, in a short form at least when it runs
-// all.
+// ci/test --all runs each command of ci/, and each that a page prints, at least in a short form.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>

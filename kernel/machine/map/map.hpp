@@ -20,7 +20,7 @@ struct Counts {
     std::size_t types = 0, fields = 0, enumerators = 0, figures = 0, characters = 0;
 };
 
-/// Of how many records a section has room: no array is empty.
+/// The size of the array for `n` records: one at least, since no array is empty.
 constexpr std::size_t room(std::size_t n) noexcept { return std::max<std::size_t>(n, 1); }
 constexpr std::size_t room_of_texts(std::size_t n) noexcept { return (n / 8 + 1) * 8; }
 

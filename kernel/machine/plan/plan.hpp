@@ -210,7 +210,7 @@ constexpr void make_plan(const MachineView& m, const Board& board, const Binding
     p.stack_bytes = layout.used() - before_stacks;
 }
 
-/// What only a plan shows.
+/// The refusals that need a plan: too many reactions to an event, too little memory. Empty: there is none.
 constexpr Sentence check_plan(const MachineView& m, const Board& board, std::span<const Subscription> list,
                               std::size_t machine_bytes, std::size_t stack_bytes) {
     if (const Sentence listeners = over_subscribed(m, list); !listeners.empty()) return listeners;

@@ -1,5 +1,5 @@
-// What the guardian sends to its buses. The kernel's side of them is this file's own: a bus that confirms
-// each frame to the socket that sent it.
+// The guardian's frames on CAN. This file stands in for the kernel: its bus confirms each frame to the socket
+// that sent it.
 #include "drivers/can/link.hpp"
 #include "drivers/hardware/open.hpp"
 
@@ -63,7 +63,7 @@ ssize_t write(int fd, const void* bytes, size_t size) {
     kernel.sent.push_back(kernel.unconfirmed.back().frame.can_id);
     return static_cast<ssize_t>(size);
 }
-// Whoever asks makes the bus go on; what is confirmed to a socket that is no more, nobody learns.
+// The bus confirms its next frames when a socket is read. A confirmation for another socket is dropped.
 ssize_t recvmsg(int fd, msghdr* message, int flags) {
     if (!is_socket(fd)) return own<ssize_t (*)(int, msghdr*, int)>("recvmsg")(fd, message, flags);
     while (!kernel.unconfirmed.empty() && kernel.confirms > 0) {
