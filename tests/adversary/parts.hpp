@@ -6,6 +6,8 @@
 #include "tests/adversary/maps.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 namespace adversary {
 
@@ -115,12 +117,13 @@ private:
     }
 };
 
-/// Weighs what is there, and has no mean of it until it has a sample.
+/// Weighs what is there, and has no mean of it until it has a sample. A filter that a hundred different
+/// weights came through unchanged filters nothing: then it says that it has none.
 struct Scale {
     Input<double> weight, flow;
     Output<double> filtered, mean, share;
     motion::Biquad filter = *motion::Biquad::low_pass(5.0, 10ms);
-    double sum = 0, samples = 0;
+    double sum = 0, samples = 0, before = 0, unchanged = 0;
 
     void start(const Cycle&) noexcept TAPPET_REALTIME { tare(); }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
@@ -128,7 +131,7 @@ struct Scale {
         share.write(sum / samples);
         if (samples >= 1000) tare();
         double value = 0, into = 0;
-        if (weight.read(value) != Flow::never_written) filtered.write(filter(value));
+        if (weight.read(value) != Flow::never_written) filtered.write(filter_weight(value));
         if (flow.read(into) != Flow::never_written) sum += std::clamp(filtered.last() + into, -1e3, 1e3);
         ++samples;
     }
@@ -137,6 +140,11 @@ struct Scale {
         mean.write(sum / samples);
     }
     void tare() noexcept TAPPET_REALTIME { sum = samples = 0; }
+    double filter_weight(double value) noexcept TAPPET_REALTIME {
+        const double result = filter(value);
+        if (std::exchange(before, value) != value) unchanged = result == value ? unchanged + 1 : 0;
+        return unchanged < 100 ? result : std::numeric_limits<double>::quiet_NaN();
+    }
     static constexpr auto interface() {
         return facets(input<&Scale::weight>("weight", "kg", "of the vessel"),
                       input<&Scale::flow>("flow", "kg/s", "into it", optional),
@@ -174,6 +182,22 @@ struct Doser {
                                                               for_people(Role::machine_operator)),
                       output<&Doser::lamp>("lamp", "", "it doses"), calls<&Doser::open>("open", "the valve"),
                       calls<&Doser::close>("close", "the valve"));
+    }
+};
+
+/// Much that happens all the time.
+struct Beats {
+    Event<> a, b, c, d, e, f, g, h, i, j;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        for (int n = 0; n < 2; ++n)
+            for (Event<>* const each : {&a, &b, &c, &d, &e, &f, &g, &h, &i, &j}) each->emit();
+    }
+    static constexpr auto interface() {
+        return facets(event<&Beats::a>("a", "a beat"), event<&Beats::b>("b", "a beat"),
+                      event<&Beats::c>("c", "a beat"), event<&Beats::d>("d", "a beat"),
+                      event<&Beats::e>("e", "a beat"), event<&Beats::f>("f", "a beat"),
+                      event<&Beats::g>("g", "a beat"), event<&Beats::h>("h", "a beat"),
+                      event<&Beats::i>("i", "a beat"), event<&Beats::j>("j", "a beat"));
     }
 };
 

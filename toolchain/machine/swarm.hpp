@@ -112,6 +112,7 @@ private:
     void strike_server(std::size_t component, Duration lasts);
     void strike_component(Duration lasts);
     void strike_activity(Duration lasts);
+    void hang(std::size_t activity, Duration lasts);
 
     // swarm_people.cpp
     void find_what_people_may();
@@ -142,6 +143,7 @@ private:
     void call_anything(std::size_t component);
     void stop_a_part(std::size_t component, Duration lasts);
     void flood();
+    void ask_who_hangs(std::size_t component);
     void insist(const std::string& line, unsigned times);
     void load_anything();
     [[nodiscard]] bool sends_command(std::string_view line) const;
@@ -186,6 +188,7 @@ private:
     std::vector<End> commands_{}, readable_{}; ///< that operators may send and call; that anybody may read
     std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
     Watched watched_{};
+    Time asked_by_others_until_{}; ///< requests may hold places that no browser of now waits for
     std::map<std::string, std::string> first_values_{}; ///< of properties, before anybody set them
     /// Of properties of this machine, by the order in which they were set; empty: it is not known.
     struct SetValue {

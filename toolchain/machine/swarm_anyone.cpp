@@ -129,7 +129,8 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request, const SwarmBro
     if (request.starts_with("force ")) wires_.excuse_axes(run_.now() + longest_force);
     const bool reads = request.starts_with("get ");
     const std::string name = reads ? request.substr(4) : std::string{};
-    const bool is_alone = &by == &browser_ && by.waits_for() == 0; // of the engineers
+    // Of the engineers.
+    const bool is_alone = &by == &browser_ && by.waits_for() == 0 && run_.now() >= asked_by_others_until_;
     const std::string state = request.starts_with("why ") ? request.substr(request.rfind('.') + 1) : "";
     lines_.of_peers |= request.starts_with("send ") && request.contains(".execute ");
     by.ask(std::move(request), run_.now(), [this, name, state, is_alone, then](std::string_view answer) {
@@ -352,12 +353,35 @@ void SwarmRun::insist(const std::string& line, unsigned times) {
     });
 }
 
+/// It does not come to what it is asked before everybody has given up. Commands stay away: each may hold its
+/// place to its end.
+void SwarmRun::ask_who_hangs(std::size_t c) {
+    const std::size_t a = of_.machine.index.activity[c];
+    if (service_ == nowhere || a == of_.machine.index.activity[service_]) return;
+    hang(a, BrowserService::patience + Duration{random_.between(500'000'000, 2'000'000'000)});
+    for (std::size_t n = 0; n < most_at_once; ++n) {
+        const End end = any_of({FacetKind::operation, FacetKind::property}, c);
+        if (end.component == nowhere) return;
+        const Facet& facet = facet_at(of_.machine.table, end);
+        const bool calls = facet.kind == FacetKind::operation;
+        const auto value = calls ? any_arguments(facet, " ") : draw(*facet.type, facet.range);
+        if (!value || (!calls && value->empty())) continue;
+        anyone_asks(browser_,
+                    (calls ? "call " : "set ") + name_of(end) + (value->empty() ? "" : " ") + *value);
+    }
+}
+
 /// People of lower roles ask for as much as fits, one of them or all at once, and an engineer for one thing.
 void SwarmRun::flood() {
     ++verdict_.faults["flood"];
     const std::size_t component = random_.below(of_.machine.table.components.size());
-    const std::uint64_t how = random_.below(4);
-    if (const std::string state = any_state(); how == 0 && !state.empty()) {
+    const std::uint64_t how = random_.below(6);
+    if (how == 2) return ask_who_hangs(component);
+    if (how == 3) {
+        SwarmBrowser& by = visitors_[1 + random_.below(visitors_.size() - 1)];
+        for (const std::size_t each : events_)
+            anyone_asks(by, "subscribe " + name_of(of_.machine.plan.subscriptions[each].event));
+    } else if (const std::string state = any_state(); how == 0 && !state.empty()) {
         for (SwarmBrowser& each : visitors_)
             for (std::int64_t n = random_.between(1, 4); n > 0; --n) anyone_asks(each, "why " + state);
         if (random_.one_in(2)) return load_anything();

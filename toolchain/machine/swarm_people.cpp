@@ -75,6 +75,7 @@ void SwarmRun::hear() {
         for (SwarmBrowser& each : visitors_) static_cast<void>(each.hear());
     if (!connected || connections != browser_.connections()) {
         watched_ = {};
+        asked_by_others_until_ = run_.now() + 2 * BrowserService::patience; // by who was connected before
         if (lines_.was_connected) lines_ = {.left_commands = true, .of_peers = true};
         lines_.was_connected = true;
     }
@@ -119,6 +120,9 @@ void SwarmRun::judge_watched() {
         deny(Sentence{"emissions were lost, and who watched them was told of fewer"});
     const std::uint64_t lost = counts.lost + counts.dropped - watched_.lost_before,
                         unseen = watched_.lost - std::min(watched_.lost, lost);
+    if (unseen > 0)
+        deny(Sentence{
+            "an engineer's only event is lost in the service: those of lower roles have every place"});
     watched_.known_lost = lost;
     if (run_.now() - watched_.looked < told_within) return;
     if (watched_.before + watched_.told + unseen < watched_.owed)

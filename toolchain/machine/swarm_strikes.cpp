@@ -233,6 +233,16 @@ void SwarmRun::strike_component(Duration lasts) {
     faults_.back().is_over = is_over;
 }
 
+void SwarmRun::hang(std::size_t a, Duration lasts) {
+    const auto is_same = [of = components_of(a)](const Fault& each) {
+        return each.of_activity && each.components == of;
+    };
+    if (std::ranges::any_of(faults_, is_same)) return; // one ends with the other
+    run_.world().hang(a, run_.now() + lasts);
+    begin("activity hangs", Sentence{"activity \"", of_.machine.table.activities[a].name, "\" hangs"}, lasts,
+          components_of(a), [this, a] { return run_.world().hang(a, run_.now()), true; });
+}
+
 void SwarmRun::strike_activity(Duration lasts) {
     const std::size_t a = random_.below(of_.machine.table.activities.size());
     Sentence text{"activity \"", of_.machine.table.activities[a].name, "\" "};
@@ -241,18 +251,10 @@ void SwarmRun::strike_activity(Duration lasts) {
         refusal_ = run_.world().change_activity(a, LifeChange::start);
         return refusal_.empty();
     };
-    const auto is_same = [of = components_of(a)](const Fault& each) {
-        return each.of_activity && each.components == of;
-    };
     switch (random_.below(4)) {
     case 0:
-    case 1:
-        if (std::ranges::any_of(faults_, is_same)) return; // one ends with the other
-        lasts = std::max(lasts,
-                         Duration{std::int64_t{1} << random_.between(20, 32)}); // as long as watchdogs wait
-        run_.world().hang(a, run_.now() + lasts);
-        return begin("activity hangs", text.add("hangs"), lasts, components_of(a),
-                     [this, a] { return run_.world().hang(a, run_.now()), true; });
+    case 1: // as long as watchdogs wait
+        return hang(a, std::max(lasts, Duration{std::int64_t{1} << random_.between(20, 32)}));
     case 2:
         begin("activity restarted", text.add("restarts"), 1ms, components_of(a), runs);
         return static_cast<void>(run_.world().change_activity(a, LifeChange::restart));
