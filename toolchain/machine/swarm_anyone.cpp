@@ -377,10 +377,13 @@ void SwarmRun::flood() {
     const std::size_t component = random_.below(of_.machine.table.components.size());
     const std::uint64_t how = random_.below(6);
     if (how == 2) return ask_who_hangs(component);
-    if (how == 3) {
+    if (how == 3 && !events_.empty()) {
         SwarmBrowser& by = visitors_[1 + random_.below(visitors_.size() - 1)];
-        for (const std::size_t each : events_)
-            anyone_asks(by, "subscribe " + name_of(of_.machine.plan.subscriptions[each].event));
+        const std::size_t first = random_.below(events_.size()); // they may not have all
+        for (std::size_t n = 0; n < events_.size(); ++n) {
+            const std::size_t index = events_[(first + n) % events_.size()];
+            anyone_asks(by, "subscribe " + name_of(of_.machine.plan.subscriptions[index].event));
+        }
     } else if (const std::string state = any_state(); how == 0 && !state.empty()) {
         for (SwarmBrowser& each : visitors_)
             for (std::int64_t n = random_.between(1, 4); n > 0; --n) anyone_asks(each, "why " + state);
