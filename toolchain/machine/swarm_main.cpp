@@ -1,7 +1,7 @@
 // main of every machine's swarm: one table with its plant, and its own rules if it has some, as
 // tappet_machine() of CMake named them.
-#include TAPPET_PLANT_HEADER
 #ifdef TAPPET_SWARM_HEADER
+#include TAPPET_PLANT_HEADER
 #include TAPPET_SWARM_HEADER
 #endif
 
@@ -10,11 +10,7 @@
 
 int main(int count, char** words) {
     namespace machine = TAPPET_NAMESPACE;
-    tappet::SwarmOf of{machine::on_host(),
-                       [](std::uint64_t seed) -> std::unique_ptr<tappet::Plant> {
-                           return std::make_unique<machine::Plant>(seed);
-                       },
-                       {}};
+    tappet::SwarmOf of{machine::on_host(), &machine::make_plant, {}};
 #ifdef TAPPET_SWARM_HEADER
     of.rules = [](tappet::MachineInstance& instance, tappet::Plant& plant,
                   const tappet::Struck& struck) -> std::unique_ptr<tappet::SwarmRules> {

@@ -5,6 +5,7 @@
 #include "drivers/hardware/devices.hpp"
 #include "drivers/udp/sender.hpp"
 #include "kernel/base/value_text.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/check/board.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/notify.hpp"
@@ -319,6 +320,9 @@ int run_plant(const MachineView& machine, const Board& board, const Binding& bin
             return fail(Sentence{"option ", option, " is unknown; see --help"});
         if (!fault.empty()) return fail(Sentence{"option ", option, ": ", fault});
     }
+    // Its ends are opened where the binding says: so the table must fit here, too.
+    if (const Accepted accepted{machine, board, binding}; !accepted.refusal().empty())
+        return fail(accepted.refusal());
     listen_to_signals();
     BenchWires wires;
     if (const Sentence fault = wires.open(machine, board, binding); !fault.empty()) return fail(fault);
