@@ -11,8 +11,10 @@
 # sanitizer there is no bench, and the function does nothing.
 include_guard(GLOBAL)
 
-# Minutes each, for what shorter ones look at too: ci/test --all runs them.
-set(bench_tests_left_to_all campaign campaign_without_guardian loom_people loom_faults loom_foreign_nodes two_robots bearing_press cut_to_length)
+# Half a minute and more each, for what shorter ones look at too.
+set(bench_tests_left_to_all
+    campaign campaign_without_guardian loom_people loom_faults loom_foreign_nodes two_robots bearing_press cut_to_length woodworking_lane browse modbus_line
+    flooded_wire flooded_wire_planted)
 
 function(tappet_bench_test name)
     cmake_parse_arguments(PARSE_ARGV 1 test "" "EXIT;TIMEOUT" "EXPECT;GOLDEN;RUN")
@@ -40,9 +42,12 @@ function(tappet_bench_test name)
                      $<TARGET_FILE:tappet-bench> --verbose --timeout ${test_TIMEOUT}
                      ${test_RUN})
     math(EXPR hard_limit "${test_TIMEOUT} + 330") # to boot on a busy host, and to end
-    set(labels bench)
-    if(TAPPET_TESTS STREQUAL usual AND name IN_LIST bench_tests_left_to_all)
-        list(APPEND labels all)
+    set_tests_properties("bench.${name}" PROPERTIES LABELS bench TIMEOUT ${hard_limit})
+    set(where ALWAYS)
+    if(name IN_LIST bench_tests_left_to_all)
+        set(where LEFT)
     endif()
-    set_tests_properties("bench.${name}" PROPERTIES LABELS "${labels}" TIMEOUT ${hard_limit})
+    string(REGEX MATCHALL "TARGET_FILE:[^>]+" programs "${test_RUN}")
+    list(TRANSFORM programs REPLACE "TARGET_FILE:" "")
+    tappet_tried("bench.${name}" ${where} STARTS bench-expect tappet-bench ${programs})
 endfunction()
