@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/can/bus_traffic.hpp"
+#include "drivers/can/demand.hpp"
 #include "drivers/can/device.hpp"
 #include "drivers/can/facet_names.hpp"
 #include "drivers/can/services.hpp"
@@ -25,7 +26,7 @@ namespace tappet::can {
 /// between two of them (their stamps differ where they agreed before), the values sent last go out once more.
 /// A frame on demand goes out once for each writing that has a time of its own; all of its signals are
 /// written in one cycle of one writer: no command leaves with another's arguments. A row that wakes makes it
-/// leave at once. What was demanded behind a force leaves after it, but not at the bus' own stop. A frame
+/// leave at once. What was demanded behind a force leaves after it, but not if it ends with a stop. A frame
 /// with an input that was never written, is no number, or is stale without a substitute does not go out: the
 /// receiver's own time-out notices. What arrives and is no number is counted: its output grows stale. Of a
 /// multiplexed frame what its multiplexors select is written, read and sent.
@@ -100,7 +101,7 @@ struct Bus {
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         may_repeat_ = {};
         was_faulted_ = false;
-        was_stopped_ ? forget_stopped_time(cycle.now) : demanded_at_.fill(Time::min());
+        if (was_stopped_) forget_stopped_time();
         if (was_stopped_ && !faulted(device_->state())) bus_recovered.emit();
         lost_ = taken_ = 0;
         too_often_ = 0;
@@ -125,7 +126,7 @@ struct Bus {
         for (std::size_t f = 0; f < frame_count; ++f)
             if (is_cyclic(f) && map.frames[f].silence_is_safe) send(f, cycle.now);
         send_services();
-        static_cast<void>(send_on_demand(cycle.now, true));
+        static_cast<void>(send_on_demand(cycle.now));
         static_cast<void>(device_->finish(cycle.now));
         stopped_safely_ = true;
         for (Frame frame : device_map.safe) {
@@ -331,20 +332,11 @@ private:
             bus_fault.emit();
             return;
         }
-        forget_demands(now);
+        forget_demands();
         for (std::size_t f = 0; f < frame_count; ++f)
             if (due_[f] <= now) next_period(f, now);
         bus_recovered.emit();
     }
-
-    /// What reading the inputs of a frame found.
-    struct Reading {
-        bool usable = true; ///< each was written; what is stale has a substitute
-        bool fresh = false; ///< one was written since the last reading
-        bool agreed = true; ///< all are of the same time, but what is forced or substituted: that is true now
-        bool forced = false; ///< one of them
-        Time at = never;     ///< that time; never: all is true now
-    };
 
     /// By the values of multiplexors that were read before it.
     [[nodiscard]] bool is_selected(const FrameRow& row, std::size_t s) const noexcept TAPPET_REALTIME {
@@ -355,19 +347,24 @@ private:
 
     Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         Reading found;
-        const auto take = [&](auto& input, auto& value) noexcept TAPPET_REALTIME {
+        const auto take = [&](std::size_t s, auto& input, auto& value) noexcept TAPPET_REALTIME {
             const Flow flow = input.read(value);
-            found.forced |= input.forced();
-            const bool is_now = input.forced() || (flow == Flow::stale && input.has_substitute());
+            bool is_now = input.forced() || (flow == Flow::stale && input.has_substitute());
             found.usable &= flow == Flow::fresh || flow == Flow::old || is_now;
+            if (const Signal& row = map.signals[s]; input.is_abandoned()) {
+                found.usable &= is_now = row.says_safe && !is_on_demand(f); // else silence is safe
+                value = static_cast<std::remove_reference_t<decltype(value)>>(row.safe_value);
+            }
+            found.forced |= input.forced();
+            if (is_on_demand(f)) found.writes += input.writes();
             found.fresh |= flow == Flow::fresh;
             if (!is_now && found.at == never) found.at = input.stamp();
             found.agreed &= is_now || input.stamp() == found.at;
         };
         for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s)
             if (is_selected(map.frames[f], s))
-                is_integer(map.signals[s]) ? take(integer_in[s], integers_[s])
-                                           : take(physical_in[s], physical_[s]);
+                is_integer(map.signals[s]) ? take(s, integer_in[s], integers_[s])
+                                           : take(s, physical_in[s], physical_[s]);
         return found;
     }
 
@@ -398,24 +395,27 @@ private:
     }
 
     /// False: nothing was demanded.
-    bool send_on_demand(Time now, bool ends = false) noexcept TAPPET_REALTIME {
+    bool send_on_demand(Time now) noexcept TAPPET_REALTIME {
         bool sent = false;
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
+            Demand& demand = demands_[f];
             const Reading found = read_inputs(f);
-            demanded_[f] |= found.fresh;
-            const bool was_hidden = std::exchange(hidden_[f], found.forced) && !found.forced;
-            const bool is_forgotten = was_hidden && (ends || found.at <= forgot_at_);
-            if (!demanded_[f] || !found.usable || !found.agreed) continue;
-            demanded_[f] = false;
+            demand.is_open |= found.fresh;
+            const bool was_hidden = std::exchange(demand.is_hidden, found.forced) && !found.forced;
+            const bool is_forgotten = was_hidden && found.writes == demand.forgotten;
+            if (!demand.is_open || !found.usable || !found.agreed) continue;
+            demand.is_open = false;
             const Frame before = store_.encode(f, now);
-            const bool is_new = found.at != demanded_at_[f]; // in any order: a stamp may lie ahead
+            const bool is_new =
+                found.at == never || (found.at != demand.at && found.writes != demand.handled);
             if (!keep_inputs(f)) continue;
-            if (found.at != never) demanded_at_[f] = found.at;
-            // The end of a force shows the value of before: not again, and not as the last that is said.
-            if (is_forgotten || (!is_new && (ends || store_.encode(f, now).data == before.data))) continue;
-            if (now < may_follow_[f]) sent_too_often.write(++too_often_);
-            may_follow_[f] = now + map.frames[f].apart;
+            if (found.at != never) demand.at = found.at;
+            demand.handled = found.writes;
+            // The end of a force shows the value of before.
+            if (is_forgotten || (!is_new && store_.encode(f, now).data == before.data)) continue;
+            if (now < demand.may_follow) sent_too_often.write(++too_often_);
+            demand.may_follow = now + map.frames[f].apart;
             static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
             sent = true;
         }
@@ -429,17 +429,16 @@ private:
         }
     }
     /// What waited, what arrived and what was demanded while nobody served the bus.
-    void forget_stopped_time(Time now) noexcept TAPPET_REALTIME {
+    void forget_stopped_time() noexcept TAPPET_REALTIME {
         device_->purge();
         Frame ignored;
         for (int n = 0; n < max_passes; ++n) {
             const Receive got = device_->receive(ignored);
             if (got.what == Received::none && got.lost == 0) break;
         }
-        forget_demands(now);
+        forget_demands();
     }
-    void forget_demands(Time now) noexcept TAPPET_REALTIME {
-        forgot_at_ = now;
+    void forget_demands() noexcept TAPPET_REALTIME {
         if constexpr (protocol.any) {
             Frame forgotten;
             for (int n = 0; n < max_passes && to_send.pop(forgotten);) ++n;
@@ -447,9 +446,11 @@ private:
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             const Reading found = read_inputs(f);
-            hidden_[f] = found.forced;
-            if (found.usable && keep_inputs(f) && found.at != never) demanded_at_[f] = found.at;
-            demanded_[f] = false;
+            Demand& demand = demands_[f];
+            demand.is_hidden = found.forced;
+            demand.forgotten = found.writes;
+            if (found.usable && keep_inputs(f) && found.at != never) demand.at = found.at;
+            demand.is_open = false;
         }
     }
 
@@ -480,11 +481,7 @@ private:
     std::array<std::int64_t, signal_count> integers_{};
     std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
-    std::array<Time, frame_count> may_follow_{}; // on demand
-    std::array<Time, frame_count> demanded_at_{};
-    std::array<bool, frame_count> demanded_{}; // written since it was last sent
-    std::array<bool, frame_count> hidden_{};   // behind a force: it may have been demanded before
-    Time forgot_at_{};
+    std::array<Demand, frame_count> demands_{};
     std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;

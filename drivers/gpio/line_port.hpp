@@ -287,6 +287,7 @@ private:
             bool value = false;
             // Stale: the row's own answer, which is the last value or its substitute.
             if (wanted[i].read(value) == Flow::never_written) continue;
+            if (wanted[i].is_abandoned()) value = map.rows[i].line.safe_value;
             if (bit(driven_, i) == value) continue;
             mask |= Mask{1} << i;
             values = with_bit(values, i, value);

@@ -220,7 +220,8 @@ private:
             return false;
         }
         const auto is_old = [&](std::size_t v) {
-            return row.stale_after > 0ns && is_older(now - values_[v].stamp, row.stale_after);
+            return values_[v].stamp == before_all ||
+                   (row.stale_after > 0ns && now - values_[v].stamp > row.stale_after);
         };
         bool is_good = true;
         bool is_behind = false;

@@ -194,7 +194,7 @@ void Engine::end_forces(const EnginePart& part, FacetKind of) const noexcept TAP
     const bool is_input = of == FacetKind::input;
     for_ports(*part.type, part.component_, of, [&](const Facet& facet, void* port) noexcept TAPPET_REALTIME {
         if (!*facet.port->places(port, is_input).forced) return;
-        facet.port->release(port, is_input);
+        facet.port->end_force(port, is_input);
         if (plan_.forced != nullptr) plan_.forced->fetch_sub(1, std::memory_order_relaxed);
     });
 }
@@ -242,6 +242,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
         return;
     }
     part.state.store(ComponentState::stopping, std::memory_order_release);
+    part.stops.at.store(cycle_.now, std::memory_order_relaxed);
     commands_.fail(i);
     open_outputs(part); // it may never have started
     if (part.type->stop != nullptr) part.type->stop(part.component_, cycle_);

@@ -70,6 +70,8 @@ struct PortOperations {
     /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
     bool (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
+    /// Of a port whose component stops: of an input, what the force hid is wanted by nobody.
+    void (*end_force)(void* port, bool is_input) noexcept TAPPET_REALTIME;
     /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
     /// `looks`: what is fresh there stays fresh.
     Flow (*read)(void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME;
@@ -209,7 +211,7 @@ struct PortAccess {
             [](void* input, const void* output, const Stops* writer) {
                 auto& in = *static_cast<Input<T>*>(input);
                 in.shared_ = static_cast<const Output<T>*>(output)->shared_;
-                in.writer_ = writer;
+                in.linked_ = writer;
             },
         .set_clock =
             [](void* port, bool is_input, const Time* now) {
@@ -277,6 +279,11 @@ struct PortAccess {
         .release =
             [](void* port, bool is_input) noexcept TAPPET_REALTIME {
                 is_input ? static_cast<Input<T>*>(port)->release() : static_cast<Output<T>*>(port)->release();
+            },
+        .end_force =
+            [](void* port, bool is_input) noexcept TAPPET_REALTIME {
+                is_input ? static_cast<Input<T>*>(port)->end_force()
+                         : static_cast<Output<T>*>(port)->release();
             },
         .read =
             [](void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME {

@@ -22,12 +22,14 @@ namespace tappet {
 /// What reading an input tells about the value.
 enum class Flow : std::uint8_t { never_written, old, fresh, stale };
 
-/// Whoever reads may be in the middle of a long cycle, and what was written since has a later time than the
-/// cycle's. What lies further ahead is the time of no clock of this machine, and would stay fresh for as
-/// long.
+/// Earlier than every time stamp of a machine: the value is as old as can be.
+inline constexpr Time before_all{-std::chrono::hours{24 * 365 * 100}};
+/// A cycle may be long, and what arrives during it has a later time than the cycle's.
 inline constexpr Duration ahead_at_most = 1s;
-constexpr bool is_older(Duration age, Duration most) noexcept TAPPET_REALTIME {
-    return age > most || age < -ahead_at_most;
+/// Of a value that somebody writes in a cycle at `now`: what lies further ahead, or before all, is the time
+/// of no clock of this machine. Nobody knows when such a value was true.
+constexpr Time judged_stamp(Time stamp, Time now) noexcept TAPPET_REALTIME {
+    return stamp > now + ahead_at_most || stamp < before_all ? before_all : stamp;
 }
 
 /// What a stale value means for the reader: keep it, use the row's substitute, or stop the machine.
@@ -41,10 +43,11 @@ struct RowValue {
     TypeId type = nullptr; ///< of the constant
 };
 
-/// How often a component has left its safe values behind; and how many ports are forced, for who looks at
-/// it from outside.
+/// How often a component has left its safe values behind, and when it began to do so last; and how many ports
+/// are forced, for who looks at it from outside.
 struct Stops {
     std::atomic<std::uint32_t> count{0};
+    std::atomic<Time> at{before_all}; ///< before the count
     std::atomic<std::uint32_t>* forced = nullptr;
 };
 /// What a connection's row says to the input.
@@ -117,14 +120,11 @@ public:
     using Value = T;
 
     /// Writes a value that is true now, at the time of the cycle.
-    void write(const T& value) noexcept TAPPET_REALTIME { write(value, *now_); }
-    /// Writes a value that was true at `stamp`.
+    void write(const T& value) noexcept TAPPET_REALTIME { put(value, *now_); }
+    /// Writes a value that was true at `stamp`; more than ahead_at_most after the cycle's time it cannot be,
+    /// and such a value is as old as can be.
     void write(const T& value, Time stamp) noexcept TAPPET_REALTIME {
-        TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_writer, running_activity());
-        if (!inside_only_) return write_further(value, stamp);
-        last_.value = value;
-        last_.stamp = stamp;
-        ++generation_;
+        put(value, judged_stamp(stamp, *now_));
     }
     /// What the component wrote last, also while readers get a forced value instead.
     [[nodiscard]] const T& last() const noexcept TAPPET_REALTIME { return forced_ ? hidden_ : last_.value; }
@@ -134,6 +134,13 @@ private:
     friend class Input;
     friend struct PortAccess;
 
+    void put(const T& value, Time stamp) noexcept TAPPET_REALTIME {
+        TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_writer, running_activity());
+        if (!inside_only_) return write_further(value, stamp);
+        last_.value = value;
+        last_.stamp = stamp;
+        ++generation_;
+    }
     [[gnu::noinline]] void write_further(const T& value, Time stamp) noexcept TAPPET_REALTIME {
         if (dropped_ != nullptr) [[unlikely]] {
             dropped_->fetch_add(1, std::memory_order_relaxed); // no step: counted for the report
@@ -142,7 +149,7 @@ private:
         if constexpr (std::is_arithmetic_v<T>)
             if (filter_ != nullptr) [[unlikely]] {
                 T passed = value; // whoever looks from outside sees what passed only
-                filter_->pass(*filter_, &passed, stamp);
+                filter_->pass(*filter_, &passed, std::min(stamp, *now_));
                 return store(passed, stamp);
             }
         store(value, stamp);
@@ -255,6 +262,15 @@ public:
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }
+    /// A force ended with its writer's stop, which left nothing: what stands at the other end is what the
+    /// force hid, and nobody wants it any longer.
+    [[nodiscard]] bool is_abandoned() const noexcept TAPPET_REALTIME {
+        return !forced_ && stamp() < left_from_;
+    }
+    /// How many values came to the other end so far, also behind a force.
+    [[nodiscard]] std::uint64_t writes() const noexcept TAPPET_REALTIME {
+        return local_ != nullptr ? local_->generation_ : shared_ != nullptr ? shared_->generation() : 0;
+    }
     /// In place of a stale value its row gives one that is true now.
     [[nodiscard]] bool has_substitute() const noexcept TAPPET_REALTIME {
         return when_stale_ == WhenStale::substitute;
@@ -286,11 +302,15 @@ private:
     /// writer leaves the last good value, which is then old.
     bool fetch() noexcept TAPPET_REALTIME {
         if (forced_ && stops_of_writer() != cached_generation_) {
-            release();
+            end_force();
             if (writer_->forced != nullptr) writer_->forced->fetch_sub(1, std::memory_order_relaxed);
         }
         if (shared_ == nullptr || forced_) return false;
         const bool is_new = shared_->read(cache_, cached_generation_);
+        // Its age counts from now at the latest: who writes with a time ahead is not believed for longer. Not
+        // from before the stop that left it.
+        if (is_new && cache_.stamp >= left_from_)
+            cache_.stamp = std::max(std::min(cache_.stamp, *now_), left_from_);
         if constexpr (std::is_floating_point_v<T>) {
             if (is_new && scale_.factor != 1) cache_.value = scaled(cache_.value);
             if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
@@ -307,7 +327,7 @@ private:
         }
         const std::uint64_t generation = local_ != nullptr ? local_->generation_ : cached_generation_;
         if (generation == 0) return Flow::never_written;
-        if (max_age_ > Duration::zero() && is_older(*now_ - stamp(), max_age_)) return Flow::stale;
+        if (max_age_ > Duration::zero() && *now_ - stamp() > max_age_) return Flow::stale;
         if (generation == seen_) return Flow::old;
         seen_ = generation;
         return Flow::fresh;
@@ -324,12 +344,11 @@ private:
     /// By turns another one writes it. What is forced stays, and is still the one's before: the turn may be
     /// refused to the other.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
-        if (!forced_) {
+        linked_ = writer;
+        if (!forced_)
             seen_ = 0;
-            writer_ = writer;
-        } else if (stops_of_writer() != cached_generation_) {
+        else if (stops_of_writer() != cached_generation_)
             cached_generation_ = has_stopped;
-        }
         local_ = output;
         settle();
     }
@@ -341,14 +360,24 @@ private:
         cached_generation_ = stops_of_writer();
     }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh
-    /// once and never stale, until it is released, or its writer stops: that one's safe values count then.
+    /// once and never stale, until it is released, or its writer stops: that one's safe values count then;
+    /// see is_abandoned().
     bool force(const T& value) noexcept TAPPET_REALTIME {
+        left_from_ = no_stop;
+        writer_ = linked_;
         cache_ = {value, *now_};
         cached_generation_ = stops_of_writer();
         seen_ = 0;
         forced_ = true;
         settle();
         return true;
+    }
+    /// With its writer's stop, or the stop of its own component, if that comes first.
+    void end_force() noexcept TAPPET_REALTIME {
+        if (!forced_) return;
+        left_from_ =
+            stops_of_writer() != cached_generation_ ? writer_->at.load(std::memory_order_relaxed) : *now_;
+        release();
     }
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
@@ -371,6 +400,7 @@ private:
     }
 
     static constexpr std::uint64_t forced_generation = ~std::uint64_t{0}, has_stopped = forced_generation;
+    static constexpr Time no_stop = Time::min();
 
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
     std::uint64_t cached_generation_ = 0; ///< while it is forced: the stops of its writer before
@@ -381,7 +411,9 @@ private:
     WhenStale when_stale_ = WhenStale::hold;
     std::uint64_t seen_ = 0;
     const Output<T>* local_ = nullptr;
-    const Stops* writer_ = nullptr;
+    const Stops* linked_ = nullptr; ///< who writes what stands at the other end
+    const Stops* writer_ = nullptr; ///< with whose stop a force ends
+    Time left_from_ = no_stop;
     Duration max_age_{};
     const Time* now_ = &Output<T>::detail_epoch;
     alignas(place_alignment<T>) T substitute_ = default_value<T>();

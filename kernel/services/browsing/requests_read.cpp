@@ -111,7 +111,7 @@ void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
         // A reader that stands, or hangs, looks at nothing: its own time would keep a value fresh for ever.
         const std::int64_t seen = view->word<std::int64_t>(view->activities()[component.activity].now_at);
         const Duration age{std::max(seen, to_ns(now_)) - stamp};
-        const bool stale = max_age > Duration::zero() && is_older(age, max_age);
+        const bool stale = max_age > Duration::zero() && age > max_age;
         json.field("flow", is_forced ? "fresh" : writes == 0 ? "never_written" : stale ? "stale" : "fresh");
         json.field("forced", is_forced).field("time_ns", stamp);
     }

@@ -216,5 +216,60 @@ TEST_F(ForcedDemand, does_not_send_at_its_stop_what_a_force_hid) {
     EXPECT_TRUE(sent().empty());
 }
 
+TEST_F(ForcedDemand, does_not_send_at_its_writers_stop_what_a_force_hid) {
+    demand_each_once();
+    force("can.sync.count", FacetKind::input, 7);
+    write(5);
+    heard.clear();
+    change(1, LifeChange::stop);
+    wait();
+    EXPECT_TRUE(sent().empty());
+    change(1, LifeChange::start);
+    write(6);
+    EXPECT_EQ(sent(), std::vector{6});
+}
+
+TEST_F(ForcedDemand, does_not_send_after_a_force_what_a_fault_dropped_whose_time_lies_ahead) {
+    run_until(10ms);
+    write(1);
+    force("can.sync.count", FacetKind::input, 7);
+    wire.bus_off(twin);
+    run_until(clock.now().time_since_epoch() + 20ms);
+    master->sync_at = clock.now() + 900ms;
+    master->sync_next = 9; // dropped: the bus is off
+    run_until(clock.now().time_since_epoch() + 400ms);
+    ASSERT_FALSE(bus->is_faulted.last());
+    heard.clear();
+    release();
+    EXPECT_TRUE(sent().empty());
+}
+
+TEST_F(ForcedDemand, sends_after_a_force_what_was_demanded_since_a_fault_whatever_its_time) {
+    run_until(10ms);
+    write(1);
+    const Time before = clock.now();
+    force("can.sync.count", FacetKind::input, 7);
+    wire.bus_off(twin);
+    run_until(clock.now().time_since_epoch() + 800ms);
+    ASSERT_FALSE(bus->is_faulted.last());
+    heard.clear();
+    master->sync_at = before; // as who hands on the time of what was measured
+    write(9);
+    release();
+    EXPECT_EQ(sent(), std::vector{9});
+}
+
+TEST_F(OnDemand, sends_no_command_whose_parts_are_of_no_time) {
+    run_until(10ms);
+    master->nmt_at = never;
+    demand(1, 1);
+    run_until(30ms);
+    master->nmt_at = Time::min();
+    heard.clear();
+    master->node_next = 9; // half of the next demand, whose other half never comes
+    run_until(60ms);
+    EXPECT_TRUE(heard_of(0x000).empty());
+}
+
 } // namespace
 } // namespace tappet::test

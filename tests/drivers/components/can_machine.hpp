@@ -59,6 +59,8 @@ struct Master {
     Bounded<std::int64_t, 4> commands_alone{};
     int sync_next = -1;         // written in the next cycle
     Time sync_at = Time::min(); // and true then; min: in that cycle
+    Time nmt_at = Time::min();  // likewise of demands
+    int node_next = -1;         // a node without a command
     Duration overrun{};
     os::Clock* clock = nullptr;
     bool was_faulted = false;
@@ -73,18 +75,21 @@ struct Master {
         clock = setup.clock;
         return {};
     }
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         was_faulted = faulted.get();
         if (writes_controlword) controlword.write(word);
         if (writes_target) target.write(rpm);
         if (!demands.empty()) {
-            command.write(demands[0].command);
-            node.write(demands[0].node);
+            const Time at = nmt_at == Time::min() ? cycle.now : nmt_at;
+            command.write(demands[0].command, at);
+            node.write(demands[0].node, at);
             for (std::size_t i = 1; i < demands.size(); ++i) demands[i - 1] = demands[i];
             --demands.used;
         }
         for (const std::int64_t each : commands_alone) command.write(each);
         commands_alone.clear();
+        if (node_next >= 0) node.write(node_next);
+        node_next = -1;
         if (sync_next >= 0 && sync_at != Time::min()) sync.write(sync_next, sync_at);
         if (sync_next >= 0 && sync_at == Time::min()) sync.write(sync_next);
         sync_next = -1;

@@ -443,5 +443,21 @@ TEST_F(Lines, refuse_to_start_without_their_chip) {
     EXPECT_NE(refused.error().view().find("\"lines\""), std::string_view::npos);
 }
 
+TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
+    run_until(1ms);
+    listener->lamp_next = 1;
+    run_until(5ms);
+    End wanted;
+    ASSERT_TRUE(resolve(instance.machine().table, "io.lamp", FacetKind::input, wanted).empty());
+    const bool dark = false;
+    facet_at(instance.machine().table, wanted)
+        .port->force(instance.place_of(wanted), true, reinterpret_cast<const std::byte*>(&dark));
+    run_until(10ms);
+    const Sentence refusal = world.change_activity(1, LifeChange::stop);
+    EXPECT_TRUE(refusal.empty()) << refusal.view();
+    run_until(20ms);
+    EXPECT_FALSE(driven(lamp));
+}
+
 } // namespace
 } // namespace tappet::test

@@ -75,5 +75,40 @@ TEST_F(ForcedPump, is_told_so_too_when_its_writer_stops) {
     EXPECT_FALSE(pump_runs());
 }
 
+/// A server that makes itself safe when nobody writes to it.
+inline constexpr auto silent_registers = modbus::register_map(
+    modbus::read("unit", modbus::input_registers(0, 1), modbus::every(100ms), modbus::word("temperature", 0)),
+    modbus::write("pump", modbus::coils(0, 1), modbus::every(1s), modbus::stale_after(5s),
+                  modbus::bit("on", 0))
+        .safe_by_silence());
+inline constexpr auto silent_machine = machine(
+    "silent",
+    components(component<modbus::Client<silent_registers>>("server", device("server")),
+               component<Reader>("reader")),
+    activities(activity("server", every(50ms), runs("server"), not_real_time),
+               activity("reader", every(1ms), runs("reader"), budget(20us))),
+    connections(data("server.unit.temperature", "reader.temperature"),
+                data("server.connected", "reader.connected"), data("server.outages", "reader.outages"),
+                data("server.outages_survived", "reader.survived"), data("reader.pump", "server.pump.on")),
+    reactions(), behaviours());
+struct SilentPump : UtilityOf<silent_machine> {};
+
+TEST_F(SilentPump, is_not_told_at_the_stop_what_a_force_kept_from_it) {
+    reader->leaves_safe = false;
+    reader->pump_next = 0;
+    run_until(2s);
+    End end;
+    ASSERT_TRUE(resolve(instance.machine().table, "server.pump.on", FacetKind::input, end).empty());
+    const double off = 0;
+    facet_at(instance.machine().table, end)
+        .port->force(instance.place_of(end), true, reinterpret_cast<const std::byte*>(&off));
+    run_until(4s);
+    reader->pump_next = 1; // behind the force
+    run_until(6s);
+    ASSERT_FALSE(pump_runs());
+    world.stop();
+    EXPECT_FALSE(pump_runs());
+}
+
 } // namespace
 } // namespace tappet::test

@@ -179,4 +179,32 @@ TEST_P(Forcing, an_observer_finds_value_time_and_flag) {
     EXPECT_EQ(at<double>(port.places(&input, true).forced_value), 8.0);
 }
 
+TEST_P(Forcing, an_input_tells_when_what_a_force_hid_is_wanted_by_nobody) {
+    Stops writer;
+    link(&writer);
+    now = at_ns(0) + 1s;
+    output.write(1.0);
+    force_input(9.0);
+    const auto stop = [&] {
+        now += 1s;
+        writer.at = now;
+        ++writer.count;
+    };
+    stop();
+    EXPECT_EQ(input.get(), 1.0);
+    EXPECT_TRUE(input.is_abandoned());
+    now += 1s;
+    output.write(2.0);
+    EXPECT_EQ(input.get(), 2.0);
+    EXPECT_FALSE(input.is_abandoned()) << "written since";
+    force_input(9.0);
+    now += 1s;
+    writer.at = now;
+    output.write(3.0); // by its stop
+    ++writer.count;
+    now -= 100ms; // whoever reads is in the middle of a cycle
+    EXPECT_EQ(input.get(), 3.0);
+    EXPECT_FALSE(input.is_abandoned());
+}
+
 } // namespace

@@ -110,6 +110,27 @@ TEST_P(Ports, call_a_value_stale_that_is_of_a_far_future) {
 
 RowValue number(double value) { return {.given = true, .number = value}; }
 
+TEST_P(Ports, keep_a_value_stale_that_is_of_a_far_future) {
+    link.port.set_policy(&link.input, {.max_age = 4ms});
+    link.output.write(9.0, at_ns(0) + 5s);
+    for (const Duration each : {Duration{1ms}, Duration{4s}, Duration{5s}, Duration{6s}}) {
+        link.at(at_ns(0) + each);
+        EXPECT_EQ(link.input.read(value), Flow::stale) << each.count();
+    }
+}
+
+/// Not within one activity: there the reader does not know when it saw the value first.
+TEST(Port, of_a_reader_elsewhere_counts_the_age_of_a_value_from_its_first_sight_at_the_latest) {
+    Link<double> link{true};
+    link.port.set_policy(&link.input, {.max_age = 4ms});
+    link.output.write(9.0, at_ns(0) + 990ms);
+    double value = 0;
+    EXPECT_EQ(link.input.read(value), Flow::fresh);
+    EXPECT_EQ(link.input.stamp(), at_ns(0));
+    link.at(at_ns(0) + 5ms);
+    EXPECT_EQ(link.input.read(value), Flow::stale);
+}
+
 TEST_P(Ports, give_the_substitute_for_a_stale_or_a_never_written_value) {
     link.port.set_policy(&link.input,
                          {.max_age = 4ms, .when_stale = WhenStale::substitute, .substitute = number(-5)});

@@ -326,5 +326,30 @@ TEST_F(ForcedTurn, ends_with_a_restart_of_the_switch_in_another_turn) {
     expect_it_ends();
 }
 
+/// The chain before it writes the input again, and nobody else.
+struct ForcedAfterFallBack : ForcedTurn {
+    void SetUp() override {
+        ForcedTurn::SetUp();
+        ASSERT_EQ(rig.ask("softly"), CommandState::done);
+        rig.change("gentle", LifeChange::stop);
+        EXPECT_TRUE(rig.run(5ms));
+        ASSERT_FALSE(is_forced());
+        const double fast = 1.5;
+        port->force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&fast));
+        EXPECT_TRUE(rig.run(5ms));
+    }
+};
+
+TEST_F(ForcedAfterFallBack, ends_with_a_stop_of_who_writes_the_input_now) {
+    rig.change("position", LifeChange::restart);
+    expect_it_ends();
+}
+
+TEST_F(ForcedAfterFallBack, lasts_when_somebody_stops_whose_turn_it_is_not) {
+    rig.change("gentle", LifeChange::stop);
+    EXPECT_TRUE(rig.run(20ms));
+    EXPECT_TRUE(is_forced());
+}
+
 } // namespace
 } // namespace tappet

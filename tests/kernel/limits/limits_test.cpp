@@ -341,5 +341,31 @@ TEST(LimitRows, are_refused_with_row_fault_and_cure) {
     EXPECT_EQ(refusal<twice>(), "press: limit \"source.speed\": it stands twice; keep one");
 }
 
+/// Writes far jumps, each of which claims to be true a second later than the one before.
+struct Hasty {
+    Output<double> speed;
+    Time claims{};
+    void step(const Cycle&) noexcept TAPPET_REALTIME { speed.write(speed.last() + 1e6, claims += 1s); }
+    static constexpr auto interface() {
+        return facets(output<&Hasty::speed>("speed", "rpm", "of the drive"));
+    }
+};
+constexpr auto hasty = machine("hasty", components(component<Hasty>("source")),
+                               activities(activity("motion", every(1ms), budget(50us), runs("source"))),
+                               connections(), reactions(), behaviours(), limits(rate("source.speed", 500.0)));
+
+TEST(Rate, is_that_of_the_machines_time_whatever_time_a_value_claims) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{AtRunTime<hasty, box>::machine(), clock};
+    VirtualWorld world{instance};
+    ASSERT_TRUE(instance.configure({}));
+    ASSERT_TRUE(world.start().empty());
+    const Output<double>& speed = instance.find<Hasty>("source")->speed;
+    ASSERT_TRUE(world.run_until(clock.now() + 1ms));
+    const double first = speed.last();
+    ASSERT_TRUE(world.run_until(clock.now() + 1s));
+    EXPECT_LE(speed.last() - first, 500.0 * 1.001);
+}
+
 } // namespace
 } // namespace tappet
