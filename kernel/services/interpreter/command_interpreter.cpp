@@ -99,6 +99,11 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
         if (is_higher) keep_for(role, now);
         if (!gives_way) return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
         break_off();
+        if (asker == Asker::peer) { // does not ask again
+            waits_ = true;
+            since_waiting_ = now;
+            return {};
+        }
         return refuse(Sentence{"an ", to_text(bank_->role), "'s line gives way to yours; ask again"});
     }
     if (role < kept_for_ && now < kept_until_)
@@ -224,6 +229,14 @@ void CommandInterpreter::post(Bank& bank) noexcept {
 }
 
 void CommandInterpreter::work(const Cycle& cycle) {
+    if (waits_ && asker_ == Asker::none) {
+        waits_ = false;
+        LineRefusal refusal{};
+        tell(begin(waiting_.view(), Role::engineer, Asker::peer, refusal));
+    } else if (waits_ && cycle.now - since_waiting_ > patience) {
+        waits_ = false;
+        tell(Sentence{"the line that is at work does not end; look at its components"});
+    }
     if (!is_at_work()) return;
     if (is_broken_off_) return finish(CommandState::failed, Sentence{"it was broken off"});
     if (cycle.now - since_ > longest.get())
@@ -275,21 +288,28 @@ void CommandInterpreter::finish(CommandState state, const Sentence& why) noexcep
 void CommandInterpreter::stop(const Cycle&) noexcept TAPPET_REALTIME {
     if (is_at_work()) finish(CommandState::failed, Sentence{"the component that executes lines was stopped"});
     if (asker_ == Asker::peer) asker_ = Asker::none;
+    waits_ = false;
 }
 
 // ---- for peers
 
 bool CommandInterpreter::execute(const Line& line, Line&) noexcept {
     LineRefusal refusal{};
+    waiting_ = line;
     const Sentence fault = begin(line.view(), Role::engineer, Asker::peer, refusal);
-    if (fault.empty()) return true;
+    tell(fault);
+    return fault.empty();
+}
+
+void CommandInterpreter::tell(const Sentence& fault) noexcept {
+    if (fault.empty()) return;
     Text<240> text;
     text.append(fault.view());
     said.write(text);
-    return false;
 }
 
 CommandProgress CommandInterpreter::follow(const Line&, Line& value) noexcept TAPPET_REALTIME {
+    if (waits_) return CommandProgress::executing;
     if (asker_ != Asker::peer) return CommandProgress::failed;
     if (is_at_work()) return CommandProgress::executing;
     asker_ = Asker::none;

@@ -14,7 +14,7 @@ namespace tappet {
 /// these may wait, and commands that they send are followed to their ends. It may name ports, properties and
 /// methods of components of one activity, whose engine steps it between two cycles as often as the
 /// interpreter's own runs, and commands of all. One line at a time: an expression gives way to a line of a
-/// higher role, and nobody breaks off a line of one.
+/// higher role, which a browser asks for again and a peer is given, and nobody breaks off a line of one.
 ///     component<CommandInterpreter>("interpreter")
 /// A peer sends it `execute` with a line and where its value goes: rejected when it is no good line, of which
 /// `said` tells why.
@@ -73,6 +73,7 @@ private:
         kept_until_ = now + patience;
     }
     void post(interpreter::Bank& bank) noexcept;
+    void tell(const Sentence& fault) noexcept;
     void finish(CommandState state, const Sentence& why) noexcept TAPPET_REALTIME;
     void finish_good();
     void reach_from(std::size_t home) noexcept;
@@ -90,6 +91,9 @@ private:
     bool is_broken_off_ = false;
     Role kept_for_ = Role::observer; ///< no line of a lower role is next,
     Time kept_until_{};              ///< until then
+    Line waiting_{};                 ///< of a peer, while `waits_`: the line at work gives way to it
+    bool waits_ = false;
+    Time since_waiting_{};
     Time since_{};
     Time posted_{};
     LineEnd end_{};

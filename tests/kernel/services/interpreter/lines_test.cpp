@@ -257,6 +257,25 @@ TEST_F(Lines, a_peer_sends_one_as_a_command) {
     EXPECT_EQ(interpreter().refused.last(), 1);
 }
 
+/// Who looks at values all the time, and answers each answer with the next question.
+TEST_F(Lines, of_a_peer_are_executed_whatever_observers_ask) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    Talker observer{path(), 65534};
+    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
+    look();
+    for (int n = 0; n < 20; ++n) {
+        panel().wanted = panel().line.assign("do gauge.zero()");
+        for (int k = 0; k < 30; ++k) {
+            run(10ms);
+            while (!observer.receive().empty()) look();
+        }
+        EXPECT_EQ(panel().execute.state(), CommandState::done)
+            << n << ": " << interpreter().said.last().view();
+        panel().execute.reset();
+        run(2500ms); // nothing is kept for anybody
+    }
+}
+
 TEST_F(Press, a_machine_without_an_interpreter_executes_no_lines) {
     Talker talker{path()};
     EXPECT_THAT(ask(talker, "1 execute 1+1"),
