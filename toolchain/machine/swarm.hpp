@@ -74,12 +74,13 @@ private:
     };
     /// An event that a browser has subscribed to.
     struct Watched {
-        std::size_t index = nowhere;      ///< nowhere: none
-        std::uint64_t before = 0;         ///< emissions that came to the service before it was asked for
-        std::uint64_t lost_before = 0;    ///< likewise: nobody tells them of these
-        std::uint64_t told = 0, lost = 0; ///< as the packets say
-        bool was_told = false;            ///< since it was judged last
-        std::uint64_t known_lost = 0;     ///< by then
+        std::size_t index = nowhere;       ///< nowhere: none
+        std::uint64_t before = 0;          ///< emissions that came to the service before it was asked for
+        std::uint64_t lost_before = 0;     ///< likewise: nobody tells them of these
+        std::uint64_t lost_when_asked = 0; ///< of which they may be told
+        std::uint64_t told = 0, lost = 0;  ///< as the packets say
+        bool was_told = false;             ///< since it was judged last
+        std::uint64_t known_lost = 0;      ///< by then
         Time looked{};
         std::uint64_t owed = 0; ///< had come by then
     };

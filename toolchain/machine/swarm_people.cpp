@@ -95,12 +95,14 @@ void SwarmRun::watch() {
     const ComponentRow& row = of_.machine.table.components[event.component];
     const SubscriptionCounts counts = run_.instance().observation().counts_of(index);
     ask("subscribe " + std::string{row.name} + "." + std::string{row.type->facets[event.facet].name},
-        [this, index, before = counts.served - counts.outdated - counts.dropped](std::string_view answer) {
+        [this, index, before = counts.served - counts.outdated - counts.dropped,
+         lost_when_asked = counts.lost + counts.dropped](std::string_view answer) {
             if (!is_good(answer)) return;
             const SubscriptionCounts now = run_.instance().observation().counts_of(index);
             watched_ = {.index = index,
                         .before = before,
                         .lost_before = now.lost + now.dropped,
+                        .lost_when_asked = lost_when_asked,
                         .looked = run_.now()};
         });
 }
@@ -120,7 +122,7 @@ void SwarmRun::judge_watched() {
         deny(Sentence{"emissions were lost, and who watched them was told of fewer"});
     const std::uint64_t lost = counts.lost + counts.dropped - watched_.lost_before,
                         unseen = watched_.lost - std::min(watched_.lost, lost);
-    if (unseen > 0)
+    if (watched_.lost > counts.lost + counts.dropped - watched_.lost_when_asked)
         deny(Sentence{
             "an engineer's only event is lost in the service: those of lower roles have every place"});
     watched_.known_lost = lost;
