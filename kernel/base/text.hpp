@@ -33,19 +33,19 @@ struct Sentence {
     constexpr Sentence& add(const char* piece) noexcept { return add(std::string_view{piece}); }
     constexpr Sentence& add(const Sentence& other) noexcept { return add(other.view()); }
     constexpr Sentence& add(std::int64_t number) noexcept {
-        char digits[21] = {};
+        if (number >= 0) return add(static_cast<std::size_t>(number));
+        return add("-").add(~static_cast<std::size_t>(number) + 1);
+    }
+    constexpr Sentence& add(std::size_t number) noexcept {
+        char digits[20] = {};
         std::size_t n = 0;
-        const bool negative = number < 0;
-        auto rest = negative ? ~static_cast<std::uint64_t>(number) + 1 : static_cast<std::uint64_t>(number);
-        do digits[n++] = static_cast<char>('0' + rest % 10);
-        while (rest /= 10);
-        if (negative) digits[n++] = '-';
+        do digits[n++] = static_cast<char>('0' + number % 10);
+        while (number /= 10);
         std::reverse(digits, digits + n);
         return add(std::string_view{digits, n});
     }
     constexpr Sentence& add(int number) noexcept { return add(static_cast<std::int64_t>(number)); }
-    constexpr Sentence& add(std::size_t number) noexcept { return add(static_cast<std::int64_t>(number)); }
-    constexpr Sentence& add(unsigned number) noexcept { return add(static_cast<std::int64_t>(number)); }
+    constexpr Sentence& add(unsigned number) noexcept { return add(static_cast<std::size_t>(number)); }
 
     [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters, length}; }
     [[nodiscard]] constexpr bool empty() const noexcept { return length == 0; }

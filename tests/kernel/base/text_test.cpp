@@ -36,6 +36,9 @@ TEST(Sentence, writes_every_whole_number) {
     EXPECT_EQ(Sentence{-1}.view(), "-1");
     EXPECT_EQ(Sentence{std::numeric_limits<std::int64_t>::max()}.view(), "9223372036854775807");
     EXPECT_EQ(Sentence{std::numeric_limits<std::int64_t>::min()}.view(), "-9223372036854775808");
+    EXPECT_EQ(Sentence{std::size_t{1} << 63}.view(), "9223372036854775808");
+    EXPECT_EQ(Sentence{std::numeric_limits<std::size_t>::max()}.view(), "18446744073709551615");
+    EXPECT_EQ(Sentence{std::numeric_limits<unsigned>::max()}.view(), "4294967295");
 }
 
 TEST(Sentence, cuts_what_does_not_fit_visibly) {
