@@ -1,12 +1,16 @@
 // A number as an engineer writes it in a sentence, in constant expressions too.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/text.hpp"
 
 namespace tappet {
 
-/// To the third decimal, without zeros at the end; far beyond it says no more than that.
+/// To the third decimal, without zeros at the end; far beyond it says no more than that. "infinity" and "NaN"
+/// are no numbers.
 constexpr Sentence decimal(double value) noexcept {
+    if (value != value) return Sentence{"NaN"};
+    if (!is_number(value)) return Sentence{value < 0 ? "-infinity" : "infinity"};
     constexpr double largest = 1e15; // in thousandths still a whole number of 64 bits
     if (!(value > -largest && value < largest))
         return Sentence{value < 0 ? "less than -1e15" : "more than 1e15"};

@@ -5,11 +5,14 @@
 
 #include <cstddef>
 #include <cstring>
+#include <limits>
 
 namespace tappet {
 
-/// False: not a number, or infinite.
-constexpr bool is_number(double value) noexcept TAPPET_REALTIME { return value - value == 0.0; }
+/// False: not a number, or infinite. A constant expression of those too, as their difference is not.
+constexpr bool is_number(double value) noexcept TAPPET_REALTIME {
+    return value >= std::numeric_limits<double>::lowest() && value <= std::numeric_limits<double>::max();
+}
 
 /// Reads a float of 4 bytes or a double of 8. Real-time.
 inline double real_at(const std::byte* value, std::size_t bytes) noexcept TAPPET_REALTIME {

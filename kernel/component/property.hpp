@@ -4,6 +4,7 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/bounded_text.hpp"
+#include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
@@ -101,6 +102,12 @@ struct ListSetting {
 struct Range {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
+
+    /// Whether a property may have this value. Every way to a property asks here: also a range without an end
+    /// holds numbers only.
+    [[nodiscard]] constexpr bool holds(double value) const noexcept TAPPET_REALTIME {
+        return is_number(value) && value >= low && value <= high;
+    }
 };
 
 /// What start-up, transactions and files do with a property's value of one type. A property lies where its

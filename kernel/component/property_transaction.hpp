@@ -72,12 +72,11 @@ public:
         if (of.kind == PropertySetting::Kind::text) return {};
         for (std::size_t i = 0; i < of.size(value); ++i) {
             const double number = of.number(value, i);
-            if (number >= facet.range.low && number <= facet.range.high) continue;
+            if (facet.range.holds(number)) continue;
             Sentence text{"property \"", facet.name, "\": "};
             if (of.is_list) text.add("element ").add(i).add(" ");
-            text.add(number < facet.range.low    ? "is under its least value "
-                     : number > facet.range.high ? "is over its greatest value "
-                                                 : "is no number");
+            if (!is_number(number)) return text.add("is no number; propose a finite one");
+            text.add(number < facet.range.low ? "is under its least value " : "is over its greatest value ");
             if (number < facet.range.low) text.add(decimal(facet.range.low));
             if (number > facet.range.high) text.add(decimal(facet.range.high));
             if (of.kind == PropertySetting::Kind::duration) text.add(" s");

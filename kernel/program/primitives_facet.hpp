@@ -177,11 +177,8 @@ inline ActionResult write_property(ProgramContext& context, const Instruction& i
     const PropertyOperations& of = *in.facet->property;
     if (of.kind != PropertySetting::Kind::text) {
         const std::size_t size = of.size(a);
-        for (std::size_t i = 0; i < size; ++i) {
-            const double number = of.number(a, i);
-            if (!(number >= in.facet->range.low && number <= in.facet->range.high))
-                return ActionResult::failed;
-        }
+        for (std::size_t i = 0; i < size; ++i)
+            if (!in.facet->range.holds(of.number(a, i))) return ActionResult::failed;
     }
     const ProposedValue proposed{static_cast<std::byte*>(link.place), a, in.size,
                                  static_cast<std::uint32_t>(in.facet - link.type->facets.data())};

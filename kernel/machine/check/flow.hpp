@@ -71,19 +71,6 @@ constexpr Sentence check_units(const ConnectionRow& row, const Facet& from, cons
             : ", of the same kind and another size; convert it in one of the two components");
 }
 
-/// A number must be one that the port's type can hold exactly, but for the rounding of a float.
-constexpr bool holds(const TypeTag& type, double number) noexcept {
-    if (type.kind == ValueKind::real) return true;
-    if (type.kind == ValueKind::boolean) return number == 0 || number == 1;
-    if (!type.arithmetic || type.size > 8) return false;
-    double past = type.kind == ValueKind::integer ? 128 : 256; // the first number beyond one byte
-    for (std::size_t bytes = 1; bytes < type.size; ++bytes) past *= 256;
-    const double least = type.kind == ValueKind::integer ? -past : 0;
-    if (!(number >= least && number < past)) return false;
-    return number >= 0 ? number == static_cast<double>(static_cast<std::uint64_t>(number))
-                       : number == static_cast<double>(static_cast<std::int64_t>(number));
-}
-
 constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view option, const RowValue& value,
                                    const Facet& to) {
     if (!value.given) return {};

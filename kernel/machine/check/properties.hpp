@@ -5,6 +5,8 @@
 #include "kernel/component/property_transaction.hpp"
 #include "kernel/machine/table/index.hpp"
 
+#include <limits>
+
 namespace tappet::checks {
 
 /// What is said of a row: which one, and what is wrong with it.
@@ -100,6 +102,22 @@ constexpr Sentence unknown_property(const ComponentRow& row, std::string_view na
     return text;
 }
 
+/// Whether a port or a property of that type can hold the number exactly, but for the rounding of a float.
+constexpr bool holds(const TypeTag& type, double number) noexcept {
+    if (type.kind == ValueKind::real) {
+        constexpr double most = std::numeric_limits<float>::max();
+        return is_number(number) && (type.size == sizeof number || (number >= -most && number <= most));
+    }
+    if (type.kind == ValueKind::boolean) return number == 0 || number == 1;
+    if (!type.arithmetic || type.size > 8) return false;
+    double past = type.kind == ValueKind::integer ? 128 : 256; // the first number beyond one byte
+    for (std::size_t bytes = 1; bytes < type.size; ++bytes) past *= 256;
+    const double least = type.kind == ValueKind::integer ? -past : 0;
+    if (!(number >= least && number < past)) return false;
+    return number >= 0 ? number == static_cast<double>(static_cast<std::uint64_t>(number))
+                       : number == static_cast<double>(static_cast<std::int64_t>(number));
+}
+
 /// Of one value, which is of the kind that is wanted: too large, too small or too long.
 constexpr Sentence check_value(const ComponentRow& row, std::string_view name, const Facet& facet,
                                const PropertySetting& setting) {
@@ -118,7 +136,10 @@ constexpr Sentence check_value(const ComponentRow& row, std::string_view name, c
     if (wanted.kind == Kind::integer && (setting.integer < wanted.least || setting.integer > wanted.most))
         return sets().add("more than ").add(wanted.element->name).add(" holds; set a value it can hold");
     const double value = value_of(setting);
-    if (value >= facet.range.low && value <= facet.range.high) return {};
+    if (!is_number(value)) return sets().add("no number; set a finite one");
+    if (wanted.kind == Kind::real && !holds(*wanted.element, value))
+        return sets().add("more than ").add(wanted.element->name).add(" holds; set a value it can hold");
+    if (facet.range.holds(value)) return {};
     Sentence text = sets();
     if (value < facet.range.low)
         text.add("under its least value ").add(decimal(facet.range.low));

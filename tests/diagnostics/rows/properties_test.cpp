@@ -23,6 +23,19 @@ struct Noted : Tension {
     }
 };
 
+/// Its properties have no range.
+struct Open : Tension {
+    Property<double> wanted{1.0};
+    Property<float> share{1.0f};
+    Property<Sequence<double, 3>> few;
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      property<&Open::wanted>("wanted", "N", "of the warp"),
+                      property<&Open::share>("share", "", "of the warp"),
+                      property<&Open::few>("few", "N", "of its ends"));
+    }
+};
+
 struct Deeds : Tension {
     static constexpr auto interface() {
         return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
@@ -30,6 +43,7 @@ struct Deeds : Tension {
     }
 };
 
+constexpr std::array<double, 2> endless{0.5, std::numeric_limits<double>::infinity()};
 constexpr std::array<double, 2> one_too_low{0.5, -2.0};
 constexpr std::array<double, 4> four_halves{0.5, 0.5, 0.5, 0.5};
 
@@ -56,6 +70,20 @@ constexpr Fault setting_faults[] = {
      R"(loom: component "shaft" sets property "turn" to 1, but it is an enumeration; write a value of small::Turn)"},
     {"property_range", [](Table& m) { m.put(component<Shaft>("shaft", set("gain", 12.5))); },
      R"(loom: component "shaft" sets property "gain" to 12.5, which is over its greatest value 10; set a value in its range, or widen range(...) in the interface of small::Shaft)"},
+    {"property_no_number",
+     [](Table& m) {
+         m.put(component<Open>("tension", set("wanted", std::numeric_limits<double>::infinity())));
+     },
+     R"(loom: component "tension" sets property "wanted" to infinity, which is no number; set a finite one)"},
+    {"property_not_a_number",
+     [](Table& m) {
+         m.put(component<Open>("tension", set("wanted", std::numeric_limits<double>::quiet_NaN())));
+     },
+     R"(loom: component "tension" sets property "wanted" to NaN, which is no number; set a finite one)"},
+    {"property_float_without_end", [](Table& m) { m.put(component<Open>("tension", set("share", 1e300))); },
+     R"(loom: component "tension" sets property "share" to more than 1e15, which is more than float holds; set a value it can hold)"},
+    {"property_list_no_number", [](Table& m) { m.put(component<Open>("tension", set<endless>("few"))); },
+     R"(loom: component "tension" sets property "few" to infinity, which is no number; set a finite one)"},
     {"property_too_large", [](Table& m) { m.put(component<Shaft>("shaft", set("teeth", 128))); },
      R"(loom: component "shaft" sets property "teeth" to 128, which is more than signed char holds; set a value it can hold)"},
     {"property_text_too_long", [](Table& m) { m.put(component<Shaft>("shaft", set("label", "main shaft"))); },

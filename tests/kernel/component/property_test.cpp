@@ -1,5 +1,6 @@
 // Properties, their bags and their transactions (thesis 4.7, 4.7.1): every value type, the names in nested
 // bags, and several values changed as one, or not at all.
+#include "kernel/base/number.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/property_transaction.hpp"
 
@@ -216,6 +217,52 @@ TEST_F(Proposed, ranges_hold_for_numbers_times_and_every_element) {
                                       }};
     set("offsets", {.kind = PropertySetting::Kind::list, .list = &list});
     EXPECT_THAT(range_fault("offsets"), testing::HasSubstr("element 1 is over its greatest value 5"));
+}
+
+/// What has no range, or one without an end.
+struct Free {
+    Property<double> gain{1.0}, time{1.0};
+    Property<float> scale{1.0f};
+    Property<Eigen::Matrix2d> turn{Eigen::Matrix2d::Identity()};
+    Property<Sequence<double, 4>> gauges;
+    static constexpr auto interface() {
+        return facets(property<&Free::gain>("gain", "", "of the loop"),
+                      property<&Free::time>("time", "s", "of the filter",
+                                            range(0.0, std::numeric_limits<double>::infinity())),
+                      property<&Free::scale>("scale", "", "of the drawing"),
+                      property<&Free::turn>("turn", "", "of the tool"),
+                      property<&Free::gauges>("gauges", "mm", "of the joints"));
+    }
+};
+
+TEST(PropertyWithoutRange, is_a_number_all_the_same_as_is_each_of_its_elements) {
+    using Real = std::numeric_limits<double>;
+    static std::array<double, 4> four{};
+    static constexpr ListSetting list{
+        4,
+        [](std::size_t i) { return PropertySetting{.kind = PropertySetting::Kind::real, .real = four[i]}; }};
+    Free free;
+    PropertyTransaction transaction;
+    transaction.begin("free", component_type<Free>, &free);
+    for (const double value : {Real::quiet_NaN(), Real::infinity(), -Real::infinity(), 1e300, -2.5})
+        for (std::size_t f = 0; f < component_type<Free>.facets.size(); ++f) {
+            const Facet& each = component_type<Free>.facets[f];
+            if (value < 0.0 && is_number(value) && each.name == "time") continue;
+            four = {1.0, 2.0, value, 4.0};
+            std::byte* const place = transaction.change(f);
+            each.property->set(place,
+                               each.property->is_list
+                                   ? PropertySetting{.kind = PropertySetting::Kind::list, .list = &list}
+                                   : PropertySetting{.kind = PropertySetting::Kind::real, .real = value});
+            const bool is_good = is_number(each.name == "scale" ? static_cast<float>(value) : value);
+            const Sentence fault = PropertyTransaction::check_range(each, place);
+            EXPECT_EQ(fault.empty(), is_good) << each.name << " = " << value;
+            if (is_good) continue;
+            EXPECT_EQ(fault.view(),
+                      Sentence("property \"", each.name, "\": ", each.property->is_list ? "element 2 " : "",
+                               "is no number; propose a finite one")
+                          .view());
+        }
 }
 
 TEST_F(Proposed, transaction_is_for_properties_only) {

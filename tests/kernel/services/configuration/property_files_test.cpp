@@ -36,7 +36,7 @@ struct Band {
 /// Its band must stay in order; it counts how often it saw one that was not.
 struct Tension {
     Band band;
-    Property<double> gain{1.0};
+    Property<double> gain{1.0}, offset{0.0};
     std::uint64_t steps = 0;
     std::uint64_t out_of_order = 0;
     int changes = 0;
@@ -64,6 +64,7 @@ struct Tension {
     static constexpr auto interface() {
         return facets(bag<&Tension::band>("band", "that is wanted"),
                       property<&Tension::gain>("gain", "", "of the loop", range(0, 10)),
+                      property<&Tension::offset>("offset", "N", "of the cell; it has no range"),
                       event<&Tension::torn>("torn", "an end broke"),
                       operation<&Tension::relax>("relax", "lets go"));
     }
@@ -249,6 +250,11 @@ TEST_F(PropertyFilesOfAMachine, keep_what_they_had_when_a_component_set_what_rea
     tension("warp").gain.set(std::numeric_limits<double>::quiet_NaN());
     EXPECT_THAT(saved(), HasSubstr("is no number"));
     tension("warp").gain.set(4.0);
+    tension("warp").offset.set(std::numeric_limits<double>::infinity());
+    EXPECT_THAT(saved(), AllOf(HasSubstr("property \"offset\": is no number; propose a finite one"),
+                               HasSubstr("the old file stands")))
+        << "the next start would refuse it, also where no range is declared";
+    tension("warp").offset.set(0.0);
     tension("warp").band.low.set(30.0);
     EXPECT_THAT(saved(),
                 AllOf(HasSubstr("band.low is not under band.high"), HasSubstr("the old file stands")))

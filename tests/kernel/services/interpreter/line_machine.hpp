@@ -13,7 +13,7 @@ struct Gauge {
     BufferInput<std::int64_t> parts;
     BufferOutput<std::int64_t> marks;
     Event<> full;
-    Property<double> target{10};
+    Property<double> target{10}, offset{0};
     Property<std::int16_t> steps{7};
     std::int64_t zeroed = 0;
     bool homed = true;
@@ -31,6 +31,7 @@ struct Gauge {
             input<&Gauge::parts>("parts", "", "that come", optional),
             output<&Gauge::marks>("marks", "", "on parts"), event<&Gauge::full>("full", "too much"),
             property<&Gauge::target>("target", "kN", "wanted", range(0, 50)),
+            property<&Gauge::offset>("offset", "kN", "of the cell; it has no range"),
             property<&Gauge::steps>("steps", "", "16 bits"),
             method<&Gauge::all_homed>("all_homed", "every axis is"),
             method<&Gauge::half>("half", "of a number"), method<&Gauge::zero>("zero", "counts"),

@@ -95,6 +95,15 @@ TEST_F(Lines, a_property_is_set_as_its_component_consents) {
     EXPECT_EQ(gauge().target.get(), 35);
 }
 
+TEST_F(Lines, a_property_without_a_range_is_set_to_numbers_only) {
+    EXPECT_THAT(execute("set gauge.offset = 2.5"), is_done());
+    for (const std::string value : {"1e308 * 10", "0.0 - 1e308 * 10", "0.0 / 0.0", "sqrt(0.0 - 1.0)"})
+        EXPECT_THAT(execute("set gauge.offset = " + value),
+                    has_failed(R"(property \"offset\": is no number; propose a finite one)"))
+            << value;
+    EXPECT_EQ(gauge().offset.get(), 2.5);
+}
+
 TEST_F(Lines, one_is_at_work_at_a_time_and_is_broken_off_by_whoever_asks) {
     EXPECT_THAT(ask("1 break_off"), HasSubstr("no line is at work; there is nothing to break off"));
     EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
