@@ -55,7 +55,9 @@ public:
 
     /// One step of the loop: what to put out, with what is known beforehand added. What is no number leaves
     /// everything as it was and counts, as does a step that is not positive. Between two limits nothing moves
-    /// the integral or the derivative by more than their distance in one step. Real-time.
+    /// the integral or the derivative by more than their distance in one step. An integral beyond a limit,
+    /// from track() or large parts of opposite sign, returns in the step whose output that limit cuts: as far
+    /// as it caused the cut, and no further than the limit. Real-time.
     constexpr double operator()(double set_point, double measured, Duration step,
                                 double feed_forward = 0.0) noexcept TAPPET_REALTIME {
         const double h = to_seconds(step);
@@ -65,12 +67,13 @@ public:
         }
         const double error = beyond_dead_band(set_point - measured);
         derive(set_point, measured, h);
-        const double wanted = proportional(set_point, measured) + integral_ + derivative_ + feed_forward;
+        double wanted = proportional(set_point, measured) + integral_ + derivative_ + feed_forward;
         if (!is_number(wanted)) { // of numbers that are no more when they are added
             reset();
             return output_;
         }
         put_out(wanted);
+        wanted = unwind(wanted);
         const double grows = within_span(gains_.integral * error * h);
         const double cut = within_span(output_ - wanted);
         const bool is_far = cut != output_ - wanted, winds_up = cut * grows < 0.0;
@@ -89,7 +92,8 @@ public:
         else if (gains_.tracking_s > 0.0)
             add(within_span(actual - output_) * share());
     }
-    /// Somebody else drives, with `actual`: the next step goes on from there without a bump. Real-time.
+    /// Somebody else drives, with `actual`: the next step goes on from there without a bump, however far the
+    /// set point is. Once it is near, the integral is between the limits in one step. Real-time.
     constexpr void track(double set_point, double measured, double actual, double feed_forward = 0.0) noexcept
         TAPPET_REALTIME {
         if (!is_number(set_point) || !is_number(measured) || !is_number(actual) || !is_number(feed_forward)) {
@@ -131,6 +135,15 @@ private:
     [[nodiscard]] constexpr double proportional(double set_point, double measured) const noexcept
         TAPPET_REALTIME {
         return gains_.proportional * beyond_dead_band(gains_.set_point_weight * set_point - measured);
+    }
+    /// Takes out of the integral what it asks for beyond a limit, and returns the sum without that.
+    [[nodiscard]] constexpr double unwind(double wanted) noexcept TAPPET_REALTIME {
+        const double before = integral_;
+        if (wanted < gains_.lowest && integral_ < gains_.lowest)
+            integral_ = std::min(gains_.lowest, integral_ + (gains_.lowest - wanted));
+        else if (wanted > gains_.highest && integral_ > gains_.highest)
+            integral_ = std::max(gains_.highest, integral_ + (gains_.highest - wanted));
+        return wanted + (integral_ - before);
     }
     /// What is no number is nothing.
     [[nodiscard]] constexpr double within_span(double value) const noexcept TAPPET_REALTIME {

@@ -1,4 +1,5 @@
 // The PID controller against formulas and against a plant; what a step, a limit and a change of hands do.
+#include "kernel/base/random.hpp"
 #include "kernel/motion/pid.hpp"
 
 #include <gtest/gtest.h>
@@ -108,6 +109,70 @@ TEST(Pid, takes_over_without_a_bump) {
     for (int k = 0; k < 100; ++k) pid.track(1.0 + k, 0.5, 4.25, 0.5);
     EXPECT_EQ(pid.output(), 4.25);
     EXPECT_NEAR(pid(100.0, 0.5, 1ms, 0.5), 4.25, 1e-12);
+}
+
+TEST(Pid, takes_over_without_a_bump_between_its_limits_however_far_the_set_point_is) {
+    for (const double tracking : {0.0, 0.1}) {
+        Pid pid{
+            {.proportional = 1.0, .integral = 0.5, .tracking_s = tracking, .lowest = -10.0, .highest = 10.0}};
+        for (const double set_point : {4.0, 30.0, -1000.0, 1e5}) {
+            pid.track(set_point, 0.0, 4.25);
+            EXPECT_NEAR(pid(set_point, 0.0, 1ms), 4.25, 1e-9) << set_point;
+        }
+    }
+}
+
+/// An axis stands at nought while somebody else drives; the set point is 0 from the hand-over on.
+struct HandOver {
+    double away = 0.0;
+    double until = 0.0; ///< then it is back, s
+};
+HandOver hand_over(const PidGains& gains, double set_point, double actual, double feed_forward = 0.0) {
+    Pid pid{gains};
+    pid.track(set_point, 0.0, actual, feed_forward);
+    Axis axis;
+    HandOver seen;
+    for (int ms = 0; ms < 60'000; ++ms) {
+        axis.run(pid(0.0, axis.position, 1ms), 1e-3);
+        seen.away = std::max(seen.away, std::abs(axis.position));
+        if (std::abs(axis.position) > 0.5) seen.until = ms * 1e-3;
+    }
+    return seen;
+}
+
+TEST(Pid, forgets_what_it_tracked_beyond_its_limits_in_one_step) {
+    for (const double tracking : {0.0, 0.1}) {
+        const PidGains gains{
+            .proportional = 1.0, .integral = 0.5, .tracking_s = tracking, .lowest = -10.0, .highest = 10.0};
+        // No integral between the limits can do more than the one that lies at an end of them.
+        const HandOver worst = hand_over(gains, 0.0, 10.0);
+        ASSERT_LT(worst.away, 6.5);
+        for (const double far : {10.0, 12.0, 1e3, 1e5, 1e100, 1e308, -1e3, -1e308})
+            for (const HandOver& seen :
+                 {hand_over(gains, far, 0.0), hand_over(gains, 0.0, far), hand_over(gains, 0.0, 0.0, far)}) {
+                EXPECT_LE(seen.away, worst.away + 0.02) << far;
+                EXPECT_LE(seen.until, worst.until + 0.02) << far;
+            }
+    }
+}
+
+TEST(Pid, has_an_integral_that_alone_asks_for_what_its_limits_allow) {
+    Random random{3};
+    const auto any = [&] {
+        const double size = std::pow(10.0, 300.0 * random.unit() - 2.0);
+        return random.one_in(2) ? size : -size;
+    };
+    for (int n = 0; n < 2000; ++n) {
+        Pid pid{{.proportional = random.unit(),
+                 .integral = 5.0 * random.unit(),
+                 .tracking_s = 0.1 * random.unit(),
+                 .lowest = -10.0,
+                 .highest = random.one_in(2) ? 3.0 : infinite}};
+        pid.track(any(), any(), any(), any());
+        for (int k = 0; k < 3; ++k) pid(0.0, 0.0, 1ms);
+        EXPECT_GE(pid.integral(), -10.0);
+        EXPECT_LE(pid.integral(), std::max(pid.output(), 3.0));
+    }
 }
 
 TEST(Pid, does_nothing_about_errors_in_its_dead_band) {
