@@ -5,6 +5,7 @@
 #include "kernel/component/component.hpp"
 #include "kernel/motion/estimators.hpp"
 #include "kernel/motion/trajectory.hpp"
+#include "kernel/pieces/hand_over.hpp"
 #include "kernel/pieces/ramp.hpp"
 
 #include <algorithm>
@@ -15,6 +16,14 @@ namespace bearing_press {
 using namespace tappet;
 
 inline constexpr motion::AxisLimits slide{.velocity = 0.2, .acceleration = 2.0, .jerk = 40.0}; // m, s
+
+/// What the drive does at most, m/s: some more than any path asks for.
+inline constexpr double fastest = 0.25;
+/// A speed that the drive can have; 0 when it is no number. A loop that takes over begins with what was sent,
+/// and somebody may have forced that.
+constexpr double speed_of_drive(double speed) noexcept TAPPET_REALTIME {
+    return is_number(speed) ? std::clamp(speed, -fastest, fastest) : 0.0;
+}
 
 /// Estimator: how fast the slide is.
 struct Speed {
@@ -62,7 +71,7 @@ struct Standing {
     Output<double> target, speed;
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         began_ = cycle.now;
-        const motion::AxisState from{.position = position.get(), .velocity = sent.get()};
+        const motion::AxisState from{.position = position.get(), .velocity = speed_of_drive(sent.get())};
         profile_ = motion::stop(from, slide).value_or(motion::Profile{{.position = from.position}});
         step(cycle);
     }
@@ -91,7 +100,7 @@ struct Jogging {
     Output<double> target, speed;
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         wanted_ = 0.0;
-        put(position.get(), sent.get());
+        put(position.get(), speed_of_drive(sent.get()));
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double h = to_seconds(cycle.period);
@@ -169,13 +178,10 @@ struct Place {
     Output<double> velocity;
     Property<double> kp{20.0};
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        bump_ = sent.get() - wanted(); // fades, so that nothing jumps
-        velocity.write(sent.get());
+        velocity.write(take_over_.begin(sent.get(), wanted(), fastest));
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        bump_ *= 1.0 - kp.get() * to_seconds(cycle.period);
-        if (!is_number(bump_)) bump_ = 0.0; // what came of a number that is too large
-        velocity.write(wanted() + bump_);
+        velocity.write(take_over_(wanted(), kp.get() * to_seconds(cycle.period)));
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
     static constexpr auto interface() {
@@ -190,10 +196,10 @@ struct Place {
 private:
     [[nodiscard]] double wanted() noexcept TAPPET_REALTIME {
         const double all = speed.get() + kp.get() * (target.get() - position.get());
+        if (all != all) return 0.0;
         return std::clamp(all, -fastest, fastest); // a place may be so far that its way is no number
     }
-    static constexpr double fastest = 1e6; // m/s; the Effector's limit is another
-    double bump_ = 0.0;
+    HandOver take_over_;
 };
 
 /// Generator and Controller of force in one: down, as fast as force is lacking.
@@ -220,7 +226,7 @@ struct Press {
     Property<double> kf{1e-5};
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         since_ = never;
-        velocity.write(sent.get());
+        velocity.write(speed_of_drive(sent.get()));
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double lacking = target.get() - force.get();
@@ -252,11 +258,13 @@ struct Ramp {
     Input<double> command, sent;
     Output<double> target;
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        ramp_.reset(is_number(sent.get()) ? sent.get() : 0.0);
+        ramp_.reset(speed_of_drive(sent.get()));
         target.write(ramp_.value());
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        target.write(ramp_(command.get(), cycle.period));
+        const double asked =
+            command.get(); // beyond what the drive does the ramp would take time to come back
+        target.write(ramp_(is_number(asked) ? speed_of_drive(asked) : asked, cycle.period));
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { target.write(0.0); }
     static constexpr auto interface() {
@@ -277,7 +285,7 @@ struct Trim {
     Property<double> ki{2.0};
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         sum_ = 0.0;
-        wanted.write(sent.get());
+        wanted.write(speed_of_drive(sent.get()));
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double now = wanted.last();

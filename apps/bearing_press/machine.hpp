@@ -26,7 +26,7 @@ inline constexpr auto table = machine("bearing-press",
         component<Idle>("idle"), component<Standing>("standing"), component<Jogging>("jogging"), component<Path>("path"), component<Approach>("approach"),
         component<Place>("place", set("kp", 20.0)), component<Press>("press", set("kf", 1e-5)),
         component<Ramp>("ramp"), component<Trim>("trim"),
-        component<instruments::VelocityAxis<"m/s">>("drive", set("most", 0.25)), // some more than any path asks for
+        component<instruments::VelocityAxis<"m/s">>("drive", set("most", fastest)),
         component<Axis>("axis"),                                    // the states of the whole
         component<can::Restarter>("restarter", device("axis-can")),
         component<BrowserService>("browser")),

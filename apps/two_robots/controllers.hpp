@@ -3,8 +3,10 @@
 
 #include "apps/two_robots/values.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/pieces/hand_over.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace two_robots {
@@ -20,12 +22,16 @@ struct JointController {
 
 protected:
     void begin(const Joints& would) noexcept TAPPET_REALTIME {
-        bump_ = sent.get() - would;
-        wanted.write(sent.get());
+        const Joints is = sent.get();
+        Joints rates;
+        for (int i = 0; i < 6; ++i)
+            rates[i] = take_over_[static_cast<std::size_t>(i)].begin(is[i], would[i], fastest);
+        wanted.write(rates);
     }
     void put(const Joints& next, const Cycle& cycle) noexcept TAPPET_REALTIME {
-        bump_ -= bump_ * std::min(1.0, fading * to_seconds(cycle.period));
-        Joints rates = next + bump_;
+        Joints rates;
+        for (int i = 0; i < 6; ++i)
+            rates[i] = take_over_[static_cast<std::size_t>(i)](next[i], fading * to_seconds(cycle.period));
         if (calibrated.get()) {
             const Joints now = positions.get();
             for (int i = 0; i < 6; ++i)
@@ -56,7 +62,8 @@ private:
     }
 
     static constexpr double fading = 10.0; // 1/s
-    Joints bump_ = Joints::Zero();
+    static constexpr double fastest = 0.5; // rad/s, which no drive exceeds: see JointEffector
+    std::array<HandOver, 6> take_over_{};
 };
 
 /// By the error and its sum alone.

@@ -95,6 +95,110 @@ TEST_F(Loops, begin_from_rest_when_they_were_sent_what_is_no_number) {
     }
 }
 
+/// A slide that stands at 0.1 m; its drive does what it may.
+struct Slide {
+    double at = 0.1, worst = 0.0, speed = 0.0;
+    Output<double> position, sent;
+    Slide() { tell(); }
+    void tell() {
+        position.write(at);
+        sent.write(speed);
+    }
+    void go(double wanted) {
+        speed = std::clamp(wanted, -fastest, fastest);
+        at += speed * 1e-3;
+        worst = std::max(worst, std::abs(at - 0.1));
+        tell();
+    }
+};
+
+TEST_F(Loops, do_not_leave_their_place_for_a_target_that_was_far) {
+    for (const double far : {10.0, -10.0, 1e3, 1e300, -1e300, 0.2}) {
+        Slide there;
+        Output<double> target, speed;
+        Place place;
+        PortAccess::data<double>.link_local(&place.target, &target, nullptr);
+        PortAccess::data<double>.link_local(&place.speed, &speed, nullptr);
+        PortAccess::data<double>.link_local(&place.position, &there.position, nullptr);
+        PortAccess::data<double>.link_local(&place.sent, &there.sent, nullptr);
+        target.write(far);
+        speed.write(0.0);
+        place.start({});
+        target.write(0.1); // it shall stand where it is
+        for (int ms = 0; ms < 3000; ++ms) {
+            place.step({.period = 1ms});
+            there.go(place.velocity.last());
+        }
+        EXPECT_LT(there.worst, 1e-6) << far;
+    }
+}
+
+TEST_F(Loops, begin_at_the_speed_that_the_slide_has) {
+    for (const double target_now : {0.1, 0.3, -5.0, 1e300}) {
+        Output<double> target, speed, position, sent;
+        Place place;
+        PortAccess::data<double>.link_local(&place.target, &target, nullptr);
+        PortAccess::data<double>.link_local(&place.speed, &speed, nullptr);
+        PortAccess::data<double>.link_local(&place.position, &position, nullptr);
+        PortAccess::data<double>.link_local(&place.sent, &sent, nullptr);
+        target.write(target_now), speed.write(0.0), position.write(0.1), sent.write(0.15);
+        place.start({});
+        EXPECT_EQ(place.velocity.last(), 0.15);
+        double before = 0.15;
+        for (int ms = 0; ms < 500; ++ms) {
+            place.step({.period = 1ms});
+            ASSERT_LE(std::abs(place.velocity.last()), fastest);
+            ASSERT_LT(std::abs(place.velocity.last() - before), 0.01) << "it jumps";
+            before = place.velocity.last();
+        }
+        const double wanted = 20.0 * (target_now - 0.1);
+        EXPECT_NEAR(before, std::clamp(wanted, -fastest, fastest), 1e-4);
+    }
+}
+
+TEST_F(Loops, come_back_from_what_was_commanded_beyond_the_speed_of_the_drive) {
+    Output<double> sent, command;
+    bearing_press::Ramp ramp;
+    PortAccess::data<double>.link_local(&ramp.sent, &sent, nullptr);
+    PortAccess::data<double>.link_local(&ramp.command, &command, nullptr);
+    sent.write(0.0);
+    command.write(1e300);
+    ramp.start({});
+    for (int ms = 0; ms < 5000; ++ms) ramp.step({.period = 1ms});
+    command.write(0.0);
+    for (int ms = 0; ms < 64; ++ms) ramp.step({.period = 1ms}); // 0.25 m/s at 4 m/s2 take 63
+    EXPECT_EQ(ramp.target.last(), 0.0);
+}
+
+TEST_F(Loops, begin_no_faster_than_the_drive_whatever_was_sent) {
+    for (const double far : {1e300, -1e300, 50.0}) {
+        Output<double> sent, position, target, command;
+        sent.write(far), position.write(0.1), target.write(0.1), command.write(0.0);
+        const auto begin = [&](auto& loop) {
+            PortAccess::data<double>.link_local(&loop.sent, &sent, nullptr);
+            if constexpr (requires { loop.position; })
+                PortAccess::data<double>.link_local(&loop.position, &position, nullptr);
+            loop.start({});
+            for (int ms = 1; ms <= 300; ++ms) loop.step({Time{ms * 1ms}, Time{ms * 1ms}, 1ms});
+        };
+        Jogging jogging;
+        begin(jogging);
+        EXPECT_EQ(jogging.speed.last(), 0.0) << far;
+        EXPECT_NEAR(jogging.target.last(), 0.1, 0.05) << far;
+        Standing standing;
+        begin(standing);
+        EXPECT_NEAR(standing.target.last(), 0.1, 0.05) << far;
+        Place place;
+        PortAccess::data<double>.link_local(&place.target, &target, nullptr);
+        begin(place);
+        EXPECT_LE(std::abs(place.velocity.last()), fastest) << far;
+        bearing_press::Ramp ramp;
+        PortAccess::data<double>.link_local(&ramp.command, &command, nullptr);
+        begin(ramp);
+        EXPECT_EQ(ramp.target.last(), 0.0) << far;
+    }
+}
+
 struct Seat {
     int times = 0;
     void once_more() noexcept TAPPET_REALTIME { ++times; }

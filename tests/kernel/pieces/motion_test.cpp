@@ -1,10 +1,12 @@
 // Pieces of what moves: ramps, integrals, dead time compensated.
+#include "kernel/pieces/hand_over.hpp"
 #include "kernel/pieces/integrator.hpp"
 #include "kernel/pieces/lead.hpp"
 #include "kernel/pieces/ramp.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -33,6 +35,40 @@ TEST(Ramp, is_not_moved_by_what_is_no_number_or_by_a_rate_that_is_not_positive) 
     Ramp stands{-1.0, no_number};
     EXPECT_EQ(stands(5.0, 1s), 0.0);
     EXPECT_EQ(stands(-5.0, 1s), 0.0);
+}
+
+TEST(HandOver, goes_without_a_bump_from_what_there_was_to_what_is_wanted) {
+    for (const double is : {0.0, 0.2, -0.5})
+        for (const double wanted : {0.0, 0.1, -0.3, 0.5}) {
+            HandOver from;
+            double before = from.begin(is, wanted, 0.5);
+            EXPECT_EQ(before, is);
+            for (int k = 0; k < 1000; ++k) {
+                const double now = from(wanted, 0.02);
+                ASSERT_LE(std::abs(now - before), 0.02 + 1e-12);
+                ASSERT_TRUE(now >= std::min(is, wanted) && now <= std::max(is, wanted));
+                before = now;
+            }
+            EXPECT_NEAR(before, wanted, 1e-8);
+        }
+}
+
+TEST(HandOver, leaves_nothing_of_what_was_wanted_at_first_and_is_not_any_more) {
+    for (const double far : {1.0, -1e300, 1.7e308, no_number, -std::numeric_limits<double>::infinity()})
+        for (const double is : {0.0, 0.2, 1e300, no_number}) {
+            HandOver from;
+            const double first = from.begin(is, far, 0.5);
+            ASSERT_LE(std::abs(first), 0.5);
+            static_cast<void>(from(far, 0.02));
+            double most = 0.0, least = 0.0;
+            for (int k = 0; k < 400; ++k) {
+                const double now = from(0.0, 0.02);
+                most = std::max(most, now), least = std::min(least, now);
+            }
+            EXPECT_GE(least, 0.0) << far << " from " << is;
+            EXPECT_LE(most, std::max(first, 0.0)) << far << " from " << is;
+            EXPECT_NEAR(from(0.1, 0.02), 0.1, 1e-3) << "it does what is wanted then";
+        }
 }
 
 TEST(Integrator, adds_up_by_trapezia_from_the_first_sample_on) {
