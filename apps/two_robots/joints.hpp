@@ -46,10 +46,12 @@ struct JointSensor {
             if (!is_angle(angle)) return; // likewise
             now[static_cast<int>(i)] = angle;
         }
-        if (!has_seen_ || !(cycle.period > Duration::zero())) seen_ = now;
+        // Of the time since the last angles, however many cycles had none.
+        const Duration passed = has_seen_ ? cycle.release - seen_at_ : Duration::zero();
         positions.write(now);
-        rates.write((now - seen_) / std::max(1e-6, to_seconds(cycle.period)));
+        rates.write(passed > Duration::zero() ? Joints{(now - seen_) / to_seconds(passed)} : Joints::Zero());
         seen_ = now;
+        seen_at_ = cycle.release;
         has_seen_ = true;
         calibrated.write(known_ == all);
     }
@@ -90,6 +92,7 @@ private:
     static constexpr bool is_angle(double angle) noexcept { return std::abs(angle) <= 1e4; }
     std::array<UnwrappedCount, 6> counts_{};
     Joints zero_ = Joints::Zero(), seen_ = Joints::Zero();
+    Time seen_at_{};
     unsigned known_ = 0;
     bool has_seen_ = false;
 };

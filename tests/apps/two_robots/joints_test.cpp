@@ -1,4 +1,6 @@
-// The joints' sensor, alone: what somebody says of a joint's angle is taken only when a joint can have it.
+// The joints' sensor, alone: what somebody says of a joint's angle is taken only when a joint can have it;
+// and the controllers, which take over where the joints stand.
+#include "apps/two_robots/controllers.hpp"
 #include "apps/two_robots/joints.hpp"
 
 #include <gtest/gtest.h>
@@ -12,6 +14,7 @@ struct Sensed : testing::Test {
     Output<std::int64_t> counts[6];
     JointSensor joints;
     Time now{};
+    int count = 0;
     Sensed() {
         Input<std::int64_t>* const inputs[]{&joints.counts_1, &joints.counts_2, &joints.counts_3,
                                             &joints.counts_4, &joints.counts_5, &joints.counts_6};
@@ -53,6 +56,67 @@ TEST_F(Sensed, joints_whose_counts_mean_no_angle_are_not_written) {
     counts[2].write(17);
     step();
     EXPECT_EQ(joints.positions.last(), before);
+}
+
+TEST_F(Sensed, joints_have_the_rate_of_the_time_that_passed) {
+    const auto turn = [&](int ms) {
+        for (int i = 0; i < ms; ++i) {
+            counts[0].write(++count);
+            step();
+        }
+    };
+    Joints per_rad = joints.counts_per_rad.get();
+    per_rad[0] = 1000.0;
+    joints.counts_per_rad.set(per_rad);
+    turn(100); // 1 rad/s
+    EXPECT_NEAR(joints.rates.last()[0], 1.0, 1e-9);
+    Joints none = per_rad;
+    none[5] = 0.0; // its angles are refused, and so are all
+    joints.counts_per_rad.set(none);
+    counts[5].write(1);
+    turn(500);
+    counts[5].write(0);
+    joints.counts_per_rad.set(per_rad);
+    turn(1);
+    EXPECT_NEAR(joints.rates.last()[0], 1.0, 1e-9) << "and not the way of 501 ms in one of them";
+    EXPECT_NEAR(joints.positions.last()[0], 0.601, 1e-9);
+    now += 3ms; // cycles that were missed
+    counts[0].write(count += 4);
+    step();
+    EXPECT_NEAR(joints.rates.last()[0], 1.0, 1e-9);
+    joints.start({now, now, 1ms});
+    EXPECT_EQ(joints.rates.last(), Joints::Zero()) << "there is no way before the first place";
+}
+
+template <class Controller>
+double most_after_a_far_target(double far) {
+    Output<Joints> target, rate, positions, sent;
+    Output<bool> calibrated;
+    Controller controller;
+    PortAccess::data<Joints>.link_local(&controller.target, &target, nullptr);
+    PortAccess::data<Joints>.link_local(&controller.rate, &rate, nullptr);
+    PortAccess::data<Joints>.link_local(&controller.positions, &positions, nullptr);
+    PortAccess::data<Joints>.link_local(&controller.sent, &sent, nullptr);
+    PortAccess::data<bool>.link_local(&controller.calibrated, &calibrated, nullptr);
+    for (Output<Joints>* each : {&target, &rate, &positions, &sent}) each->write(Joints::Zero());
+    calibrated.write(false);
+    target.write(Joints::Constant(far));
+    controller.start({});
+    target.write(Joints::Zero());
+    double most = 0.0;
+    for (int ms = 0; ms < 3000; ++ms) {
+        controller.step({.period = 1ms});
+        const double asked = largest(controller.wanted.last());
+        if (!(asked <= most)) most = asked;
+    }
+    return most;
+}
+
+TEST(JointControllers, do_not_move_for_a_target_that_was_far_at_the_hand_over) {
+    for (const double far : {5.0, -5.0, 1e300}) {
+        EXPECT_EQ(most_after_a_far_target<JointPid>(far), 0.0) << far;
+        EXPECT_EQ(most_after_a_far_target<JointFeedForward>(far), 0.0) << far;
+    }
 }
 
 } // namespace
