@@ -1,17 +1,19 @@
 // Encoders: counts of a register that wraps become a way, in units.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/base/unwrapped_count.hpp"
 #include "kernel/component/component.hpp"
 
+#include <cmath>
 #include <cstdint>
 
 namespace tappet::instruments {
 
 /// Sensor of a position: Encoder<"m">, Encoder<"rad", 16>. Of an absolute encoder it has its zero; of
-/// one that counts from its power-on, that place. While the counts are stale the last position stays and
-/// `good` is false; it counts on from the register afterwards. Real-time.
+/// one that counts from its power-on, that place. While the counts are stale, or mean no number, the last
+/// position stays and `good` is false; after stale ones it counts on from the register. Real-time.
 template <text unit, int bits = 32>
 struct Encoder {
     static_assert(bits >= 2 && bits <= 63);
@@ -28,13 +30,14 @@ struct Encoder {
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         std::int64_t code = 0;
         const Flow flow = counts.read(code);
-        const bool is_good = flow == Flow::fresh || flow == Flow::old;
-        if (!is_good) unwrapped_.lose();
-        if (flow == Flow::fresh || (is_good && !unwrapped_.is_known())) {
-            const auto way = static_cast<double>(unwrapped_.take(code, bits));
-            position.write(way / counts_per_unit.get(), counts.stamp());
+        const bool is_counted = flow == Flow::fresh || flow == Flow::old;
+        if (!is_counted) unwrapped_.lose();
+        if (flow == Flow::fresh || (is_counted && !unwrapped_.is_known())) {
+            const double now = static_cast<double>(unwrapped_.take(code, bits)) / counts_per_unit.get();
+            means_place_ = is_number(now);
+            if (means_place_) position.write(now, counts.stamp());
         }
-        good.write(is_good);
+        good.write(is_counted && means_place_);
     }
 
     static constexpr auto interface() {
@@ -46,14 +49,16 @@ struct Encoder {
                                                           "way round",
                                                           range(-1e12, 1e12)));
     }
-    /// A way of no length has no counts.
+    /// With nearly no counts for a unit a position would have no end.
     Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
-        if (proposal.of(counts_per_unit) != 0.0) return {};
-        return Sentence{"no counts for a unit: a position would be infinite; write how many there are"};
+        if (std::abs(proposal.of(counts_per_unit)) >= 1e-9) return {};
+        return Sentence{"less than 1e-9 counts for a unit: no encoder is so coarse; write how many there "
+                        "are"};
     }
 
 private:
     UnwrappedCount unwrapped_;
+    bool means_place_ = false;
 };
 
 } // namespace tappet::instruments

@@ -1,14 +1,15 @@
 // A force sensor of one axis: what it shows with nothing on it is taken off, and an overload is told.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/component/component.hpp"
 
 #include <cmath>
 
 namespace tappet::instruments {
 
-/// Sensor of a force, N. While what is measured is stale, or no number, the last force stays and `good` is
-/// false. Real-time.
+/// Sensor of a force, N. While what is measured is stale, or is no number, with the tare or without it, the
+/// last force stays and `good` is false. Real-time.
 struct ForceSensor {
     Input<double> measured;
     Output<double> force;
@@ -23,10 +24,11 @@ struct ForceSensor {
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         double now = 0.0;
         const Flow flow = measured.read(now);
-        const bool is_good = (flow == Flow::fresh || flow == Flow::old) && std::isfinite(now);
+        const bool is_measured = (flow == Flow::fresh || flow == Flow::old) && is_number(now);
+        const bool is_good = is_measured && is_number(now - tare_);
         if (is_good) force.write((measured_ = now) - tare_, measured.stamp());
         good.write(is_good);
-        const bool too_much = is_good && std::abs(now) > most.get();
+        const bool too_much = is_measured && std::abs(now) > most.get();
         if (too_much && !is_overloaded_) overloaded.emit(now);
         is_overloaded_ = too_much;
     }

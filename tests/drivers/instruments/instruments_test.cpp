@@ -6,6 +6,7 @@
 #include "drivers/instruments/simulated.hpp"
 #include "drivers/instruments/velocity_axis.hpp"
 #include "kernel/base/random.hpp"
+#include "kernel/component/property_transaction.hpp"
 #include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
@@ -203,6 +204,59 @@ TEST_F(Instruments, a_force_sensor_takes_its_tare_off_and_tells_an_overload_once
     wires().newtons_now = 15.0;
     pass();
     EXPECT_DOUBLE_EQ(cell.force.last(), 0.0) << "what is not good is no tare";
+}
+
+TEST_F(Instruments, nothing_is_good_that_is_no_number_whatever_is_measured) {
+    auto& cell = of<ForceSensor>("cell");
+    wires().newtons_now = 1.7e308;
+    pass();
+    cell.tare();
+    wires().newtons_now = -1.7e308;
+    pass();
+    EXPECT_FALSE(cell.good.last());
+    EXPECT_EQ(cell.force.last(), 1.7e308) << "the last one stays";
+    EXPECT_EQ(of<Alarm>("alarm").times, 1) << "it is an overload all the same";
+    wires().newtons_now = 20.0;
+    pass();
+    EXPECT_TRUE(cell.good.last()) << "less the tare it is a number again";
+    cell.tare();
+    pass();
+    EXPECT_EQ(cell.force.last(), 0.0);
+
+    auto& encoder = of<Encoder<"m", 16>>("encoder");
+    wires().register_now = 500;
+    pass();
+    for (const double none : {1e-320, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+        encoder.counts_per_unit.set(none); // no proposal is accepted that says so
+        wires().register_now += 100;
+        pass();
+        EXPECT_FALSE(encoder.good.last()) << none;
+        EXPECT_EQ(encoder.position.last(), -0.5) << none;
+    }
+    encoder.counts_per_unit.set(-1000.0);
+    wires().register_now += 100;
+    pass();
+    EXPECT_TRUE(encoder.good.last());
+    EXPECT_EQ(encoder.position.last(), -0.9);
+}
+
+TEST_F(Instruments, an_encoder_has_as_many_counts_as_an_encoder_can_have) {
+    auto& encoder = of<Encoder<"m", 16>>("encoder");
+    PropertyTransaction transaction;
+    const auto proposed = [&](double counts) {
+        transaction.begin("encoder", component_type<Encoder<"m", 16>>, &encoder);
+        for (std::size_t f = 0; f < component_type<Encoder<"m", 16>>.facets.size(); ++f)
+            if (const Facet& each = component_type<Encoder<"m", 16>>.facets[f];
+                each.name == "counts_per_unit")
+                each.property->set(transaction.change(f), {.real = counts});
+        transaction.commit();
+        return std::string{transaction.refusal().view()};
+    };
+    for (const double none : {0.0, 1e-300, -1e-300, 0.9e-9})
+        EXPECT_EQ(proposed(none), "less than 1e-9 counts for a unit: no encoder is so coarse; write how many "
+                                  "there are")
+            << none;
+    for (const double good : {1e-9, -4096.0, 1e12}) EXPECT_EQ(proposed(good), "") << good;
 }
 
 TEST_F(Instruments, an_axis_and_an_analog_output_send_what_they_may) {
