@@ -52,7 +52,7 @@ struct Delay {
 };
 
 constexpr std::size_t in_steps_of(Duration period, Duration late) {
-    return static_cast<std::size_t>((late + period - 1ns) / period);
+    return static_cast<std::size_t>(late / period + (late % period > Duration::zero() ? 1 : 0));
 }
 
 /// By how much a row makes a value late. What was written in another activity is as old as that activity's

@@ -62,8 +62,8 @@ constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& 
         fault = Sentence{"a value of type ", type->name,
                          " is no number of at least 4 bytes: remove in_bits(...), and it goes as it is"};
         value.bits = 0;
-    } else if (encoding.bits > 56 || !(encoding.step > 0)) {
-        fault = Sentence{"in_bits takes 1 to 56 bits and a step above 0"};
+    } else if (encoding.bits > 56 || !(encoding.step > 0 && tappet::is_number(encoding.step))) {
+        fault = Sentence{"in_bits takes 1 to 56 bits and a finite step above 0"};
         value.bits = 0;
     } else {
         value.kind = type->kind;

@@ -7,6 +7,8 @@
 #include "kernel/machine/table/unit_rows.hpp"
 #include "kernel/statechart/check.hpp"
 
+#include <algorithm>
+
 namespace tappet::checks {
 
 template <class... Pieces> constexpr Sentence of_behaviour(const BehaviourRow& row, const Pieces&... fault) {
@@ -37,10 +39,17 @@ constexpr Sentence resolve_trigger(const MachineView& m, const BehaviourRow& row
     return {};
 }
 
+/// So few that what a slot takes of each is counted in 32 bits.
+inline constexpr std::uint32_t most_in_slot = 1 << 24;
+
 constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
     const Slot& slot = row.slot;
     if (slot.nodes == 0 || slot.data_bytes == 0 || slot.depth == 0)
         return of_behaviour(row, " reserves no nodes, data or depth; state all three");
+    if (std::max({slot.nodes, slot.data_bytes, slot.depth, slot.command_slots, slot.timers,
+                  slot.text_bytes}) > most_in_slot)
+        return of_behaviour(row, " reserves more than ", most_in_slot,
+                            " of something; write smaller numbers");
     for (const auto& peer : slot.peers)
         if (find_component(m, peer) == nowhere)
             return of_behaviour(row, ": among its peers, ", unknown_component(m, peer));

@@ -9,6 +9,8 @@ namespace tappet::checks {
 
 /// The engine remembers so many wakes to hold a sporadic activity to its promise.
 inline constexpr std::int64_t max_wakes_together = Engine::max_wakes_watched;
+/// Far more than a board has room for, and so little that the sum of all stacks does not wrap.
+inline constexpr std::size_t most_stack_bytes = 1 << 30;
 
 /// The first facet without a name or a text, or with the name of one before it; nowhere: there is none. Of
 /// the type alone, so that a compiler which remembers its constant calls looks at each type once.
@@ -140,6 +142,22 @@ constexpr Sentence unknown_to_activity(const MachineView& m, const ActivityRow& 
                         "\", which components(...) has not; rename it to that");
 }
 
+/// Of every activity: also those that are not real-time, whose times no analysis uses.
+constexpr Sentence check_times(const ActivityRow& row) {
+    if (row.at_most_per < Duration::zero())
+        return of_activity(row.name, ": the window of at_most is negative; correct at_most(n, per)");
+    if (row.at_most_n < 1)
+        return of_activity(row.name, ": at_most needs at least one wake; write at_most(1, ...)");
+    if (row.at_most_n > max_wakes_together)
+        return of_activity(row.name, " promises more than ", max_wakes_together,
+                           " wakes in one window; shorten the window of at_most");
+    if (row.budget_each < Duration::zero())
+        return of_activity(row.name, ": its budget is negative; correct budget(...)");
+    if (row.deadline_after < Duration::zero())
+        return of_activity(row.name, ": its deadline is negative; correct deadline(...)");
+    return {};
+}
+
 constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
     if (!row.twice.empty()) return of_activity(row.name, " is given ", row.twice, " twice; keep one");
     if (!row.has_trigger)
@@ -166,22 +184,19 @@ constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
             return of_activity(row.name, " is woken by the device of \"", row.device,
                                "\" but does not run it; add it to runs(...)");
     }
+    if (Sentence fault = check_times(row); !fault.empty()) return fault;
     if (row.real_time) {
         if (row.shortest_period() <= Duration::zero())
             return of_activity(row.name, " does not say how often it may be woken; add at_most(n, per)");
-        if (row.at_most_n < 1)
-            return of_activity(row.name, ": at_most needs at least one wake; write at_most(1, ...)");
-        if (row.at_most_n > max_wakes_together)
-            return of_activity(row.name, " promises more than ", max_wakes_together,
-                               " wakes in one window; shorten the window of at_most");
-        if (row.budget_each <= Duration::zero())
+        if (row.budget_each == Duration::zero())
             return of_activity(row.name, " has no budget; add budget(...), or not_real_time");
-        if (row.deadline_after < Duration::zero())
-            return of_activity(row.name, ": its deadline is negative; correct deadline(...)");
     }
     if (row.stack < 16 * 1024)
         return of_activity(row.name, ": its stack of ", row.stack,
                            " bytes is under 16384; enlarge stack(...)");
+    if (row.stack > most_stack_bytes)
+        return of_activity(row.name, ": its stack of ", row.stack, " bytes is over ", most_stack_bytes,
+                           "; write a smaller stack(...)");
     return {};
 }
 

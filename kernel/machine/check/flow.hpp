@@ -7,6 +7,9 @@
 
 namespace tappet::checks {
 
+/// Far more than a board has room for, and so few that no sum of the plan wraps.
+inline constexpr std::size_t most_buffered = 1 << 24;
+
 template <class... Pieces>
 constexpr Sentence of_connection(const ConnectionRow& row, const Pieces&... fault) {
     return Sentence{"connection \"", row.from, "\" -> \"", row.to, "\"", fault...};
@@ -41,6 +44,8 @@ constexpr Sentence check_scale(const ConnectionRow& row, const Facet& from, cons
     if (row.buffered || to.type->kind != ValueKind::real || !to.type->arithmetic)
         return of_connection(row, ": ", row.buffered ? "a buffer" : to.type->name,
                              " is not scaled, a port of double or float is; convert it in a component");
+    if (row.says_scale && !(is_number(row.scale) && row.scale != 0))
+        return of_connection(row, ": the factor in scaled is nought or no number; write another");
     if (row.scale != 0 && row.converted) return of_connection(row, " says scaled and converted; keep one");
     const Unit source = parse_unit(from.unit), target = parse_unit(to.unit);
     if (!converts(source, target) || (row.converted && (from.unit.empty() || to.unit.empty())))
@@ -58,7 +63,7 @@ constexpr Sentence check_scale(const ConnectionRow& row, const Facet& from, cons
 /// An end that states no unit takes any: a generic component and a raw signal cannot know; --plan lists them.
 /// "1" is the unit of what has none and must not meet one.
 constexpr Sentence check_units(const ConnectionRow& row, const Facet& from, const Facet& to) {
-    if (is_scaled(row)) return check_scale(row, from, to);
+    if (is_scaled(row) || row.says_scale) return check_scale(row, from, to);
     if (from.unit == to.unit || from.unit.empty() || to.unit.empty()) return {};
     const Unit source = parse_unit(from.unit), target = parse_unit(to.unit);
     const bool one_kind = converts(source, target);
@@ -71,9 +76,14 @@ constexpr Sentence check_units(const ConnectionRow& row, const Facet& from, cons
             : ", of the same kind and another size; convert it in one of the two components");
 }
 
+constexpr Sentence no_number_in(const ConnectionRow& row, std::string_view option) {
+    return of_connection(row, ": the value in ", option, " is no number; write a finite one");
+}
+
 constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view option, const RowValue& value,
                                    const Facet& to) {
     if (!value.given) return {};
+    if (!is_number(value.number)) return no_number_in(row, option);
     if (value.constant != nullptr)
         return value.type == to.type ? Sentence{}
                                      : of_connection(row, ": ", option, " gives a value of type ",
@@ -111,6 +121,13 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
                                   std::size_t writer, std::size_t reader) {
     if (row.buffered && row.capacity == 0)
         return of_connection(row, " holds no value; write buffer<n> with n of at least 1");
+    if (row.buffered && row.capacity > most_buffered)
+        return of_connection(row, " holds ", row.capacity, " values, more than the ", most_buffered,
+                             " of a row; write a smaller buffer<n>");
+    if (row.says_age && row.max_age <= Duration::zero())
+        return of_connection(row, ": stale_after(", row.max_age.count() / 1000,
+                             " us) is not above 0, so that no value would ever be stale; write the longest "
+                             "age, or leave it out");
     if (row.buffered && (row.max_age != Duration::zero() || row.stale_answers != 0 || row.before_first.given))
         return of_connection(
             row, ": values in a buffer have no age and no initial value; remove what says so from the row");

@@ -6,6 +6,9 @@
 
 namespace tappet::checks {
 
+/// So few that the mailbox of all rows from one activity to another counts them in 32 bits.
+inline constexpr std::uint32_t most_waiting = 1 << 16;
+
 /// Fills the ends of each reaction.
 constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
     r.reactions_into.clear();
@@ -49,6 +52,9 @@ constexpr Sentence check_reactions(const MachineView& m, TableIndexView r) {
                                "\" may block; use tell(...)");
         if (!row.target.synchronous && row.target.quota == 0)
             return of_reaction(row, ": no emission may wait; write queue(n) with n of at least 1");
+        if (row.target.quota > most_waiting)
+            return of_reaction(row, ": ", row.target.quota, " emissions may wait, more than the ",
+                               most_waiting, " of a row; write a smaller queue(n)");
         for (std::size_t j = r.reactions_into.first[link.to.component]; j != nowhere;
              j = r.reactions_into.next[j])
             if (r.reactions[j].from == link.from && r.reactions[j].to == link.to)

@@ -7,6 +7,8 @@
 #include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
 
+#include <limits>
+
 namespace tappet::checks {
 
 static_assert(max_activities < Inbox::max_senders);
@@ -117,7 +119,9 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
     }
     for (const ActivityRow& row : m.activities) {
         const std::int64_t wakes_together = row.trigger == Trigger::every ? 1 : row.at_most_n;
-        const std::int64_t needs = row.budget_each.count() * wakes_together;
+        std::int64_t needs = 0;
+        if (__builtin_mul_overflow(row.budget_each.count(), wakes_together, &needs))
+            needs = std::numeric_limits<std::int64_t>::max();
         if (row.real_time && needs > row.deadline().count())
             return of_activity(row.name, ": its budget",
                                wakes_together > 1 ? ", for all wakes that may come together," : "", " is ",

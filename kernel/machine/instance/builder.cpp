@@ -33,6 +33,7 @@ bool rests(const void* self, Time now) noexcept TAPPET_REALTIME {
 } // namespace
 
 std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevice> devices) {
+    if (const Sentence fault = check_constants(); !fault.empty()) return std::unexpected(fault);
     if (auto shared = share_memory(); !shared) return shared;
     construct();
     place_engines();

@@ -24,6 +24,7 @@ private:
     void place_scope();
     void connect_clocks();
 
+    [[nodiscard]] Sentence check_constants() const;
     void connect_data();
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);

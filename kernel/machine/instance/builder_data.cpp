@@ -1,7 +1,8 @@
 // Wires the connection rows: ports, rings, policies and who is woken; and the sections of other folders.
 #include "kernel/machine/instance/builder.hpp"
 
-#include "kernel/machine/check/units.hpp"
+#include "kernel/base/only_numbers.hpp"
+#include "kernel/machine/check/flow.hpp"
 
 #include <new>
 
@@ -19,6 +20,19 @@ void wake_chain(void* first) noexcept TAPPET_REALTIME {
 }
 
 } // namespace
+
+/// Of the constants that rows name: the compiler knows some of their values only.
+Sentence MachineBuilder::check_constants() const {
+    const auto is_good = [](const RowValue& value) {
+        return value.constant == nullptr ||
+               has_only_numbers(*value.type, static_cast<const std::byte*>(value.constant));
+    };
+    for (const ConnectionRow& row : machine_.table.connections) {
+        if (!is_good(row.substitute)) return checks::no_number_in(row, "substitute");
+        if (!is_good(row.before_first)) return checks::no_number_in(row, "initially");
+    }
+    return {};
+}
 
 void MachineBuilder::connect_data() {
     std::size_t guarded[max_activities] = {};

@@ -214,7 +214,8 @@ constexpr void make_plan(const MachineView& m, const Board& board, const Binding
 constexpr Sentence check_plan(const MachineView& m, const Board& board, std::span<const Subscription> list,
                               std::size_t machine_bytes, std::size_t stack_bytes) {
     if (const Sentence listeners = over_subscribed(m, list); !listeners.empty()) return listeners;
-    const std::size_t bytes = machine_bytes + board.heap_bytes;
+    std::size_t bytes = 0;
+    if (__builtin_add_overflow(machine_bytes, board.heap_bytes, &bytes)) bytes = ~std::size_t{0};
     if (bytes <= board.memory_budget_bytes) return {};
     return Sentence{m.name,
                     ": board \"",

@@ -1,6 +1,7 @@
 // Connection rows: what flows from an output to an input, and what happens when it does not.
 #pragma once
 
+#include "kernel/base/number.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/component/port.hpp"
 #include "kernel/exchange/ring.hpp"
@@ -29,13 +30,23 @@ struct ConnectionRow {
     double scale = 0; ///< 0: none is given
     bool converted = false;
     RateTransition transition = RateTransition::unsaid;
+    bool says_age = false;   ///< stale_after(...), whatever it says
+    bool says_scale = false; ///< scaled(...), likewise
 };
 
 namespace detail {
 
+/// What the compiler knows of a constant's number; of others start-up asks before it gives them out.
+template <const auto& Constant>
+constexpr double known_number() noexcept {
+    if constexpr (std::is_floating_point_v<std::remove_cvref_t<decltype(Constant)>>)
+        if constexpr (requires { typename std::bool_constant<is_number(Constant)>; }) return Constant;
+    return 0.0;
+}
 template <const auto& Constant>
 constexpr RowValue row_constant() noexcept {
     return {.given = true,
+            .number = known_number<Constant>(),
             .constant = std::addressof(Constant),
             .type = type_id<std::remove_cvref_t<decltype(Constant)>>};
 }
@@ -45,8 +56,8 @@ constexpr RowValue row_constant() noexcept {
 struct StaleAfter {
     Duration age;
 };
-/// A value older than this is stale; hold, substitute(x) or stop_machine say what the reader then gets: hold,
-/// if nothing says so. stop_machine is kept whatever the reader's activity waits for.
+/// A value older than this, which is above 0, is stale; hold, substitute(x) or stop_machine say what the
+/// reader then gets: hold, if nothing says so. stop_machine is kept whatever the reader's activity waits for.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 /// Of a stale value: the reader keeps it, and sees that it is stale.
 inline constexpr WhenStale hold = WhenStale::hold;
@@ -115,9 +126,15 @@ constexpr bool is_scaled(const ConnectionRow& row) noexcept { return row.scale !
 
 namespace detail {
 
-constexpr void apply(ConnectionRow& row, Scaled option) noexcept { row.scale = option.factor; }
+constexpr void apply(ConnectionRow& row, Scaled option) noexcept {
+    row.scale = option.factor;
+    row.says_scale = true;
+}
 constexpr void apply(ConnectionRow& row, Converted) noexcept { row.converted = true; }
-constexpr void apply(ConnectionRow& row, StaleAfter option) noexcept { row.max_age = option.age; }
+constexpr void apply(ConnectionRow& row, StaleAfter option) noexcept {
+    row.max_age = option.age;
+    row.says_age = true;
+}
 constexpr void apply(ConnectionRow& row, WhenStale option) noexcept {
     row.when_stale = option;
     ++row.stale_answers;

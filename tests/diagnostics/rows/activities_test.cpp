@@ -61,6 +61,18 @@ constexpr Fault activity_faults[] = {
          m.put(activity("logic", on_work(), deadline(2ms), budget(80us), runs("weft", "lamps")));
      },
      R"(loom: activity "logic" does not say how often it may be woken; add at_most(n, per))"},
+    {"activity_times_negative_that_nobody_asks",
+     [](Table& m) { m.put(activity("hall", every(250ms), not_real_time, budget(-1us), runs("climate"))); },
+     R"(loom: activity "hall": its budget is negative; correct budget(...))"},
+    {"activity_window_negative",
+     [](Table& m) { m.put(activity("hall", on_work(), not_real_time, at_most(1, -1ms), runs("climate"))); },
+     R"(loom: activity "hall": the window of at_most is negative; correct at_most(n, per))"},
+    {"activity_wakes_without_number",
+     [](Table& m) {
+         m.put(activity("hall", on_work(), not_real_time,
+                        at_most(std::numeric_limits<std::int64_t>::max(), 1ms), runs("climate")));
+     },
+     R"(loom: activity "hall" promises more than 32 wakes in one window; shorten the window of at_most)"},
     {"activity_runs_too_many", [](Table& m) { m.activities[1].too_many_runs = true; },
      R"(loom: activity "motion" runs more than 64 components; divide it)"},
     {"activity_that_is_never_woken",
@@ -89,6 +101,12 @@ constexpr Fault activity_faults[] = {
          m.put(activity("motion", every(1ms), budget(120us), stack(4096), runs("shaft", "tension")));
      },
      R"(loom: activity "motion": its stack of 4096 bytes is under 16384; enlarge stack(...))"},
+    {"activity_stack_of_all",
+     [](Table& m) {
+         m.put(
+             activity("motion", every(1ms), budget(120us), stack(~std::size_t{0}), runs("shaft", "tension")));
+     },
+     R"(loom: activity "motion": its stack of 18446744073709551615 bytes is over 1073741824; write a smaller stack(...))"},
     {"activity_blocks", [](Table& m) { m.put(activity("hall", every(250ms), budget(1ms), runs("climate"))); },
      R"(loom: activity "hall" is real-time but component "climate" may block (it has work()); run it in an activity that is not_real_time)"},
 };
@@ -149,6 +167,12 @@ constexpr Fault schedule_faults[] = {
                         runs("encoder")));
      },
      R"(loom: activity "field": its budget is 30 us but its deadline 20 us; lower the budget or lengthen the deadline or the period)"},
+    {"activity_budget_that_wraps",
+     [](Table& m) {
+         m.put(activity("logic", on_work(), at_most(4, 10ms), budget(Duration{1LL << 62}),
+                        runs("weft", "lamps")));
+     },
+     R"(loom: activity "logic": its budget, for all wakes that may come together, is 9223372036854775 us but its deadline 10000 us; lower the budget or lengthen the deadline or the period)"},
     {"activity_not_schedulable",
      [](Table& m) {
          m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(340us), budget(80us),

@@ -123,6 +123,14 @@ constexpr Fault slot_faults[] = {
      R"(loom: slot of "shaft": its angle "encoder.angle" is written in another activity; name an output of activity "motion")"},
     {"slot_without_room", [](Table& m) { m.add(behaviour("shaft", Slot{})); },
      R"(loom: slot of "shaft" reserves no nodes, data or depth; state all three)"},
+    {"slot_of_all",
+     [](Table& m) { m.add(behaviour("shaft", slot(nodes(0xffff'ffff), data_bytes(64), depth(4)))); },
+     R"(loom: slot of "shaft" reserves more than 16777216 of something; write smaller numbers)"},
+    {"slot_of_all_commands",
+     [](Table& m) {
+         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), command_slots(0x8000'0001))));
+     },
+     R"(loom: slot of "shaft" reserves more than 16777216 of something; write smaller numbers)"},
     {"slot_begins_beyond_its_peers",
      [](Table& m) { m.add(behaviour("shaft", checks, {}, slot(nodes(10), data_bytes(64), depth(4)))); },
      R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft", and what is loaded does not; add it to peers(...) of the slot)"},

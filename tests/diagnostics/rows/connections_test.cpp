@@ -11,19 +11,23 @@ using namespace tappet::diagnostics;
 struct Talker {
     Output<Text<8>> word;
     Output<std::int8_t> count;
+    Output<float> share;
     void step(const Cycle&) noexcept TAPPET_REALTIME { count.write(1); }
     static constexpr auto interface() {
         return facets(output<&Talker::word>("word", "", "that it says"),
-                      output<&Talker::count>("count", "", "of its words"));
+                      output<&Talker::count>("count", "", "of its words"),
+                      output<&Talker::share>("share", "", "of silence"));
     }
 };
 struct Hearer {
     Input<Text<8>> word;
     Input<std::int8_t> count, pulse;
+    Input<float> share;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(input<&Hearer::word>("word", "", "that it hears", optional),
                       input<&Hearer::count>("count", "", "of the words", optional),
+                      input<&Hearer::share>("share", "", "of silence", optional),
                       input<&Hearer::pulse>("pulse", "", "of who talks", optional, grows_stale));
     }
 };
@@ -37,6 +41,8 @@ void add_talk(Table& m, const ConnectionRow& row) {
 
 constexpr float standing = 0;
 constexpr int at_rest = 0;
+constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 constexpr Fault end_faults[] = {
     {"connection_missing", [](Table& m) { m.connections = {data("encoder.angle", "shaft.measured")}; },
@@ -96,6 +102,43 @@ INSTANTIATE_TEST_SUITE_P(ends, Refusal, testing::ValuesIn(planted_into(small_loo
 constexpr Fault option_faults[] = {
     {"connection_stale_never", [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stop_machine)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" says what a stale value means but not when it is stale; add stale_after(...))"},
+    {"connection_stale_before_it_is_written",
+     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stale_after(-5ms), hold)); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": stale_after(-5000 us) is not above 0, so that no value would ever be stale; write the longest age, or leave it out)"},
+    {"connection_stale_at_once",
+     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stale_after(0ms), substitute(0))); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": stale_after(0 us) is not above 0, so that no value would ever be stale; write the longest age, or leave it out)"},
+    {"connection_substitute_not_a_number",
+     [](Table& m) {
+         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute(no_number)));
+     },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": the value in substitute is no number; write a finite one)"},
+    {"connection_substitute_infinite",
+     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute(endless))); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": the value in substitute is no number; write a finite one)"},
+    {"connection_substitute_constant_infinite",
+     [](Table& m) {
+         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute<endless>()));
+     },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": the value in substitute is no number; write a finite one)"},
+    {"connection_initially_infinite",
+     [](Table& m) { m.put(data("shaft.speed", "tension.speed", initially(-endless))); },
+     R"(loom: connection "shaft.speed" -> "tension.speed": the value in initially is no number; write a finite one)"},
+    {"connection_initially_without_end_in_a_float",
+     [](Table& m) { add_talk(m, data("talker.share", "hearer.share", initially(1e300))); },
+     R"(loom: connection "talker.share" -> "hearer.share": the number in initially does not fit "hearer.share" of type float; write one that it can hold)"},
+    {"connection_scaled_by_infinity",
+     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", scaled(endless))); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": the factor in scaled is nought or no number; write another)"},
+    {"connection_scaled_by_no_number",
+     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", scaled(no_number))); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": the factor in scaled is nought or no number; write another)"},
+    {"connection_scaled_by_nought",
+     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", scaled(0.0))); },
+     R"(loom: connection "encoder.angle" -> "shaft.measured": the factor in scaled is nought or no number; write another)"},
+    {"connection_buffer_of_all",
+     [](Table& m) { m.add(buffer<~std::size_t{0}>("encoder.samples", "shaft.samples")); },
+     R"(loom: connection "encoder.samples" -> "shaft.samples" holds 18446744073709551615 values, more than the 16777216 of a row; write a smaller buffer<n>)"},
     {"connection_never_stale", [](Table& m) { add_talk(m, data("talker.count", "hearer.pulse")); },
      R"(loom: connection "talker.count" -> "hearer.pulse" never grows stale, but "hearer.pulse" tells a silence by it; add stale_after(...) and hold)"},
     {"connection_stale_twice",

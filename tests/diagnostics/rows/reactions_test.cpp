@@ -56,6 +56,9 @@ constexpr Fault end_faults[] = {
      R"(loom: reaction "weft.broken" -> "shaft.on_index": the event carries () but the operation takes (double); give both the same arguments)"},
     {"reaction_queue_of_nothing", [](Table& m) { m.put(when("weft.broken", tell("shaft.clear", queue(0)))); },
      R"(loom: reaction "weft.broken" -> "shaft.clear": no emission may wait; write queue(n) with n of at least 1)"},
+    {"reaction_queue_of_all",
+     [](Table& m) { m.put(when("weft.broken", tell("shaft.clear", queue(0xffff'ffff)))); },
+     R"(loom: reaction "weft.broken" -> "shaft.clear": 4294967295 emissions may wait, more than the 65536 of a row; write a smaller queue(n))"},
     {"event_unheard",
      [](Table& m) {
          m.add(component<Watch>("watch"));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace tappet::pair {
 namespace {
 
@@ -80,8 +82,12 @@ TEST(SystemRefusals, of_values) {
               "that says whether it is valid, and a frame has 52 for values; tell it in fewer: in_bits(32, "
               "0.001) of a number, or a part of a record");
     EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"), every(10ms), in_bits(24, 0))),
-              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": in_bits takes 1 to 56 bits and a step "
-              "above 0");
+              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": in_bits takes 1 to 56 bits and a "
+              "finite step above 0");
+    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"), every(10ms),
+                             in_bits(24, std::numeric_limits<double>::infinity()))),
+              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": in_bits takes 1 to 56 bits and a "
+              "finite step above 0");
     EXPECT_EQ(refusal(across(buffer<4>("a.giver.level", "b.taker.level"), every(10ms))),
               "lane: crossing \"a.giver.level\" -> \"b.taker.level\": a buffer does not cross a wire: emit "
               "an event for each value, which crosses with when(\"...\", tell(\"...\")), or tell the last "
@@ -129,10 +135,10 @@ TEST(SystemRefusals, of_events_and_commands) {
 }
 
 TEST(SystemRefusals, of_what_a_stranger_would_try) {
-    EXPECT_EQ(
-        refusal(
-            across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms), in_bits(60))),
-        "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": in_bits takes 1 to 56 bits and a step above 0");
+    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms),
+                             in_bits(60))),
+              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": in_bits takes 1 to 56 bits and a finite "
+              "step above 0");
     EXPECT_EQ(refusal(presence("b", "a.giver.other_is_there", stale_after(50ms))),
               "lane: presence of \"b\" -> \"a.giver.other_is_there\" says stale_after(...): it is written on "
               "change and grows false, not old; remove that");

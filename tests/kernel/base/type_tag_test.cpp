@@ -1,4 +1,5 @@
 // Type tags: what a value's bytes mean, told by plain data (thesis 4.7.2: a facet is found by name and type).
+#include "kernel/base/only_numbers.hpp"
 #include "kernel/base/type_tag.hpp"
 
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <cstring>
+#include <limits>
 
 namespace {
 
@@ -114,6 +116,33 @@ TEST(Text, refuses_what_is_longer_than_its_room_and_keeps_what_it_has) {
     EXPECT_EQ(text.view(), "warp");
     EXPECT_TRUE(text.assign("io"));
     EXPECT_EQ(text, Text<4>{"io"}) << "no character of the longer text stays behind";
+}
+
+template <class T>
+bool is_good(const T& value) {
+    return has_only_numbers(*type_id<T>, reinterpret_cast<const std::byte*>(&value));
+}
+
+TEST(OnlyNumbers, are_looked_for_in_all_parts_of_a_value_that_are_used) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+        EXPECT_FALSE(is_good(bad));
+        EXPECT_FALSE(is_good(static_cast<float>(bad)));
+        EXPECT_FALSE(is_good(Eigen::Vector3d{0.0, 1.0, bad}));
+        Plan plan{.number = 7, .from = {}, .to = {}};
+        plan.from.place = plan.to.place = {1.0F, 2.0F};
+        EXPECT_TRUE(is_good(plan));
+        plan.to.place[1] = static_cast<float>(bad);
+        EXPECT_FALSE(is_good(plan));
+        Bounded<double, 4> few;
+        EXPECT_TRUE(few.push(1.0) && few.push(2.0) && few.push(bad));
+        EXPECT_FALSE(is_good(few));
+        few.used = 2;
+        EXPECT_TRUE(is_good(few)) << "there are two";
+    }
+    EXPECT_TRUE(is_good(1e308));
+    EXPECT_TRUE(is_good(std::int64_t{-1}));
+    EXPECT_TRUE(is_good(Eigen::Vector3d{0.0, 1.0, 2.0}));
 }
 
 } // namespace

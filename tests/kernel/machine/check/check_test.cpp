@@ -63,6 +63,13 @@ TEST(Check, lets_only_these_rows_of_the_small_machine_be_dropped) {
 
 // What no table row can say, since only the sizes of a table decide it.
 
+TEST(Check, refuses_memory_that_is_more_than_a_sum_can_say) {
+    Board board = small::good_board;
+    board.heap_bytes = ~std::size_t{0};
+    EXPECT_THAT(diagnostics::refusal_of(small_loom.view(), board, small::good_binding),
+                testing::StartsWith("loom: board \"bench\": the machine takes 18446744073709551615 bytes"));
+}
+
 TEST(Check, refuses_more_buffers_on_a_port_than_it_has_room_for) {
     std::vector<ComponentRow> components{component<small::Shaft>("shaft")};
     std::vector<std::string> names;

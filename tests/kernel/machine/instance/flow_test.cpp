@@ -468,6 +468,12 @@ TEST(Flow, takes_only_numbers_in_a_row_that_the_port_can_hold) {
     EXPECT_EQ(fault_of<bool>(1), "");
     EXPECT_NE(fault_of<bool>(2), "");
     EXPECT_EQ(fault_of<float>(0.1), "");
+    EXPECT_NE(fault_of<float>(1e39), "");
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        EXPECT_NE(fault_of<float>(bad), "") << bad;
+        EXPECT_NE(fault_of<double>(bad), "") << bad;
+    }
     EXPECT_NE(
         fault_of<Text<12>>(0).find("is no number; write substitute<constant>() with a constant of that type"),
         std::string::npos);

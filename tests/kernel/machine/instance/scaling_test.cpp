@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+
+#include <limits>
+#include <string>
+
 namespace tappet {
 namespace {
 
@@ -101,6 +106,46 @@ TEST_F(Scaling, what_the_row_gives_instead_of_a_value_is_in_the_readers_unit_alr
     EXPECT_EQ(far.how, Flow::stale);
     EXPECT_EQ(far.seen, 5.0) << "the substitute";
     EXPECT_DOUBLE_EQ(near.seen, 100.0) << "the old value is scaled once, however often it is read";
+}
+
+/// Known when the program starts, which no compiler sees.
+const Eigen::Vector3d parked{0.0, std::numeric_limits<double>::quiet_NaN(), 1.0};
+const Eigen::Vector3d aloft{0.0, 0.0, 1.0};
+
+struct Crane {
+    Output<Eigen::Vector3d> hook;
+    Input<Eigen::Vector3d> above;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(output<&Crane::hook>("hook", "m", "where it hangs"),
+                      input<&Crane::above>("above", "m", "where the other one does", optional));
+    }
+};
+
+template <const Eigen::Vector3d& substituted, const Eigen::Vector3d& at_first>
+inline constexpr auto cranes =
+    machine("cranes", components(component<Crane>("near"), component<Crane>("far")),
+            activities(activity("all", every(1ms), budget(50us), runs("near", "far"))),
+            connections(data("near.hook", "far.above", stale_after(4ms), substitute<substituted>(),
+                             initially<at_first>())),
+            reactions(), behaviours());
+
+template <const auto& table>
+std::string begin() {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
+    const auto configured = instance.configure({});
+    return configured ? "" : std::string{configured.error().view()};
+}
+
+TEST(ConstantOfARow, that_is_no_number_is_refused_when_the_machine_begins) {
+    EXPECT_EQ((begin<cranes<aloft, aloft>>()), "");
+    EXPECT_EQ((begin<cranes<parked, aloft>>()),
+              "connection \"near.hook\" -> \"far.above\": the value in substitute is no number; write a "
+              "finite one");
+    EXPECT_EQ((begin<cranes<aloft, parked>>()),
+              "connection \"near.hook\" -> \"far.above\": the value in initially is no number; write a "
+              "finite one");
 }
 
 } // namespace
