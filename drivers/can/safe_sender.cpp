@@ -4,14 +4,17 @@
 
 #include "drivers/can/link.hpp"
 #include "drivers/can/wire.hpp"
+#include "kernel/os/clock.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
 #include <linux/can/raw.h>
+#include <linux/sock_diag.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -44,6 +47,14 @@ int socket_for(int interface, std::span<const Frame> frames) noexcept {
     return -1;
 }
 
+/// Whether frames of this socket wait in the interface's queue. A controller keeps the few that it holds.
+bool waits_in_queue(int fd) noexcept {
+    std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
+    socklen_t size = sizeof memory;
+    return ::getsockopt(fd, SOL_SOCKET, SO_MEMINFO, memory.data(), &size) == 0 &&
+           memory[SK_MEMINFO_WMEM_ALLOC] != 0;
+}
+
 } // namespace
 
 std::expected<void, Sentence> SafeSender::open(std::string_view interface, std::span<const Frame> frames) {
@@ -69,29 +80,38 @@ std::expected<void, Sentence> SafeSender::open(std::string_view interface, std::
 void SafeSender::close() noexcept {
     if (fd_ >= 0) ::close(fd_);
     fd_ = -1;
-    confirmed_ = 0;
+    confirmed_ = accepted_ = 0;
     tells_ = true;
 }
 
 void SafeSender::begin() noexcept {
-    confirmed_ = 0;
+    confirmed_ = accepted_ = 0;
     if (fd_ < 0) return;
     const int fresh = socket_for(interface_, frames_);
     tells_ = fresh >= 0;
     if (tells_) ::close(std::exchange(fd_, fresh));
 }
 
+bool SafeSender::are_lost() const noexcept {
+    return std::cmp_equal(std::popcount(confirmed_ | accepted_), frames_.size()) &&
+           os::Clock::monotonic() - progress_ >= repeat_after && !waits_in_queue(fd_);
+}
+
 void SafeSender::send(Purpose purpose) noexcept {
+    if (purpose == Purpose::earnest && are_lost()) accepted_ = 0;
     for (std::size_t i = 0; i < frames_.size(); ++i) {
-        if ((confirmed_ >> i & 1u) != 0) continue;
+        const std::uint64_t bit = std::uint64_t{1} << i;
+        if (((confirmed_ | accepted_) & bit) != 0) continue;
         canfd_frame raw;
         wire::encode(frames_[i], raw);
-        // The kernel takes no more now. The rest waits for the next repetition: frames keep their order.
         if (purpose == Purpose::rehearsal) {
             static_cast<void>(::write(fd_, &raw, 0));
             continue;
         }
+        // The kernel takes no more now. The rest waits for the next call: frames keep their order.
         if (::write(fd_, &raw, wire::bytes_of(frames_[i])) < 0) return;
+        accepted_ |= bit;
+        progress_ = os::Clock::monotonic();
     }
 }
 
@@ -114,6 +134,7 @@ std::size_t SafeSender::left() noexcept {
         for (std::size_t i = 0; i < frames_.size(); ++i)
             if (sent.id == frames_[i].id && sent.extended == frames_[i].extended)
                 confirmed_ |= std::uint64_t{1} << i;
+        progress_ = os::Clock::monotonic();
     }
     return frames_.size() - static_cast<std::size_t>(std::popcount(confirmed_));
 }

@@ -16,7 +16,9 @@ namespace tappet::can {
 /// A socket of its own: the machine's has little room, which may be full of what it sent last. Not real-time.
 class SafeSender {
 public:
-    static constexpr Duration repeat_after = 5ms;
+    static constexpr Duration look_every = 5ms;
+    /// A frame that was lost. Several wire times of the longest frame at 10 kbit/s.
+    static constexpr Duration repeat_after = 50ms;
     static constexpr std::size_t most_frames = 64; // a bit for each
 
     SafeSender() = default;
@@ -32,16 +34,21 @@ public:
     /// of them: they have a socket of their own, because a confirmation says whose frame it is, but not
     /// which. Without one (the kernel has none left), frames are sent and left() says that none is confirmed.
     void begin() noexcept;
-    /// Hands over each frame that is not confirmed, in order. A rehearsal does the same with frames that the
-    /// kernel refuses: nothing reaches the bus.
+    /// Hands over each frame once, in order, as far as the kernel has room; the next call goes on. Frames
+    /// that are not confirmed are repeated when nothing else can bring them out: the kernel has accepted all,
+    /// none waits in its queue, and for `repeat_after` none was confirmed. A rehearsal hands over all frames
+    /// in a form that the kernel refuses: nothing reaches the bus.
     enum class Purpose : std::uint8_t { rehearsal, earnest };
     void send(Purpose purpose) noexcept;
     /// Takes what was confirmed since; how many frames are not.
     std::size_t left() noexcept;
 
 private:
+    [[nodiscard]] bool are_lost() const noexcept; // those that are not confirmed
+
     std::span<const Frame> frames_{};
-    std::uint64_t confirmed_ = 0;
+    std::uint64_t confirmed_ = 0, accepted_ = 0; // by the bus, by the kernel
+    Time progress_{};                            // of the last of them
     int interface_ = 0;
     int fd_ = -1;
     bool tells_ = true; // what the socket confirms was sent since begin()

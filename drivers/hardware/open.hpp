@@ -39,7 +39,7 @@ std::expected<void, Sentence> open_device(gpio::Lines& chip, PlacedLines& lines,
 std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, const BoundTo& to);
 std::expected<void, Sentence> open_device(udp::Socket& socket, const BoundTo& to);
 
-/// Sends the frames in turns until all are confirmed, for so long at most; how many are not.
+/// Sends the frames of all buses until all are confirmed, for so long at most; how many are not.
 std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) noexcept;
 void rehearse(std::span<can::SafeSender> buses) noexcept;
 

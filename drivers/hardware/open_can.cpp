@@ -39,7 +39,7 @@ std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) 
     for (can::SafeSender& bus : buses) bus.begin();
     for (const Time end = os::Clock::monotonic() + within;;) {
         for (can::SafeSender& bus : buses) bus.send(can::SafeSender::Purpose::earnest);
-        os::sleep_for(can::SafeSender::repeat_after);
+        os::sleep_for(can::SafeSender::look_every);
         std::size_t left = 0;
         for (can::SafeSender& bus : buses) left += bus.left();
         if (left == 0 || os::Clock::monotonic() >= end) return left;

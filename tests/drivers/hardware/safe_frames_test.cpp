@@ -1,10 +1,13 @@
-// The guardian's frames on CAN. This file stands in for the kernel: its bus confirms each frame to the socket
-// that sent it.
+// The guardian's frames on CAN. This file stands in for the kernel: frames wait in a queue, and its bus
+// confirms each frame to the socket that sent it.
 #include "drivers/can/link.hpp"
 #include "drivers/hardware/open.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/sleep.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <deque>
@@ -13,6 +16,7 @@
 
 #include <dlfcn.h>
 #include <linux/can.h>
+#include <linux/sock_diag.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -28,9 +32,17 @@ struct Kernel {
     };
     std::deque<Sent> unconfirmed{};
     std::size_t confirms = 1000; // so many more
+    std::size_t room = 1000;
     bool has_sockets = true;
     int next_socket = first_socket;
     std::vector<canid_t> sent{};
+    tappet::Time now{};
+    tappet::Duration wire_time = tappet::Duration::max(), busy{};
+    void pass(tappet::Duration time) {
+        now += time;
+        for (busy += time; busy >= wire_time; busy -= wire_time)
+            confirms = std::min(confirms + 1, unconfirmed.size());
+    }
 } kernel;
 
 template <class Function>
@@ -51,6 +63,15 @@ int setsockopt(int fd, int level, int name, const void* value, socklen_t size) n
     if (is_socket(fd)) return 0;
     return own<int (*)(int, int, int, const void*, socklen_t)>("setsockopt")(fd, level, name, value, size);
 }
+int getsockopt(int fd, int level, int name, void* value, socklen_t* size) noexcept {
+    if (!is_socket(fd))
+        return own<int (*)(int, int, int, void*, socklen_t*)>("getsockopt")(fd, level, name, value, size);
+    std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
+    memory[SK_MEMINFO_WMEM_ALLOC] =
+        static_cast<std::uint32_t>(768 * std::ranges::count(kernel.unconfirmed, fd, &Kernel::Sent::from));
+    std::memcpy(value, memory.data(), std::min<std::size_t>(*size, sizeof memory));
+    return 0;
+}
 int bind(int fd, const sockaddr* address, socklen_t size) noexcept {
     return is_socket(fd) ? 0 : own<int (*)(int, const sockaddr*, socklen_t)>("bind")(fd, address, size);
 }
@@ -58,6 +79,10 @@ int close(int fd) { return is_socket(fd) ? 0 : own<int (*)(int)>("close")(fd); }
 ssize_t write(int fd, const void* bytes, size_t size) {
     if (!is_socket(fd)) return own<ssize_t (*)(int, const void*, size_t)>("write")(fd, bytes, size);
     if (size != sizeof(can_frame)) return -1;
+    if (kernel.unconfirmed.size() >= kernel.room) {
+        errno = ENOBUFS;
+        return -1;
+    }
     kernel.unconfirmed.push_back({.from = fd, .frame = {}});
     std::memcpy(&kernel.unconfirmed.back().frame, bytes, sizeof(can_frame));
     kernel.sent.push_back(kernel.unconfirmed.back().frame.can_id);
@@ -85,6 +110,10 @@ namespace tappet {
 namespace can {
 std::expected<Link, Sentence> find_link(std::string_view) { return Link{}; }
 } // namespace can
+namespace os {
+Time Clock::monotonic() noexcept { return kernel.now; }
+void sleep_for(Duration time) noexcept { kernel.pass(time); }
+} // namespace os
 
 namespace {
 
@@ -151,6 +180,67 @@ TEST_F(SafeFrame, is_sent_and_never_confirmed_while_the_kernel_has_no_socket_for
     send();
     kernel.confirms = 1;
     EXPECT_EQ(sender.left(), 0u);
+}
+
+/// Behind the queue of a CAN interface.
+struct QueuedFrames : testing::Test {
+    QueuedFrames() {
+        kernel = {};
+        kernel.confirms = 0;
+        kernel.room = 10;
+    }
+    void open(std::size_t count) {
+        ids.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            frames[i].id = static_cast<canid_t>(0x200 + i);
+            ids.push_back(frames[i].id);
+        }
+        EXPECT_TRUE(buses[0].open("can0", std::span{frames}.first(count)));
+    }
+    std::array<can::Frame, can::SafeSender::most_frames> frames{};
+    std::vector<canid_t> ids{};
+    std::array<can::SafeSender, 1> buses{};
+};
+
+TEST_F(QueuedFrames, each_leave_once_though_the_bus_is_slow) {
+    open(can::SafeSender::most_frames);
+    for (const Duration wire_time : {540us, 1080us, 2700us, 5400us}) { // from 250 to 25 kbit/s
+        kernel.wire_time = wire_time;
+        EXPECT_EQ(send_safe_frames(buses, 500ms), 0u);
+        EXPECT_EQ(std::exchange(kernel.sent, {}), ids);
+    }
+}
+
+struct TwoFrames : QueuedFrames {
+    TwoFrames() {
+        open(2);
+        buses[0].begin();
+    }
+    std::size_t look(std::size_t confirms) {
+        buses[0].send(can::SafeSender::Purpose::earnest);
+        kernel.confirms = confirms;
+        return buses[0].left();
+    }
+};
+
+TEST_F(TwoFrames, that_stand_in_the_queue_are_not_repeated) {
+    EXPECT_EQ(look(0), 2u);
+    for (int n = 0; n < 2; ++n) {
+        os::sleep_for(can::SafeSender::repeat_after);
+        EXPECT_EQ(look(0), 2u);
+    }
+    EXPECT_EQ(kernel.sent, ids);
+    EXPECT_EQ(look(2), 0u);
+}
+
+TEST_F(TwoFrames, of_which_one_was_lost_have_that_one_repeated) {
+    EXPECT_EQ(look(1), 1u);
+    kernel.unconfirmed.clear(); // an interface that went down
+    EXPECT_EQ(look(1), 1u);
+    EXPECT_EQ(kernel.sent, ids) << "it may still stand in the controller";
+    os::sleep_for(can::SafeSender::repeat_after);
+    EXPECT_EQ(look(1), 0u);
+    EXPECT_EQ(kernel.sent, (std::vector<canid_t>{0x200, 0x201, 0x201}));
 }
 
 } // namespace
