@@ -49,9 +49,11 @@ struct SafeServer {
     modbus::SafeWrites writes{};
     bool is_safe = false; ///< it confirmed each
 };
-/// One attempt at each server in turn, until all are safe, for so long at most. Servers that are not. The
-/// first round over Ethernet is a quick one: one that does not answer holds up the others by twice
-/// `quick_answer_within`. `meanwhile` is called before each step.
+/// One attempt at each server in turn, until all are safe, for so long at most. Servers that are not. In each
+/// round the servers that are still to be tried have equal shares of the time that is left, wherever they
+/// stand. The first round, over Ethernet only, is a quick one: it takes half of the time at most, and one
+/// that does not answer holds up the others by twice `quick_answer_within`. `meanwhile` is called before each
+/// step.
 std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
                                  const Meanwhile& meanwhile) noexcept;
 inline constexpr Duration quick_answer_within = 50ms;

@@ -69,13 +69,18 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
     }
     for (int round = 0; round < rounds && left != 0; ++round) {
         if (round > 1) os::sleep_for(100ms);
+        const bool is_quick = round == 0;
+        const Time round_end = is_quick ? end - within / 2 : end;
+        const auto is_tried = [is_quick](const SafeServer& each) {
+            return !each.is_safe && !(is_quick && each.server->is_serial());
+        };
+        std::int64_t still_tried = std::ranges::count_if(servers, is_tried);
         for (SafeServer& each : servers) {
-            const bool is_quick = round == 0;
-            if (each.is_safe || (is_quick && each.server->is_serial())) continue;
+            if (!is_tried(each)) continue;
             const Time now = os::Clock::monotonic();
             if (now >= end) return left;
-            // None takes the time of those after it.
-            const Time until = is_quick ? end : now + (end - now) / static_cast<std::int64_t>(left);
+            const Time until =
+                now + (round_end - now) / still_tried--; // none takes the time of those after it
             each.is_safe = try_once(each, {is_quick ? quick_answer_within : within, until, meanwhile});
             left -= each.is_safe ? 1u : 0u;
         }

@@ -1,11 +1,13 @@
 // What a guardian writes to Modbus servers of which some are dead: the live ones wait for none of them.
 #include "drivers/hardware/open.hpp"
 #include "kernel/os/clock.hpp"
+#include "kernel/os/sleep.hpp"
 #include "tests/drivers/modbus/raw_server.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
+#include <optional>
 
 namespace tappet {
 namespace {
@@ -113,6 +115,42 @@ TEST_F(BehindSilentServers, a_server_has_its_share_of_the_time) {
     EXPECT_TRUE(comes_to_the_serial_one(1, 2s, 1s));
     EXPECT_TRUE(comes_to_the_serial_one(3, 400ms, 1s));
     EXPECT_TRUE(comes_to_the_serial_one(1, 1s, 1s));
+}
+
+TEST(SilentServers, are_all_asked_though_quick_attempts_would_take_all_the_time) {
+    std::array<std::optional<RawServer>, 12> servers;
+    std::array<modbus::LibmodbusTransport, servers.size()> transports{};
+    std::array<SafeServer, servers.size()> to{};
+    for (std::size_t i = 0; i < servers.size(); ++i) {
+        servers[i].emplace(RawServer::Line::tcp).manner = Manner::silent;
+        EXPECT_TRUE(
+            transports[i].open({.line = modbus::Tcp{"127.0.0.1", servers[i]->port()}, .answer_within = 2s}));
+        to[i] = {&transports[i], {requests, safe_word}};
+    }
+    EXPECT_EQ(write_safe_registers(to, 400ms, {}), servers.size());
+    const Time until = os::Clock::monotonic() + 5s; // for what was asked and is not yet read
+    for (const auto& server : servers) {
+        while (server->last_request().empty() && os::Clock::monotonic() < until) os::sleep_for(1ms);
+        EXPECT_FALSE(server->last_request().empty());
+    }
+}
+
+/// Two silent servers and one that needs 600 ms for its answer.
+TEST(SlowServer, is_made_safe_wherever_it_stands) {
+    for (const std::size_t place : {0u, 2u}) {
+        std::array servers{RawServer{RawServer::Line::tcp}, RawServer{RawServer::Line::tcp},
+                           RawServer{RawServer::Line::tcp}};
+        std::array<modbus::LibmodbusTransport, 3> transports{};
+        std::array<SafeServer, 3> to{};
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            servers[i].manner = i == place ? Manner::dribble : Manner::silent;
+            EXPECT_TRUE(transports[i].open(
+                {.line = modbus::Tcp{"127.0.0.1", servers[i].port()}, .answer_within = 2s}));
+            to[i] = {&transports[i], {std::span{requests}.first(1), safe_word}};
+        }
+        EXPECT_EQ(write_safe_registers(to, 3s, {}), 2u);
+        EXPECT_TRUE(to[place].is_safe) << "as server " << place;
+    }
 }
 
 TEST(SilentLine, takes_no_longer_than_all_servers_may) {
