@@ -44,7 +44,8 @@ struct ServiceFacts {
 //     status                      -> ok, then the box's text
 //     update, then the file       -> ok or refused, then a sentence
 //     order VERB SIGNATURE        -> ok or refused, then a sentence
-// The box says "tappet-box 1 MACHINE BOARD NONCE" before that, and hangs up afterwards.
+// The box says "tappet-box 1 MACHINE BOARD NONCE" before that, and hangs up afterwards. reception.hpp has
+// what it promises to each.
 inline constexpr std::string_view service_greeting = "tappet-box 1 ";
 
 } // namespace tappet::box

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A header of one page: a mark, lines, a signature over all but itself and over the kernel.
+// A header of one page: a mark, lines, of which the last one is a signature over those before it, and a
+// signature over all but itself and over the kernel.
 #include "board/box/update.hpp"
 
 #include "board/box/facts.hpp"
@@ -15,6 +16,7 @@ namespace tappet::box {
 namespace {
 
 constexpr std::string_view mark = "tappet-update 1\n";
+constexpr std::string_view proof = "proof ";
 constexpr std::size_t signed_bytes = update_header_bytes - crypto_sign_BYTES;
 
 const unsigned char* bytes_of(std::string_view text) {
@@ -29,6 +31,23 @@ void take_in(crypto_sign_state& state, std::string_view header, std::string_view
 
 std::uint64_t number(const Facts& facts, std::string_view word) {
     return std::strtoull(facts.one(word).c_str(), nullptr, 10);
+}
+
+std::string sign_text(std::string_view text, const SecretKey& key) {
+    std::array<unsigned char, crypto_sign_BYTES> signature{};
+    crypto_sign_detached(signature.data(), nullptr, bytes_of(text), text.size(), key.data());
+    std::array<char, 2 * crypto_sign_BYTES + 1> digits{};
+    sodium_bin2hex(digits.data(), digits.size(), signature.data(), signature.size());
+    return digits.data();
+}
+
+bool is_signed_text(std::string_view text, std::string_view digits, const PublicKey& key) {
+    std::array<unsigned char, crypto_sign_BYTES> bytes{};
+    std::size_t length = 0;
+    return sodium_hex2bin(bytes.data(), bytes.size(), digits.data(), digits.size(), nullptr, &length,
+                          nullptr) == 0 &&
+           length == bytes.size() && digits.size() == 2 * bytes.size() &&
+           crypto_sign_verify_detached(bytes.data(), bytes_of(text), text.size(), key.data()) == 0;
 }
 
 /// BLAKE2b.
@@ -81,6 +100,7 @@ std::string header_of(const Update& update, const SecretKey* key) {
     header += "machine " + of.machine + "\nboard " + of.board + "\nlayout " + of.layout + "\nimage " +
               std::to_string(of.version) + "\nleast " + std::to_string(of.least) + "\nkernel " +
               std::to_string(update.kernel.size()) + "\nsum " + sum_of(update.kernel) + "\n";
+    if (key != nullptr) header += std::string{proof} + sign_text(header, *key) + "\n";
     header.resize(signed_bytes, '\0');
     std::array<unsigned char, crypto_sign_BYTES> signature{};
     if (key != nullptr) {
@@ -97,6 +117,17 @@ Manifest manifest_of(std::string_view header) {
     return {facts.one("machine"), facts.one("board"), facts.one("layout"),
             static_cast<std::uint32_t>(number(facts, "image")),
             static_cast<std::uint32_t>(number(facts, "least"))};
+}
+
+bool has_signed_header(std::string_view header, const PublicKey& key) {
+    if (claimed_bytes(header) == 0) return false;
+    const std::string_view lines = header.substr(0, signed_bytes);
+    const std::size_t at = lines.find(std::string{"\n"} + std::string{proof});
+    if (at == std::string_view::npos) return false;
+    const std::string_view digits = lines.substr(at + 1 + proof.size(), 2 * crypto_sign_BYTES);
+    const std::string_view rest = lines.substr(at + 1 + proof.size() + digits.size());
+    return rest.starts_with('\n') && rest.find_first_not_of('\0', 1) == std::string_view::npos &&
+           is_signed_text(lines.substr(0, at + 1), digits, key);
 }
 
 bool is_of(std::string_view header, std::string_view kernel) {
@@ -146,24 +177,10 @@ std::string text_of(const Order& order) {
 
 } // namespace
 
-std::string sign(const Order& order, const SecretKey& key) {
-    const std::string text = text_of(order);
-    std::array<unsigned char, crypto_sign_BYTES> signature{};
-    crypto_sign_detached(signature.data(), nullptr, bytes_of(text), text.size(), key.data());
-    std::array<char, 2 * crypto_sign_BYTES + 1> digits{};
-    sodium_bin2hex(digits.data(), digits.size(), signature.data(), signature.size());
-    return digits.data();
-}
+std::string sign(const Order& order, const SecretKey& key) { return sign_text(text_of(order), key); }
 
 bool is_signed(const Order& order, std::string_view signature, const PublicKey& key) {
-    std::array<unsigned char, crypto_sign_BYTES> bytes{};
-    std::size_t length = 0;
-    const std::string text = text_of(order);
-    return !order.nonce.empty() &&
-           sodium_hex2bin(bytes.data(), bytes.size(), signature.data(), signature.size(), nullptr, &length,
-                          nullptr) == 0 &&
-           length == bytes.size() && signature.size() == 2 * bytes.size() &&
-           crypto_sign_verify_detached(bytes.data(), bytes_of(text), text.size(), key.data()) == 0;
+    return !order.nonce.empty() && is_signed_text(text_of(order), signature, key);
 }
 
 } // namespace tappet::box

@@ -45,12 +45,16 @@ inline constexpr std::uint64_t most_update_bytes = 48 * 1024 * 1024; ///< a slot
 /// than most_update_bytes and a header.
 [[nodiscard]] std::uint64_t claimed_bytes(std::string_view header);
 
-/// The header of one page; null: unsigned, which no box takes as an update. Each slot holds its own beside
-/// the kernel, to tell what it is.
+/// The header of one page, with two signatures: one over its own lines and one over all. Null: unsigned,
+/// which no box takes as an update. Each slot holds its own beside the kernel, to tell what it is.
 [[nodiscard]] std::string header_of(const Update& update, const SecretKey* key);
 inline constexpr std::string_view header_file = "MANIFEST";
 /// What a header says, judged by nobody; empty of what is none.
 [[nodiscard]] Manifest manifest_of(std::string_view header);
+
+/// Whether who made the header has the key: what stands in it may be believed before the kernel has come. It
+/// says nothing of the kernel; decode() does.
+[[nodiscard]] bool has_signed_header(std::string_view header, const PublicKey& key);
 
 /// Whether the header's sum is this kernel's; true of a header without one.
 [[nodiscard]] bool is_of(std::string_view header, std::string_view kernel);

@@ -36,6 +36,20 @@ TEST_F(Updates, with_one_byte_changed_are_refused_wherever_it_is) {
     }
 }
 
+TEST_F(Updates, have_headers_that_are_believed_when_the_key_signed_them) {
+    const std::string header = bytes.substr(0, update_header_bytes);
+    EXPECT_TRUE(has_signed_header(header, keys.open));
+    EXPECT_FALSE(has_signed_header(header, new_keys().open));
+    EXPECT_FALSE(has_signed_header(header_of(update, nullptr), keys.open));
+    EXPECT_FALSE(has_signed_header("anything", keys.open));
+    // The other signature stands behind the lines, and is judged with the kernel.
+    for (std::size_t at = 0; at < update_header_bytes - 64; ++at) {
+        std::string changed = header;
+        changed[at] = static_cast<char>(changed[at] ^ 1);
+        ASSERT_FALSE(has_signed_header(changed, keys.open)) << "byte " << at;
+    }
+}
+
 TEST_F(Updates, of_somebody_else_or_cut_short_are_refused) {
     EXPECT_THAT(decode(bytes, new_keys().open).error(), HasSubstr("does not fit this box's key"));
     EXPECT_THAT(decode(std::string_view{bytes}.substr(0, bytes.size() - 1), keys.open).error(),
