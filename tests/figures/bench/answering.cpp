@@ -106,9 +106,9 @@ int run(int count, char** words) {
     if (count != 3) return fail("usage: answering PAIRS FILE");
     const std::size_t pairs = std::strtoul(words[1], nullptr, 10);
     static Hardware<table> hardware;
-    if (const auto opened = hardware.open(Firmware<table, board, bound>::machine()); !opened)
-        return fail(opened.error().characters);
-    static MachineInstance instance{Firmware<table, board, bound>::machine(), machine_clock};
+    using Made = Firmware<table, board, bound>;
+    if (const auto opened = hardware.open(Made::machine()); !opened) return fail(opened.error().characters);
+    static MachineInstance instance{Made::machine(), machine_clock};
     if (const auto configured = instance.configure(hardware.provided()); !configured)
         return fail(configured.error().characters);
 

@@ -1,5 +1,6 @@
 // Cycles of an engine whose component has a state machine: nothing happens, or one event. Loaded: the
 // script's tables in memory.
+#include "kernel/machine/accept.hpp"
 #include "tests/figures/behaviour/steps.hpp"
 #include "tests/figures/dispatch/groups.hpp"
 #include "tests/figures/dispatch/world.hpp"
@@ -18,7 +19,7 @@ constexpr auto swing_machine(const Options&... options) {
 constexpr auto automatic_table = swing_machine();
 constexpr auto reactive_table = swing_machine(reactive_mode);
 template <const auto& table> World& world_of() {
-    static World world{os::Clock::Kind::real, Firmware<table, figures_board>::machine()};
+    static World world{os::Clock::Kind::real, AtRunTime<table, figures_board>::machine()};
     return world;
 }
 

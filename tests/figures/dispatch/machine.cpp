@@ -1,7 +1,7 @@
 // The table: its rows are made by loops, because there are many alike.
 #include "tests/figures/dispatch/machine.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <cstdlib>
@@ -92,7 +92,7 @@ constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes =
 
 Measured& measured() {
     static os::Clock clock{os::Clock::Kind::virtual_time};
-    static MachineInstance instance{Firmware<table, board>::machine(), clock};
+    static MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     static VirtualWorld world{instance};
     static Measured all = [] {
         const auto configured = instance.configure({});

@@ -1,4 +1,5 @@
 // Steps of engines whose components have nothing to do: what the framework itself takes.
+#include "kernel/machine/accept.hpp"
 #include "tests/figures/dispatch/groups.hpp"
 #include "tests/figures/dispatch/world.hpp"
 
@@ -22,7 +23,7 @@ constexpr auto idle_table = machine("idle", components(component<Idle>("idle")),
                                     connections(), reactions(), behaviours());
 /// As an activity does it: when is it due, it is due, it runs.
 void step_without_stamps(std::size_t times) {
-    static World world{os::Clock::Kind::virtual_time, Firmware<idle_table, figures_board>::machine()};
+    static World world{os::Clock::Kind::virtual_time, AtRunTime<idle_table, figures_board>::machine()};
     Engine& engine = world.engine();
     const RunsActivity here{engine.plan().activity}; // as its thread does, once for ever
     for (std::size_t i = 0; i < times; ++i) {

@@ -2,7 +2,7 @@
 // measuring threads.
 #include "tests/figures/exchange/machine.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 
 #include <iostream>
 #include <string>
@@ -25,7 +25,7 @@ void find_ends(MachineInstance& instance) {
 
 bool start_machine() {
     static os::Clock clock{os::Clock::Kind::virtual_time};
-    static MachineInstance instance{Firmware<exchange_machine, exchange_board>::machine(), clock};
+    static MachineInstance instance{AtRunTime<exchange_machine, exchange_board>::machine(), clock};
     if (const auto done = instance.configure({}); !done) {
         std::cerr << done.error().view() << '\n';
         return false;

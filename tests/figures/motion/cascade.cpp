@@ -5,6 +5,7 @@
 #include "tests/figures/motion/groups.hpp"
 
 #include "kernel/control/control.hpp"
+#include "kernel/machine/accept.hpp"
 
 #include <algorithm>
 #include <concepts>
@@ -118,7 +119,7 @@ constexpr auto cascade_table = machine("cascade",
 template <int n>
 struct Cascade : World {
     std::uint64_t cycles = 0;
-    Cascade() : World{os::Clock::Kind::virtual_time, Firmware<cascade_table<n>, figures_board>::machine()} {}
+    Cascade() : World{os::Clock::Kind::virtual_time, AtRunTime<cascade_table<n>, figures_board>::machine()} {}
     [[nodiscard]] const Joints<n>& volts() {
         return instance.template find<Part<n, Amplify, 1>>("amplifier")->made.last();
     }
@@ -150,7 +151,7 @@ struct Timed : World {
         renamed.name = "cascade-timed";
         return renamed;
     }();
-    Timed() : World{os::Clock::Kind::virtual_time, Firmware<table, figures_board>::machine()} {
+    Timed() : World{os::Clock::Kind::virtual_time, AtRunTime<table, figures_board>::machine()} {
         EnginePlan plan = engine().plan();
         plan.periodic = false;
         plan.at_most_per = {};

@@ -1,6 +1,6 @@
 // The reaction path on this machine: how late a periodic activity wakes, beside cyclictest's loop, and what
 // an event into another activity takes, beside a bare futex.
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/os/sleep.hpp"
 #include "tests/figures/measure/candidates.hpp"
@@ -21,7 +21,7 @@ constexpr std::size_t warming = 4; ///< cycles of a block that are left out: bot
 constinit os::Clock machine_clock{os::Clock::Kind::real};
 
 struct Rig {
-    MachineInstance instance{Firmware<table, board, bound>::machine(), machine_clock};
+    MachineInstance instance{AtRunTime<table, board, bound>::machine(), machine_clock};
     RealWorld world{instance};
     os::ArmingReport report{{board.only_warned.begin(), board.only_warned.end()}};
     BareTicker bare_ticker{};

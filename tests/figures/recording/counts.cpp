@@ -1,6 +1,7 @@
 // Counts instructions under callgrind: of a cycle that writes a hundred ports, recorded and not.
 //     recording_counts          started by the test: starts valgrind on itself, once for each form
 //     recording_counts FORM     runs that form's cycles, of which the last 100 are measured
+#include "kernel/machine/accept.hpp"
 #include "tests/figures/recording/machine.hpp"
 
 #include <cstdio>
@@ -26,7 +27,7 @@ constexpr auto one_port = machine_with(reporting(report("0.a")));
 template <const auto& table>
 int drive() {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     if (!instance.configure({})) return 1;
     Engine& engine = instance.engines()[0];
     if (!engine.initialise().empty()) return 1;

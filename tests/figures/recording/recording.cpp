@@ -1,5 +1,6 @@
 // What recording values costs the machine that is recorded: a step that writes a hundred ports, with them on
 // its tape and without.
+#include "kernel/machine/accept.hpp"
 #include "tests/figures/measure/candidates.hpp"
 #include "tests/figures/recording/machine.hpp"
 
@@ -30,7 +31,7 @@ struct World {
 
 /// As its activity does it in each period, by a clock that costs nothing and is there at once.
 template <const auto& table> void step(std::size_t times) {
-    static World world{Firmware<table, board>::machine()};
+    static World world{AtRunTime<table, board>::machine()};
     Engine& engine = world.instance.engines()[0];
     for (std::size_t i = 0; i < times; ++i) {
         world.clock.advance_to(engine.next_wake());

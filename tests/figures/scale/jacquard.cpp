@@ -1,7 +1,7 @@
 // Engine time for a pick of the jacquard head, beside the bare copies of the same 1536 bytes.
 #include "tests/figures/scale/jacquard.hpp"
 
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/instance/instance.hpp"
 
 #include <cstdlib>
@@ -34,7 +34,7 @@ using namespace jacquard;
 template <const auto& table>
 struct Loom {
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     Loom() {
         if (const auto configured = instance.configure({}); !configured) {
             std::cerr << configured.error().view() << '\n';

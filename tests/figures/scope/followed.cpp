@@ -1,5 +1,6 @@
 // Whether being read disturbs who writes: an engine's steps while another processor follows its tape cycle by
 // cycle, in turns with steps that nobody follows.
+#include "kernel/machine/accept.hpp"
 #include "tests/figures/measure/ticks.hpp"
 #include "tests/figures/measure/undisturbed.hpp"
 #include "tests/figures/scope/machine.hpp"
@@ -77,7 +78,7 @@ void add_followed(const Options& options, Result& result) {
         result.notes.push_back("scope.followed: one processor; nobody can follow a step while it runs");
         return;
     }
-    static World world{os::Clock::Kind::real, Firmware<followed, board>::machine()};
+    static World world{os::Clock::Kind::real, AtRunTime<followed, board>::machine()};
     Engine& engine = world.instance.engines()[0];
     const Undisturbed here{0};
     Follower follower{scope::tape(world.directory(), 0)};

@@ -1,5 +1,6 @@
 // What recording every cycle costs: an engine's step with the thread scope on, switched off and not in the
 // table at all, beside the time stamps that the engine takes anyway (thesis A.2.1).
+#include "kernel/machine/accept.hpp"
 #include "tests/figures/scope/machine.hpp"
 
 #include <array>
@@ -41,7 +42,7 @@ constexpr auto looked_at = ten_scoped;
 /// As its activity does it each time that it is woken.
 template <const auto& table, os::Clock::Kind kind, bool off = false>
 void step(std::size_t times) {
-    static World world{kind, Firmware<table, board>::machine()};
+    static World world{kind, AtRunTime<table, board>::machine()};
     if constexpr (off) scope::tape(world.directory(), 0).turn(false);
     Engine& engine = world.instance.engines()[0];
     for (std::size_t i = 0; i < times; ++i) engine.run(true);
@@ -78,7 +79,7 @@ void plain_store(std::size_t times) {
 
 /// The background's share: what was done since it looked last is looked at, cycle by cycle.
 World& watched() {
-    static World world{os::Clock::Kind::real, Firmware<looked_at, board>::machine()};
+    static World world{os::Clock::Kind::real, AtRunTime<looked_at, board>::machine()};
     return world;
 }
 void run_cycles(std::size_t times) {

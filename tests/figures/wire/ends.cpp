@@ -2,7 +2,7 @@
 #include "tests/figures/wire/ends.hpp"
 
 #include "drivers/system/station.hpp"
-#include "kernel/machine/firmware.hpp"
+#include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <cstdlib>
@@ -63,8 +63,8 @@ std::uint32_t activity_of_row(const MachineInstance& instance, std::string_view 
 
 Ends& ends() {
     static Memory from, to;
-    static MachineInstance a{Firmware<from_table, board>::machine(), the_clock};
-    static MachineInstance b{Firmware<to_table, board>::machine(), the_clock};
+    static MachineInstance a{AtRunTime<from_table, board>::machine(), the_clock};
+    static MachineInstance b{AtRunTime<to_table, board>::machine(), the_clock};
     static VirtualWorld world_a{a}, world_b{b};
     static Ends all = [] {
         Ends found;

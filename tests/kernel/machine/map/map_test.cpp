@@ -98,6 +98,7 @@ constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 
 // clang-format on
 
 using Cart = Firmware<table, board>;
+using Blind = Firmware<blind, board>;
 
 // The map is a constant: what follows is seen by the compiler.
 constexpr auto& drawn = Cart::map();
@@ -105,13 +106,13 @@ static_assert(drawn.text(drawn.header.machine) == "cart");
 static_assert(drawn.header.components.count == 4 && drawn.header.facets.count == 18);
 static_assert(drawn.text(drawn.components[2].name) == "road" && drawn.components[2].activity == 1);
 static_assert(drawn.text(drawn.facets[5].name) == "gain" && drawn.facets[5].high == 2);
-constexpr auto& unseen = Firmware<blind, board>::map();
+constexpr auto& unseen = Blind::map();
 static_assert(unseen.text(unseen.header.machine) == "blind",
               "any table has one, also when nothing sees the machine");
 
 TEST(Accepted, at_run_time_a_table_has_the_map_and_the_memory_that_the_compiler_gives_it) {
     for (const auto& [of, compiled] :
-         {std::pair{table.view(), Cart::machine()}, {blind.view(), Firmware<blind, board>::machine()}}) {
+         {std::pair{table.view(), Cart::machine()}, {blind.view(), Blind::machine()}}) {
         Accepted accepted{of, board};
         ASSERT_EQ(accepted.refusal().view(), "");
         const AcceptedMachine made = accepted.machine();
@@ -292,7 +293,7 @@ TEST_F(Map, lies_in_memory_that_holds_no_stack) {
 }
 
 TEST_F(Map, is_absent_where_nothing_sees_the_machine) {
-    MachineInstance alone{Firmware<blind, board>::machine(), clock};
+    MachineInstance alone{Blind::machine(), clock};
     ASSERT_TRUE(alone.configure({}));
     EXPECT_TRUE(alone.observation().shared_memory().empty());
     EXPECT_EQ(alone.observation().shared_descriptor(), -1);
