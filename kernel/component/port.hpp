@@ -29,7 +29,11 @@ inline constexpr Duration ahead_at_most = 1s;
 /// Of a value that somebody writes in a cycle at `now`: what lies further ahead, or before all, is the time
 /// of no clock of this machine. Nobody knows when such a value was true.
 constexpr Time judged_stamp(Time stamp, Time now) noexcept TAPPET_REALTIME {
-    return stamp > now + ahead_at_most || stamp < before_all ? before_all : stamp;
+    // Both at once, in four instructions: what is ahead wraps round to more than an age can be.
+    const auto number = [](auto time) { return static_cast<std::uint64_t>(time.count()); };
+    const std::uint64_t age =
+        number(now.time_since_epoch()) + number(ahead_at_most) - number(stamp.time_since_epoch());
+    return age >> 62u != 0 ? before_all : stamp;
 }
 
 /// What a stale value means for the reader: keep it, use the row's substitute, or stop the machine.
@@ -300,7 +304,7 @@ private:
     }
     /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
     /// writer leaves the last good value, which is then old.
-    bool fetch() noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] bool fetch() noexcept TAPPET_REALTIME {
         if (forced_ && stops_of_writer() != cached_generation_) {
             end_force();
             if (writer_->forced != nullptr) writer_->forced->fetch_sub(1, std::memory_order_relaxed);
@@ -309,8 +313,8 @@ private:
         const bool is_new = shared_->read(cache_, cached_generation_);
         // Its age counts from now at the latest: who writes with a time ahead is not believed for longer. Not
         // from before the stop that left it.
-        if (is_new && cache_.stamp >= left_from_)
-            cache_.stamp = std::max(std::min(cache_.stamp, *now_), left_from_);
+        if (is_new && cache_.stamp > *now_ && cache_.stamp >= left_from_) [[unlikely]]
+            cache_.stamp = std::max(*now_, left_from_);
         if constexpr (std::is_floating_point_v<T>) {
             if (is_new && scale_.factor != 1) cache_.value = scaled(cache_.value);
             if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
@@ -373,7 +377,7 @@ private:
         return true;
     }
     /// With its writer's stop, or the stop of its own component, if that comes first.
-    void end_force() noexcept TAPPET_REALTIME {
+    [[gnu::noinline, gnu::cold]] void end_force() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         left_from_ =
             stops_of_writer() != cached_generation_ ? writer_->at.load(std::memory_order_relaxed) : *now_;

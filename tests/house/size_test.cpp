@@ -18,7 +18,7 @@ const std::vector<Size> sizes{
     {"kernel/base",           2502},
     {"kernel/os",             4075},
     {"kernel/exchange",       924},
-    {"kernel/component",      4375},
+    {"kernel/component",      4379},
     {"kernel/activity",       1819},
     {"kernel/program",        3196},
     {"kernel/statechart",     4003},
