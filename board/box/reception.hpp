@@ -19,10 +19,9 @@ namespace tappet::box {
 ///   clients have come; the clients of an address that holds more places go first, so that one address keeps
 ///   no other out.
 /// - Only a header that the key has signed takes the one place for updates; any other is refused before the
-/// rest
-///   of its file is read. An update may be as slow as its line, but not pause for 10 s. It leaves its place
-///   to a newer version; if it is slower than 64 KiB/s after its first 5 s, to another one of its version,
-///   too.
+///   rest of its file is read. An update may be as slow as its line, but not pause for 10 s. It leaves its
+///   place to a newer version; if it is slower than 64 KiB/s after its first 5 s, to another one of its
+///   version, too.
 /// - Memory: one update, and less than 5 KiB for each other client.
 class Reception {
 public:
