@@ -269,7 +269,7 @@ public:
     /// A force ended with its writer's stop, which left nothing: what stands at the other end is what the
     /// force hid, and nobody wants it any longer.
     [[nodiscard]] bool is_abandoned() const noexcept TAPPET_REALTIME {
-        return !forced_ && stamp() < left_from_;
+        return !forced_ && stamp() < left_from_ && writes() == left_writes_;
     }
     /// How many values came to the other end so far, also behind a force.
     [[nodiscard]] std::uint64_t writes() const noexcept TAPPET_REALTIME {
@@ -381,6 +381,7 @@ private:
         if (!forced_) return;
         left_from_ =
             stops_of_writer() != cached_generation_ ? writer_->at.load(std::memory_order_relaxed) : *now_;
+        left_writes_ = writes();
         release();
     }
     void release() noexcept TAPPET_REALTIME {
@@ -417,7 +418,8 @@ private:
     const Output<T>* local_ = nullptr;
     const Stops* linked_ = nullptr; ///< who writes what stands at the other end
     const Stops* writer_ = nullptr; ///< with whose stop a force ends
-    Time left_from_ = no_stop;
+    Time left_from_ = no_stop;      ///< what is older, and no newer than left_writes_, a force hid
+    std::uint64_t left_writes_ = 0;
     Duration max_age_{};
     const Time* now_ = &Output<T>::detail_epoch;
     alignas(place_alignment<T>) T substitute_ = default_value<T>();

@@ -194,6 +194,9 @@ TEST_P(Forcing, an_input_tells_when_what_a_force_hid_is_wanted_by_nobody) {
     EXPECT_EQ(input.get(), 1.0);
     EXPECT_TRUE(input.is_abandoned());
     now += 1s;
+    output.write(4.0, at_ns(0)); // of before the stop, and written since
+    EXPECT_EQ(input.get(), 4.0);
+    EXPECT_FALSE(input.is_abandoned());
     output.write(2.0);
     EXPECT_EQ(input.get(), 2.0);
     EXPECT_FALSE(input.is_abandoned()) << "written since";
