@@ -79,8 +79,8 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
             if (!is_tried(each)) continue;
             const Time now = os::Clock::monotonic();
             if (now >= end) return left;
-            const Time until =
-                now + (round_end - now) / still_tried--; // none takes the time of those after it
+            // None takes the time of those after it.
+            const Time until = now + (round_end - now) / still_tried--;
             each.is_safe = try_once(each, {is_quick ? quick_answer_within : within, until, meanwhile});
             left -= each.is_safe ? 1u : 0u;
         }
