@@ -73,7 +73,8 @@ template <const auto& map> struct Client {
             const Value value = session_->value(v);
             if (is_written(v) || value.stamp == seen_[v] || value.quality != Quality::good) continue;
             seen_[v] = value.stamp;
-            read[v].write(value.value, value.stamp);
+            // A server may take longer than a time stamp may lie ahead of the cycle.
+            read[v].write(value.value, std::min(value.stamp, cycle.now + ahead_at_most));
         }
         connected.write(session_->connected());
         outages.write(static_cast<std::int64_t>(session_->counters().outages));

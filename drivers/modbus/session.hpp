@@ -119,7 +119,9 @@ public:
         if (encoded.refused) ++count_.saturated;
         if (encoded.refused || !map_->rows[r].write) return false;
         if (encoded.saturated) ++count_.saturated;
-        if (values_[v].stamp == Time::min() || words_[v] != encoded.words || at_server_[v] == AtServer::was) {
+        // What nobody wants is replaced, though the server have it.
+        if (values_[v].stamp == Time::min() || words_[v] != encoded.words || at_server_[v] == AtServer::was ||
+            now == before_all) {
             changed_at_[r] = std::min(changed_at_[r], now);
             at_server_[v] = AtServer::not_yet;
         }

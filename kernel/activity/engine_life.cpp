@@ -185,6 +185,7 @@ void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     part.state.store(ComponentState::starting, std::memory_order_release);
     open_outputs(part);
+    note_life(part, FacetKind::input);
     cancel_timers(i); // armed while it stood: by changed()
     if (part.type->start != nullptr) part.type->start(part.component_, cycle_);
     part.state.store(ComponentState::running, std::memory_order_release);
@@ -196,6 +197,12 @@ void Engine::end_forces(const EnginePart& part, FacetKind of) const noexcept TAP
         if (!*facet.port->places(port, is_input).forced) return;
         facet.port->end_force(port, is_input);
         if (plan_.forced != nullptr) plan_.forced->fetch_sub(1, std::memory_order_relaxed);
+    });
+}
+
+void Engine::note_life(const EnginePart& part, FacetKind of) noexcept TAPPET_REALTIME {
+    for_ports(*part.type, part.component_, of, [of](const Facet& facet, void* port) noexcept TAPPET_REALTIME {
+        facet.port->note_life(port, of == FacetKind::input);
     });
 }
 
@@ -242,7 +249,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
         return;
     }
     part.state.store(ComponentState::stopping, std::memory_order_release);
-    part.stops.at.store(cycle_.now, std::memory_order_relaxed);
+    note_life(part, FacetKind::output);
     commands_.fail(i);
     open_outputs(part); // it may never have started
     if (part.type->stop != nullptr) part.type->stop(part.component_, cycle_);

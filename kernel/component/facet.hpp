@@ -72,6 +72,8 @@ struct PortOperations {
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
     /// Of a port whose component stops: of an input, what the force hid is wanted by nobody.
     void (*end_force)(void* port, bool is_input) noexcept TAPPET_REALTIME;
+    /// Of an output whose component begins to stop; of an input whose component starts.
+    void (*note_life)(void* port, bool is_input) noexcept TAPPET_REALTIME;
     /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
     /// `looks`: what is fresh there stays fresh.
     Flow (*read)(void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME;
@@ -205,12 +207,17 @@ struct PortAccess {
             },
         .hand_force_to = [](void* input, const Stops* writer) noexcept
         TAPPET_REALTIME { static_cast<Input<T>*>(input)->hand_force_to(writer); },
-        .forget = [](void* output) noexcept
-        TAPPET_REALTIME { static_cast<Output<T>*>(output)->generation_ = 0; },
+        .forget =
+            [](void* output) noexcept TAPPET_REALTIME {
+                auto& out = *static_cast<Output<T>*>(output);
+                out.generation_ = 0;
+                out.before_stop_.store(0, std::memory_order_relaxed);
+            },
         .link_shared =
             [](void* input, const void* output, const Stops* writer) {
                 auto& in = *static_cast<Input<T>*>(input);
                 in.shared_ = static_cast<const Output<T>*>(output)->shared_;
+                in.before_stop_ = &static_cast<const Output<T>*>(output)->before_stop_;
                 in.linked_ = writer;
             },
         .set_clock =
@@ -284,6 +291,12 @@ struct PortAccess {
             [](void* port, bool is_input) noexcept TAPPET_REALTIME {
                 is_input ? static_cast<Input<T>*>(port)->end_force()
                          : static_cast<Output<T>*>(port)->release();
+            },
+        .note_life =
+            [](void* port, bool is_input) noexcept TAPPET_REALTIME {
+                if (is_input) return static_cast<Input<T>*>(port)->resume();
+                auto& out = *static_cast<Output<T>*>(port);
+                out.before_stop_.store(out.generation_, std::memory_order_relaxed);
             },
         .read =
             [](void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME {

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace tappet {
 
@@ -47,11 +48,10 @@ struct RowValue {
     TypeId type = nullptr; ///< of the constant
 };
 
-/// How often a component has left its safe values behind, and when it began to do so last; and how many ports
-/// are forced, for who looks at it from outside.
+/// How often a component has left its safe values behind; and how many ports are forced, for who looks at
+/// it from outside.
 struct Stops {
     std::atomic<std::uint32_t> count{0};
-    std::atomic<Time> at{before_all}; ///< before the count
     std::atomic<std::uint32_t>* forced = nullptr;
 };
 /// What a connection's row says to the input.
@@ -214,6 +214,9 @@ private:
         default_value<T>(); ///< of a forced port: what its component wrote
     Time hidden_stamp_{};   ///< and when it was true
 
+    /// So often its component had written it when it began to stop last; set before its stop is counted.
+    std::atomic<std::uint64_t> before_stop_{0};
+
     static constexpr Time detail_epoch{};
 };
 
@@ -259,21 +262,20 @@ public:
     /// When what was read last becomes stale if nothing comes, or nothing came for as long; never: it does
     /// not.
     [[nodiscard]] Time expires() const noexcept TAPPET_REALTIME {
-        const std::uint64_t generation = local_ != nullptr ? local_->generation_ : cached_generation_;
         if (max_age_ == Duration::zero()) return never;
-        return (generation == 0 && !forced_ ? *now_ : stamp()) + max_age_ + 1ns;
+        return (forced_ || generation() == 0 ? *now_ : true_at()) + max_age_ + 1ns;
     }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }
-    /// A force ended with its writer's stop, which left nothing: what stands at the other end is what the
-    /// force hid, and nobody wants it any longer.
+    /// A force ended with a stop, and what stands at the other end is still what it hid: nobody wants it any
+    /// longer. After read().
     [[nodiscard]] bool is_abandoned() const noexcept TAPPET_REALTIME {
-        return !forced_ && stamp() < left_from_ && writes() == left_writes_;
+        return !forced_ && generation() != 0 && generation() <= hidden_until_;
     }
-    /// How many values came to the other end so far, also behind a force.
+    /// How many values came to the other end until the one that was read last; of a forced one until now.
     [[nodiscard]] std::uint64_t writes() const noexcept TAPPET_REALTIME {
-        return local_ != nullptr ? local_->generation_ : shared_ != nullptr ? shared_->generation() : 0;
+        return forced_ ? written() : generation();
     }
     /// In place of a stale value its row gives one that is true now.
     [[nodiscard]] bool has_substitute() const noexcept TAPPET_REALTIME {
@@ -311,10 +313,8 @@ private:
         }
         if (shared_ == nullptr || forced_) return false;
         const bool is_new = shared_->read(cache_, cached_generation_);
-        // Its age counts from now at the latest: who writes with a time ahead is not believed for longer. Not
-        // from before the stop that left it.
-        if (is_new && cache_.stamp > *now_ && cache_.stamp >= left_from_) [[unlikely]]
-            cache_.stamp = std::max(*now_, left_from_);
+        // Its age counts from now at the latest: who writes with a time ahead is not believed for longer.
+        if (is_new) true_at_ = std::min(cache_.stamp, *now_);
         if constexpr (std::is_floating_point_v<T>) {
             if (is_new && scale_.factor != 1) cache_.value = scaled(cache_.value);
             if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
@@ -329,9 +329,9 @@ private:
             seen_ = forced_generation;
             return is_new ? Flow::fresh : Flow::old;
         }
-        const std::uint64_t generation = local_ != nullptr ? local_->generation_ : cached_generation_;
+        const std::uint64_t generation = this->generation();
         if (generation == 0) return Flow::never_written;
-        if (max_age_ > Duration::zero() && *now_ - stamp() > max_age_) return Flow::stale;
+        if (max_age_ > Duration::zero() && *now_ - true_at() > max_age_) return Flow::stale;
         if (generation == seen_) return Flow::old;
         seen_ = generation;
         return Flow::fresh;
@@ -349,6 +349,8 @@ private:
     /// refused to the other.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
         linked_ = writer;
+        before_stop_ = &output->before_stop_;
+        hidden_until_ = 0;
         if (!forced_)
             seen_ = 0;
         else if (stops_of_writer() != cached_generation_)
@@ -367,7 +369,6 @@ private:
     /// once and never stale, until it is released, or its writer stops: that one's safe values count then;
     /// see is_abandoned().
     bool force(const T& value) noexcept TAPPET_REALTIME {
-        left_from_ = no_stop;
         writer_ = linked_;
         cache_ = {value, *now_};
         cached_generation_ = stops_of_writer();
@@ -379,10 +380,15 @@ private:
     /// With its writer's stop, or the stop of its own component, if that comes first.
     [[gnu::noinline, gnu::cold]] void end_force() noexcept TAPPET_REALTIME {
         if (!forced_) return;
-        left_from_ =
-            stops_of_writer() != cached_generation_ ? writer_->at.load(std::memory_order_relaxed) : *now_;
-        left_writes_ = writes();
+        stands_ = stops_of_writer() == cached_generation_;
+        hidden_until_ = stands_                   ? written()
+                        : before_stop_ != nullptr ? before_stop_->load(std::memory_order_relaxed)
+                                                  : 0;
         release();
+    }
+    /// Its component starts again: what its writer wants, who did not stop, is wanted again.
+    void resume() noexcept TAPPET_REALTIME {
+        if (std::exchange(stands_, false)) hidden_until_ = 0;
     }
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
@@ -392,6 +398,16 @@ private:
         cache_ = {};
     }
 
+    /// Of the value that was read last, if it is not forced; 0: there is none.
+    [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
+        return local_ != nullptr ? local_->generation_ : cached_generation_;
+    }
+    [[nodiscard]] std::uint64_t written() const noexcept TAPPET_REALTIME {
+        return local_ != nullptr ? local_->generation_ : shared_ != nullptr ? shared_->generation() : 0;
+    }
+    [[nodiscard]] Time true_at() const noexcept TAPPET_REALTIME {
+        return local_ != nullptr ? local_->last_.stamp : true_at_;
+    }
     [[nodiscard]] std::uint64_t stops_of_writer() const noexcept TAPPET_REALTIME {
         return writer_ == nullptr ? 0 : writer_->count.load(std::memory_order_acquire);
     }
@@ -405,7 +421,6 @@ private:
     }
 
     static constexpr std::uint64_t forced_generation = ~std::uint64_t{0}, has_stopped = forced_generation;
-    static constexpr Time no_stop = Time::min();
 
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
     std::uint64_t cached_generation_ = 0; ///< while it is forced: the stops of its writer before
@@ -413,13 +428,15 @@ private:
     [[no_unique_address]] std::conditional_t<std::is_floating_point_v<T>, Scale, NoScale> scale_{};
     bool inside_only_ = false; ///< the value is the one at the other end, of any age
     bool forced_ = false;
+    bool stands_ = false; ///< its component does, with whose stop a force ended
     WhenStale when_stale_ = WhenStale::hold;
     std::uint64_t seen_ = 0;
     const Output<T>* local_ = nullptr;
-    const Stops* linked_ = nullptr; ///< who writes what stands at the other end
-    const Stops* writer_ = nullptr; ///< with whose stop a force ends
-    Time left_from_ = no_stop;      ///< what is older, and no newer than left_writes_, a force hid
-    std::uint64_t left_writes_ = 0;
+    const Stops* linked_ = nullptr;                           ///< who writes what stands at the other end
+    const Stops* writer_ = nullptr;                           ///< with whose stop a force ends
+    const std::atomic<std::uint64_t>* before_stop_ = nullptr; ///< of the output at the other end
+    std::uint64_t hidden_until_ = 0; ///< so many values a force hid, that ended with a stop
+    Time true_at_{};                 ///< of the value in cache_, as the reader believes it
     Duration max_age_{};
     const Time* now_ = &Output<T>::detail_epoch;
     alignas(place_alignment<T>) T substitute_ = default_value<T>();

@@ -179,35 +179,84 @@ TEST_P(Forcing, an_observer_finds_value_time_and_flag) {
     EXPECT_EQ(at<double>(port.places(&input, true).forced_value), 8.0);
 }
 
-TEST_P(Forcing, an_input_tells_when_what_a_force_hid_is_wanted_by_nobody) {
+/// The writer of what is forced, as an engine stops it.
+struct AbandonedValue : Forcing {
     Stops writer;
-    link(&writer);
-    now = at_ns(0) + 1s;
-    output.write(1.0);
-    force_input(9.0);
-    const auto stop = [&] {
+    AbandonedValue() {
+        link(&writer);
+        now = at_ns(0) + 1s;
+        output.write(1.0);
+        force_input(9.0);
+    }
+    void stop() {
         now += 1s;
-        writer.at = now;
-        ++writer.count;
-    };
+        port.note_life(&output, false);
+    }
+    void expect(double wanted, bool is_abandoned) {
+        EXPECT_EQ(input.get(), wanted);
+        EXPECT_EQ(input.is_abandoned(), is_abandoned);
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(, AbandonedValue, testing::Bool(), [](const auto& each) {
+    return each.param ? "across_activities" : "inside_one_activity";
+});
+
+TEST_P(AbandonedValue, is_what_a_force_hid_when_it_ended_with_a_stop) {
     stop();
-    EXPECT_EQ(input.get(), 1.0);
-    EXPECT_TRUE(input.is_abandoned());
-    now += 1s;
-    output.write(4.0, at_ns(0)); // of before the stop, and written since
-    EXPECT_EQ(input.get(), 4.0);
-    EXPECT_FALSE(input.is_abandoned());
-    output.write(2.0);
-    EXPECT_EQ(input.get(), 2.0);
-    EXPECT_FALSE(input.is_abandoned()) << "written since";
-    force_input(9.0);
-    now += 1s;
-    writer.at = now;
-    output.write(3.0); // by its stop
     ++writer.count;
-    now -= 100ms; // whoever reads is in the middle of a cycle
-    EXPECT_EQ(input.get(), 3.0);
-    EXPECT_FALSE(input.is_abandoned());
+    expect(1.0, true);
+    output.write(2.0);
+    expect(2.0, false);
+}
+
+TEST_P(AbandonedValue, is_none_that_a_stop_left_whatever_its_time) {
+    stop();
+    output.write(0.0, at_ns(0));
+    ++writer.count;
+    expect(0.0, false);
+}
+
+TEST_P(AbandonedValue, is_none_that_is_written_after_a_stop_before_anybody_looks) {
+    stop();
+    ++writer.count;
+    output.write(3.0, at_ns(0));
+    expect(3.0, false);
+}
+
+TEST_P(AbandonedValue, is_one_whose_time_lies_ahead_or_is_that_of_the_stop) {
+    output.write(4.0, now + 2s);
+    stop();
+    ++writer.count;
+    expect(4.0, true);
+    force_input(9.0);
+    output.write(5.0, now);
+    port.note_life(&output, false);
+    ++writer.count;
+    expect(5.0, true);
+}
+
+TEST_P(AbandonedValue, stays_so_when_it_is_forced_again_and_released) {
+    stop();
+    ++writer.count;
+    expect(1.0, true);
+    force_input(9.0);
+    expect(9.0, false);
+    port.release(&input, true);
+    expect(1.0, true);
+}
+
+TEST_P(AbandonedValue, is_wanted_again_when_the_reader_stood_and_its_writer_did_not) {
+    port.end_force(&input, true);
+    expect(1.0, true);
+    port.note_life(&input, true);
+    expect(1.0, false);
+    force_input(9.0);
+    stop();
+    ++writer.count;
+    port.end_force(&input, true);
+    port.note_life(&input, true);
+    expect(1.0, true);
 }
 
 } // namespace
