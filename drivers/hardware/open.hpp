@@ -47,7 +47,8 @@ void rehearse(std::span<can::SafeSender> buses) noexcept;
 struct SafeServer {
     modbus::LibmodbusTransport* server = nullptr;
     modbus::SafeWrites writes{};
-    bool is_safe = false; ///< it confirmed each
+    std::size_t confirmed = 0; ///< so many of the first of them
+    bool is_safe = false;      ///< all of them
 };
 /// One attempt at each server in turn, until all are safe, for so long at most. Servers that are not. In each
 /// round the servers that are still to be tried have equal shares of the time that is left, wherever they

@@ -36,19 +36,21 @@ struct Patience {
     }
 };
 
-// Each request is tried: one that is refused keeps no other from being safe. After anything worse the server
-// is given up for this time.
-bool try_once(const SafeServer& to, const Patience& patience) noexcept {
+// Each request is tried: one that is refused keeps no other from being safe, and all are tried again. After
+// anything worse the server is given up for this time, and the next one goes on where this one stopped: many
+// requests take more than a share.
+bool try_once(SafeServer& to, const Patience& patience) noexcept {
     patience.limit(*to.server);
     if (to.server->connect().outcome != modbus::Outcome::ok) return false;
     bool good = true;
-    for (const modbus::SafeWrite& each : to.writes.requests) {
+    for (const modbus::SafeWrite& each : to.writes.requests.subspan(to.confirmed)) {
         patience.limit(*to.server);
         const auto outcome = to.server
                                  ->write(each.run.table, static_cast<std::uint16_t>(each.run.address),
                                          to.writes.words.subspan(each.first, each.run.count))
                                  .outcome;
         good = good && outcome == modbus::Outcome::ok;
+        if (good) ++to.confirmed;
         if (outcome != modbus::Outcome::ok && outcome != modbus::Outcome::exception) break;
     }
     to.server->disconnect();
@@ -64,6 +66,7 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
     const Time end = os::Clock::monotonic() + within;
     std::size_t left = 0;
     for (SafeServer& each : servers) {
+        each.confirmed = 0;
         each.is_safe = each.writes.requests.empty();
         left += each.is_safe ? 0u : 1u;
     }

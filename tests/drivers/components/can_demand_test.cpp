@@ -271,5 +271,33 @@ TEST_F(OnDemand, sends_no_command_whose_parts_are_of_no_time) {
     EXPECT_TRUE(heard_of(0x000).empty());
 }
 
+TEST_F(ForcedDemand, does_not_send_at_its_writers_stop_what_lay_ahead_behind_the_force) {
+    demand_each_once();
+    force("can.sync.count", FacetKind::input, 7);
+    master->sync_at = clock.now() + 900ms;
+    write(6);
+    heard.clear();
+    change(1, LifeChange::stop);
+    wait();
+    EXPECT_TRUE(sent().empty());
+}
+
+/// A writer on another processor may be ahead of the cycle that reads its first half.
+TEST_F(OnDemand, sends_a_command_whose_halves_are_seen_in_two_cycles) {
+    for (const Duration ahead : {Duration{0}, Duration{500us}, Duration{3ms}}) {
+        run_until(clock.now().time_since_epoch() + 20ms);
+        heard.clear();
+        const Time at = clock.now() + ahead;
+        for (Output<std::int64_t>* const half : {&master->command, &master->node}) {
+            const RunsActivity there{1, &at};
+            half->write(1, at);
+            instance.engines()[0].waiter().wake();
+            run_until(clock.now().time_since_epoch() + 200us);
+        }
+        run_until(clock.now().time_since_epoch() + 20ms);
+        EXPECT_EQ(heard_of(0x000).size(), 1u) << ahead / 1us;
+    }
+}
+
 } // namespace
 } // namespace tappet::test

@@ -41,7 +41,8 @@ struct Listener {
     Event<> hold{};
     Event<> let_go{};
     Bounded<Heard, 512> heard{};
-    int lamp_next = -1; // 0, 1: written in the next cycle
+    int lamp_next = -1;    // 0, 1: written in the next cycle
+    Duration lamp_ahead{}; // of its time
     bool opens = false;
     bool closes = false;
     int faults = 0;
@@ -54,8 +55,8 @@ struct Listener {
     void weft_fell(Time when) noexcept TAPPET_REALTIME { note(What::weft_fell, when); }
     void edges_lost() noexcept TAPPET_REALTIME { note(What::edges_lost, {}); }
 
-    void step(const Cycle&) noexcept TAPPET_REALTIME {
-        if (lamp_next >= 0) lamp_wanted.write(lamp_next != 0);
+    void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        if (lamp_next >= 0) lamp_wanted.write(lamp_next != 0, cycle.now + lamp_ahead);
         lamp_next = -1;
         if (opens) {
             open.emit();
@@ -445,6 +446,7 @@ TEST_F(Lines, refuse_to_start_without_their_chip) {
 
 TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
     run_until(1ms);
+    listener->lamp_ahead = 40ms;
     listener->lamp_next = 1;
     run_until(5ms);
     End wanted;
@@ -457,6 +459,14 @@ TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
     EXPECT_TRUE(refusal.empty()) << refusal.view();
     run_until(20ms);
     EXPECT_FALSE(driven(lamp));
+    run_until(100ms);
+    EXPECT_FALSE(driven(lamp));
+    const PortOperations& port = *facet_at(instance.machine().table, wanted).port;
+    port.force(instance.place_of(wanted), true, reinterpret_cast<const std::byte*>(&dark));
+    port.release(instance.place_of(wanted), true);
+    instance.engines()[0].waiter().wake();
+    run_until(120ms);
+    EXPECT_FALSE(driven(lamp)) << "its writer still stands";
 }
 
 } // namespace

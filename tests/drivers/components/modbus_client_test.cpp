@@ -344,5 +344,24 @@ TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reache
     }
 }
 
+/// Longer than a time stamp may lie ahead of a cycle.
+TEST(SlowServer, gives_values_that_are_good) {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    modbus::Twin twin{3s, 1200ms};
+    MachineInstance instance{AtRunTime<utility_machine, board>::machine(), clock};
+    VirtualWorld world{instance};
+    const ProvidedDevice provided{type_id<modbus::Transport>, "server",
+                                  static_cast<modbus::Transport*>(&twin)};
+    ASSERT_TRUE(instance.configure({&provided, 1}));
+    const Reader& reader = *instance.find<Reader>("reader");
+    world.start();
+    int good = 0;
+    for (Duration end = 10ms; end < 30s; end += 10ms) {
+        ASSERT_TRUE(world.run_until(Time{end}));
+        good += reader.flow == Flow::fresh || reader.flow == Flow::old ? 1 : 0;
+    }
+    EXPECT_GT(good, 300); // of 3000: its row calls a value good for half a second
+}
+
 } // namespace
 } // namespace tappet::test

@@ -110,5 +110,69 @@ TEST_F(SilentPump, is_not_told_at_the_stop_what_a_force_kept_from_it) {
     EXPECT_FALSE(pump_runs());
 }
 
+/// Its pump runs, and is forced to something.
+template <class Rig>
+struct ForcedTo : Rig {
+    void begin(double to) {
+        this->reader->leaves_safe = false;
+        this->reader->pump_next = 1;
+        this->run_until(2s);
+        End end;
+        ASSERT_TRUE(resolve(this->instance.machine().table, "server.pump.on", FacetKind::input, end).empty());
+        facet_at(this->instance.machine().table, end)
+            .port->force(this->instance.place_of(end), true, reinterpret_cast<const std::byte*>(&to));
+        this->run_until(4s);
+        ASSERT_EQ(this->pump_runs(), to != 0);
+    }
+};
+using Forced = ForcedTo<Utility>;
+using ForcedSilent = ForcedTo<SilentPump>;
+
+TEST_F(ForcedSilent, obeys_a_writer_that_restarts_before_its_client_looks) {
+    begin(1);
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    EXPECT_TRUE(world.change_activity(1, LifeChange::start).empty());
+    reader->pump_age = 20ms;
+    reader->pump_next = 0;
+    run_until(8s);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(ForcedSilent, obeys_what_a_stop_leaves_whatever_its_time) {
+    begin(1);
+    reader->leaves_safe = true;
+    reader->pump_age = 1s;
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    run_until(8s);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(ForcedSilent, is_not_told_at_a_stop_what_lay_ahead_behind_the_force) {
+    begin(0);
+    reader->pump_age = -900ms;
+    reader->pump_next = 1;
+    run_until(4100ms);
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    run_until(8s);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(Forced, is_safe_after_a_stop_though_it_was_forced_to_what_it_had) {
+    begin(1);
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    run_until(8s);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(Forced, is_told_what_a_running_writer_wants_when_its_client_is_back) {
+    begin(0);
+    change_server(LifeChange::stop);
+    run_until(4100ms);
+    EXPECT_FALSE(pump_runs());
+    change_server(LifeChange::start);
+    run_until(4500ms);
+    EXPECT_TRUE(pump_runs());
+}
+
 } // namespace
 } // namespace tappet::test

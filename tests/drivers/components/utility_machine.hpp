@@ -24,7 +24,8 @@ struct Reader {
     Input<std::int64_t> outages{};
     Input<std::int64_t> survived{};
     Output<double> pump{};
-    int pump_next = -1; // 0, 1: written in the next cycle
+    int pump_next = -1;  // 0, 1: written in the next cycle
+    Duration pump_age{}; // so long ago it was true
     int lost = 0, back = 0;
     Flow flow = Flow::never_written;
     std::uint64_t fresh = 0;
@@ -37,11 +38,11 @@ struct Reader {
         flow = temperature.read(value);
         fresh += flow == Flow::fresh ? 1u : 0u;
         age = cycle.now - temperature.stamp();
-        if (pump_next >= 0) pump.write(pump_next);
+        if (pump_next >= 0) pump.write(pump_next, cycle.now - pump_age);
         pump_next = -1;
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME {
-        if (leaves_safe) pump.write(0);
+    void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        if (leaves_safe) pump.write(0, cycle.now - pump_age);
     }
     bool leaves_safe = true;
     static constexpr auto interface() {

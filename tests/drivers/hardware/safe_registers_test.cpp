@@ -166,5 +166,20 @@ TEST(SilentLine, takes_no_longer_than_all_servers_may) {
     EXPECT_LT(os::Clock::monotonic() - begin, 3600ms);
 }
 
+/// Each answer takes 600 ms; four of them are more than half of the time.
+TEST(ServerWithManyRequests, goes_on_where_its_share_of_the_time_ended) {
+    std::array servers{RawServer{RawServer::Line::tcp}, RawServer{RawServer::Line::tcp}};
+    std::array<modbus::LibmodbusTransport, 2> transports{};
+    std::array<SafeServer, 2> to{};
+    const std::array many{requests[0], requests[1], requests[0], requests[1]};
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        servers[i].manner = Manner::dribble;
+        EXPECT_TRUE(
+            transports[i].open({.line = modbus::Tcp{"127.0.0.1", servers[i].port()}, .answer_within = 2s}));
+        to[i] = {&transports[i], {std::span{many}.first(i == 0 ? 4 : 1), safe_word}};
+    }
+    EXPECT_EQ(write_safe_registers(to, 4500ms, {}), 0u);
+}
+
 } // namespace
 } // namespace tappet
