@@ -17,7 +17,7 @@ using namespace tappet;
 
 inline constexpr motion::AxisLimits slide{.velocity = 0.2, .acceleration = 2.0, .jerk = 40.0}; // m, s
 
-/// What the drive does at most, m/s: some more than any path asks for.
+/// The highest speed of the drive, m/s. Each path asks for less.
 inline constexpr double fastest = 0.25;
 /// A speed that the drive can have; 0 when it is no number. A loop that takes over begins with what was sent,
 /// and somebody may have forced that.

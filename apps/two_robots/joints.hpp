@@ -46,7 +46,7 @@ struct JointSensor {
             if (!is_angle(angle)) return; // likewise
             now[static_cast<int>(i)] = angle;
         }
-        // Of the time since the last angles, however many cycles had none.
+        // Over the time since the last angles: cycles in between may have had none.
         const Duration passed = has_seen_ ? cycle.release - seen_at_ : Duration::zero();
         positions.write(now);
         rates.write(passed > Duration::zero() ? Joints{(now - seen_) / to_seconds(passed)} : Joints::Zero());

@@ -35,7 +35,7 @@ std::uint32_t waiting_version() {
     return claimed_bytes(header) == 0 ? 0 : manifest_of(header).version;
 }
 
-/// What is offered appears whole, or not at all; the next one replaces it.
+/// Writes the whole file or none. An offer replaces the one before.
 bool keep(const char* name, std::string_view bytes) {
     const std::string part = std::string{name} + ".part";
     std::FILE* const file = std::fopen(part.c_str(), "wb");
@@ -227,7 +227,7 @@ void Reception::enter(Client& client, Stage stage, Time now) {
     client.since = now;
 }
 
-// What it still sends is read for a while: unread at a hang-up, it would take the answer with it.
+// Reads for a while what the client still sends: a socket that is closed with unread bytes drops the answer.
 void Reception::answer(Client& client, std::string_view text, Time now) {
     say(client.socket, text);
     ::shutdown(client.socket, SHUT_WR);

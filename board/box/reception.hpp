@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is heard at a box's port. Strangers reach it, too: all are heard side by side, so that nobody waits for
-// another, and each holds little of the box for a short time.
+// Hears the clients at a box's network port. Strangers reach the port, too: all clients are heard side by
+// side, none waits for another, and each holds little memory for a short time.
 #pragma once
 
 #include "board/box/service.hpp"
@@ -23,6 +23,8 @@ namespace tappet::box {
 ///   place to a newer version; if it is slower than 64 KiB/s after its first 5 s, to another one of its
 ///   version, too.
 /// - Memory: one update, and less than 5 KiB for each other client.
+/// Not: a header that the key signed is the same for everybody. Who has recorded one of the same version, or
+/// of a newer one, can take the place of a slow update with it, and hold that place. A stick is no such way.
 class Reception {
 public:
     using Clock = std::chrono::steady_clock;

@@ -1,4 +1,4 @@
-// What a frame on demand has to know so that each demand leaves once, whatever is forced meanwhile.
+// The state of a frame on demand. With it each demand leaves once, whatever is forced meanwhile.
 #pragma once
 
 #include "kernel/base/time.hpp"

@@ -58,10 +58,12 @@ constexpr LineFunctions CommandInterpreter::line_functions{
     .break_off =
         [](void* self, Role role) {
             auto& own = *static_cast<CommandInterpreter*>(self);
-            if (!own.is_at_work()) return LineRefusal::not_now;
-            if (role < own.bank_->role) return LineRefusal::denied;
-            if (role > own.bank_->role) own.keep_for(role, own.machine_->clock().now());
-            own.break_off();
+            const bool ends_waiting = own.waits_ && role == Role::engineer; // as a peer is
+            if (!own.is_at_work() && !ends_waiting) return LineRefusal::not_now;
+            if (own.is_at_work() && role < own.bank_->role) return LineRefusal::denied;
+            if (own.is_at_work() && role > own.bank_->role) own.keep_for(role, own.machine_->clock().now());
+            if (ends_waiting) own.waits_ = false;
+            own.is_broken_off_ = own.is_at_work();
             return LineRefusal::none;
         }};
 
@@ -98,7 +100,7 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
         const bool gives_way = is_higher && is_expression(bank_->unit.parts()[0].type->tables);
         if (is_higher) keep_for(role, now);
         if (!gives_way) return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
-        break_off();
+        is_broken_off_ = is_at_work();
         if (asker == Asker::peer) { // does not ask again
             waits_ = true;
             since_waiting_ = now;
@@ -232,7 +234,7 @@ void CommandInterpreter::work(const Cycle& cycle) {
     if (waits_ && asker_ == Asker::none) {
         waits_ = false;
         LineRefusal refusal{};
-        tell(begin(waiting_.view(), Role::engineer, Asker::peer, refusal));
+        tell(begin(of_peer_.view(), Role::engineer, Asker::peer, refusal));
     } else if (waits_ && cycle.now - since_waiting_ > patience) {
         waits_ = false;
         tell(Sentence{"the line that is at work does not end; look at its components"});
@@ -293,10 +295,14 @@ void CommandInterpreter::stop(const Cycle&) noexcept TAPPET_REALTIME {
 
 // ---- for peers
 
+// One that waits, or has not taken its answer yet, keeps the place of peers.
 bool CommandInterpreter::execute(const Line& line, Line&) noexcept {
     LineRefusal refusal{};
-    waiting_ = line;
-    const Sentence fault = begin(line.view(), Role::engineer, Asker::peer, refusal);
+    const bool is_taken = waits_ || asker_ == Asker::peer;
+    const Sentence fault = is_taken ? Sentence{"another component's line is at work; send yours after it"}
+                                    : begin(line.view(), Role::engineer, Asker::peer, refusal);
+    if (is_taken) refused.write(refused.last() + 1);
+    if (fault.empty()) of_peer_ = line;
     tell(fault);
     return fault.empty();
 }
@@ -308,7 +314,9 @@ void CommandInterpreter::tell(const Sentence& fault) noexcept {
     said.write(text);
 }
 
-CommandProgress CommandInterpreter::follow(const Line&, Line& value) noexcept TAPPET_REALTIME {
+CommandProgress CommandInterpreter::follow(const Line& line, Line& value) noexcept TAPPET_REALTIME {
+    if (line.view() != of_peer_.view())
+        return CommandProgress::failed; // it ended before somebody else's began
     if (waits_) return CommandProgress::executing;
     if (asker_ != Asker::peer) return CommandProgress::failed;
     if (is_at_work()) return CommandProgress::executing;

@@ -40,7 +40,10 @@ public:
 
     bool execute(const Line& line, Line& value) noexcept;
     CommandProgress follow(const Line& line, Line& value) noexcept TAPPET_REALTIME;
-    void break_off() noexcept TAPPET_REALTIME { is_broken_off_ = is_at_work(); }
+    void break_off() noexcept TAPPET_REALTIME {
+        is_broken_off_ = is_at_work();
+        waits_ = false;
+    }
 
     static const LineFunctions line_functions;
 
@@ -91,8 +94,8 @@ private:
     bool is_broken_off_ = false;
     Role kept_for_ = Role::observer; ///< no line of a lower role is next,
     Time kept_until_{};              ///< until then
-    Line waiting_{};                 ///< of a peer, while `waits_`: the line at work gives way to it
-    bool waits_ = false;
+    Line of_peer_{};                 ///< that a peer sent last
+    bool waits_ = false;             ///< it does: the line at work gives way to it
     Time since_waiting_{};
     Time since_{};
     Time posted_{};

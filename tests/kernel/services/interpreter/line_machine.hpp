@@ -53,14 +53,14 @@ struct Panel {
 
 // clang-format off
 inline constexpr auto line_table = machine("press",
-    components(component<Ram>("ram"), component<Table>("table"), component<Gauge>("gauge"), component<Panel>("panel"),
+    components(component<Ram>("ram"), component<Table>("table"), component<Gauge>("gauge"), component<Panel>("panel"), component<Panel>("panel_b"),
                component<BrowserService>("browser", set("log", false)), component<CommandInterpreter>("interpreter")),
     activities(
         activity("motion",  every(1ms), budget(50us), runs("ram", "gauge")),
-        activity("slow",    every(10ms), budget(50us), runs("table", "panel")),
+        activity("slow",    every(10ms), budget(50us), runs("table", "panel", "panel_b")),
         activity("browser", every(20ms), not_real_time, stack(256 * 1024), runs("browser", "interpreter"))),
     connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.height", "gauge.height")),
-    reactions(uses("panel.execute", "interpreter.execute")), behaviours());
+    reactions(uses("panel.execute", "interpreter.execute"), uses("panel_b.execute", "interpreter.execute")), behaviours());
 // clang-format on
 
 } // namespace tappet::press

@@ -60,7 +60,7 @@ protected:
     }
     Ram& ram() { return *instance.find<Ram>("ram"); }
     Gauge& gauge() { return *instance.find<Gauge>("gauge"); }
-    Panel& panel() { return *instance.find<Panel>("panel"); }
+    Panel& panel(std::string_view name = "panel") { return *instance.find<Panel>(name); }
     CommandInterpreter& interpreter() { return *instance.find<CommandInterpreter>("interpreter"); }
 };
 

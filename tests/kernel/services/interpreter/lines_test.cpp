@@ -285,6 +285,58 @@ TEST_F(Lines, of_a_peer_are_executed_whatever_observers_ask) {
     }
 }
 
+/// Lines of two peers, while an observer looks at values all the time: each is told of its own.
+TEST_F(Lines, of_two_peers_are_told_each_of_its_own) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    Talker observer{path(), 65534};
+    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
+    look();
+    Panel &a = panel(), &b = panel("panel_b");
+    for (int n = 0; n < 20; ++n) {
+        const std::int64_t zeroed = gauge().zeroed;
+        gauge().target.set(10);
+        a.wanted = a.line.assign("do gauge.zero()");
+        b.wanted = b.line.assign("set gauge.target = 20.25");
+        for (int k = 0; k < 30; ++k) {
+            run(10ms);
+            while (!observer.receive().empty()) look();
+        }
+        EXPECT_EQ(a.execute.state() == CommandState::done, gauge().zeroed == zeroed + 1) << n;
+        EXPECT_EQ(b.execute.state() == CommandState::done, gauge().target.get() == 20.25) << n;
+        EXPECT_TRUE(a.execute.state() == CommandState::done || b.execute.state() == CommandState::done) << n;
+        a.execute.reset();
+        b.execute.reset();
+        run(2500ms); // nothing is kept for anybody
+    }
+}
+
+TEST_F(Lines, of_a_peer_that_wait_are_broken_off) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    Talker observer{path(), 65534};
+    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
+    look();
+    int waited = 0;
+    for (int n = 0; n < 40; ++n) {
+        const std::int64_t zeroed = gauge().zeroed;
+        panel().wanted = panel().line.assign("do gauge.zero()");
+        bool is_broken_off = false;
+        for (int k = 0; k < 60; ++k) {
+            run(5ms);
+            while (!observer.receive().empty()) look();
+            if (!is_broken_off && panel().execute.state() == CommandState::executing &&
+                gauge().zeroed == zeroed) {
+                interpreter().break_off();
+                is_broken_off = true;
+            }
+        }
+        waited += is_broken_off ? 1 : 0;
+        EXPECT_EQ(is_broken_off, panel().execute.state() != CommandState::done) << n;
+        panel().execute.reset();
+        run(2500ms);
+    }
+    EXPECT_GT(waited, 0);
+}
+
 TEST_F(Press, a_machine_without_an_interpreter_executes_no_lines) {
     Talker talker{path()};
     EXPECT_THAT(ask(talker, "1 execute 1+1"),
