@@ -1,5 +1,5 @@
-// Who has nothing that the key has signed keeps nobody from the box, whatever he sends and however slowly. The
-// sockets are real, time is the test's.
+// Who has nothing that the key has signed keeps nobody from the box, whatever he sends and however slowly.
+// The sockets are real, time is the test's.
 #include "board/box/reception.hpp"
 
 #include <gmock/gmock.h>

@@ -79,16 +79,16 @@ struct Master {
         was_faulted = faulted.get();
         if (writes_controlword) controlword.write(word);
         if (writes_target) target.write(rpm);
+        const Time at = nmt_at == Time::min() ? cycle.now : nmt_at;
         if (!demands.empty()) {
-            const Time at = nmt_at == Time::min() ? cycle.now : nmt_at;
             command.write(demands[0].command, at);
             node.write(demands[0].node, at);
             for (std::size_t i = 1; i < demands.size(); ++i) demands[i - 1] = demands[i];
             --demands.used;
         }
-        for (const std::int64_t each : commands_alone) command.write(each);
+        for (const std::int64_t each : commands_alone) command.write(each, at);
         commands_alone.clear();
-        if (node_next >= 0) node.write(node_next);
+        if (node_next >= 0) node.write(node_next, at);
         node_next = -1;
         if (sync_next >= 0 && sync_at != Time::min()) sync.write(sync_next, sync_at);
         if (sync_next >= 0 && sync_at == Time::min()) sync.write(sync_next);
