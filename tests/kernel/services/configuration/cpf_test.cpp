@@ -11,6 +11,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <string>
 
 namespace tappet {
@@ -158,7 +159,8 @@ TEST_F(Cpf, what_is_written_is_read_to_the_same_values) {
         from.axis.set(axis);
 
         const std::string text = write(from);
-        arm = Arm{};
+        std::destroy_at(&arm);
+        std::construct_at(&arm);
         ASSERT_EQ(read(text), "") << text;
         transaction.commit();
         ASSERT_TRUE(every::same_properties(from, arm)) << text;
