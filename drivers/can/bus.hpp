@@ -25,11 +25,12 @@ namespace tappet::can {
 /// A cyclic frame goes out at its period, with the last values of its inputs. When a writer was interrupted
 /// between two of them (their stamps differ where they agreed before), the values sent last go out once more.
 /// A frame on demand goes out once for each writing that has a time of its own; all of its signals are
-/// written in one cycle of one writer: no command leaves with another's arguments. A row that wakes makes it
-/// leave at once. What was demanded behind a force leaves after it, but not if it ends with a stop. A frame
-/// with an input that was never written, is no number, or is stale without a substitute does not go out: the
-/// receiver's own time-out notices. What arrives and is no number is counted: its output grows stale. Of a
-/// multiplexed frame what its multiplexors select is written, read and sent.
+/// written in one cycle of one writer: no command leaves with another's arguments, and two that have no time
+/// make none. A row that wakes makes it leave at once. What was demanded behind a force leaves after it, but
+/// not if it ends with a stop. A frame with an input that was never written, is no number, or is stale
+/// without a substitute does not go out: the receiver's own time-out notices. What arrives and is no number
+/// is counted: its output grows stale. Of a multiplexed frame what its multiplexors select is written, read
+/// and sent.
 ///
 /// A bus that was faulted, or stopped, begins anew: what arrived, waited or was demanded before is forgotten.
 /// Faulted, it looks for its restart every now and then and rests in between.
@@ -358,8 +359,11 @@ private:
             found.forced |= input.forced();
             if (is_on_demand(f)) found.writes += input.writes();
             found.fresh |= flow == Flow::fresh;
-            if (!is_now && found.at == never) found.at = input.stamp();
-            found.agreed &= is_now || input.stamp() == found.at;
+            if (is_now) return;
+            // What has no time belongs to nothing.
+            const Time at = input.claimed_stamp();
+            found.agreed &= found.at == never || (at == found.at && at != before_all);
+            found.at = at;
         };
         for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s)
             if (is_selected(map.frames[f], s))

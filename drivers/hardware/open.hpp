@@ -47,8 +47,14 @@ void rehearse(std::span<can::SafeSender> buses) noexcept;
 struct SafeServer {
     modbus::LibmodbusTransport* server = nullptr;
     modbus::SafeWrites writes{};
-    std::size_t confirmed = 0; ///< so many of the first of them
-    bool is_safe = false;      ///< all of them
+    bool is_safe = false; ///< each of them was confirmed
+
+    /// Of one connection: a server that lost it may have restarted, and is told all of them again.
+    struct Attempt {
+        std::size_t next = 0;
+        Duration longest{}; ///< that an answer took
+        bool is_connected = false, is_refused = false;
+    } attempt{};
 };
 /// One attempt at each server in turn, until all are safe, for so long at most. Servers that are not. In each
 /// round the servers that are still to be tried have equal shares of the time that is left, wherever they

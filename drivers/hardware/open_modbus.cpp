@@ -25,7 +25,7 @@ std::expected<void, Sentence> open_device(modbus::LibmodbusTransport& server, co
 
 namespace {
 
-/// How long each call of one attempt may take.
+/// How long each call of one share may take.
 struct Patience {
     Duration each;
     Time end;
@@ -36,25 +36,31 @@ struct Patience {
     }
 };
 
-// Each request is tried: one that is refused keeps no other from being safe, and all are tried again. After
-// anything worse the server is given up for this time, and the next one goes on where this one stopped: many
-// requests take more than a share.
-bool try_once(SafeServer& to, const Patience& patience) noexcept {
+// Each request is tried: one that is refused keeps no other from being safe, and all are tried again. Many
+// take more than a share of the time. Then the next round goes on here: not in the middle of a request, whose
+// answer would be lost with the connection.
+bool go_on(SafeServer& to, const Patience& patience) noexcept {
+    SafeServer::Attempt& attempt = to.attempt;
     patience.limit(*to.server);
-    if (to.server->connect().outcome != modbus::Outcome::ok) return false;
-    bool good = true;
-    for (const modbus::SafeWrite& each : to.writes.requests.subspan(to.confirmed)) {
+    if (!attempt.is_connected) {
+        if (to.server->connect().outcome != modbus::Outcome::ok) return false;
+        attempt = {.is_connected = true};
+    }
+    while (attempt.next < to.writes.requests.size()) {
+        if (patience.end - os::Clock::monotonic() < attempt.longest) return false;
         patience.limit(*to.server);
-        const auto outcome = to.server
-                                 ->write(each.run.table, static_cast<std::uint16_t>(each.run.address),
-                                         to.writes.words.subspan(each.first, each.run.count))
-                                 .outcome;
-        good = good && outcome == modbus::Outcome::ok;
-        if (good) ++to.confirmed;
-        if (outcome != modbus::Outcome::ok && outcome != modbus::Outcome::exception) break;
+        const modbus::SafeWrite& each = to.writes.requests[attempt.next];
+        const modbus::Answer answer =
+            to.server->write(each.run.table, static_cast<std::uint16_t>(each.run.address),
+                             to.writes.words.subspan(each.first, each.run.count));
+        if (answer.outcome != modbus::Outcome::ok && answer.outcome != modbus::Outcome::exception) break;
+        attempt.is_refused = attempt.is_refused || answer.outcome == modbus::Outcome::exception;
+        attempt.longest = std::max(attempt.longest, answer.took);
+        ++attempt.next;
     }
     to.server->disconnect();
-    return good;
+    attempt.is_connected = false;
+    return attempt.next == to.writes.requests.size() && !attempt.is_refused;
 }
 
 } // namespace
@@ -66,11 +72,11 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
     const Time end = os::Clock::monotonic() + within;
     std::size_t left = 0;
     for (SafeServer& each : servers) {
-        each.confirmed = 0;
+        each.attempt = {};
         each.is_safe = each.writes.requests.empty();
         left += each.is_safe ? 0u : 1u;
     }
-    for (int round = 0; round < rounds && left != 0; ++round) {
+    for (int round = 0; round < rounds && left != 0 && os::Clock::monotonic() < end; ++round) {
         if (round > 1) os::sleep_for(100ms);
         const bool is_quick = round == 0;
         const Time round_end = is_quick ? end - within / 2 : end;
@@ -81,13 +87,15 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
         for (SafeServer& each : servers) {
             if (!is_tried(each)) continue;
             const Time now = os::Clock::monotonic();
-            if (now >= end) return left;
+            if (now >= end) break;
             // None takes the time of those after it.
             const Time until = now + (round_end - now) / still_tried--;
-            each.is_safe = try_once(each, {is_quick ? quick_answer_within : within, until, meanwhile});
+            each.is_safe = go_on(each, {is_quick ? quick_answer_within : within, until, meanwhile});
             left -= each.is_safe ? 1u : 0u;
         }
     }
+    for (SafeServer& each : servers)
+        if (each.attempt.is_connected) each.server->disconnect();
     return left;
 }
 

@@ -82,8 +82,8 @@ struct AnalogInput {
     }
 };
 
-/// Effector of a quantity, within its range; what is no number is `low`, as is what it leaves when it stops.
-/// Real-time.
+/// Effector of a quantity, within its range. What is no number is `low`, and so is what a force hid when its
+/// writer stopped, and what it leaves when it stops itself. Real-time.
 template <text unit>
 struct AnalogOutput {
     Input<double> value;
@@ -95,7 +95,8 @@ struct AnalogOutput {
         const AnalogScale scale = detail::scale_of(*this);
         const double wanted = value.get();
         const auto [least, most] = std::minmax(scale.low, scale.high);
-        send(scale, is_number(wanted) ? std::clamp(wanted, least, most) : scale.low);
+        const bool is_wanted = is_number(wanted) && !value.is_abandoned();
+        send(scale, is_wanted ? std::clamp(wanted, least, most) : scale.low);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         const AnalogScale scale = detail::scale_of(*this);

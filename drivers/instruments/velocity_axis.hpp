@@ -9,7 +9,8 @@
 
 namespace tappet::instruments {
 
-/// Effector of a velocity: VelocityAxis<"m/s">. Within `most` either way; what is no number is none.
+/// Effector of a velocity: VelocityAxis<"m/s">. Within `most` either way; what is no number is none, and
+/// neither is what a force hid when its writer stopped.
 /// Controllers read what was sent from `velocity`. Real-time.
 template <text unit>
 struct VelocityAxis {
@@ -20,7 +21,8 @@ struct VelocityAxis {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME { stop(cycle); }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         const double now = wanted.get();
-        velocity.write(is_number(now) ? std::clamp(now, -most.get(), most.get()) : 0.0);
+        const bool is_wanted = is_number(now) && !wanted.is_abandoned();
+        velocity.write(is_wanted ? std::clamp(now, -most.get(), most.get()) : 0.0);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
 

@@ -360,7 +360,7 @@ private:
     void end_parts() noexcept TAPPET_REALTIME;
     void refuse_ending(std::uint32_t part) noexcept TAPPET_REALTIME;
     void end_forces(const EnginePart& part, FacetKind of) const noexcept TAPPET_REALTIME;
-    static void note_life(const EnginePart& part, FacetKind of) noexcept TAPPET_REALTIME;
+    static void begin_life(const EnginePart& part) noexcept TAPPET_REALTIME;
     /// Tells the gates of all parts which of them wait for their turn.
     void tell_resting() noexcept TAPPET_REALTIME;
     /// What the component writes reaches its readers from now on, or no longer.

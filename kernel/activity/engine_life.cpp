@@ -185,7 +185,8 @@ void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     part.state.store(ComponentState::starting, std::memory_order_release);
     open_outputs(part);
-    note_life(part, FacetKind::input);
+    for_ports(*part.type, part.component_, FacetKind::input,
+              [](const Facet& facet, void* port) noexcept TAPPET_REALTIME { facet.port->resume(port); });
     cancel_timers(i); // armed while it stood: by changed()
     if (part.type->start != nullptr) part.type->start(part.component_, cycle_);
     part.state.store(ComponentState::running, std::memory_order_release);
@@ -200,10 +201,11 @@ void Engine::end_forces(const EnginePart& part, FacetKind of) const noexcept TAP
     });
 }
 
-void Engine::note_life(const EnginePart& part, FacetKind of) noexcept TAPPET_REALTIME {
-    for_ports(*part.type, part.component_, of, [of](const Facet& facet, void* port) noexcept TAPPET_REALTIME {
-        facet.port->note_life(port, of == FacetKind::input);
-    });
+void Engine::begin_life(const EnginePart& part) noexcept TAPPET_REALTIME {
+    const Life next = life_after(part.stops.count.load(std::memory_order_relaxed));
+    for_ports(*part.type, part.component_, FacetKind::output,
+              [next](const Facet& facet, void* port) noexcept
+              TAPPET_REALTIME { facet.port->begin_life(port, next); });
 }
 
 void Engine::tell_resting() noexcept TAPPET_REALTIME {
@@ -243,13 +245,14 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     const ComponentState state = part.state.load(std::memory_order_relaxed);
     end_forces(part, FacetKind::input);
+    if (state == ComponentState::failed) begin_life(part);
     if (state == ComponentState::stopped || state == ComponentState::failed) {
         end_forces(part, FacetKind::output);
         close_outputs(part);
         return;
     }
     part.state.store(ComponentState::stopping, std::memory_order_release);
-    note_life(part, FacetKind::output);
+    begin_life(part);
     commands_.fail(i);
     open_outputs(part); // it may never have started
     if (part.type->stop != nullptr) part.type->stop(part.component_, cycle_);

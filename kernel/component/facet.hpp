@@ -70,10 +70,12 @@ struct PortOperations {
     /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
     bool (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
-    /// Of a port whose component stops: of an input, what the force hid is wanted by nobody.
+    /// Of a port whose component stops: what the force hid is wanted by nobody.
     void (*end_force)(void* port, bool is_input) noexcept TAPPET_REALTIME;
-    /// Of an output whose component begins to stop; of an input whose component starts.
-    void (*note_life)(void* port, bool is_input) noexcept TAPPET_REALTIME;
+    /// Of an output whose component begins to stop.
+    void (*begin_life)(void* output, Life life) noexcept TAPPET_REALTIME;
+    /// Of an input whose component starts.
+    void (*resume)(void* input) noexcept TAPPET_REALTIME;
     /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
     /// `looks`: what is fresh there stays fresh.
     Flow (*read)(void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME;
@@ -211,13 +213,13 @@ struct PortAccess {
             [](void* output) noexcept TAPPET_REALTIME {
                 auto& out = *static_cast<Output<T>*>(output);
                 out.generation_ = 0;
-                out.before_stop_.store(0, std::memory_order_relaxed);
+                out.last_.life = no_life;
+                out.settle();
             },
         .link_shared =
             [](void* input, const void* output, const Stops* writer) {
                 auto& in = *static_cast<Input<T>*>(input);
                 in.shared_ = static_cast<const Output<T>*>(output)->shared_;
-                in.before_stop_ = &static_cast<const Output<T>*>(output)->before_stop_;
                 in.linked_ = writer;
             },
         .set_clock =
@@ -290,14 +292,11 @@ struct PortAccess {
         .end_force =
             [](void* port, bool is_input) noexcept TAPPET_REALTIME {
                 is_input ? static_cast<Input<T>*>(port)->end_force()
-                         : static_cast<Output<T>*>(port)->release();
+                         : static_cast<Output<T>*>(port)->end_force();
             },
-        .note_life =
-            [](void* port, bool is_input) noexcept TAPPET_REALTIME {
-                if (is_input) return static_cast<Input<T>*>(port)->resume();
-                auto& out = *static_cast<Output<T>*>(port);
-                out.before_stop_.store(out.generation_, std::memory_order_relaxed);
-            },
+        .begin_life = [](void* output, Life life) noexcept
+        TAPPET_REALTIME { static_cast<Output<T>*>(output)->begin_life(life); },
+        .resume = [](void* input) noexcept TAPPET_REALTIME { static_cast<Input<T>*>(input)->resume(); },
         .read =
             [](void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME {
                 if (!is_input) {
@@ -305,7 +304,8 @@ struct PortAccess {
                     return Flow::old;
                 }
                 auto& in = *static_cast<Input<T>*>(port);
-                const Flow flow = looks ? in.flow() : in.refresh();
+                Flow flow = looks ? in.flow() : in.refresh();
+                if (in.is_abandoned()) flow = Flow::stale;
                 std::memcpy(into, std::addressof(in.value_of(flow)), sizeof(T));
                 return flow;
             },

@@ -8,6 +8,7 @@
 #include "kernel/base/type_tag.hpp"
 #include "kernel/component/current.hpp"
 #include "kernel/component/rate_transition.hpp"
+#include "kernel/component/stops.hpp"
 #include "kernel/exchange/data_object.hpp"
 
 #include <algorithm>
@@ -48,12 +49,6 @@ struct RowValue {
     TypeId type = nullptr; ///< of the constant
 };
 
-/// How often a component has left its safe values behind; and how many ports are forced, for who looks at
-/// it from outside.
-struct Stops {
-    std::atomic<std::uint32_t> count{0};
-    std::atomic<std::uint32_t>* forced = nullptr;
-};
 /// What a connection's row says to the input.
 struct InputPolicy {
     Duration max_age{}; ///< 0: no value is ever stale
@@ -77,6 +72,7 @@ template <class T>
 struct Sample {
     T value = default_value<T>();
     Time stamp{};
+    Life life = no_life; ///< of its writer, as it wrote it
 };
 
 template <class T>
@@ -163,20 +159,30 @@ private:
         if (forced_) [[unlikely]] {
             hidden_ = value;
             hidden_stamp_ = stamp;
+            hidden_life_ = life_;
         } else {
             copy_value(value, last_.value);
         }
-        publish();
+        publish(life_);
     }
     /// After each change of what a write has to look at.
     void settle() noexcept TAPPET_REALTIME {
         inside_only_ = !forced_ && dropped_ == nullptr && shared_ == nullptr && waker_.wake == nullptr &&
-                       filter_ == nullptr;
+                       filter_ == nullptr && last_.life == life_;
     }
-    void publish() noexcept TAPPET_REALTIME {
+    void publish(Life life) noexcept TAPPET_REALTIME {
         ++generation_;
+        if (last_.life != life) [[unlikely]] {
+            last_.life = life;
+            settle();
+        }
         if (shared_ != nullptr) shared_->write(last_);
         waker_();
+    }
+    /// Its component begins to stop.
+    void begin_life(Life next) noexcept TAPPET_REALTIME {
+        life_ = next;
+        settle();
     }
     /// In the port's own activity, between two steps. False, and nothing is forced: its component never wrote
     /// it, so that a release would have to make a value up.
@@ -185,26 +191,32 @@ private:
         if (!forced_) {
             hidden_ = last_.value;
             hidden_stamp_ = last_.stamp;
+            hidden_life_ = last_.life;
         }
         forced_ = true;
         settle();
-        last_ = {value, *now_};
-        publish();
+        last_.value = value;
+        last_.stamp = *now_;
+        publish(life_);
         return true;
     }
     /// Publishes what the component wrote last, before the force or meanwhile, with its own time stamp.
-    void release() noexcept TAPPET_REALTIME {
+    void release() noexcept TAPPET_REALTIME { show_hidden(hidden_life_); }
+    /// Its component has stopped. What it did not write in its stop, nobody wants; see Input::is_abandoned().
+    void end_force() noexcept TAPPET_REALTIME { show_hidden(hidden_life_ == life_ ? life_ : no_life); }
+    void show_hidden(Life life) noexcept TAPPET_REALTIME {
         if (!forced_) return;
         forced_ = false;
         settle();
-        last_ = {hidden_, hidden_stamp_};
-        publish();
+        last_.value = hidden_;
+        last_.stamp = hidden_stamp_;
+        publish(life);
     }
 
     alignas(place_alignment<Sample<T>>) Sample<T> last_{};
     std::uint64_t generation_ = 0;
     const Time* now_ = &detail_epoch;
-    bool inside_only_ = true; ///< nobody but readers of the own activity, and the value is the component's
+    bool inside_only_ = false; ///< nobody but readers of the own activity, and the value is the component's
     bool forced_ = false;
     DataObject<Sample<T>>* shared_ = nullptr;
     Waker waker_{};
@@ -213,9 +225,8 @@ private:
     alignas(place_alignment<T>) T hidden_ =
         default_value<T>(); ///< of a forced port: what its component wrote
     Time hidden_stamp_{};   ///< and when it was true
-
-    /// So often its component had written it when it began to stop last; set before its stop is counted.
-    std::atomic<std::uint64_t> before_stop_{0};
+    Life hidden_life_ = no_life;
+    Life life_ = first_life; ///< of what its component writes
 
     static constexpr Time detail_epoch{};
 };
@@ -230,7 +241,7 @@ public:
     /// value, or its substitute, or zero.
     Flow read(T& into) noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
-        if (!inside_only_ || local_->generation_ == 0) return read_further(into);
+        if (!inside_only_ || local_->last_.life == no_life) return read_further(into);
         into = local_->last_.value;
         const std::uint64_t seen = seen_;
         seen_ = local_->generation_;
@@ -239,12 +250,17 @@ public:
     /// The value alone, with the row's staleness policy applied.
     [[nodiscard]] T get() noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
-        if (!inside_only_ || local_->generation_ == 0) return get_further();
+        if (!inside_only_ || local_->last_.life == no_life) return get_further();
         seen_ = local_->generation_;
         return local_->last_.value;
     }
-    /// When the value read last was true; a forced one always is.
+    /// When the value read last was true; a forced one always is, an abandoned one was before all. Not after
+    /// the first look at it: who writes with a time ahead is not believed for longer.
     [[nodiscard]] Time stamp() const noexcept TAPPET_REALTIME {
+        return forced_ ? *now_ : is_abandoned() ? before_all : true_at();
+    }
+    /// As its writer said it, also when that lies ahead.
+    [[nodiscard]] Time claimed_stamp() const noexcept TAPPET_REALTIME {
         return forced_ ? *now_ : local_ != nullptr ? local_->last_.stamp : cache_.stamp;
     }
     /// Tells what the value is, without copying it out; a fresh value stays fresh for read().
@@ -269,13 +285,16 @@ public:
         return local_ != nullptr || shared_ != nullptr;
     }
     /// A force ended with a stop, and what stands at the other end is still what it hid: nobody wants it any
-    /// longer. After read().
+    /// longer. It was true before all; who acts on values of any age asks. After read().
     [[nodiscard]] bool is_abandoned() const noexcept TAPPET_REALTIME {
-        return !forced_ && generation() != 0 && generation() <= hidden_until_;
+        if (forced_ || generation() == 0) return false;
+        const Life life = local_ != nullptr ? local_->last_.life : cache_.life;
+        return life == no_life || (local_ == abandoned_of_ && life < wanted_from_) ||
+               (stands_ && local_ == hides_of_ && life < life_after(stops_before_));
     }
     /// How many values came to the other end until the one that was read last; of a forced one until now.
     [[nodiscard]] std::uint64_t writes() const noexcept TAPPET_REALTIME {
-        return forced_ ? written() : generation();
+        return before_turn_ + (forced_ ? written() : generation());
     }
     /// In place of a stale value its row gives one that is true now.
     [[nodiscard]] bool has_substitute() const noexcept TAPPET_REALTIME {
@@ -307,19 +326,17 @@ private:
     /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
     /// writer leaves the last good value, which is then old.
     [[gnu::always_inline]] bool fetch() noexcept TAPPET_REALTIME {
-        if (forced_ && stops_of_writer() != cached_generation_) {
+        if (forced_ && writer_has_stopped()) {
             end_force();
             if (writer_->forced != nullptr) writer_->forced->fetch_sub(1, std::memory_order_relaxed);
         }
         if (shared_ == nullptr || forced_) return false;
         const bool is_new = shared_->read(cache_, cached_generation_);
-        // Its age counts from now at the latest: who writes with a time ahead is not believed for longer.
-        if (is_new) true_at_ = std::min(cache_.stamp, *now_);
         if constexpr (std::is_floating_point_v<T>) {
             if (is_new && scale_.factor != 1) cache_.value = scaled(cache_.value);
             if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
                 cache_.value = static_cast<T>(
-                    scale_.between->at(*now_, is_new, static_cast<double>(cache_.value), cache_.stamp));
+                    scale_.between->at(*now_, is_new, static_cast<double>(cache_.value), true_at()));
         }
         return is_new;
     }
@@ -349,46 +366,53 @@ private:
     /// refused to the other.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
         linked_ = writer;
-        before_stop_ = &output->before_stop_;
-        hidden_until_ = 0;
+        if (local_ != nullptr && local_ != output) before_turn_ += local_->generation_;
         if (!forced_)
             seen_ = 0;
-        else if (stops_of_writer() != cached_generation_)
-            cached_generation_ = has_stopped;
+        else
+            ends_before_turn_ = writer_has_stopped();
         local_ = output;
         settle();
     }
     /// The turn is that one's now: what is forced ends with its stop, if the one before had not stopped by
     /// itself when the input was linked.
     void hand_force_to(const Stops* writer) noexcept TAPPET_REALTIME {
-        if (!forced_ || cached_generation_ == has_stopped) return;
+        if (forced_ && !ends_before_turn_) hide_from(writer);
+    }
+    /// What its writer wrote, and writes until it begins to stop.
+    void hide_from(const Stops* writer) noexcept TAPPET_REALTIME {
         writer_ = writer;
         cached_generation_ = stops_of_writer();
+        hides_of_ = local_;
+        ends_before_turn_ = false;
     }
     /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh
     /// once and never stale, until it is released, or its writer stops: that one's safe values count then;
     /// see is_abandoned().
     bool force(const T& value) noexcept TAPPET_REALTIME {
-        writer_ = linked_;
+        if (forced_ && writer_has_stopped()) end_force();
+        resume(); // by what it wants now
+        hide_from(linked_);
         cache_ = {value, *now_};
-        cached_generation_ = stops_of_writer();
         seen_ = 0;
         forced_ = true;
         settle();
         return true;
     }
-    /// With its writer's stop, or the stop of its own component, if that comes first.
+    /// With its writer's stop, or the stop of its own component, if that comes first: then what its writer
+    /// wants, who does not stop, is wanted again when the component starts.
     [[gnu::noinline, gnu::cold]] void end_force() noexcept TAPPET_REALTIME {
         if (!forced_) return;
-        stands_ = stops_of_writer() == cached_generation_;
-        hidden_until_ = stands_                   ? written()
-                        : before_stop_ != nullptr ? before_stop_->load(std::memory_order_relaxed)
-                                                  : 0;
+        stops_before_ = cached_generation_;
+        stands_ = true;
+        if (writer_has_stopped()) resume();
         release();
     }
-    /// Its component starts again: what its writer wants, who did not stop, is wanted again.
+    /// Its component starts again.
     void resume() noexcept TAPPET_REALTIME {
-        if (std::exchange(stands_, false)) hidden_until_ = 0;
+        if (!std::exchange(stands_, false) || stops_of_writer() == stops_before_) return;
+        abandoned_of_ = hides_of_;
+        wanted_from_ = life_after(stops_before_);
     }
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
@@ -406,7 +430,14 @@ private:
         return local_ != nullptr ? local_->generation_ : shared_ != nullptr ? shared_->generation() : 0;
     }
     [[nodiscard]] Time true_at() const noexcept TAPPET_REALTIME {
-        return local_ != nullptr ? local_->last_.stamp : true_at_;
+        const Time stamp = local_ != nullptr ? local_->last_.stamp : cache_.stamp;
+        if (stamp <= *now_ && stamp != ahead_) [[likely]]
+            return stamp;
+        if (std::exchange(ahead_, stamp) != stamp) seen_ahead_at_ = *now_;
+        return seen_ahead_at_;
+    }
+    [[nodiscard]] bool writer_has_stopped() const noexcept TAPPET_REALTIME {
+        return stops_of_writer() != cached_generation_;
     }
     [[nodiscard]] std::uint64_t stops_of_writer() const noexcept TAPPET_REALTIME {
         return writer_ == nullptr ? 0 : writer_->count.load(std::memory_order_acquire);
@@ -420,7 +451,7 @@ private:
         return is_number(value) ? static_cast<T>(std::clamp(wanted, -most, most)) : value;
     }
 
-    static constexpr std::uint64_t forced_generation = ~std::uint64_t{0}, has_stopped = forced_generation;
+    static constexpr std::uint64_t forced_generation = ~std::uint64_t{0};
 
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
     std::uint64_t cached_generation_ = 0; ///< while it is forced: the stops of its writer before
@@ -428,15 +459,19 @@ private:
     [[no_unique_address]] std::conditional_t<std::is_floating_point_v<T>, Scale, NoScale> scale_{};
     bool inside_only_ = false; ///< the value is the one at the other end, of any age
     bool forced_ = false;
-    bool stands_ = false; ///< its component does, with whose stop a force ended
+    bool stands_ = false;           ///< its component does, with whose stop a force ended
+    bool ends_before_turn_ = false; ///< the writer had stopped when another one was linked
     WhenStale when_stale_ = WhenStale::hold;
     std::uint64_t seen_ = 0;
     const Output<T>* local_ = nullptr;
-    const Stops* linked_ = nullptr;                           ///< who writes what stands at the other end
-    const Stops* writer_ = nullptr;                           ///< with whose stop a force ends
-    const std::atomic<std::uint64_t>* before_stop_ = nullptr; ///< of the output at the other end
-    std::uint64_t hidden_until_ = 0; ///< so many values a force hid, that ended with a stop
-    Time true_at_{};                 ///< of the value in cache_, as the reader believes it
+    const Stops* linked_ = nullptr;           ///< who writes what stands at the other end
+    const Stops* writer_ = nullptr;           ///< with whose stop a force ends
+    const Output<T>* hides_of_ = nullptr;     ///< whose values a force hides
+    const Output<T>* abandoned_of_ = nullptr; ///< whose values nobody wants that are ..
+    Life wanted_from_ = first_life;           ///< .. of an earlier life than this
+    std::uint64_t stops_before_ = 0;          ///< of the writer, while stands_
+    std::uint64_t before_turn_ = 0;           ///< so many values others had written
+    mutable Time ahead_{}, seen_ahead_at_{};  ///< the last stamp that lay ahead, and when it was seen first
     Duration max_age_{};
     const Time* now_ = &Output<T>::detail_epoch;
     alignas(place_alignment<T>) T substitute_ = default_value<T>();

@@ -296,5 +296,16 @@ TEST_F(OnDemand, sends_a_command_whose_halves_are_seen_in_two_cycles) {
     }
 }
 
+TEST_F(OnDemand, makes_no_command_of_halves_that_have_no_time) {
+    run_until(10ms);
+    master->nmt_at = never;
+    demand(1, 1);
+    run_until(30ms);
+    heard.clear();
+    master->node_next = 9;
+    run_until(60ms);
+    EXPECT_THAT(heard_of(0x000), testing::IsEmpty()) << "its other half was never written";
+}
+
 } // namespace
 } // namespace tappet::test

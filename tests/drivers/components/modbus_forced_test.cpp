@@ -174,5 +174,39 @@ TEST_F(Forced, is_told_what_a_running_writer_wants_when_its_client_is_back) {
     EXPECT_TRUE(pump_runs());
 }
 
+/// Who writes what the pump is told claims times that lie ahead.
+struct PumpAhead : Utility {
+    PumpAhead() { reader->pump_age = -900ms; }
+};
+
+TEST_F(PumpAhead, is_told_off_at_once) {
+    reader->pump_next = 1;
+    run_until(1100ms);
+    ASSERT_TRUE(pump_runs());
+    reader->pump_next = 0;
+    run_until(1200ms);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(PumpAhead, is_told_the_safe_value_of_a_stop_at_once) {
+    reader->pump_next = 1;
+    run_until(1100ms);
+    ASSERT_TRUE(pump_runs());
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    run_until(1200ms);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(PumpAhead, is_not_believed_for_longer_than_its_row_says) {
+    run_until(1s);
+    twin.inject(modbus::Fault::down);
+    run_until(2800ms);
+    reader->pump_next = 1; // good for 5 s
+    run_until(8s);
+    twin.inject(modbus::Fault::none);
+    run_until(12s);
+    EXPECT_FALSE(pump_runs());
+}
+
 } // namespace
 } // namespace tappet::test

@@ -112,9 +112,8 @@ struct BehindSilentServers : testing::Test {
 };
 
 TEST_F(BehindSilentServers, a_server_has_its_share_of_the_time) {
-    EXPECT_TRUE(comes_to_the_serial_one(1, 2s, 1s));
-    EXPECT_TRUE(comes_to_the_serial_one(3, 400ms, 1s));
-    EXPECT_TRUE(comes_to_the_serial_one(1, 1s, 1s));
+    EXPECT_TRUE(comes_to_the_serial_one(1, 3s, 3s));
+    EXPECT_TRUE(comes_to_the_serial_one(3, 1200ms, 3s));
 }
 
 TEST(SilentServers, are_all_asked_though_quick_attempts_would_take_all_the_time) {
@@ -179,6 +178,30 @@ TEST(ServerWithManyRequests, goes_on_where_its_share_of_the_time_ended) {
         to[i] = {&transports[i], {std::span{many}.first(i == 0 ? 4 : 1), safe_word}};
     }
     EXPECT_EQ(write_safe_registers(to, 4500ms, {}), 0u);
+}
+
+/// It takes its first request, and closes the connection at its second one, as one that starts anew.
+TEST(Restarted, server_is_told_all_again) {
+    RawServer server{RawServer::Line::tcp};
+    modbus::LibmodbusTransport transport;
+    EXPECT_TRUE(transport.open({.line = modbus::Tcp{"127.0.0.1", server.port()}, .answer_within = 2s}));
+    std::array to{SafeServer{&transport, {requests, safe_word}}};
+    struct Seen {
+        RawServer* server;
+        bool first = false, closes = false, first_again = false;
+    } seen{&server};
+    const Meanwhile look{&seen, [](void* of) noexcept {
+                             auto& all = *static_cast<Seen*>(of);
+                             const modbus::Bytes last = all.server->last_request();
+                             if (last.empty()) return;
+                             all.first_again |= all.closes && last[9] == 3;
+                             all.server->manner = last[9] == 3 && !all.first ? Manner::close : Manner::right;
+                             all.closes = all.first;
+                             all.first |= last[9] == 3;
+                         }};
+    EXPECT_EQ(write_safe_registers(to, 30s, look), 0u);
+    EXPECT_TRUE(seen.first_again);
+    EXPECT_EQ(server.last_request()[9], 9);
 }
 
 } // namespace

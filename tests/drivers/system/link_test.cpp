@@ -46,6 +46,25 @@ TEST_F(LinkTest, a_value_grows_stale_when_its_node_is_gone) {
     EXPECT_FALSE(taker().other_is_there.get());
 }
 
+TEST_F(LinkTest, a_value_that_a_force_hid_and_that_nobody_wants_is_stale_there) {
+    giver().tells = 80;
+    run.run_for(30ms);
+    MachineInstance& here = run.instance(0);
+    const MachineView& table = here.machine().table;
+    End end{find_component(table, "wire"), 0};
+    const auto facets = table.components[end.component].type->facets;
+    while (facets[end.facet].kind != FacetKind::input || facets[end.facet].type != type_id<double>)
+        ++end.facet;
+    const double still = 0;
+    ASSERT_TRUE(
+        facets[end.facet].port->force(here.place_of(end), true, reinterpret_cast<const std::byte*>(&still)));
+    run.run_for(30ms);
+    EXPECT_EQ(taker().level.get(), 0);
+    static_cast<void>(here.life().ask_component(find_component(table, "giver"), LifeChange::stop));
+    run.run_for(30ms);
+    EXPECT_EQ(taker().level.flow(), Flow::stale);
+}
+
 TEST_F(LinkTest, serves_each_event_once_and_in_order) {
     for (int i = 1; i <= 20; ++i) {
         giver().to_send.push_back(i);

@@ -121,6 +121,7 @@ TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
     output.write(1.0);
     force_input(9.0);
     EXPECT_EQ(input.get(), 9.0);
+    port.begin_life(&output, life_after(writer.count));
     output.write(0.0);
     EXPECT_EQ(input.get(), 9.0);
     ++writer.count;
@@ -179,7 +180,7 @@ TEST_P(Forcing, an_observer_finds_value_time_and_flag) {
     EXPECT_EQ(at<double>(port.places(&input, true).forced_value), 8.0);
 }
 
-/// The writer of what is forced, as an engine stops it.
+/// The writer of what is forced, and its reader, as engines stop and start them.
 struct AbandonedValue : Forcing {
     Stops writer;
     AbandonedValue() {
@@ -188,13 +189,34 @@ struct AbandonedValue : Forcing {
         output.write(1.0);
         force_input(9.0);
     }
-    void stop() {
+    void begin_stop() {
         now += 1s;
-        port.note_life(&output, false);
+        port.begin_life(&output, life_after(writer.count));
     }
-    void expect(double wanted, bool is_abandoned) {
+    void end_stop() {
+        port.end_force(&output, false);
+        ++writer.count;
+    }
+    void stop() {
+        begin_stop();
+        end_stop();
+    }
+    void restart_reader() {
+        port.end_force(&input, true);
+        expect_abandoned();
+        port.resume(&input);
+    }
+    void expect(double wanted) {
         EXPECT_EQ(input.get(), wanted);
-        EXPECT_EQ(input.is_abandoned(), is_abandoned);
+        EXPECT_TRUE(input.good());
+        EXPECT_FALSE(input.is_abandoned());
+        EXPECT_GT(input.stamp(), before_all);
+    }
+    void expect_abandoned() {
+        static_cast<void>(input.read(value));
+        EXPECT_TRUE(input.is_abandoned());
+        EXPECT_EQ(port.read(&input, true, true, reinterpret_cast<std::byte*>(&value)), Flow::stale);
+        EXPECT_EQ(input.stamp(), before_all);
     }
 };
 
@@ -204,59 +226,152 @@ INSTANTIATE_TEST_SUITE_P(, AbandonedValue, testing::Bool(), [](const auto& each)
 
 TEST_P(AbandonedValue, is_what_a_force_hid_when_it_ended_with_a_stop) {
     stop();
-    ++writer.count;
-    expect(1.0, true);
+    expect_abandoned();
     output.write(2.0);
-    expect(2.0, false);
+    expect(2.0);
 }
 
 TEST_P(AbandonedValue, is_none_that_a_stop_left_whatever_its_time) {
-    stop();
-    output.write(0.0, at_ns(0));
-    ++writer.count;
-    expect(0.0, false);
+    begin_stop();
+    output.write(0.5, at_ns(0));
+    end_stop();
+    expect(0.5);
 }
 
 TEST_P(AbandonedValue, is_none_that_is_written_after_a_stop_before_anybody_looks) {
     stop();
-    ++writer.count;
     output.write(3.0, at_ns(0));
-    expect(3.0, false);
+    expect(3.0);
+}
+
+TEST_P(AbandonedValue, is_none_that_a_stop_left_when_a_second_one_comes_before_anybody_looks) {
+    begin_stop();
+    output.write(0.5);
+    end_stop();
+    stop();
+    expect(0.5);
 }
 
 TEST_P(AbandonedValue, is_one_whose_time_lies_ahead_or_is_that_of_the_stop) {
     output.write(4.0, now + 2s);
     stop();
-    ++writer.count;
-    expect(4.0, true);
+    expect_abandoned();
     force_input(9.0);
     output.write(5.0, now);
-    port.note_life(&output, false);
-    ++writer.count;
-    expect(5.0, true);
+    stop();
+    expect_abandoned();
 }
 
 TEST_P(AbandonedValue, stays_so_when_it_is_forced_again_and_released) {
     stop();
-    ++writer.count;
-    expect(1.0, true);
+    expect_abandoned();
     force_input(9.0);
-    expect(9.0, false);
+    EXPECT_EQ(input.get(), 9.0);
     port.release(&input, true);
-    expect(1.0, true);
+    expect_abandoned();
 }
 
 TEST_P(AbandonedValue, is_wanted_again_when_the_reader_stood_and_its_writer_did_not) {
+    restart_reader();
+    expect(1.0);
+}
+
+TEST_P(AbandonedValue, is_one_when_its_writer_stops_while_the_reader_stands) {
     port.end_force(&input, true);
-    expect(1.0, true);
-    port.note_life(&input, true);
-    expect(1.0, false);
-    force_input(9.0);
     stop();
-    ++writer.count;
-    port.end_force(&input, true);
-    port.note_life(&input, true);
-    expect(1.0, true);
+    port.resume(&input);
+    expect_abandoned();
+}
+
+TEST_P(AbandonedValue, stays_so_when_it_is_forced_again_and_the_reader_starts_anew) {
+    stop();
+    expect_abandoned();
+    force_input(9.0);
+    restart_reader();
+    expect_abandoned();
+    force_input(9.0);
+    output.write(2.0);
+    restart_reader();
+    expect(2.0);
+}
+
+TEST_P(AbandonedValue, is_what_the_force_of_an_output_hid_with_or_without_one_of_the_input) {
+    force_output(8.0);
+    stop();
+    expect_abandoned();
+    output.write(2.0);
+    expect(2.0);
+    force_output(8.0);
+    stop();
+    expect_abandoned();
+    output.write(3.0);
+    force_output(8.0);
+    begin_stop();
+    output.write(0.5);
+    end_stop();
+    expect(0.5);
+}
+
+TEST_P(AbandonedValue, is_none_of_a_force_that_came_during_the_stop) {
+    port.release(&input, true);
+    begin_stop();
+    output.write(0.5);
+    force_input(9.0);
+    end_stop();
+    expect(0.5);
+}
+
+/// Two outputs write one input by turns, as a machine's chains do.
+struct AbandonedByTurns : AbandonedValue {
+    Output<double> other;
+    Stops other_writer;
+    AbandonedByTurns() {
+        port.set_clock(&other, false, &now);
+        other.write(7.0);
+    }
+    void turn_to(Output<double>& next, const Stops& by) { port.link_local(&input, &next, &by); }
+};
+
+INSTANTIATE_TEST_SUITE_P(, AbandonedByTurns, testing::Values(false));
+
+TEST_P(AbandonedByTurns, stays_so_when_a_turn_is_refused) {
+    stop();
+    expect_abandoned();
+    turn_to(other, other_writer);
+    expect(7.0);
+    turn_to(output, writer);
+    expect_abandoned();
+}
+
+TEST_P(AbandonedByTurns, is_none_of_the_next_turn_however_few_it_wrote) {
+    for (int i = 0; i < 50; ++i) output.write(1.0);
+    stop();
+    expect_abandoned();
+    turn_to(other, other_writer);
+    port.forget(&output);
+    turn_to(output, writer);
+    EXPECT_EQ(input.read(value), Flow::never_written);
+    output.write(2.0);
+    expect(2.0);
+}
+
+TEST_P(AbandonedByTurns, is_what_the_force_hid_that_was_handed_over) {
+    turn_to(other, other_writer);
+    stop();
+    port.hand_force_to(&input, &other_writer);
+    EXPECT_EQ(input.get(), 9.0);
+    other.write(8.0);
+    port.begin_life(&other, life_after(other_writer.count));
+    ++other_writer.count;
+    expect_abandoned();
+}
+
+TEST_P(AbandonedByTurns, counts_what_all_of_them_wrote) {
+    port.release(&input, true);
+    expect(1.0);
+    const std::uint64_t before = input.writes();
+    turn_to(other, other_writer);
+    EXPECT_GT(input.writes(), before);
 }
 
 } // namespace

@@ -316,5 +316,21 @@ TEST_F(Turning, a_code_that_was_forced_where_nobody_wrote_one_is_believed_no_lon
     EXPECT_EQ(shaft.speed_rpm.last(), 0);
 }
 
+TEST_F(Turning, codes_whose_times_lie_ahead_are_those_of_when_they_were_seen) {
+    for (const Duration ahead : {Duration{10ms}, Duration{100ms}, Duration{900ms}}) {
+        encoder.ahead = 0ms;
+        run(2s);
+        encoder.ahead = ahead;
+        run(10ms);
+        ejector.marks.clear();
+        for (int n = 0; n < 3000; ++n) {
+            run(1ms);
+            ASSERT_TRUE(shaft.valid.last());
+            ASSERT_LT(std::abs(std::remainder(shaft.angle_deg.last() - encoder.deg, 360.0)), 2.0);
+        }
+        expect_near(ejector.marks, 40.0, 0.5);
+    }
+}
+
 } // namespace
 } // namespace tappet

@@ -1,0 +1,84 @@
+// An axis whose set point is forced: what it does then, and when the force ends.
+#include "tests/drivers/canopen/servo_axis.hpp"
+
+namespace tappet::test {
+namespace {
+
+/// Its set point is forced meanwhile, for less than what stands behind it takes to grow stale.
+struct ForcedAxis : ServoAxis {
+    void force(double value) {
+        ASSERT_TRUE(resolve(instance.machine().table, "axis.set_point", FacetKind::input, end).empty());
+        EXPECT_TRUE(port().force(instance.place_of(end), true, reinterpret_cast<const std::byte*>(&value)));
+        run(4ms);
+    }
+    void release() {
+        port().release(instance.place_of(end), true);
+        run(3ms);
+    }
+    void write(double value) {
+        client->once = value;
+        run(3ms);
+    }
+    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
+    End end;
+};
+
+TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
+    force(30);
+    EXPECT_EQ(axis->target_velocity.last(), 30);
+    release();
+    EXPECT_EQ(axis->target_velocity.last(), 0);
+}
+
+TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(8));
+    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    write(1);
+    force(1.5);
+    ASSERT_NEAR(axis->target_position.last(), 1.5, 1e-9);
+    release();
+    EXPECT_NEAR(axis->target_position.last(), 1.5, 1e-9);
+}
+
+TEST_F(ForcedAxis, comes_to_rest_when_the_force_of_its_velocity_ends) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    run(20ms);
+    write(30);
+    force(20);
+    ASSERT_EQ(axis->target_velocity.last(), 20);
+    release();
+    EXPECT_EQ(axis->target_velocity.last(), 0);
+}
+
+TEST_F(ForcedAxis, is_led_by_nothing_that_was_written_before_it_follows) {
+    power();
+    write(30);
+    force(20);
+    ASSERT_TRUE(client->synchronize.send(9));
+    run(3ms);
+    release();
+    EXPECT_EQ(axis->target_velocity.last(), 0);
+}
+
+TEST_F(ForcedAxis, stands_when_its_writer_stops_behind_a_force) {
+    power();
+    ASSERT_TRUE(client->synchronize.send(9));
+    run(20ms);
+    write(10);
+    force(0);
+    write(30);
+    static_cast<void>(
+        instance.life().ask_component(find_component(instance.machine().table, "client"), LifeChange::stop));
+    for (int i = 0; i < 200; ++i) {
+        run(1ms);
+        ASSERT_EQ(axis->target_velocity.last(), 0);
+    }
+}
+
+} // namespace
+} // namespace tappet::test
