@@ -78,7 +78,7 @@ TEST(LatestMessage, tears_nothing_and_forgets_no_newest_across_threads) {
         bool good = true;
         while (before != last) {
             if (told.load() == taken) {
-                std::this_thread::yield();
+                rest();
                 continue;
             }
             ASSERT_EQ(told.load(), taken + 1) << "one notice is on its way at most; seed " << seed;

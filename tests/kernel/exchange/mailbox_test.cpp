@@ -176,7 +176,7 @@ TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
                 if (post.inbox.post(sender, message))
                     ++number;
                 else
-                    std::this_thread::yield();
+                    rest();
                 dither(random);
             }
         });
@@ -195,7 +195,7 @@ TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
         if (post.inbox.pending())
             served += post.inbox.serve(visit);
         else
-            std::this_thread::yield();
+            rest();
         dither(random);
     }
     for (auto& thread : threads) thread.join();

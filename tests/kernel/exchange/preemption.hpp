@@ -8,10 +8,11 @@
 
 #include <array>
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <semaphore>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -94,11 +95,31 @@ private:
         turn_[side_].acquire();
     }
 
+    /// Not std::binary_semaphore, which yields before it sleeps: on a busy host that lasts as long as all
+    /// others.
+    class Turn {
+    public:
+        void acquire() {
+            std::unique_lock lock{mutex_};
+            begins_.wait(lock, [this] { return std::exchange(has_begun_, false); });
+        }
+        void release() {
+            const std::scoped_lock lock{mutex_};
+            has_begun_ = true;
+            begins_.notify_one();
+        }
+
+    private:
+        std::mutex mutex_;
+        std::condition_variable begins_;
+        bool has_begun_ = false;
+    };
+
     static inline thread_local Interleaving* current_ = nullptr;
     static inline thread_local std::size_t side_ = 0;
     Random random_{0};
     std::uint64_t steps_per_turn_ = 1;
-    std::array<std::binary_semaphore, 2> turn_{std::binary_semaphore{0}, std::binary_semaphore{0}};
+    std::array<Turn, 2> turn_{};
     std::array<bool, 2> finished_{};
 };
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -33,9 +34,12 @@ inline std::uint64_t stress_seed() {
     return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
 }
 
-/// Lets others run, waits a little, or mostly does neither, as the dice fall.
+/// Lets others run. Not by a yield, which on a busy host lasts as long as all others want to run.
+inline void rest() { std::this_thread::sleep_for(std::chrono::microseconds{1}); }
+
+/// Rests, waits a little, or mostly does neither, as the dice fall.
 inline void dither(Random& random) {
-    if (random.one_in(64)) std::this_thread::yield();
+    if (random.one_in(64)) rest();
     if (!random.one_in(8)) return;
     const std::uint64_t spins = random.below(256);
     for (std::uint64_t i = 0; i < spins; ++i) asm volatile("" ::: "memory");
