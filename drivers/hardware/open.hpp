@@ -49,11 +49,10 @@ struct SafeServer {
     modbus::SafeWrites writes{};
     bool is_safe = false; ///< each of them was confirmed
 
-    /// Of one connection: a server that lost it may have restarted, and is told all of them again.
     struct Attempt {
-        std::size_t next = 0;
-        Duration longest{}; ///< that an answer took
-        bool is_connected = false, is_refused = false;
+        std::size_t next = 0, confirmed = 0, asked = 0;
+        Duration took{}; ///< the last answer
+        bool is_connected = false;
     } attempt{};
 };
 /// One attempt at each server in turn, until all are safe, for so long at most. Servers that are not. In each

@@ -36,31 +36,45 @@ struct Patience {
     }
 };
 
-// Each request is tried: one that is refused keeps no other from being safe, and all are tried again. Many
-// take more than a share of the time. Then the next round goes on here: not in the middle of a request, whose
-// answer would be lost with the connection.
+/// Of one that refuses something, or loses each connection.
+bool has_asked_enough(const SafeServer& to) noexcept {
+    return to.attempt.asked >= 4 * to.writes.requests.size();
+}
+
+// Safe is who confirmed all requests one after the other on one connection: who lost it may have restarted.
+// What a connection lost is asked on the next one; then all that was asked before it. One that is refused
+// keeps none behind it back. Many take more than a share of the time: the next round goes on here, and not in
+// the middle of a request, whose answer would be lost with the connection.
 bool go_on(SafeServer& to, const Patience& patience) noexcept {
     SafeServer::Attempt& attempt = to.attempt;
-    patience.limit(*to.server);
-    if (!attempt.is_connected) {
-        if (to.server->connect().outcome != modbus::Outcome::ok) return false;
-        attempt = {.is_connected = true};
-    }
-    while (attempt.next < to.writes.requests.size()) {
-        if (patience.end - os::Clock::monotonic() < attempt.longest) return false;
+    const std::size_t count = to.writes.requests.size();
+    for (bool is_first = true; attempt.confirmed < count; is_first = false) {
+        if (has_asked_enough(to)) return false;
+        if (!is_first && patience.end - os::Clock::monotonic() < attempt.took) return false;
         patience.limit(*to.server);
+        if (!attempt.is_connected) {
+            if (to.server->connect().outcome != modbus::Outcome::ok) return false;
+            attempt.is_connected = true;
+            patience.limit(*to.server);
+        }
+        ++attempt.asked;
         const modbus::SafeWrite& each = to.writes.requests[attempt.next];
         const modbus::Answer answer =
             to.server->write(each.run.table, static_cast<std::uint16_t>(each.run.address),
                              to.writes.words.subspan(each.first, each.run.count));
-        if (answer.outcome != modbus::Outcome::ok && answer.outcome != modbus::Outcome::exception) break;
-        attempt.is_refused = attempt.is_refused || answer.outcome == modbus::Outcome::exception;
-        attempt.longest = std::max(attempt.longest, answer.took);
-        ++attempt.next;
+        const bool is_answered =
+            answer.outcome == modbus::Outcome::ok || answer.outcome == modbus::Outcome::exception;
+        attempt.confirmed = answer.outcome == modbus::Outcome::ok ? attempt.confirmed + 1 : 0;
+        if (is_answered) {
+            attempt.took = answer.took;
+            attempt.next = (attempt.next + 1) % count;
+            continue;
+        }
+        to.server->disconnect();
+        attempt.is_connected = false;
+        if (answer.outcome == modbus::Outcome::timeout) return false;
     }
-    to.server->disconnect();
-    attempt.is_connected = false;
-    return attempt.next == to.writes.requests.size() && !attempt.is_refused;
+    return true;
 }
 
 } // namespace
@@ -68,7 +82,7 @@ bool go_on(SafeServer& to, const Patience& patience) noexcept {
 // A server may still be answering the machine's last request, or hold its connection: then it is asked again.
 std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
                                  const Meanwhile& meanwhile) noexcept {
-    constexpr int rounds = 4;
+    constexpr int rounds = 6;
     const Time end = os::Clock::monotonic() + within;
     std::size_t left = 0;
     for (SafeServer& each : servers) {
@@ -77,11 +91,11 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
         left += each.is_safe ? 0u : 1u;
     }
     for (int round = 0; round < rounds && left != 0 && os::Clock::monotonic() < end; ++round) {
-        if (round > 1) os::sleep_for(100ms);
+        if (round > 1) os::sleep_for((round - 1) * 100ms); // it may be about to start
         const bool is_quick = round == 0;
         const Time round_end = is_quick ? end - within / 2 : end;
         const auto is_tried = [is_quick](const SafeServer& each) {
-            return !each.is_safe && !(is_quick && each.server->is_serial());
+            return !each.is_safe && !has_asked_enough(each) && !(is_quick && each.server->is_serial());
         };
         std::int64_t still_tried = std::ranges::count_if(servers, is_tried);
         for (SafeServer& each : servers) {

@@ -173,8 +173,9 @@ private:
             const Flow flow = wanted[v].read(value);
             // One that is forced, and what the row gives for a stale one, is true now, in each cycle.
             const bool is_given = flow == Flow::stale && wanted[v].has_substitute();
-            const Time stamp = is_given ? now : wanted[v].is_abandoned() ? before_all : wanted[v].stamp();
-            const bool is_newer = stamp > session_->value(v).stamp;
+            const Time stamp = is_given ? now : wanted[v].stamp();
+            const bool is_left = stamp == before_all && session_->value(v).stamp != before_all;
+            const bool is_newer = stamp > session_->value(v).stamp || is_left;
             const bool is_other = !is_set_[v] || value != taken_[v]; // it stood behind a force
             if (flow == Flow::never_written || (flow != Flow::fresh && !is_newer && !is_other)) continue;
             taken_[v] = value;

@@ -32,7 +32,7 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     serves_ = !is_simple ? Serves::everything : plan.behaviours.empty() ? Serves::steps : Serves::behaviours;
     for (EnginePart& part : plan_.parts) {
         part.step = part.type->step;
-        close_outputs(part);
+        close_outputs(part, Stops::of_one_that_stood);
     }
     for (const EngineTimer& each : plan_.timers) each.timer->serve();
 }

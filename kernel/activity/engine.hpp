@@ -367,7 +367,7 @@ private:
     void cancel_timers(std::uint32_t part) noexcept TAPPET_REALTIME;
     static void say_at_rest(const EnginePart& part) noexcept TAPPET_REALTIME;
     static void open_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
-    static void close_outputs(EnginePart& part) noexcept TAPPET_REALTIME;
+    static void close_outputs(EnginePart& part, std::uint64_t stop) noexcept TAPPET_REALTIME;
     void start_behaviours(std::uint32_t part) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer change(std::uint32_t part, LifeChange wanted) noexcept TAPPET_REALTIME;
     void serve_requests() noexcept TAPPET_REALTIME;

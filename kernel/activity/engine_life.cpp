@@ -228,8 +228,8 @@ void Engine::open_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
 }
 
 // The count first: who is woken by what closes, and is forced, finds that it has to let go.
-void Engine::close_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
-    part.stops.count.fetch_add(1, std::memory_order_seq_cst);
+void Engine::close_outputs(EnginePart& part, std::uint64_t stop) noexcept TAPPET_REALTIME {
+    part.stops.count.fetch_add(stop, std::memory_order_seq_cst);
     close(*part.type, part.component_, &part.dropped_writes);
 }
 
@@ -248,7 +248,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     if (state == ComponentState::failed) begin_life(part);
     if (state == ComponentState::stopped || state == ComponentState::failed) {
         end_forces(part, FacetKind::output);
-        close_outputs(part);
+        close_outputs(part, state == ComponentState::failed ? Stops::of_a_life : Stops::of_one_that_stood);
         return;
     }
     part.state.store(ComponentState::stopping, std::memory_order_release);
@@ -260,7 +260,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
         part.left_unsafe.store(!part.type->stopped_safely(part.component_), std::memory_order_relaxed);
     say_at_rest(part);
     end_forces(part, FacetKind::output);
-    close_outputs(part); // its safe values stand
+    close_outputs(part, Stops::of_a_life); // its safe values stand
     cancel_timers(i);
     part.state.store(ComponentState::stopped, std::memory_order_release);
 }

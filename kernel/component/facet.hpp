@@ -62,7 +62,10 @@ struct PortOperations {
     void (*close)(void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME;
     void (*set_filter)(void* output, PortFilter* filter);
     void (*set_policy)(void* input, const InputPolicy&);
+    /// What is abandoned is as good as its age: no component is kept from its start by it.
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
+    /// Also behind a force.
+    bool (*is_written)(const void* output) noexcept TAPPET_REALTIME;
     Time (*expires)(const void* input) noexcept TAPPET_REALTIME;
     /// How many values a shared data object was given; any thread.
     std::uint64_t (*written)(const void* shared) noexcept TAPPET_REALTIME;
@@ -212,8 +215,7 @@ struct PortAccess {
         .forget =
             [](void* output) noexcept TAPPET_REALTIME {
                 auto& out = *static_cast<Output<T>*>(output);
-                out.generation_ = 0;
-                out.last_.life = no_life;
+                out.last_.life = never_lived;
                 out.settle();
             },
         .link_shared =
@@ -259,7 +261,10 @@ struct PortAccess {
                 in.before_first_ =
                     value_in<T>(policy.before_first.given ? policy.before_first : policy.substitute);
             },
-        .flow = [](void* input) noexcept TAPPET_REALTIME { return static_cast<Input<T>*>(input)->flow(); },
+        .flow = [](void* input) noexcept
+        TAPPET_REALTIME { return static_cast<Input<T>*>(input)->look(never_lived); },
+        .is_written = [](const void* output) noexcept
+        TAPPET_REALTIME { return static_cast<const Output<T>*>(output)->last_.life != never_lived; },
         .expires = [](const void* input) noexcept
         TAPPET_REALTIME { return static_cast<const Input<T>*>(input)->expires(); },
         .written = [](const void* shared) noexcept
@@ -304,8 +309,7 @@ struct PortAccess {
                     return Flow::old;
                 }
                 auto& in = *static_cast<Input<T>*>(port);
-                Flow flow = looks ? in.flow() : in.refresh();
-                if (in.is_abandoned()) flow = Flow::stale;
+                const Flow flow = looks ? in.flow() : in.refresh();
                 std::memcpy(into, std::addressof(in.value_of(flow)), sizeof(T));
                 return flow;
             },

@@ -8,6 +8,7 @@
 #include "kernel/base/type_tag.hpp"
 #include "kernel/component/current.hpp"
 #include "kernel/component/rate_transition.hpp"
+#include "kernel/component/stamps.hpp"
 #include "kernel/component/stops.hpp"
 #include "kernel/exchange/data_object.hpp"
 
@@ -23,20 +24,6 @@ namespace tappet {
 
 /// What reading an input tells about the value.
 enum class Flow : std::uint8_t { never_written, old, fresh, stale };
-
-/// Earlier than every time stamp of a machine: the value is as old as can be.
-inline constexpr Time before_all{-std::chrono::hours{24 * 365 * 100}};
-/// A cycle may be long, and what arrives during it has a later time than the cycle's.
-inline constexpr Duration ahead_at_most = 1s;
-/// Of a value that somebody writes in a cycle at `now`: what lies further ahead, or before all, is the time
-/// of no clock of this machine. Nobody knows when such a value was true.
-constexpr Time judged_stamp(Time stamp, Time now) noexcept TAPPET_REALTIME {
-    // Both at once, in four instructions: what is ahead wraps round to more than an age can be.
-    const auto number = [](auto time) { return static_cast<std::uint64_t>(time.count()); };
-    const std::uint64_t age =
-        number(now.time_since_epoch()) + number(ahead_at_most) - number(stamp.time_since_epoch());
-    return age >> 62u != 0 ? before_all : stamp;
-}
 
 /// What a stale value means for the reader: keep it, use the row's substitute, or stop the machine.
 enum class WhenStale : std::uint8_t { hold, substitute, stop };
@@ -72,7 +59,7 @@ template <class T>
 struct Sample {
     T value = default_value<T>();
     Time stamp{};
-    Life life = no_life; ///< of its writer, as it wrote it
+    Life life = never_lived; ///< of its writer, as it wrote it
 };
 
 template <class T>
@@ -187,7 +174,7 @@ private:
     /// In the port's own activity, between two steps. False, and nothing is forced: its component never wrote
     /// it, so that a release would have to make a value up.
     bool force(const T& value) noexcept TAPPET_REALTIME {
-        if (generation_ == 0) return false;
+        if (last_.life == never_lived) return false;
         if (!forced_) {
             hidden_ = last_.value;
             hidden_stamp_ = last_.stamp;
@@ -203,7 +190,7 @@ private:
     /// Publishes what the component wrote last, before the force or meanwhile, with its own time stamp.
     void release() noexcept TAPPET_REALTIME { show_hidden(hidden_life_); }
     /// Its component has stopped. What it did not write in its stop, nobody wants; see Input::is_abandoned().
-    void end_force() noexcept TAPPET_REALTIME { show_hidden(hidden_life_ == life_ ? life_ : no_life); }
+    void end_force() noexcept TAPPET_REALTIME { show_hidden(hidden_life_ == life_ ? life_ : unwanted); }
     void show_hidden(Life life) noexcept TAPPET_REALTIME {
         if (!forced_) return;
         forced_ = false;
@@ -225,7 +212,7 @@ private:
     alignas(place_alignment<T>) T hidden_ =
         default_value<T>(); ///< of a forced port: what its component wrote
     Time hidden_stamp_{};   ///< and when it was true
-    Life hidden_life_ = no_life;
+    Life hidden_life_ = never_lived;
     Life life_ = first_life; ///< of what its component writes
 
     static constexpr Time detail_epoch{};
@@ -241,7 +228,7 @@ public:
     /// value, or its substitute, or zero.
     Flow read(T& into) noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
-        if (!inside_only_ || local_->last_.life == no_life) return read_further(into);
+        if (!inside_only_ || local_->last_.life < first_life) return read_further(into);
         into = local_->last_.value;
         const std::uint64_t seen = seen_;
         seen_ = local_->generation_;
@@ -250,7 +237,7 @@ public:
     /// The value alone, with the row's staleness policy applied.
     [[nodiscard]] T get() noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
-        if (!inside_only_ || local_->last_.life == no_life) return get_further();
+        if (!inside_only_ || local_->last_.life < first_life) return get_further();
         seen_ = local_->generation_;
         return local_->last_.value;
     }
@@ -264,12 +251,7 @@ public:
         return forced_ ? *now_ : local_ != nullptr ? local_->last_.stamp : cache_.stamp;
     }
     /// Tells what the value is, without copying it out; a fresh value stays fresh for read().
-    [[nodiscard]] Flow flow() noexcept TAPPET_REALTIME {
-        const std::uint64_t seen = seen_;
-        const Flow now = refresh();
-        seen_ = seen;
-        return now;
-    }
+    [[nodiscard]] Flow flow() noexcept TAPPET_REALTIME { return look(least_life_); }
     /// There is a value, and it is not stale: what get() gives may be relied on.
     [[nodiscard]] bool good() noexcept TAPPET_REALTIME {
         const Flow now = flow();
@@ -279,18 +261,15 @@ public:
     /// not.
     [[nodiscard]] Time expires() const noexcept TAPPET_REALTIME {
         if (max_age_ == Duration::zero()) return never;
-        return (forced_ || generation() == 0 ? *now_ : true_at()) + max_age_ + 1ns;
+        return (forced_ || life() == never_lived ? *now_ : true_at()) + max_age_ + 1ns;
     }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }
     /// A force ended with a stop, and what stands at the other end is still what it hid: nobody wants it any
-    /// longer. It was true before all; who acts on values of any age asks. After read().
+    /// longer. It is stale, and was true before all; who acts on stale values asks. After read().
     [[nodiscard]] bool is_abandoned() const noexcept TAPPET_REALTIME {
-        if (forced_ || generation() == 0) return false;
-        const Life life = local_ != nullptr ? local_->last_.life : cache_.life;
-        return life == no_life || (local_ == abandoned_of_ && life < wanted_from_) ||
-               (stands_ && local_ == hides_of_ && life < life_after(stops_before_));
+        return !forced_ && life() != never_lived && life() < least_life_;
     }
     /// How many values came to the other end until the one that was read last; of a forced one until now.
     [[nodiscard]] std::uint64_t writes() const noexcept TAPPET_REALTIME {
@@ -307,21 +286,29 @@ private:
     friend struct PortAccess;
 
     [[gnu::noinline]] Flow read_further(T& into) noexcept TAPPET_REALTIME {
-        if (fetch() && max_age_ == Duration::zero()) {
+        if (fetch() && max_age_ == Duration::zero() && cache_.life >= least_life_) {
             // Out of the registers that the value has just come in.
             copy_value(cache_.value, into);
             seen_ = cached_generation_;
             return Flow::fresh;
         }
-        const Flow flow = judge();
+        const Flow flow = judge(least_life_);
         into = value_of(flow);
         return flow;
+    }
+    /// What is of an earlier life than `least` is stale.
+    Flow look(Life least) noexcept TAPPET_REALTIME {
+        const std::uint64_t seen = seen_;
+        static_cast<void>(fetch());
+        const Flow now = judge(least);
+        seen_ = seen;
+        return now;
     }
     [[gnu::noinline]] T get_further() noexcept TAPPET_REALTIME { return value_of(refresh()); }
     Flow refresh() noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
         static_cast<void>(fetch());
-        return judge();
+        return judge(least_life_);
     }
     /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
     /// writer leaves the last good value, which is then old.
@@ -331,23 +318,26 @@ private:
             if (writer_->forced != nullptr) writer_->forced->fetch_sub(1, std::memory_order_relaxed);
         }
         if (shared_ == nullptr || forced_) return false;
+        const Life before = cache_.life;
         const bool is_new = shared_->read(cache_, cached_generation_);
         if constexpr (std::is_floating_point_v<T>) {
             if (is_new && scale_.factor != 1) cache_.value = scaled(cache_.value);
             if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
-                cache_.value = static_cast<T>(
-                    scale_.between->at(*now_, is_new, static_cast<double>(cache_.value), true_at()));
+                cache_.value = static_cast<T>(scale_.between->at(
+                    *now_, is_new, static_cast<double>(cache_.value), true_at(), cache_.life != before));
         }
         return is_new;
     }
-    Flow judge() noexcept TAPPET_REALTIME {
+    Flow judge(Life least) noexcept TAPPET_REALTIME {
         if (forced_) [[unlikely]] {
             const bool is_new = seen_ != forced_generation;
             seen_ = forced_generation;
             return is_new ? Flow::fresh : Flow::old;
         }
         const std::uint64_t generation = this->generation();
-        if (generation == 0) return Flow::never_written;
+        if (life() == never_lived) return Flow::never_written;
+        if (life() < least) [[unlikely]]
+            return Flow::stale;
         if (max_age_ > Duration::zero() && *now_ - true_at() > max_age_) return Flow::stale;
         if (generation == seen_) return Flow::old;
         seen_ = generation;
@@ -355,7 +345,10 @@ private:
     }
     /// After each change of what a read has to look at.
     void settle() noexcept TAPPET_REALTIME {
-        inside_only_ = local_ != nullptr && !forced_ && max_age_ == Duration::zero();
+        least_life_ = local_ == abandoned_of_ ? wanted_from_ : first_life;
+        if (stands_ && local_ == hides_of_) least_life_ = std::max(least_life_, life_after(stops_before_));
+        inside_only_ =
+            local_ != nullptr && !forced_ && max_age_ == Duration::zero() && least_life_ == first_life;
     }
     [[nodiscard]] const T& value_of(Flow flow) const noexcept TAPPET_REALTIME {
         if (flow == Flow::never_written) return before_first_;
@@ -366,7 +359,7 @@ private:
     /// refused to the other.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
         linked_ = writer;
-        if (local_ != nullptr && local_ != output) before_turn_ += local_->generation_;
+        turned_from_ = local_ != output ? local_ : nullptr;
         if (!forced_)
             seen_ = 0;
         else
@@ -377,12 +370,14 @@ private:
     /// The turn is that one's now: what is forced ends with its stop, if the one before had not stopped by
     /// itself when the input was linked.
     void hand_force_to(const Stops* writer) noexcept TAPPET_REALTIME {
+        if (turned_from_ != nullptr) before_turn_ += turned_from_->generation_;
+        turned_from_ = nullptr;
         if (forced_ && !ends_before_turn_) hide_from(writer);
     }
     /// What its writer wrote, and writes until it begins to stop.
     void hide_from(const Stops* writer) noexcept TAPPET_REALTIME {
         writer_ = writer;
-        cached_generation_ = stops_of_writer();
+        stops_before_ = stops_of_writer();
         hides_of_ = local_;
         ends_before_turn_ = false;
     }
@@ -403,19 +398,26 @@ private:
     /// wants, who does not stop, is wanted again when the component starts.
     [[gnu::noinline, gnu::cold]] void end_force() noexcept TAPPET_REALTIME {
         if (!forced_) return;
-        stops_before_ = cached_generation_;
         stands_ = true;
         if (writer_has_stopped()) resume();
-        release();
+        let_go();
+    }
+    /// By who forced it: what its writer wants, if that has not stopped meanwhile, is wanted again.
+    void release() noexcept TAPPET_REALTIME {
+        if (!forced_) return;
+        if (writer_has_stopped()) return end_force();
+        let_go();
     }
     /// Its component starts again.
     void resume() noexcept TAPPET_REALTIME {
-        if (!std::exchange(stands_, false) || stops_of_writer() == stops_before_) return;
-        abandoned_of_ = hides_of_;
-        wanted_from_ = life_after(stops_before_);
+        if (!std::exchange(stands_, false)) return;
+        if (life_after(stops_of_writer()) != life_after(stops_before_)) {
+            abandoned_of_ = hides_of_;
+            wanted_from_ = life_after(stops_before_);
+        }
+        settle();
     }
-    void release() noexcept TAPPET_REALTIME {
-        if (!forced_) return;
+    void let_go() noexcept TAPPET_REALTIME {
         forced_ = false;
         settle();
         seen_ = cached_generation_ = 0; // what stands at the other end is read again
@@ -426,18 +428,22 @@ private:
     [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
         return local_ != nullptr ? local_->generation_ : cached_generation_;
     }
+    [[nodiscard]] Life life() const noexcept TAPPET_REALTIME {
+        return local_ != nullptr ? local_->last_.life : cache_.life;
+    }
     [[nodiscard]] std::uint64_t written() const noexcept TAPPET_REALTIME {
         return local_ != nullptr ? local_->generation_ : shared_ != nullptr ? shared_->generation() : 0;
     }
     [[nodiscard]] Time true_at() const noexcept TAPPET_REALTIME {
         const Time stamp = local_ != nullptr ? local_->last_.stamp : cache_.stamp;
-        if (stamp <= *now_ && stamp != ahead_) [[likely]]
+        const bool was_ahead = stamp == ahead_ && generation() == ahead_of_;
+        if (stamp <= *now_ + arrives_within && !was_ahead) [[likely]]
             return stamp;
-        if (std::exchange(ahead_, stamp) != stamp) seen_ahead_at_ = *now_;
+        if (!was_ahead) ahead_ = stamp, ahead_of_ = generation(), seen_ahead_at_ = *now_;
         return seen_ahead_at_;
     }
     [[nodiscard]] bool writer_has_stopped() const noexcept TAPPET_REALTIME {
-        return stops_of_writer() != cached_generation_;
+        return stops_of_writer() != stops_before_;
     }
     [[nodiscard]] std::uint64_t stops_of_writer() const noexcept TAPPET_REALTIME {
         return writer_ == nullptr ? 0 : writer_->count.load(std::memory_order_acquire);
@@ -454,7 +460,7 @@ private:
     static constexpr std::uint64_t forced_generation = ~std::uint64_t{0};
 
     alignas(place_alignment<Sample<T>>) Sample<T> cache_{};
-    std::uint64_t cached_generation_ = 0; ///< while it is forced: the stops of its writer before
+    std::uint64_t cached_generation_ = 0;
     const DataObject<Sample<T>>* shared_ = nullptr;
     [[no_unique_address]] std::conditional_t<std::is_floating_point_v<T>, Scale, NoScale> scale_{};
     bool inside_only_ = false; ///< the value is the one at the other end, of any age
@@ -469,9 +475,12 @@ private:
     const Output<T>* hides_of_ = nullptr;     ///< whose values a force hides
     const Output<T>* abandoned_of_ = nullptr; ///< whose values nobody wants that are ..
     Life wanted_from_ = first_life;           ///< .. of an earlier life than this
-    std::uint64_t stops_before_ = 0;          ///< of the writer, while stands_
+    std::uint64_t stops_before_ = 0;          ///< of writer_, when the force began
+    Life least_life_ = first_life;            ///< of what is wanted of the one who writes it now
+    const Output<T>* turned_from_ = nullptr;  ///< until the turn is taken
     std::uint64_t before_turn_ = 0;           ///< so many values others had written
     mutable Time ahead_{}, seen_ahead_at_{};  ///< the last stamp that lay ahead, and when it was seen first
+    mutable std::uint64_t ahead_of_ = 0;      ///< the number of that value
     Duration max_age_{};
     const Time* now_ = &Output<T>::detail_epoch;
     alignas(place_alignment<T>) T substitute_ = default_value<T>();

@@ -24,8 +24,11 @@ class BetweenValues {
 public:
     BetweenValues(RateTransition how, Duration period) noexcept : how_{how}, period_{period} {}
 
-    /// The value at `now`, after `written` came, which was true at `stamp`; or after none did.
-    [[nodiscard]] double at(Time now, bool is_new, double written, Time stamp) noexcept TAPPET_REALTIME {
+    /// The value at `now`, after `written` came, which was true at `stamp`; or after none did. `begins`: it
+    /// does not go on from the one before, which its writer wrote before it stopped.
+    [[nodiscard]] double at(Time now, bool is_new, double written, Time stamp, bool begins = false) noexcept
+        TAPPET_REALTIME {
+        is_first_ |= begins;
         if (is_new) take(now, written, stamp);
         const Duration since = std::clamp(now - began_, Duration{}, period_);
         return from_ + slope_ * to_seconds(since);

@@ -9,17 +9,23 @@
 
 namespace tappet {
 
-/// How often a component has left its safe values behind; and how many ports are forced, for who looks at
-/// it from outside.
-struct Stops {
-    std::atomic<std::uint32_t> count{0};
-    std::atomic<std::uint32_t>* forced = nullptr;
-};
-
 /// To the next one belongs what a stop leaves, and what is written after the next start.
 using Life = std::uint64_t;
-inline constexpr Life no_life = 0; ///< of a value that was never written, or that nobody wants any longer
-inline constexpr Life first_life = 1;
-constexpr Life life_after(std::uint64_t stops) noexcept TAPPET_REALTIME { return first_life + stops + 1; }
+inline constexpr Life never_lived = 0; ///< of a value that was never written
+inline constexpr Life unwanted = 1;    ///< of one that a force hid, and that nobody wants any longer
+inline constexpr Life first_life = 2;
+
+/// How often a component was stopped, also while it stood, and how many lives ended so: in one number, so
+/// that nobody reads one without the other. And how many ports are forced, for who looks at it from outside.
+struct Stops {
+    std::atomic<std::uint64_t> count{0};
+    std::atomic<std::uint32_t>* forced = nullptr;
+
+    static constexpr std::uint64_t of_one_that_stood = 1;
+    static constexpr std::uint64_t of_a_life = (std::uint64_t{1} << 32u) + 1;
+};
+constexpr Life life_after(std::uint64_t stops) noexcept TAPPET_REALTIME {
+    return first_life + (stops >> 32u) + 1;
+}
 
 } // namespace tappet

@@ -171,7 +171,7 @@ Engine::Parts Turns::told_by_another(std::size_t now, std::size_t next) const no
 LifeAnswer Turns::find_unwritten(std::size_t chain) const noexcept TAPPET_REALTIME {
     for (const SharedInput& each : shared)
         if (each.writers[chain].output != nullptr && (run_in(chain) & bit(each.part)) != 0 &&
-            *each.port->places(each.writers[chain].output, false).writes == 0) // also behind a force
+            !each.port->is_written(each.writers[chain].output))
             return {LifeOutcome::refused, LifeRefusal::input_never_written,
                     static_cast<std::uint8_t>(each.part), each.facet};
     return {.outcome = LifeOutcome::done};

@@ -117,12 +117,15 @@ struct ForcedTo : Rig {
         this->reader->leaves_safe = false;
         this->reader->pump_next = 1;
         this->run_until(2s);
+        force(to);
+        this->run_until(4s);
+        ASSERT_EQ(this->pump_runs(), to != 0);
+    }
+    void force(double to) {
         End end;
         ASSERT_TRUE(resolve(this->instance.machine().table, "server.pump.on", FacetKind::input, end).empty());
         facet_at(this->instance.machine().table, end)
             .port->force(this->instance.place_of(end), true, reinterpret_cast<const std::byte*>(&to));
-        this->run_until(4s);
-        ASSERT_EQ(this->pump_runs(), to != 0);
     }
 };
 using Forced = ForcedTo<Utility>;
@@ -144,6 +147,20 @@ TEST_F(ForcedSilent, obeys_what_a_stop_leaves_whatever_its_time) {
     reader->pump_age = 1s;
     EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
     run_until(8s);
+    EXPECT_FALSE(pump_runs());
+}
+
+TEST_F(ForcedSilent, hears_a_writer_that_was_stopped_twice) {
+    begin(1);
+    static_cast<void>(
+        instance.life().ask_component(find_component(instance.machine().table, "reader"), LifeChange::stop));
+    run_until(5s);
+    force(1);
+    run_until(6s);
+    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    EXPECT_TRUE(world.change_activity(1, LifeChange::start).empty());
+    reader->pump_next = 0;
+    run_until(9s);
     EXPECT_FALSE(pump_runs());
 }
 

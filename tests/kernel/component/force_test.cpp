@@ -124,7 +124,7 @@ TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
     port.begin_life(&output, life_after(writer.count));
     output.write(0.0);
     EXPECT_EQ(input.get(), 9.0);
-    ++writer.count;
+    writer.count += Stops::of_a_life;
     EXPECT_EQ(input.read(value), Flow::fresh);
     EXPECT_EQ(value, 0.0);
     EXPECT_EQ(forced, 0u);
@@ -195,7 +195,7 @@ struct AbandonedValue : Forcing {
     }
     void end_stop() {
         port.end_force(&output, false);
-        ++writer.count;
+        writer.count += Stops::of_a_life;
     }
     void stop() {
         begin_stop();
@@ -321,6 +321,26 @@ TEST_P(AbandonedValue, is_none_of_a_force_that_came_during_the_stop) {
     expect(0.5);
 }
 
+TEST_P(AbandonedValue, is_none_of_a_writer_that_is_stopped_once_more_and_runs_again) {
+    begin_stop();
+    output.write(0.5);
+    end_stop();
+    expect(0.5);
+    force_input(9.0);
+    writer.count += Stops::of_one_that_stood;
+    expect(0.5);
+    force_input(9.0);
+    writer.count += Stops::of_one_that_stood;
+    output.write(2.0);
+    expect(2.0);
+}
+
+TEST_P(AbandonedValue, stays_one_when_the_force_is_released_after_the_stop_and_before_anybody_looks) {
+    stop();
+    port.release(&input, true);
+    expect_abandoned();
+}
+
 /// Two outputs write one input by turns, as a machine's chains do.
 struct AbandonedByTurns : AbandonedValue {
     Output<double> other;
@@ -362,7 +382,7 @@ TEST_P(AbandonedByTurns, is_what_the_force_hid_that_was_handed_over) {
     EXPECT_EQ(input.get(), 9.0);
     other.write(8.0);
     port.begin_life(&other, life_after(other_writer.count));
-    ++other_writer.count;
+    other_writer.count += Stops::of_a_life;
     expect_abandoned();
 }
 
@@ -371,6 +391,10 @@ TEST_P(AbandonedByTurns, counts_what_all_of_them_wrote) {
     expect(1.0);
     const std::uint64_t before = input.writes();
     turn_to(other, other_writer);
+    turn_to(output, writer);
+    EXPECT_EQ(input.writes(), before) << "the turn was refused";
+    turn_to(other, other_writer);
+    port.hand_force_to(&input, &other_writer);
     EXPECT_GT(input.writes(), before);
 }
 

@@ -128,6 +128,16 @@ TEST_P(Ports, count_the_age_of_a_value_from_its_first_sight_at_the_latest) {
     EXPECT_EQ(link.input.read(value), Flow::stale);
 }
 
+TEST_P(Ports, take_the_time_of_a_value_for_its_own_that_another_one_claimed_before) {
+    link.port.set_policy(&link.input, {.max_age = 4ms});
+    link.output.write(9.0, at_ns(0) + 100ms);
+    EXPECT_EQ(link.input.read(value), Flow::fresh);
+    link.at(at_ns(0) + 100ms);
+    link.output.write(10.0);
+    EXPECT_EQ(link.input.read(value), Flow::fresh);
+    EXPECT_EQ(link.input.stamp(), at_ns(0) + 100ms);
+}
+
 TEST_P(Ports, give_the_substitute_for_a_stale_or_a_never_written_value) {
     link.port.set_policy(&link.input,
                          {.max_age = 4ms, .when_stale = WhenStale::substitute, .substitute = number(-5)});

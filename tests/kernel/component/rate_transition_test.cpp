@@ -55,6 +55,15 @@ TEST(RateTransitions, between_numbers_that_no_number_lies_as_far_apart_are_numbe
     }
 }
 
+TEST(RateTransitions, lead_nowhere_from_what_a_writer_wrote_before_it_stopped) {
+    for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
+        BetweenValues between{how, 4ms};
+        static_cast<void>(between.at(at_ns(0), true, 30.0, at_ns(0)));
+        for (int ms = 4; ms < 40; ++ms)
+            EXPECT_EQ(between.at(at_ns(0) + ms * 1ms, ms == 4, 0.0, at_ns(0) + 4ms, ms == 4), 0.0);
+    }
+}
+
 TEST(RateTransitions, of_two_values_of_almost_one_time_lead_no_further_than_from_one_to_the_other) {
     BetweenValues between{RateTransition::extrapolate, 4ms};
     const Time second = at_ns(0) + 4ms, third = second + 10us;
