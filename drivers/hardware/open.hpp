@@ -50,8 +50,9 @@ struct SafeServer {
     bool is_safe = false; ///< each of them was confirmed
 
     struct Attempt {
-        std::size_t next = 0, confirmed = 0, asked = 0;
-        Duration took{}; ///< the last answer
+        std::size_t next = 0, confirmed = 0;
+        Duration took{};         ///< the last answer
+        std::size_t answers = 0; ///< on this connection
         bool is_connected = false;
     } attempt{};
 };

@@ -5,6 +5,7 @@
 #include "kernel/os/sleep.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tappet {
 
@@ -36,45 +37,56 @@ struct Patience {
     }
 };
 
-/// Of one that refuses something, or loses each connection.
-bool has_asked_enough(const SafeServer& to) noexcept {
-    return to.attempt.asked >= 4 * to.writes.requests.size();
+void close(SafeServer& to) noexcept {
+    if (std::exchange(to.attempt.is_connected, false)) to.server->disconnect();
 }
 
 // Safe is who confirmed all requests one after the other on one connection: who lost it may have restarted.
-// What a connection lost is asked on the next one; then all that was asked before it. One that is refused
-// keeps none behind it back. Many take more than a share of the time: the next round goes on here, and not in
-// the middle of a request, whose answer would be lost with the connection.
+// What a connection lost is asked on the next one, unless it took nothing; then all that was asked before it.
+// One that is refused keeps none behind it back. Many take more than a share of the time: the next round goes
+// on here, and not in the middle of a request, whose answer would be lost with the connection.
 bool go_on(SafeServer& to, const Patience& patience) noexcept {
     SafeServer::Attempt& attempt = to.attempt;
     const std::size_t count = to.writes.requests.size();
-    for (bool is_first = true; attempt.confirmed < count; is_first = false) {
-        if (has_asked_enough(to)) return false;
-        if (!is_first && patience.end - os::Clock::monotonic() < attempt.took) return false;
+    bool is_refused = false;
+    for (std::size_t asked = 0; attempt.confirmed < count; ++asked) {
+        if (asked == 4 * count || (is_refused && asked >= count)) return false;
+        if (asked != 0 && patience.end - os::Clock::monotonic() < attempt.took) return false;
         patience.limit(*to.server);
         if (!attempt.is_connected) {
             if (to.server->connect().outcome != modbus::Outcome::ok) return false;
             attempt.is_connected = true;
+            attempt.answers = 0;
             patience.limit(*to.server);
         }
-        ++attempt.asked;
         const modbus::SafeWrite& each = to.writes.requests[attempt.next];
         const modbus::Answer answer =
             to.server->write(each.run.table, static_cast<std::uint16_t>(each.run.address),
                              to.writes.words.subspan(each.first, each.run.count));
-        const bool is_answered =
-            answer.outcome == modbus::Outcome::ok || answer.outcome == modbus::Outcome::exception;
-        attempt.confirmed = answer.outcome == modbus::Outcome::ok ? attempt.confirmed + 1 : 0;
-        if (is_answered) {
+        const bool is_ok = answer.outcome == modbus::Outcome::ok;
+        is_refused = is_refused || answer.outcome == modbus::Outcome::exception;
+        attempt.confirmed = is_ok ? attempt.confirmed + 1 : 0;
+        if (is_ok || answer.outcome == modbus::Outcome::exception) {
+            ++attempt.answers;
             attempt.took = answer.took;
             attempt.next = (attempt.next + 1) % count;
             continue;
         }
-        to.server->disconnect();
-        attempt.is_connected = false;
-        if (answer.outcome == modbus::Outcome::timeout) return false;
+        close(to);
+        if (answer.outcome == modbus::Outcome::timeout || attempt.answers == 0) return false;
     }
+    close(to); // it may be the only one that a gateway has for several
     return true;
+}
+
+// It may be about to start.
+void pause(Duration length, Time end, const Meanwhile& meanwhile) noexcept {
+    for (const Time until = std::min(os::Clock::monotonic() + length, end);;) {
+        meanwhile();
+        const Duration left = until - os::Clock::monotonic();
+        if (left <= Duration::zero()) return;
+        os::sleep_for(std::min<Duration>(left, 100ms));
+    }
 }
 
 } // namespace
@@ -91,11 +103,11 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
         left += each.is_safe ? 0u : 1u;
     }
     for (int round = 0; round < rounds && left != 0 && os::Clock::monotonic() < end; ++round) {
-        if (round > 1) os::sleep_for((round - 1) * 100ms); // it may be about to start
+        if (round > 1) pause((round - 1) * 100ms, end, meanwhile);
         const bool is_quick = round == 0;
         const Time round_end = is_quick ? end - within / 2 : end;
         const auto is_tried = [is_quick](const SafeServer& each) {
-            return !each.is_safe && !has_asked_enough(each) && !(is_quick && each.server->is_serial());
+            return !each.is_safe && !(is_quick && each.server->is_serial());
         };
         std::int64_t still_tried = std::ranges::count_if(servers, is_tried);
         for (SafeServer& each : servers) {
@@ -108,8 +120,7 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
             left -= each.is_safe ? 1u : 0u;
         }
     }
-    for (SafeServer& each : servers)
-        if (each.attempt.is_connected) each.server->disconnect();
+    for (SafeServer& each : servers) close(each);
     return left;
 }
 

@@ -196,5 +196,23 @@ TEST(Restarted, server_is_told_all_again) {
     EXPECT_EQ(server.last_request()[9], 3) << "its first one, once more";
 }
 
+/// It refuses everything for 150 ms.
+TEST(BusyServer, is_asked_again_when_it_is_ready) {
+    RawServer server{RawServer::Line::tcp};
+    server.manner = Manner::exception;
+    modbus::LibmodbusTransport transport;
+    EXPECT_TRUE(transport.open({.line = modbus::Tcp{"127.0.0.1", server.port()}, .answer_within = 2s}));
+    std::array to{SafeServer{&transport, {requests, safe_word}}};
+    struct Ready {
+        RawServer* server;
+        Time at = os::Clock::monotonic() + 150ms;
+    } ready{&server};
+    const Meanwhile look{&ready, [](void* of) noexcept {
+                             auto& all = *static_cast<Ready*>(of);
+                             if (os::Clock::monotonic() >= all.at) all.server->manner = Manner::right;
+                         }};
+    EXPECT_EQ(write_safe_registers(to, 30s, look), 0u);
+}
+
 } // namespace
 } // namespace tappet
