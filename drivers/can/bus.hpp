@@ -360,7 +360,7 @@ private:
             if (is_on_demand(f)) found.writes += input.writes();
             found.fresh |= flow == Flow::fresh;
             if (is_now) return;
-            // What has no time belongs to nothing.
+            // Two values without a time were not written in one cycle, as far as anybody knows.
             const Time at = input.claimed_stamp();
             found.agreed &= found.at == never || (at == found.at && at != before_all);
             found.at = at;

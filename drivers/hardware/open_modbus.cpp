@@ -41,10 +41,11 @@ void close(SafeServer& to) noexcept {
     if (std::exchange(to.attempt.is_connected, false)) to.server->disconnect();
 }
 
-// Safe is who confirmed all requests one after the other on one connection: who lost it may have restarted.
-// What a connection lost is asked on the next one, unless it took nothing; then all that was asked before it.
-// One that is refused keeps none behind it back. Many take more than a share of the time: the next round goes
-// on here, and not in the middle of a request, whose answer would be lost with the connection.
+// A server is safe when it confirmed all requests on one connection: a server that lost its connection may
+// have restarted. The request that was lost is sent first on the next connection, and the earlier ones
+// follow. A connection without a single answer ends the round. A refused request holds up no other one. Many
+// requests take longer than a share of the time: the next round goes on where this one stopped. It stops
+// between two requests, because an answer that is still to come would be lost with the connection.
 bool go_on(SafeServer& to, const Patience& patience) noexcept {
     SafeServer::Attempt& attempt = to.attempt;
     const std::size_t count = to.writes.requests.size();

@@ -119,7 +119,7 @@ public:
         if (encoded.refused) ++count_.saturated;
         if (encoded.refused || !map_->rows[r].write) return false;
         if (encoded.saturated) ++count_.saturated;
-        // What nobody wants is replaced, though the server have it.
+        // A value that nobody wants any longer is replaced even if the server has it already.
         if (values_[v].stamp == Time::min() || words_[v] != encoded.words || at_server_[v] == AtServer::was ||
             now == before_all) {
             changed_at_[r] = std::min(changed_at_[r], now);

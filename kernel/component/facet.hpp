@@ -62,7 +62,7 @@ struct PortOperations {
     void (*close)(void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME;
     void (*set_filter)(void* output, PortFilter* filter);
     void (*set_policy)(void* input, const InputPolicy&);
-    /// What is abandoned is as good as its age: no component is kept from its start by it.
+    /// An abandoned value counts by its age alone here: it keeps no component from its start.
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
     /// Also behind a force.
     bool (*is_written)(const void* output) noexcept TAPPET_REALTIME;
@@ -73,11 +73,11 @@ struct PortOperations {
     /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
     bool (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
-    /// Of a port whose component stops: what the force hid is wanted by nobody.
+    /// Ends the force of a port, because its component stops. Nobody wants what the force hid.
     void (*end_force)(void* port, bool is_input) noexcept TAPPET_REALTIME;
-    /// Of an output whose component begins to stop.
+    /// The component of this output begins to stop: from here on it writes in the life `life`.
     void (*begin_life)(void* output, Life life) noexcept TAPPET_REALTIME;
-    /// Of an input whose component starts.
+    /// The component of this input starts.
     void (*resume)(void* input) noexcept TAPPET_REALTIME;
     /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
     /// `looks`: what is fresh there stays fresh.

@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         697},
     {"kernel/services",       5887},
     {"kernel/system",         2065},
-    {"drivers",               18431},
+    {"drivers",               18432},
     {"board",                 4538},
     {"apps/carpet_loom",      6325},
     {"apps/bearing_press",    780},
