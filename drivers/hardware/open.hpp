@@ -12,6 +12,7 @@
 #include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
 #include "kernel/machine/table/components.hpp"
+#include "kernel/os/thread.hpp"
 
 #include <array>
 #include <expected>
@@ -47,7 +48,8 @@ void rehearse(std::span<can::SafeSender> buses) noexcept;
 struct SafeServer {
     modbus::LibmodbusTransport* server = nullptr;
     modbus::SafeWrites writes{};
-    bool is_safe = false; ///< each of them was confirmed
+    std::string_view at{}; ///< servers at the same address share a line: a serial port, a gateway
+    bool is_safe = false;  ///< each of them was confirmed
 
     struct Attempt {
         std::size_t next = 0, confirmed = 0;
@@ -56,12 +58,20 @@ struct SafeServer {
         bool is_connected = false;
     } attempt{};
 };
-/// One attempt at each server in turn, until all are safe, for so long at most. Servers that are not. In each
-/// round the servers that are still to be tried have equal shares of the time that is left, wherever they
-/// stand. The first round, over Ethernet only, is a quick one: it takes half of the time at most, and one
-/// that does not answer holds up the others by twice `quick_answer_within`. `meanwhile` is called before each
-/// step.
-std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
+/// Whoever asks the servers of one address. It stays where it is while they are asked.
+struct SafeLine {
+    std::span<SafeServer> servers{}; ///< of all lines
+    std::string_view at{};
+    Time end{};
+    os::ThreadPlan plan{};
+    os::Thread thread{};
+};
+/// Asks each server until it is safe, for so long at most. Servers that are not. All lines at the same time:
+/// a dead server takes nobody's time but that of its own line. There, servers that are still to be tried have
+/// equal shares of the time that is left in each round, wherever they stand. The first round of several over
+/// Ethernet is a quick one: it takes half of the time at most, and one that does not answer holds up the
+/// others by twice `quick_answer_within`. `lines`: as many as servers. `meanwhile` is called every 50 ms.
+std::size_t write_safe_registers(std::span<SafeServer> servers, std::span<SafeLine> lines, Duration within,
                                  const Meanwhile& meanwhile) noexcept;
 inline constexpr Duration quick_answer_within = 50ms;
 

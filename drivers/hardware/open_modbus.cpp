@@ -30,9 +30,7 @@ namespace {
 struct Patience {
     Duration each;
     Time end;
-    const Meanwhile& meanwhile;
     void limit(modbus::LibmodbusTransport& server) const noexcept {
-        meanwhile();
         server.wait_at_most(std::min(each, end - os::Clock::monotonic()));
     }
 };
@@ -80,49 +78,64 @@ bool go_on(SafeServer& to, const Patience& patience) noexcept {
     return true;
 }
 
-// It may be about to start.
-void pause(Duration length, Time end, const Meanwhile& meanwhile) noexcept {
-    for (const Time until = std::min(os::Clock::monotonic() + length, end);;) {
-        meanwhile();
-        const Duration left = until - os::Clock::monotonic();
-        if (left <= Duration::zero()) return;
-        os::sleep_for(std::min<Duration>(left, 100ms));
+// A server may still be answering the machine's last request, or hold its connection: then it is asked again.
+void ask(const SafeLine& line) noexcept {
+    constexpr int rounds = 6;
+    const auto is_here = [&line](const SafeServer& each) { return each.at == line.at; };
+    const auto is_asked = [&](const SafeServer& each) {
+        return is_here(each) && !each.is_safe && os::Clock::monotonic() < line.end;
+    };
+    const bool is_shared = std::ranges::count_if(line.servers, is_here) > 1;
+    for (int round = 0; round < rounds; ++round) {
+        if (std::ranges::none_of(line.servers, is_asked)) break;
+        if (round > 1)
+            os::sleep_for(std::min<Duration>((round - 1) * 100ms, line.end - os::Clock::monotonic()));
+        const bool is_quick = round == 0 && is_shared;
+        const Time begin = os::Clock::monotonic();
+        const Time round_end = is_quick ? line.end - (line.end - begin) / 2 : line.end;
+        const auto is_tried = [&](const SafeServer& each) {
+            return is_asked(each) && !(is_quick && each.server->is_serial());
+        };
+        std::int64_t still_tried = std::ranges::count_if(line.servers, is_tried);
+        for (SafeServer& each : line.servers) {
+            if (!is_tried(each)) continue;
+            const Time now = os::Clock::monotonic();
+            // None takes the time of those after it.
+            const Time until = now + (round_end - now) / still_tried--;
+            each.is_safe = go_on(each, {is_quick ? quick_answer_within : line.end - now, until});
+        }
     }
+    for (SafeServer& each : line.servers)
+        if (is_here(each)) close(each);
 }
 
 } // namespace
 
-// A server may still be answering the machine's last request, or hold its connection: then it is asked again.
-std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
+// A thread for each line, because libmodbus waits for each answer: a dead server would take the time of all
+// behind it.
+std::size_t write_safe_registers(std::span<SafeServer> servers, std::span<SafeLine> lines, Duration within,
                                  const Meanwhile& meanwhile) noexcept {
-    constexpr int rounds = 6;
     const Time end = os::Clock::monotonic() + within;
-    std::size_t left = 0;
+    std::size_t count = 0;
     for (SafeServer& each : servers) {
         each.attempt = {};
         each.is_safe = each.writes.requests.empty();
-        left += each.is_safe ? 0u : 1u;
+        const auto leads_to_it = [&each](const SafeLine& line) { return line.at == each.at; };
+        if (each.is_safe || std::ranges::any_of(lines.first(count), leads_to_it)) continue;
+        SafeLine& line = lines[count++];
+        line.servers = servers;
+        line.at = each.at;
+        line.end = end;
+        line.plan = {.name = "safe-registers",
+                     .fifo_priority = os::ThreadPlan::as_its_starter,
+                     .body = [](void* of) noexcept { ask(*static_cast<SafeLine*>(of)); },
+                     .context = &line};
+        // Without one it is asked by the caller: late, and without `meanwhile`, is better than never.
+        if (!line.thread.start(line.plan)) ask(line);
     }
-    for (int round = 0; round < rounds && left != 0 && os::Clock::monotonic() < end; ++round) {
-        if (round > 1) pause((round - 1) * 100ms, end, meanwhile);
-        const bool is_quick = round == 0;
-        const Time round_end = is_quick ? end - within / 2 : end;
-        const auto is_tried = [is_quick](const SafeServer& each) {
-            return !each.is_safe && !(is_quick && each.server->is_serial());
-        };
-        std::int64_t still_tried = std::ranges::count_if(servers, is_tried);
-        for (SafeServer& each : servers) {
-            if (!is_tried(each)) continue;
-            const Time now = os::Clock::monotonic();
-            if (now >= end) break;
-            // None takes the time of those after it.
-            const Time until = now + (round_end - now) / still_tried--;
-            each.is_safe = go_on(each, {is_quick ? quick_answer_within : within, until, meanwhile});
-            left -= each.is_safe ? 1u : 0u;
-        }
-    }
-    for (SafeServer& each : servers) close(each);
-    return left;
+    for (SafeLine& line : lines.first(count))
+        while (!line.thread.join_within(50)) meanwhile();
+    return static_cast<std::size_t>(std::ranges::count(servers, false, &SafeServer::is_safe));
 }
 
 } // namespace tappet

@@ -59,10 +59,12 @@ std::expected<void, Sentence> Thread::start(const ThreadPlan& plan) {
     int error =
         plan.stack.empty() ? 0 : pthread_attr_setstack(&attributes, plan.stack.data(), plan.stack.size());
     if (error == 0) {
-        pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+        const bool is_inherited = plan.fifo_priority == ThreadPlan::as_its_starter;
+        pthread_attr_setinheritsched(&attributes,
+                                     is_inherited ? PTHREAD_INHERIT_SCHED : PTHREAD_EXPLICIT_SCHED);
         pthread_attr_setschedpolicy(&attributes, plan.fifo_priority > 0 ? SCHED_FIFO : SCHED_OTHER);
         sched_param parameter{};
-        parameter.sched_priority = plan.fifo_priority;
+        parameter.sched_priority = is_inherited ? 0 : plan.fifo_priority;
         pthread_attr_setschedparam(&attributes, &parameter);
         if (plan.processor >= 0) {
             cpu_set_t set;

@@ -14,11 +14,12 @@ namespace tappet::os {
 
 struct ThreadPlan {
     std::string_view name;        ///< at most 15 characters are shown by the kernel
-    int fifo_priority = 0;        ///< 1..99 SCHED_FIFO; 0 is SCHED_OTHER
+    int fifo_priority = 0;        ///< 1..99 SCHED_FIFO; 0 is SCHED_OTHER; or that of its starter
     int processor = -1;           ///< -1: any
     std::span<std::byte> stack{}; ///< 16 kB at least, aligned to 64
     void (*body)(void*) noexcept = nullptr;
     void* context = nullptr;
+    static constexpr int as_its_starter = -1;
 };
 
 /// Not real-time: threads are started before arming and joined after the stop.

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fcntl.h>
+#include <functional>
 #include <mutex>
 #include <netinet/in.h>
 #include <poll.h>
@@ -101,6 +102,15 @@ public:
         const std::lock_guard lock{mutex_};
         return last_;
     }
+    [[nodiscard]] int requests() const {
+        const std::lock_guard lock{mutex_};
+        return requests_;
+    }
+    /// Called with their number and the request, before it is answered.
+    void on_request(std::function<void(int, const Bytes&)> act) {
+        const std::lock_guard lock{mutex_};
+        on_request_ = std::move(act);
+    }
     /// What is late goes out; it has when this returns.
     void let_go() {
         const unsigned before = answered_;
@@ -154,6 +164,8 @@ private:
             {
                 const std::lock_guard lock{mutex_};
                 last_ = bytes;
+                ++requests_;
+                if (on_request_) on_request_(requests_, bytes);
             }
             reply(bytes);
         }
@@ -206,6 +218,8 @@ private:
     std::string terminal_;
     mutable std::mutex mutex_;
     Bytes last_;
+    int requests_ = 0;
+    std::function<void(int, const Bytes&)> on_request_;
     std::atomic<bool> stop_{false}, let_go_{false};
     std::atomic<unsigned> answered_{0};
     std::thread thread_;
