@@ -116,12 +116,15 @@ void ask(const SafeLine& line) noexcept {
 std::size_t write_safe_registers(std::span<SafeServer> servers, std::span<SafeLine> lines, Duration within,
                                  const Meanwhile& meanwhile) noexcept {
     const Time end = os::Clock::monotonic() + within;
-    std::size_t count = 0;
     for (SafeServer& each : servers) {
         each.attempt = {};
         each.is_safe = each.writes.requests.empty();
+    }
+    std::size_t count = 0;
+    for (const SafeServer& each : servers) {
         const auto leads_to_it = [&each](const SafeLine& line) { return line.at == each.at; };
-        if (each.is_safe || std::ranges::any_of(lines.first(count), leads_to_it)) continue;
+        // Not whether it is safe: that is its line's business by now.
+        if (each.writes.requests.empty() || std::ranges::any_of(lines.first(count), leads_to_it)) continue;
         SafeLine& line = lines[count++];
         line.servers = servers;
         line.at = each.at;
@@ -130,11 +133,13 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, std::span<SafeLi
                      .fifo_priority = os::ThreadPlan::as_its_starter,
                      .body = [](void* of) noexcept { ask(*static_cast<SafeLine*>(of)); },
                      .context = &line};
-        // Without one it is asked by the caller: late, and without `meanwhile`, is better than never.
-        if (!line.thread.start(line.plan)) ask(line);
+        static_cast<void>(line.thread.start(line.plan).has_value());
     }
-    for (SafeLine& line : lines.first(count))
+    for (SafeLine& line : lines.first(count)) {
+        // No memory for one: late, and without `meanwhile`, is better than never.
+        if (!line.thread.running()) ask(line);
         while (!line.thread.join_within(50)) meanwhile();
+    }
     return static_cast<std::size_t>(std::ranges::count(servers, false, &SafeServer::is_safe));
 }
 

@@ -311,7 +311,8 @@ private:
         return judge(least_life_);
     }
     /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
-    /// writer leaves the last good value, which is then old.
+    /// writer leaves the last good value, which is then old; one after a force leaves the forced value,
+    /// stale.
     [[gnu::always_inline]] bool fetch() noexcept TAPPET_REALTIME {
         if (forced_ && writer_has_stopped()) {
             end_force();
@@ -421,7 +422,7 @@ private:
         forced_ = false;
         settle();
         seen_ = cached_generation_ = 0; // what stands at the other end is read again
-        cache_ = {};
+        cache_.life = written() != 0 ? unwanted : never_lived;
     }
 
     /// Of the value that was read last, if it is not forced; 0: there is none.
@@ -436,8 +437,9 @@ private:
     }
     [[nodiscard]] Time true_at() const noexcept TAPPET_REALTIME {
         const Time stamp = local_ != nullptr ? local_->last_.stamp : cache_.stamp;
-        const bool was_ahead = stamp == ahead_ && generation() == ahead_of_;
-        if (stamp <= *now_ + arrives_within && !was_ahead) [[likely]]
+        const bool is_ahead = stamp > *now_ + arrives_within;
+        const bool was_ahead = stamp == ahead_ && (is_ahead || generation() == ahead_of_);
+        if (!is_ahead && !was_ahead) [[likely]]
             return stamp;
         if (!was_ahead) ahead_ = stamp, ahead_of_ = generation(), seen_ahead_at_ = *now_;
         return seen_ahead_at_;

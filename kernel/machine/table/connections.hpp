@@ -59,7 +59,8 @@ struct StaleAfter {
 /// A value older than this, which is above 0, is stale; hold, substitute(x) or stop_machine say what the
 /// reader then gets: hold, if nothing says so. stop_machine is kept whatever the reader's activity waits for.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
-/// Of a stale value: the reader keeps it, and sees that it is stale.
+/// Of a stale value: the reader keeps it, and sees that it is stale. From another machine it is the last that
+/// came over the wire, also when that was forced there.
 inline constexpr WhenStale hold = WhenStale::hold;
 /// Of a stale value: the machine stops.
 inline constexpr WhenStale stop_machine = WhenStale::stop;

@@ -296,15 +296,18 @@ void CommandInterpreter::stop(const Cycle&) noexcept TAPPET_REALTIME {
 // ---- for peers
 
 // One that waits, or has not taken its answer yet, keeps the place of peers.
-bool CommandInterpreter::execute(const Line& line, Line&) noexcept {
+bool CommandInterpreter::execute(const Line& line, Line& value) noexcept {
     LineRefusal refusal{};
     const bool is_taken = waits_ || asker_ == Asker::peer;
     const Sentence fault = is_taken ? Sentence{"another component's line is at work; send yours after it"}
                                     : begin(line.view(), Role::engineer, Asker::peer, refusal);
     if (is_taken) refused.write(refused.last() + 1);
-    if (fault.empty()) of_peer_ = line;
     tell(fault);
-    return fault.empty();
+    if (!fault.empty()) return false;
+    of_peer_ = line;
+    static_cast<void>(number_of_peer_.assign(Sentence{"line ", ++lines_of_peers_}.view()));
+    value = number_of_peer_; // while it is at work
+    return true;
 }
 
 void CommandInterpreter::tell(const Sentence& fault) noexcept {
@@ -314,11 +317,14 @@ void CommandInterpreter::tell(const Sentence& fault) noexcept {
     said.write(text);
 }
 
-CommandProgress CommandInterpreter::follow(const Line& line, Line& value) noexcept TAPPET_REALTIME {
-    if (line.view() != of_peer_.view())
-        return CommandProgress::failed; // it ended before somebody else's began
-    if (waits_) return CommandProgress::executing;
-    if (asker_ != Asker::peer) return CommandProgress::failed;
+CommandProgress CommandInterpreter::follow(const Line&, Line& value) noexcept TAPPET_REALTIME {
+    // Not by its text: somebody else may send the same.
+    const bool is_its_own = value.view() == number_of_peer_.view();
+    if (is_its_own && waits_) return CommandProgress::executing;
+    if (!is_its_own || asker_ != Asker::peer) {
+        value = {};
+        return CommandProgress::failed; // it ended before somebody else's began, or was broken off
+    }
     if (is_at_work()) return CommandProgress::executing;
     asker_ = Asker::none;
     value = value_;

@@ -95,6 +95,8 @@ private:
     Role kept_for_ = Role::observer; ///< no line of a lower role is next,
     Time kept_until_{};              ///< until then
     Line of_peer_{};                 ///< that a peer sent last
+    Line number_of_peer_{};          ///< by which its sender is known
+    std::uint64_t lines_of_peers_ = 0;
     bool waits_ = false;             ///< it does: the line at work gives way to it
     Time since_waiting_{};
     Time since_{};

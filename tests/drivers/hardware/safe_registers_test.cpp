@@ -58,6 +58,16 @@ TEST_F(SafeRegisters, reach_every_server_that_answers) {
     }
 }
 
+TEST_F(SafeRegisters, reach_every_server_of_several_lines) {
+    open(30s);
+    for (std::size_t i = 0; i <= last; ++i) to[i].at = i % 2 == 0 ? "one gateway" : "another one";
+    EXPECT_EQ(write_safe(to, 1h, {}), 0u);
+    for (const RawServer& server : servers) {
+        EXPECT_EQ(server.requests(), 2);
+        EXPECT_EQ(server.last_request()[9], 9) << "its second";
+    }
+}
+
 TEST_F(SafeRegisters, reach_a_live_server_before_a_dead_one_is_asked_again) {
     open(300ms);
     all_but_the_last_are_silent();

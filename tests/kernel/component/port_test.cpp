@@ -128,6 +128,15 @@ TEST_P(Ports, count_the_age_of_a_value_from_its_first_sight_at_the_latest) {
     EXPECT_EQ(link.input.read(value), Flow::stale);
 }
 
+TEST_P(Ports, believe_a_time_ahead_no_longer_when_it_is_written_again) {
+    link.port.set_policy(&link.input, {.max_age = 4ms});
+    for (int ms = 0; ms <= 5; ++ms) {
+        link.at(at_ns(0) + ms * 1ms);
+        link.output.write(9.0, at_ns(0) + 900ms);
+        EXPECT_EQ(link.input.read(value), ms <= 4 ? Flow::fresh : Flow::stale) << ms;
+    }
+}
+
 TEST_P(Ports, take_the_time_of_a_value_for_its_own_that_another_one_claimed_before) {
     link.port.set_policy(&link.input, {.max_age = 4ms});
     link.output.write(9.0, at_ns(0) + 100ms);

@@ -337,6 +337,38 @@ TEST_F(Lines, of_a_peer_that_wait_are_broken_off) {
     EXPECT_GT(waited, 0);
 }
 
+TEST_F(Lines, of_peers_that_say_the_same_are_told_apart) {
+    if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
+    Talker observer{path(), 65534};
+    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
+    look();
+    Panel &a = panel(), &b = panel("panel_b");
+    int broken_off = 0;
+    for (int n = 0; n < 40; ++n) {
+        const std::int64_t zeroed = gauge().zeroed;
+        a.wanted = a.line.assign("do gauge.zero()");
+        bool is_broken_off = false;
+        for (int k = 0; k < 60; ++k) {
+            run(5ms);
+            while (!observer.receive().empty()) look();
+            if (!is_broken_off && a.execute.state() == CommandState::executing && gauge().zeroed == zeroed) {
+                interpreter().break_off();
+                is_broken_off = true;
+                b.wanted = b.line.assign("do gauge.zero()");
+            }
+        }
+        broken_off += is_broken_off ? 1 : 0;
+        if (is_broken_off) {
+            EXPECT_EQ(a.execute.state(), CommandState::failed) << n;
+            EXPECT_EQ(b.execute.state() == CommandState::done, gauge().zeroed == zeroed + 1) << n;
+        }
+        a.execute.reset();
+        b.execute.reset();
+        run(2500ms);
+    }
+    EXPECT_GT(broken_off, 0);
+}
+
 TEST_F(Press, a_machine_without_an_interpreter_executes_no_lines) {
     Talker talker{path()};
     EXPECT_THAT(ask(talker, "1 execute 1+1"),
