@@ -97,7 +97,7 @@ private:
     Line of_peer_{};                 ///< that a peer sent last
     Line number_of_peer_{};          ///< by which its sender is known
     std::uint64_t lines_of_peers_ = 0;
-    bool waits_ = false;             ///< it does: the line at work gives way to it
+    bool waits_ = false; ///< it does: the line at work gives way to it
     Time since_waiting_{};
     Time since_{};
     Time posted_{};
