@@ -71,8 +71,8 @@ public:
     virtual std::size_t write_safe_lines() noexcept = 0;
     /// Sends the safe frames of all buses until each is confirmed, for so long at most. Frames that are not.
     virtual std::size_t send_safe_frames(Duration within) noexcept = 0;
-    /// Each server gets its safe values over a connection of its own, all lines at the same time, for so long
-    /// at most. Servers that did not confirm them.
+    /// Each server gets its safe values over a connection of its own, all at the same time, for so long at
+    /// most. Servers that did not confirm them.
     virtual std::size_t write_safe_registers(Duration within, const Meanwhile& meanwhile) noexcept = 0;
 };
 

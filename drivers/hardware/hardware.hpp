@@ -87,11 +87,11 @@ public:
     }
     std::size_t write_safe_registers(Duration within, const Meanwhile& meanwhile) noexcept override {
         if constexpr (count.modbus == 0) return 0;
-        std::array<SafeServer, count.modbus> servers;
-        for (std::size_t i = 0; i < n_.modbus; ++i)
-            servers[i] = {&modbus_[i], *servers_[i].safe, servers_[i].at};
-        return tappet::write_safe_registers(std::span{servers}.first(n_.modbus), safe_lines_, within,
-                                            meanwhile);
+        for (std::size_t i = 0; i < n_.modbus; ++i) {
+            safe_modbus_[i].server = &modbus_[i];
+            safe_modbus_[i].writes = *servers_[i].safe;
+        }
+        return tappet::write_safe_registers(std::span{safe_modbus_}.first(n_.modbus), within, meanwhile);
     }
 
 private:
@@ -134,7 +134,7 @@ private:
     std::array<gpio::Lines, count.gpio> gpio_{};
     std::array<PlacedLines, count.gpio> lines_of_{};
     std::array<modbus::LibmodbusTransport, count.modbus> modbus_{};
-    std::array<SafeLine, count.modbus> safe_lines_{}; // used in the guardian's process only
+    std::array<SafeServer, count.modbus> safe_modbus_{}; // used in the guardian's process only
     std::array<udp::Socket, count.udp> udp_{};
     struct Bus {
         std::string_view at;

@@ -44,35 +44,19 @@ std::expected<void, Sentence> open_device(udp::Socket& socket, const BoundTo& to
 std::size_t send_safe_frames(std::span<can::SafeSender> buses, Duration within) noexcept;
 void rehearse(std::span<can::SafeSender> buses) noexcept;
 
-/// A Modbus server and what makes it safe.
+/// A Modbus server and what makes it safe. It stays where it is while it is asked.
 struct SafeServer {
     modbus::LibmodbusTransport* server = nullptr;
     modbus::SafeWrites writes{};
-    std::string_view at{}; ///< servers at the same address share a line: a serial port, a gateway
-    bool is_safe = false;  ///< each of them was confirmed
-
-    struct Attempt {
-        std::size_t next = 0, confirmed = 0;
-        Duration took{};         ///< the last answer
-        std::size_t answers = 0; ///< on this connection
-        bool is_connected = false;
-    } attempt{};
-};
-/// Whoever asks the servers of one address. It stays where it is while they are asked.
-struct SafeLine {
-    std::span<SafeServer> servers{}; ///< of all lines
-    std::string_view at{};
+    bool is_safe = false; ///< each of them was confirmed
     Time end{};
     os::ThreadPlan plan{};
     os::Thread thread{};
 };
-/// Asks each server until it is safe, for so long at most. Servers that are not. All lines at the same time:
-/// a dead server takes nobody's time but that of its own line. There, servers that are still to be tried have
-/// equal shares of the time that is left in each round, wherever they stand. The first round of several over
-/// Ethernet is a quick one: it takes half of the time at most, and one that does not answer holds up the
-/// others by twice `quick_answer_within`. `lines`: as many as servers. `meanwhile` is called every 50 ms.
-std::size_t write_safe_registers(std::span<SafeServer> servers, std::span<SafeLine> lines, Duration within,
+/// Asks all servers at the same time, each until it is safe or so long has passed. Servers that are not. A
+/// dead one takes nobody's time, but where the box refuses a thread: such servers share the time between
+/// them. `meanwhile` is called at least every 50 ms, without a thread between two requests.
+std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
                                  const Meanwhile& meanwhile) noexcept;
-inline constexpr Duration quick_answer_within = 50ms;
 
 } // namespace tappet

@@ -422,7 +422,7 @@ private:
         forced_ = false;
         settle();
         seen_ = cached_generation_ = 0; // what stands at the other end is read again
-        cache_.life = written() != 0 ? unwanted : never_lived;
+        cache_ = {};
     }
 
     /// Of the value that was read last, if it is not forced; 0: there is none.

@@ -327,8 +327,9 @@ CommandProgress CommandInterpreter::follow(const Line&, Line& value) noexcept TA
     }
     if (is_at_work()) return CommandProgress::executing;
     asker_ = Asker::none;
-    value = value_;
-    return end_.state == CommandState::done ? CommandProgress::done : CommandProgress::failed;
+    const bool is_done = end_.state == CommandState::done;
+    value = is_done ? value_ : Line{};
+    return is_done ? CommandProgress::done : CommandProgress::failed;
 }
 
 } // namespace tappet

@@ -338,6 +338,12 @@ constexpr Fault board_faults[] = {
                              wired("panel", "io", line("red", 4), line("green", 5)));
      },
      R"(loom: component "climate": binding to board "old box", wired("hall"): the board has no device "192.168.7.2"; write a server's address as 192.168.7.2:502, or add a serial port to the board's devices)"},
+    {"address_in_another_spelling",
+     [](Table& m) {
+         m.binding = binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2:0502"),
+                             wired("panel", "io", line("red", 4), line("green", 5)));
+     },
+     R"(loom: component "climate": binding to board "old box", wired("hall"): the board has no device "192.168.7.2:0502"; write a server's address as 192.168.7.2:502, or add a serial port to the board's devices)"},
     {"datagram_address",
      [](Table& m) {
          m.add(component<Camera>("camera", device("camera-link")));

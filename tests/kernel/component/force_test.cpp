@@ -4,10 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 namespace {
 
@@ -53,25 +51,6 @@ TEST_P(Forcing, an_output_publishes_the_forced_value_at_once_and_whatever_its_co
     EXPECT_EQ(input.read(value), Flow::fresh) << "each write stays a sign of life";
     EXPECT_EQ(value, 9.0);
     EXPECT_EQ(output.last(), 2.0) << "what the component knows of its own is what it wrote";
-}
-
-TEST_P(Forcing, a_release_is_no_value_that_was_never_written) {
-    output.write(1.0);
-    force_input(9.0);
-    port.release(&input, true);
-    if (!GetParam()) {
-        EXPECT_EQ(input.read(value), Flow::fresh);
-        return;
-    }
-    // The writer overtakes each attempt of this look: it has begun the slot again.
-    auto* const words = reinterpret_cast<std::uint64_t*>(memory.data());
-    std::uint64_t& number = *std::find(words, words + memory.size() / sizeof *words, std::uint64_t{1});
-    number = 0;
-    EXPECT_EQ(input.read(value), Flow::stale);
-    EXPECT_EQ(value, 9.0) << "as it was";
-    number = 1;
-    EXPECT_EQ(input.read(value), Flow::fresh);
-    EXPECT_EQ(value, 1.0);
 }
 
 TEST_P(Forcing, releasing_an_output_publishes_what_its_component_wrote_last) {
