@@ -38,11 +38,13 @@ void pause(Duration length, Time end, const Meanwhile& meanwhile) noexcept {
 // A server is safe when it confirmed all requests on one connection: a server that lost its connection may
 // have restarted. The request that was lost is sent first on the next connection, and the earlier ones
 // follow. A refused request holds up no other one. Who does not answer may be about to start, may still be
-// answering the machine's last request, or hold its connection: it is asked until the time is over.
+// answering the machine's last request, or hold its connection: it is asked until the time is over. The
+// first request of a connection has half of that: it may be lost.
 void make_safe(SafeServer& to, Time end, const Meanwhile& meanwhile) noexcept {
     constexpr Duration longest_rest = 400ms;
     const std::size_t count = to.writes.requests.size();
     std::size_t next = 0, confirmed = 0, asked = 0;
+    std::size_t answers = 0; // on this connection
     bool is_connected = false, is_refused = false;
     Duration rest{};
     const auto take_a_rest = [&] {
@@ -51,7 +53,7 @@ void make_safe(SafeServer& to, Time end, const Meanwhile& meanwhile) noexcept {
     };
     for (Time now; confirmed < count && (now = os::Clock::monotonic()) < end;) {
         meanwhile();
-        to.server->wait_at_most(end - now);
+        to.server->wait_at_most(answers == 0 ? (end - now) / 2 : end - now);
         if (!is_connected) {
             is_connected = to.server->connect().outcome == modbus::Outcome::ok;
             if (!is_connected) take_a_rest();
@@ -66,9 +68,10 @@ void make_safe(SafeServer& to, Time end, const Meanwhile& meanwhile) noexcept {
         if (!is_ok && answer.outcome != modbus::Outcome::exception) {
             to.server->disconnect();
             is_connected = false;
-            take_a_rest();
+            if (std::exchange(answers, 0) == 0) take_a_rest();
             continue;
         }
+        ++answers;
         next = (next + 1) % count;
         is_refused = is_refused || !is_ok;
         if (++asked % count == 0 && std::exchange(is_refused, false)) take_a_rest();
@@ -84,8 +87,9 @@ void make_safe(SafeServer& to, Time end, const Meanwhile& meanwhile) noexcept {
 std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
                                  const Meanwhile& meanwhile) noexcept {
     const Time end = os::Clock::monotonic() + within;
-    std::int64_t without_thread = 0;
+    const auto waits = [](const SafeServer& each) { return !each.is_safe && !each.thread.running(); };
     for (SafeServer& each : servers) {
+        each.is_safe = false;
         each.end = end;
         each.plan = {.name = "safe-registers",
                      .fifo_priority = os::ThreadPlan::as_its_starter,
@@ -95,13 +99,16 @@ std::size_t write_safe_registers(std::span<SafeServer> servers, Duration within,
                              make_safe(server, server.end, {});
                          },
                      .context = &each};
-        without_thread += each.thread.start(each.plan) ? 0 : 1;
+        static_cast<void>(each.thread.start(each.plan).has_value());
     }
-    // The box refuses threads: these share the time that there is.
-    for (SafeServer& each : servers) {
-        if (each.thread.running()) continue;
-        const Time now = os::Clock::monotonic();
-        make_safe(each, now + (end - now) / without_thread--, meanwhile);
+    // The box refuses threads: these share the time that there is, until it is over.
+    while (os::Clock::monotonic() < end && std::ranges::any_of(servers, waits)) {
+        std::int64_t left = std::ranges::count_if(servers, waits);
+        for (SafeServer& each : servers) {
+            if (!waits(each)) continue;
+            const Time now = os::Clock::monotonic();
+            make_safe(each, now + (end - now) / left--, meanwhile);
+        }
     }
     for (SafeServer& each : servers)
         while (!each.thread.join_within(50)) meanwhile();

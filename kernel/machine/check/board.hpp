@@ -189,10 +189,14 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board, const
         if (const Sentence fault = check_bound_device(row, board, *bound); !fault.empty())
             return of_component(row.name, ": ", fault);
     }
+    const auto address_of = [&board](const BoundDevice& bound) {
+        const BoardDevice* device = find_named(board.devices, bound.at);
+        return device != nullptr && !device->address.empty() ? device->address : bound.at;
+    };
     for (std::size_t i = 0; i < binding.devices.size(); ++i) {
         const BoundDevice& bound = binding.devices[i];
         for (std::size_t j = 0; j < i; ++j)
-            if (bound.name == binding.devices[j].name || bound.at == binding.devices[j].at)
+            if (bound.name == binding.devices[j].name || address_of(bound) == address_of(binding.devices[j]))
                 return of_binding(board, bound.name, "wired(\"", binding.devices[j].name,
                                   "\") has the same name or the same device of the board; correct one");
         bool driven = false;

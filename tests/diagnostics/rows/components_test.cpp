@@ -361,6 +361,15 @@ constexpr Fault board_faults[] = {
                              wired("hall", "192.168.7.2:502"));
      },
      R"(loom: binding to board "old box", wired("hall"): wired("hall") has the same name or the same device of the board; correct one)"},
+    {"device_under_two_names",
+     [](Table& m) {
+         m.add(component<Encoder>("spare", device("spare-can")));
+         m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
+                        runs("encoder", "spare")));
+         static_cast<void>(m.board.devices.push(board_device("can1", "can", "can0", bit_rate(500'000))));
+         static_cast<void>(m.binding.devices.push(wired("spare-can", "can1")));
+     },
+     R"(loom: binding to board "old box", wired("spare-can"): wired("main_encoder") has the same name or the same device of the board; correct one)"},
     {"lines_of_a_bus",
      [](Table& m) {
          m.binding = binding(wired("main_encoder", "can0", line("red", 4)), wired("hall", "192.168.7.2:502"),

@@ -9,6 +9,7 @@
 #include <array>
 #include <fstream>
 #include <optional>
+#include <set>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -91,19 +92,23 @@ TEST(SafeRegisters, that_a_server_refuses_keep_none_behind_them_from_it) {
     EXPECT_LT(all.raw[0]->requests(), 50) << "it rests between them";
 }
 
-/// The address space has no room for the stack of a thread. Whether the second server, behind a silent one,
-/// is safe nevertheless, and somebody was there for the watchdog.
-bool is_safe_without_threads() {
-    Servers<2> all{30s};
-    all.all_are_silent_but(1);
+/// The address space has no room for the stack of a thread. Whether all servers are safe nevertheless, one of
+/// which is silent for longer than its share, and somebody was there for the watchdog.
+bool are_safe_without_threads() {
+    Servers<4> all{300ms};
+    RawServer& late = *all.raw[0];
+    const Time ready = os::Clock::monotonic() + 1200ms;
+    late.on_request([&late, ready](int, const modbus::Bytes&) {
+        late.manner = os::Clock::monotonic() < ready ? Manner::silent : Manner::right;
+    });
     std::size_t pages = 0;
     std::ifstream{"/proc/self/statm"} >> pages;
     const rlimit full{pages * 4096 + (4u << 20u), RLIM_INFINITY};
     setrlimit(RLIMIT_AS, &full);
     int kicks = 0;
-    static_cast<void>(
-        write_safe_registers(all.to, 2s, {&kicks, [](void* of) noexcept { ++*static_cast<int*>(of); }}));
-    return all.to[1].is_safe && kicks >= 4;
+    const std::size_t left =
+        write_safe_registers(all.to, 4s, {&kicks, [](void* of) noexcept { ++*static_cast<int*>(of); }});
+    return left == 0 && kicks >= 4;
 }
 
 TEST(SafeRegistersDeathTest, reach_servers_without_a_thread) {
@@ -111,7 +116,7 @@ TEST(SafeRegistersDeathTest, reach_servers_without_a_thread) {
     std::ifstream{"/proc/self/statm"} >> pages;
     if (pages > std::size_t{1} << 28u) GTEST_SKIP() << "a sanitizer has taken the address space";
     GTEST_FLAG_SET(death_test_style, "threadsafe"); // of its own: no stack of an earlier thread is kept
-    EXPECT_EXIT(_exit(is_safe_without_threads() ? 0 : 1), testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(_exit(are_safe_without_threads() ? 0 : 1), testing::ExitedWithCode(0), "");
 }
 
 TEST(SilentLine, takes_no_longer_than_all_servers_may) {
@@ -138,6 +143,32 @@ TEST(Restarted, server_is_told_all_again) {
     });
     EXPECT_EQ(write_safe_registers(all.to, 30s, {}), 0u);
     EXPECT_EQ(server.last_request()[9], 3) << "its first one, once more";
+}
+
+/// It confirms one request of each connection and closes it at the second one.
+TEST(Restarted, server_is_told_all_though_it_never_stands_for_long) {
+    std::array<modbus::SafeWrite, 40> many{};
+    for (std::size_t i = 0; i < many.size(); ++i)
+        many[i] = {{modbus::Table::holding_registers, static_cast<std::uint32_t>(i), 1}, 0};
+    Servers<1> all{300ms, many};
+    RawServer& server = *all.raw[0];
+    std::set<int> told;
+    server.on_request([&](int number, const modbus::Bytes& request) {
+        server.manner = number % 2 == 0 ? Manner::close : Manner::right;
+        if (number % 2 == 1) told.insert(request[9]);
+    });
+    EXPECT_EQ(write_safe_registers(all.to, 4s, {}), 1u) << "not on one connection";
+    EXPECT_EQ(told.size(), many.size());
+}
+
+/// It is silent to the first request, and has as much time for an answer as there is.
+TEST(BusyServer, is_asked_again_when_a_request_is_lost) {
+    Servers<1> all{2s};
+    RawServer& server = *all.raw[0];
+    server.on_request([&server](int number, const modbus::Bytes&) {
+        server.manner = number == 1 ? Manner::silent : Manner::right;
+    });
+    EXPECT_EQ(write_safe_registers(all.to, 2s, {}), 0u);
 }
 
 /// It refuses everything, or closes each connection, for 2 s.
