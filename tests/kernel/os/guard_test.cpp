@@ -9,7 +9,6 @@
 #include <csignal>
 #include <cstdlib>
 
-#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -45,10 +44,26 @@ Seen next(Guard& guard) {
     for (;;)
         if (const Seen seen = guard.look(20ms); seen != Seen::nothing) return seen;
 }
+int code_at_the_end(Guard& guard) {
+    while (next(guard) != Seen::end) {
+    }
+    return guard.exit_code();
+}
+void await_activities(Guard& guard) {
+    while (!guard.block().activities_run && guard.look(1ms) != Seen::end) {
+    }
+}
+
 int arm(Guard& guard) {
     if (!guard.wait_for_guardian().empty()) return 98;
     guard.be_back_within(1h);
     guard.let_activities_be_watched(true);
+    return 0;
+}
+
+int arm_and_die(Guard& guard) {
+    if (arm(guard) != 0) return 98;
+    ::kill(::getpid(), SIGKILL);
     return 0;
 }
 
@@ -60,26 +75,19 @@ TEST(Guard, hands_on_the_code_of_a_machine_that_ended_well) {
             return 4;
         },
         [](Guard& guard) {
-            while (next(guard) != Seen::end) {
-            }
-            return guard.block().ended_well && guard.block().activities_run ? guard.exit_code() : 97;
+            const int code_told = code_at_the_end(guard);
+            return guard.block().ended_well && guard.block().activities_run ? code_told : 97;
         });
     EXPECT_EQ(code, 4);
 }
 
 TEST(Guard, tells_a_death_without_a_word_and_its_signal) {
-    const int code = split(
-        [](Guard& guard) {
-            if (arm(guard) != 0) return 98;
-            ::kill(::getpid(), SIGKILL);
-            return 0;
-        },
-        [](Guard& guard) {
-            const Seen first = next(guard);
-            if (first != Seen::dying && first != Seen::end) return 96;
-            if (!guard.await_end(1h) || guard.block().ended_well) return 95;
-            return guard.exit_code();
-        });
+    const int code = split(arm_and_die, [](Guard& guard) {
+        const Seen first = next(guard);
+        if (first != Seen::dying && first != Seen::end) return 96;
+        if (!guard.await_end(1h) || guard.block().ended_well) return 95;
+        return guard.exit_code();
+    });
     EXPECT_EQ(code, 128 + SIGKILL);
 }
 
@@ -87,18 +95,10 @@ TEST(Guard, learns_the_end_of_a_machine_though_it_was_started_by_one_who_ignores
     const auto kept = ::signal(SIGCHLD, SIG_IGN);
     int told[2];
     ASSERT_EQ(::pipe(told), 0);
-    static_cast<void>(split(
-        [](Guard& guard) {
-            if (arm(guard) != 0) return 98;
-            ::kill(::getpid(), SIGKILL);
-            return 0;
-        },
-        [&](Guard& guard) {
-            while (next(guard) != Seen::end) {
-            }
-            const int code = guard.exit_code();
-            return static_cast<int>(::write(told[1], &code, sizeof code)); // its own parent learns nothing
-        }));
+    static_cast<void>(split(arm_and_die, [&](Guard& guard) {
+        const int code = code_at_the_end(guard);
+        return static_cast<int>(::write(told[1], &code, sizeof code)); // its own parent learns nothing
+    }));
     int code = 0;
     EXPECT_EQ(::read(told[0], &code, sizeof code), static_cast<ssize_t>(sizeof code));
     EXPECT_EQ(code, 128 + SIGKILL);
@@ -162,12 +162,9 @@ TEST(Guard, hands_on_what_is_signalled_to_it) {
             return 7;
         },
         [](Guard& guard) {
-            while (!guard.block().activities_run && guard.look(1ms) != Seen::end) {
-            } // then its handler is there
+            await_activities(guard); // then its handler is there
             ::kill(::getpid(), SIGTERM);
-            while (next(guard) != Seen::end) {
-            }
-            return guard.exit_code();
+            return code_at_the_end(guard);
         });
     EXPECT_EQ(code, 7);
 }
@@ -183,8 +180,7 @@ TEST(Guard, the_machine_sees_that_its_guardian_is_gone) {
             return static_cast<int>(::write(told[1], "gone", 4)) - 4;
         },
         [](Guard& guard) {
-            while (!guard.block().activities_run && guard.look(1ms) != Seen::end) {
-            }
+            await_activities(guard);
             return 42;
         });
     EXPECT_EQ(code, 42);
@@ -214,12 +210,7 @@ TEST(Guard, the_machine_sees_that_its_guardian_looks_at_nothing) {
 TEST(Guard, a_guardian_that_cannot_act_says_why) {
     const int code =
         split([](Guard& guard) { return guard.wait_for_guardian().view() == "no wires" ? 3 : 89; },
-              [](Guard& guard) {
-                  while (next(guard) != Seen::end) {
-                  }
-                  return guard.exit_code();
-              },
-              "no wires");
+              code_at_the_end, "no wires");
     EXPECT_EQ(code, 3);
 }
 

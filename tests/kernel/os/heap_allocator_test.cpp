@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <memory>
+
 #include <vector>
 
 namespace tappet::os::heap {

@@ -1,42 +1,31 @@
 // The latency request: held as long as its owner lives, refused with a cure.
 #include "kernel/os/latency.hpp"
 
+#include "tests/kernel/os/folder.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
 #include <sys/prctl.h>
-#include <unistd.h>
 
 namespace tappet::os {
 namespace {
 
-class FakeRoot {
-public:
-    FakeRoot()
-        : path_{std::filesystem::temp_directory_path() / ("tappet_latency_" + std::to_string(getpid()))} {
-        std::filesystem::create_directories(path_ / "dev");
-    }
-    ~FakeRoot() { std::filesystem::remove_all(path_); }
-    FakeRoot(const FakeRoot&) = delete;
-    FakeRoot& operator=(const FakeRoot&) = delete;
-    [[nodiscard]] std::string text() const { return path_.string(); }
-    [[nodiscard]] std::filesystem::path device() const { return path_ / "dev/cpu_dma_latency"; }
-
-private:
-    std::filesystem::path path_;
+struct FakeRoot : test::Folder {
+    std::string device = path + "/dev/cpu_dma_latency";
+    FakeRoot() { std::filesystem::create_directory(path + "/dev"); }
 };
 
 TEST(CpuDmaLatency, is_held_at_zero_as_long_as_its_owner_lives) {
     const FakeRoot root;
-    std::ofstream{root.device()} << "";
+    std::ofstream{root.device} << "";
     EXPECT_FALSE(cpu_dma_latency_is_held());
     {
-        auto held = hold_cpu_dma_latency(root.text());
+        auto held = hold_cpu_dma_latency(root.path);
         ASSERT_TRUE(held) << held.error().view();
         EXPECT_TRUE(cpu_dma_latency_is_held());
         const CpuDmaLatency moved{std::move(*held)};
@@ -44,7 +33,7 @@ TEST(CpuDmaLatency, is_held_at_zero_as_long_as_its_owner_lives) {
         EXPECT_TRUE(cpu_dma_latency_is_held());
     }
     EXPECT_FALSE(cpu_dma_latency_is_held());
-    std::ifstream written{root.device(), std::ios::binary};
+    std::ifstream written{root.device, std::ios::binary};
     std::int32_t value = -1;
     written.read(reinterpret_cast<char*>(&value), sizeof value);
     EXPECT_EQ(written.gcount(), 4);
@@ -53,7 +42,7 @@ TEST(CpuDmaLatency, is_held_at_zero_as_long_as_its_owner_lives) {
 
 TEST(CpuDmaLatency, is_refused_with_a_cure_where_the_device_is_missing) {
     const FakeRoot root;
-    const auto held = hold_cpu_dma_latency(root.text());
+    const auto held = hold_cpu_dma_latency(root.path);
     ASSERT_FALSE(held);
     EXPECT_NE(held.error().view().find("CONFIG_PM"), std::string_view::npos) << held.error().view();
     EXPECT_FALSE(cpu_dma_latency_is_held());

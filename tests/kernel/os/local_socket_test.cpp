@@ -1,6 +1,8 @@
 // The door of a browser (thesis 4.8): packets arrive whole, both ends are known, nothing blocks.
 #include "kernel/os/local_socket.hpp"
 
+#include "tests/kernel/os/folder.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -51,40 +53,42 @@ bool send_with_descriptors(const LocalConnection& from, std::string_view packet,
 
 class LocalSocket : public testing::Test {
 protected:
-    std::string directory = testing::TempDir() + "tappet-socket-" + std::to_string(getpid());
-    std::string path = directory + "/machine.socket";
+    test::Folder folder;
+    std::string path = folder.path + "/machine.socket";
     LocalListener listener;
     std::array<char, 256> room{};
 
-    ~LocalSocket() override {
-        listener.close();
-        std::filesystem::remove_all(directory);
-    }
     std::string_view text(const LocalConnection::Received& received) const {
         return {room.data(), received.bytes};
     }
 };
 
-TEST_F(LocalSocket, carries_packets_both_ways_each_whole) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    LocalConnection server = listener.accept();
-    ASSERT_TRUE(server.open());
-    EXPECT_EQ(client->send("1 hello"), Sent::sent);
-    EXPECT_EQ(client->send("2 map"), Sent::sent);
+/// Connected, and here are both ends.
+struct ConnectedSocket : LocalSocket {
+    LocalConnection client, server;
+
+    void SetUp() override {
+        ASSERT_TRUE(listener.listen(path, 0600));
+        auto made = LocalConnection::connect(path.c_str());
+        ASSERT_TRUE(made);
+        client = std::move(*made);
+        server = listener.accept();
+        ASSERT_TRUE(server.open());
+    }
+};
+
+TEST_F(ConnectedSocket, carries_packets_both_ways_each_whole) {
+    EXPECT_EQ(client.send("1 hello"), Sent::sent);
+    EXPECT_EQ(client.send("2 map"), Sent::sent);
     EXPECT_EQ(text(server.receive(room)), "1 hello");
     EXPECT_EQ(text(server.receive(room)), "2 map");
     EXPECT_EQ(server.receive(room).what, What::nothing);
     EXPECT_EQ(server.send("{}"), Sent::sent);
-    EXPECT_EQ(text(client->receive(room)), "{}");
+    EXPECT_EQ(text(client.receive(room)), "{}");
 }
 
-TEST_F(LocalSocket, tells_who_is_at_the_other_end) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    const auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    const auto peer = listener.accept().peer();
+TEST_F(ConnectedSocket, tells_who_is_at_the_other_end) {
+    const auto peer = server.peer();
     ASSERT_TRUE(peer);
     EXPECT_EQ(peer->process, getpid());
     EXPECT_EQ(peer->user, geteuid());
@@ -92,29 +96,21 @@ TEST_F(LocalSocket, tells_who_is_at_the_other_end) {
     EXPECT_TRUE(peer->is_in(getegid()));
 }
 
-TEST_F(LocalSocket, passes_a_descriptor) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    const auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    const LocalConnection server = listener.accept();
+TEST_F(ConnectedSocket, passes_a_descriptor) {
     std::array<int, 2> pipe_ends{};
     ASSERT_EQ(pipe(pipe_ends.data()), 0);
     EXPECT_EQ(server.send("{}", pipe_ends[1]), Sent::sent);
-    const auto received = client->receive(room, Passed::one);
+    const auto received = client.receive(room, Passed::one);
     ASSERT_GE(received.passed, 0);
     EXPECT_EQ(write(received.passed, "x", 1), 1);
     EXPECT_EQ(read(pipe_ends[0], room.data(), 1), 1);
     for (const int each : {received.passed, pipe_ends[0], pipe_ends[1]}) close(each);
 }
 
-TEST_F(LocalSocket, keeps_no_descriptor_that_nobody_asked_for) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    const auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    const LocalConnection server = listener.accept();
+TEST_F(ConnectedSocket, keeps_no_descriptor_that_nobody_asked_for) {
     const auto before = open_descriptors();
     for (const std::size_t count : {1u, 2u, 8u}) {
-        ASSERT_TRUE(send_with_descriptors(*client, "1 hello", count));
+        ASSERT_TRUE(send_with_descriptors(client, "1 hello", count));
         const auto received = server.receive(room);
         EXPECT_EQ(text(received), "1 hello") << "the packet itself counts";
         EXPECT_EQ(received.passed, -1);
@@ -122,53 +118,37 @@ TEST_F(LocalSocket, keeps_no_descriptor_that_nobody_asked_for) {
     }
 }
 
-TEST_F(LocalSocket, takes_one_descriptor_at_most_however_many_are_passed) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    const auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    const LocalConnection server = listener.accept();
+TEST_F(ConnectedSocket, takes_one_descriptor_at_most_however_many_are_passed) {
     const auto before = open_descriptors();
     for (const std::size_t count : {2u, 8u}) {
         ASSERT_TRUE(send_with_descriptors(server, "{}", count));
-        const auto received = client->receive(room, Passed::one);
+        const auto received = client.receive(room, Passed::one);
         EXPECT_EQ(text(received), "{}");
         ASSERT_GE(received.passed, 0);
         close(received.passed);
         EXPECT_EQ(open_descriptors(), before) << count;
     }
     ASSERT_TRUE(send_with_descriptors(server, "", 1));
-    EXPECT_EQ(client->receive(room, Passed::one).what, What::closed);
+    EXPECT_EQ(client.receive(room, Passed::one).what, What::closed);
     EXPECT_EQ(open_descriptors(), before) << "what came with an end that is none";
 }
 
-TEST_F(LocalSocket, says_when_a_packet_was_longer_than_the_room_for_it) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    const auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    const LocalConnection server = listener.accept();
-    EXPECT_EQ(client->send(std::string(300, 'x')), Sent::sent);
+TEST_F(ConnectedSocket, says_when_a_packet_was_longer_than_the_room_for_it) {
+    EXPECT_EQ(client.send(std::string(300, 'x')), Sent::sent);
     const auto received = server.receive(room);
     EXPECT_TRUE(received.cut);
     EXPECT_EQ(received.bytes, room.size());
 }
 
-TEST_F(LocalSocket, a_reader_that_does_not_read_fills_its_own_buffer_and_blocks_nobody) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    const auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    const LocalConnection server = listener.accept();
+TEST_F(ConnectedSocket, a_reader_that_does_not_read_fills_its_own_buffer_and_blocks_nobody) {
     const std::string packet(2000, 'x');
     Sent last = Sent::sent;
     for (int i = 0; i < 100'000 && last == Sent::sent; ++i) last = server.send(packet);
     EXPECT_EQ(last, Sent::full);
 }
 
-TEST_F(LocalSocket, says_when_the_other_end_is_gone) {
-    ASSERT_TRUE(listener.listen(path, 0600));
-    auto client = LocalConnection::connect(path.c_str());
-    ASSERT_TRUE(client);
-    const LocalConnection server = listener.accept();
-    client->close();
+TEST_F(ConnectedSocket, says_when_the_other_end_is_gone) {
+    client.close();
     EXPECT_EQ(server.receive(room).what, What::closed);
     EXPECT_EQ(server.send("{}"), Sent::closed);
 }
@@ -182,7 +162,7 @@ TEST_F(LocalSocket, has_the_permissions_that_were_asked_for) {
 
 TEST_F(LocalSocket, replaces_what_a_killed_machine_left_and_removes_its_own) {
     ASSERT_TRUE(listener.listen(path, 0600));
-    const std::string kept = directory + "/kept";
+    const std::string kept = folder.path + "/kept";
     std::filesystem::rename(path, kept); // so that closing does not remove it: as after a kill
     listener.close();
     std::filesystem::rename(kept, path);
@@ -197,7 +177,7 @@ TEST_F(LocalSocket, does_not_take_the_place_of_a_running_machine_nor_of_another_
     const auto refused = second.listen(path, 0600);
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().view().find("another machine of this name runs"), std::string_view::npos);
-    const std::string file = directory + "/notes.txt";
+    const std::string file = folder.path + "/notes.txt";
     std::ofstream{file} << "kept";
     EXPECT_FALSE(second.listen(file, 0600));
     EXPECT_TRUE(std::filesystem::is_regular_file(file));

@@ -9,8 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <alloca.h>
-#include <cstring>
-#include <memory>
 #include <vector>
 
 #include <pthread.h>
@@ -97,8 +95,7 @@ void* touch_then_use(void* context) {
     return nullptr;
 }
 
-StackUse on_fresh_stack(StackUse use) {
-    const Pages stack{128};
+StackUse on_stack(const Pages& stack, StackUse use) {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     pthread_attr_setstack(&attributes, stack.span().data(), stack.span().size());
@@ -112,8 +109,8 @@ StackUse on_fresh_stack(StackUse use) {
 TEST(Memory, makes_a_touched_stack_free_of_faults) {
     if (heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer has pages of its own beside each of ours";
     const std::size_t used = 64 * page_bytes();
-    EXPECT_GE(on_fresh_stack({0, used, 0}).faults, 50u) << "without touching, each page is a fault";
-    EXPECT_LT(on_fresh_stack({used + 16 * page_bytes(), used, 0}).faults, 5u);
+    EXPECT_GE(on_stack(Pages{128}, {0, used, 0}).faults, 50u) << "without touching, each page is a fault";
+    EXPECT_LT(on_stack(Pages{128}, {used + 16 * page_bytes(), used, 0}).faults, 5u);
 }
 
 TEST(Memory, shows_how_deep_a_painted_stack_was_used) {
@@ -122,14 +119,7 @@ TEST(Memory, shows_how_deep_a_painted_stack_was_used) {
     EXPECT_EQ(stack_high_water_bytes(stack.span()), 0u);
     std::size_t last = 0;
     for (const std::size_t used : {std::size_t{20'000}, std::size_t{60'000}, std::size_t{150'000}}) {
-        StackUse use{0, used, 0};
-        pthread_attr_t attributes;
-        pthread_attr_init(&attributes);
-        pthread_attr_setstack(&attributes, stack.span().data(), stack.span().size());
-        pthread_t thread{};
-        ASSERT_EQ(pthread_create(&thread, &attributes, touch_then_use, &use), 0);
-        pthread_join(thread, nullptr);
-        pthread_attr_destroy(&attributes);
+        static_cast<void>(on_stack(stack, {0, used, 0}));
         const std::size_t found = stack_high_water_bytes(stack.span());
         EXPECT_GE(found, used);
         EXPECT_LT(found, used + 20'000);

@@ -1,6 +1,8 @@
 // A file is replaced at once, and stays replaced when the power fails after it.
 #include "kernel/os/terminal.hpp"
 
+#include "tests/kernel/os/folder.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cerrno>
@@ -32,16 +34,16 @@ namespace tappet::os {
 namespace {
 
 struct ReplaceFile : testing::Test {
-    std::string directory = "/tmp/tappet-replace-" + std::to_string(getpid());
+    test::Folder folder;
+    std::string directory = folder.path;
     std::string path = directory + "/summary.json";
 
     ReplaceFile() {
-        std::filesystem::create_directory(directory);
         std::ofstream{path} << "old";
         synced.clear();
         disk_fails = false;
     }
-    ~ReplaceFile() override { std::filesystem::remove_all(directory); }
+
     [[nodiscard]] std::string contents() const {
         std::ifstream file{path};
         return {std::istreambuf_iterator<char>{file}, {}};

@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 
 #include <sys/mman.h>
-#include <unistd.h>
 
 namespace tappet::os {
 namespace {

@@ -2,26 +2,24 @@
 // ahead.
 #include "kernel/os/stamps.hpp"
 
+#include "tests/kernel/os/folder.hpp"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 
-#include <unistd.h>
-
 namespace tappet::os {
 namespace {
 
 /// A made-up kernel that takes its time from another source.
 bool prove_with_source(std::string_view name) {
-    const auto root = std::filesystem::temp_directory_path() / ("tappet_stamps_" + std::to_string(getpid()));
-    const std::filesystem::path folder = root / "sys/devices/system/clocksource/clocksource0";
+    const test::Folder root;
+    const std::string folder = root.path + "/sys/devices/system/clocksource/clocksource0";
     std::filesystem::create_directories(folder);
-    std::ofstream{folder / "current_clocksource"} << name << '\n';
-    const bool proven = prove_processor_counter(root.string());
-    std::filesystem::remove_all(root);
-    return proven;
+    std::ofstream{folder + "/current_clocksource"} << name << '\n';
+    return prove_processor_counter(root.path);
 }
 
 void expect_stamps_of_the_clock(int count, Duration late_at_most) {

@@ -32,6 +32,19 @@ struct ReadyDevice {
     ReadyDevice& operator=(const ReadyDevice&) = delete;
 };
 
+void expect_sleeps_until_it_is_woken(Waiter& waiter) {
+    std::atomic<bool> returned{false};
+    std::thread sleeper{[&] {
+        waiter.wait_for_wake();
+        returned = true;
+    }};
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(returned);
+    waiter.wake();
+    sleeper.join();
+    EXPECT_TRUE(returned);
+}
+
 TEST(Waiter, returns_for_a_device_that_is_ready) {
     const ReadyDevice device;
     Waiter waiter;
@@ -43,15 +56,7 @@ TEST(Waiter, does_not_return_for_a_ready_device_while_it_waits_for_a_wake_alone)
     const ReadyDevice device;
     Waiter waiter;
     ASSERT_TRUE(waiter.watch(device.ends[0]));
-    std::atomic<bool> returned{false};
-    std::thread sleeper{[&] {
-        waiter.wait_for_wake();
-        returned = true;
-    }};
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_FALSE(returned);
-    waiter.wake();
-    sleeper.join();
+    expect_sleeps_until_it_is_woken(waiter);
     EXPECT_TRUE(waiter.wait(never)) << "the device has not been forgotten";
 }
 
@@ -176,16 +181,7 @@ TEST(Waiter, is_woken_out_of_its_sleep_after_each_post) {
 
 TEST(Waiter, without_devices_sleeps_until_a_wake) {
     Waiter waiter;
-    std::atomic<bool> returned{false};
-    std::thread sleeper{[&] {
-        waiter.wait_for_wake();
-        returned = true;
-    }};
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    EXPECT_FALSE(returned);
-    waiter.wake();
-    sleeper.join();
-    EXPECT_TRUE(returned);
+    expect_sleeps_until_it_is_woken(waiter);
 }
 
 } // namespace

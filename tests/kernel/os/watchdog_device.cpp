@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 
-#include <fcntl.h>
 #include <linux/watchdog.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
