@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <memory>
 #include <thread>
 #include <vector>
 
@@ -86,11 +85,16 @@ struct AnActivity : testing::Test {
         plan.functions = functions;
         engine.place(plan, clock);
     }
-    void create() { ASSERT_TRUE(activity.create(engine, clock, 0, -1, stack)); }
+    void SetUp() override {
+        EXPECT_EQ(activity.state(), Activity::State::inactive);
+        ASSERT_TRUE(activity.create(engine, clock, 0, -1, stack));
+    }
+    void TearDown() override { EXPECT_TRUE(activity.end(patience_ms)); }
     void start() {
         ASSERT_TRUE(engine.initialise().empty());
         activity.start();
         ASSERT_TRUE(activity.is_started_within(patience_ms));
+        wait_for_steps(1);
     }
     [[nodiscard]] bool stops_within(int milliseconds) {
         activity.ask_to_stop(clock.now() + Activity::end_within);
@@ -108,22 +112,17 @@ struct AnActivity : testing::Test {
 };
 
 TEST_F(AnActivity, is_inactive_upon_its_creation_and_runs_nothing) {
-    EXPECT_EQ(activity.state(), Activity::State::inactive);
-    create();
     os::sleep_for(20ms);
     EXPECT_EQ(activity.state(), Activity::State::inactive);
     EXPECT_FALSE(engine.is_active());
     EXPECT_EQ(workers[0].started, 0);
-    EXPECT_TRUE(activity.end(patience_ms));
 }
 
 TEST_F(AnActivity, runs_start_cycles_and_stop_on_its_own_thread_and_nothing_else) {
-    create();
     start();
     wait_for_steps(3);
     stop();
     EXPECT_EQ(activity.state(), Activity::State::stopped);
-    EXPECT_TRUE(activity.end(patience_ms));
     for (Worker& worker : workers) {
         EXPECT_TRUE(pthread_equal(worker.initialiser, pthread_self()));
         EXPECT_TRUE(pthread_equal(worker.finaliser, pthread_self()));
@@ -135,9 +134,7 @@ TEST_F(AnActivity, runs_start_cycles_and_stop_on_its_own_thread_and_nothing_else
 }
 
 TEST_F(AnActivity, starts_again_as_often_as_one_likes_on_the_thread_that_it_has) {
-    create();
     start();
-    wait_for_steps(1);
     const pthread_t thread = workers[0].stepper;
     for (int n = 0; n < 50; ++n) {
         stop();
@@ -145,11 +142,9 @@ TEST_F(AnActivity, starts_again_as_often_as_one_likes_on_the_thread_that_it_has)
         os::sleep_for(1ms);
         EXPECT_EQ(workers[0].stepped, steps) << "stopped";
         start();
-        wait_for_steps(1);
         ASSERT_TRUE(pthread_equal(workers[0].stepper, thread));
     }
     stop();
-    EXPECT_TRUE(activity.end(patience_ms));
     EXPECT_EQ(workers[2].started, 51);
     EXPECT_EQ(workers[2].stopped, 51);
     EXPECT_EQ(workers[2].initialised, 51);
@@ -158,18 +153,14 @@ TEST_F(AnActivity, starts_again_as_often_as_one_likes_on_the_thread_that_it_has)
 }
 
 TEST_F(AnActivity, a_stop_before_any_start_and_a_second_stop_do_nothing) {
-    create();
     EXPECT_TRUE(stops_within(patience_ms));
     start();
-    wait_for_steps(1);
     stop();
     EXPECT_TRUE(stops_within(patience_ms));
-    EXPECT_TRUE(activity.end(patience_ms));
     EXPECT_EQ(workers[0].stopped, 1);
 }
 
 TEST_F(AnActivity, is_not_started_when_a_component_refuses_and_those_before_it_are_finalised) {
-    create();
     workers[1].refuses = true;
     EXPECT_EQ(engine.initialise().view(), "component \"worker\" could not be initialised: it will not");
     EXPECT_EQ(workers[0].finalised, 1);
@@ -178,16 +169,12 @@ TEST_F(AnActivity, is_not_started_when_a_component_refuses_and_those_before_it_a
     EXPECT_EQ(parts[1].state.load(), ComponentState::failed);
     workers[1].refuses = false;
     start();
-    wait_for_steps(1);
     EXPECT_EQ(parts[1].state.load(), ComponentState::running);
     stop();
-    EXPECT_TRUE(activity.end(patience_ms));
 }
 
 TEST_F(AnActivity, that_hangs_does_not_stop_and_one_that_was_given_up_runs_no_stop_when_it_comes_back) {
-    create();
     start();
-    wait_for_steps(1);
     workers[0].hang = true;
     os::sleep_for(5ms);
     EXPECT_FALSE(stops_within(50));
@@ -196,11 +183,9 @@ TEST_F(AnActivity, that_hangs_does_not_stop_and_one_that_was_given_up_runs_no_st
     workers[0].hang = false;
     EXPECT_TRUE(activity.is_stopped_within(patience_ms));
     EXPECT_EQ(workers[0].stopped, 0);
-    EXPECT_TRUE(activity.end(patience_ms));
 }
 
 TEST_F(AnActivity, answers_each_of_many_threads_that_ask_for_its_components_lives) {
-    create();
     start();
     constexpr int askers = 3, wishes_each = 200;
     std::array<std::atomic<int>, 4> outcomes{};
@@ -228,7 +213,6 @@ TEST_F(AnActivity, answers_each_of_many_threads_that_ask_for_its_components_live
               askers * wishes_each);
     EXPECT_GT(outcomes[static_cast<std::size_t>(LifeOutcome::done)], wishes_each / 2);
     stop();
-    EXPECT_TRUE(activity.end(patience_ms));
     for (Worker& worker : workers) {
         EXPECT_EQ(worker.out_of_turn, 0);
         EXPECT_EQ(worker.started, worker.stopped);

@@ -2,13 +2,12 @@
 // others begin, receivers that stop under them, and senders that wait.
 #include "kernel/activity/command_processor.hpp"
 
+#include "tests/kernel/exchange/placed.hpp"
 #include "tests/kernel/exchange/stress.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
+#include <array>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -46,14 +45,8 @@ struct Tripler {
 /// A processor with room for `senders` of `slots` commands each, and the component behind it.
 class Receiver {
 public:
-    Receiver(std::size_t senders, std::size_t slots)
-        : box_bytes_(CommandMailbox::bytes_for(slots)),
-          storage_(senders * box_bytes_ / sizeof(Line) + 1),
-          boxes_(senders),
-          followed_(senders * slots) {
-        for (std::size_t i = 0; i < senders; ++i)
-            boxes_[i].place(storage_[i * box_bytes_ / sizeof(Line)].bytes, slots, Overflow::reject);
-        processor.place(boxes_, followed_, 0);
+    Receiver(std::size_t senders, std::size_t slots) : placed_{slots, senders}, followed_(senders * slots) {
+        processor.place(placed_.mailboxes, followed_, 0);
     }
     [[nodiscard]] CommandSlot::Route route(std::size_t sender, const os::Clock& clock) {
         return {.command = &Tripler::command,
@@ -86,12 +79,7 @@ public:
     CommandProcessor processor;
 
 private:
-    struct alignas(64) Line {
-        std::byte bytes[64];
-    };
-    std::size_t box_bytes_;
-    std::vector<Line> storage_;
-    std::vector<CommandMailbox> boxes_;
+    PlacedMailboxes<CommandMailbox> placed_;
     std::vector<CommandSlot*> followed_;
 };
 
@@ -216,11 +204,17 @@ TEST(CommandProcessor, under_any_schedule_every_command_ends_with_its_own_result
     EXPECT_GT(all.failed, 0u);
 }
 
-TEST(CommandProcessor, a_waiting_sender_is_woken_by_every_end) {
+/// A receiver of one command, and its only sender.
+struct OneCommand : testing::Test {
     const os::Clock clock{os::Clock::Kind::real};
     Receiver receiver{1, 1};
     Call call;
-    call.slot().place(receiver.route(0, clock), call.values());
+    CommandSlot::Route route = receiver.route(0, clock);
+
+    OneCommand() { call.slot().place(route, call.values()); }
+};
+
+TEST_F(OneCommand, wakes_its_waiting_sender_by_every_end) {
     std::atomic<bool> over{false};
     std::thread serving([&] {
         Random random{stress_seed()};
@@ -245,11 +239,7 @@ TEST(CommandProcessor, a_waiting_sender_is_woken_by_every_end) {
     EXPECT_EQ(missed, 0u);
 }
 
-TEST(CommandProcessor, a_wait_ends_with_its_time) {
-    const os::Clock clock{os::Clock::Kind::real};
-    Receiver receiver{1, 1};
-    Call call;
-    call.slot().place(receiver.route(0, clock), call.values());
+TEST_F(OneCommand, is_waited_for_no_longer_than_told) {
     EXPECT_TRUE(call.wait(10s)); // nothing was sent
     ASSERT_TRUE(call.send(Value::of(4)));
     const Time before = clock.now();
@@ -261,12 +251,8 @@ TEST(CommandProcessor, a_wait_ends_with_its_time) {
     EXPECT_TRUE(call.wait(0ms));
 }
 
-TEST(CommandProcessor, an_end_wakes_the_senders_activity) {
-    const os::Clock clock{os::Clock::Kind::real};
-    Receiver receiver{1, 1};
-    Call call;
+TEST_F(OneCommand, wakes_its_senders_activity_by_its_end) {
     int wakes = 0;
-    CommandSlot::Route route = receiver.route(0, clock);
     route.wake_sender = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
     call.slot().place(route, call.values());
     ASSERT_TRUE(call.send(Value::of(4)));
@@ -275,11 +261,7 @@ TEST(CommandProcessor, an_end_wakes_the_senders_activity) {
     EXPECT_EQ(wakes, 1); // not for each state on the way
 }
 
-TEST(CommandProcessor, a_failed_or_stopped_receiver_rejects_at_once_one_that_never_ran_takes_it_up_later) {
-    const os::Clock clock{os::Clock::Kind::real};
-    Receiver receiver{1, 1};
-    Call call;
-    call.slot().place(receiver.route(0, clock), call.values());
+TEST_F(OneCommand, is_rejected_at_once_by_who_failed_or_stopped_and_taken_up_later_by_who_never_ran) {
     for (const ComponentState state : {ComponentState::stopped, ComponentState::failed}) {
         receiver.gate.state.store(state);
         ASSERT_TRUE(call.send(Value::of(4)));
@@ -291,53 +273,6 @@ TEST(CommandProcessor, a_failed_or_stopped_receiver_rejects_at_once_one_that_nev
     receiver.gate.state.store(ComponentState::running);
     receiver.cycle();
     EXPECT_NE(call.state(), CommandState::rejected);
-}
-
-// ---- figures: as thesis 4.5.4, what sending and processing take
-
-struct Instant {
-    bool act(std::uint64_t) noexcept TAPPET_REALTIME { return true; }
-    static constexpr auto& command = detail::CommandOf<&Instant::act, nullptr>::operations;
-};
-
-void print(const char* what, std::vector<std::int64_t>& ns) {
-    std::sort(ns.begin(), ns.end());
-    std::printf("[ figures  ] %s: median %lld ns, p99.9 %lld ns\n", what,
-                static_cast<long long>(ns[ns.size() / 2]),
-                static_cast<long long>(ns[ns.size() - ns.size() / 1000 - 1]));
-}
-
-TEST(CommandProcessor, figures_of_sending_and_processing) {
-    const os::Clock clock{os::Clock::Kind::real};
-    Receiver receiver{1, 1};
-    Instant instant;
-    CommandCall<std::uint64_t> call;
-    CommandSlot::Route route = receiver.route(0, clock);
-    route.command = &Instant::command;
-    GatedComponent gate{&instant, ComponentState::running};
-    route.receiver = &gate;
-    call.slot().place(route, call.values());
-    std::vector<std::int64_t> send, process, nothing, both_clocks;
-    for (std::uint64_t i = 0; i < 50'000; ++i) {
-        const Time t0 = clock.now();
-        const Time t1 = clock.now();
-        const bool sent = call.send(i);
-        const Time t2 = clock.now();
-        receiver.cycle();
-        const Time t3 = clock.now();
-        receiver.cycle();
-        const Time t4 = clock.now();
-        ASSERT_TRUE(sent);
-        ASSERT_EQ(call.state(), CommandState::done);
-        both_clocks.push_back((t1 - t0).count());
-        send.push_back((t2 - t1).count());
-        process.push_back((t3 - t2).count());
-        nothing.push_back((t4 - t3).count());
-    }
-    print("reading the clock, in each of the others", both_clocks);
-    print("send a command", send);
-    print("take it up, run it to done", process);
-    print("look at an empty processor", nothing);
 }
 
 } // namespace

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <random>
 #include <thread>
 #include <vector>
 

@@ -26,10 +26,14 @@ struct Wish {
     }
 };
 
-TEST_F(ExecutionEngine, runs_timers_then_components_then_messages_then_behaviours) {
+struct EngineWithABehaviour : ExecutionEngine {
     Wish wish{&log};
-    std::array behaviours{Wish::behaviour(wish)};
-    plan.behaviours = behaviours;
+    std::array<Behaviour, 1> behaviours{Wish::behaviour(wish)};
+
+    EngineWithABehaviour() { plan.behaviours = behaviours; }
+};
+
+TEST_F(EngineWithABehaviour, runs_timers_then_components_then_messages_then_behaviours) {
     begin();
     workers[1].timer.arm(at_ns(0) + period);
     tell(0);
@@ -38,10 +42,7 @@ TEST_F(ExecutionEngine, runs_timers_then_components_then_messages_then_behaviour
     EXPECT_EQ(statistics().messages, 1u);
 }
 
-TEST_F(ExecutionEngine, starts_components_before_behaviours_and_stops_behaviours_first) {
-    Wish wish{&log};
-    std::array behaviours{Wish::behaviour(wish)};
-    plan.behaviours = behaviours;
+TEST_F(EngineWithABehaviour, starts_components_before_behaviours_and_stops_behaviours_first) {
     engine.place(plan, clock);
     engine.start(clock.now());
     EXPECT_EQ(log.lines, (Lines{"a starts", "b starts"}));
@@ -107,11 +108,8 @@ TEST_F(ExecutionEngine, steps_the_components_of_a_sporadic_activity_when_it_is_w
     EXPECT_EQ(log.lines, (Lines{"b rings"}));
 }
 
-TEST_F(ExecutionEngine, steps_a_behaviour_when_it_asked_for_it) {
-    Wish wish{&log};
-    std::array behaviours{Wish::behaviour(wish)};
+TEST_F(EngineWithABehaviour, steps_a_behaviour_when_it_asked_for_it) {
     plan.periodic = false;
-    plan.behaviours = behaviours;
     begin();
     wish.at = at_ns(0) + 250us;
     EXPECT_EQ(engine.next_wake(), wish.at);
@@ -195,9 +193,7 @@ TEST_F(ExecutionEngine, asks_for_a_stop_when_the_row_says_that_a_late_cycle_stop
     EXPECT_TRUE(stops.empty());
     workers[0].load = 60us;
     next_cycle();
-    ASSERT_EQ(stops.size(), 1u);
-    EXPECT_EQ(stops[0].first, StopReason::missed_deadline);
-    EXPECT_EQ(stops[0].second, index(0, FunctionKind::step));
+    EXPECT_EQ(stops, (Stops{{StopReason::missed_deadline, index(0, FunctionKind::step)}}));
 }
 
 TEST_F(ExecutionEngine, counts_no_deadline_of_an_activity_that_is_not_real_time) {
@@ -261,9 +257,7 @@ TEST_F(ExecutionEngine, asks_for_a_stop_when_a_guarded_input_that_was_good_becom
     EXPECT_TRUE(stops.empty());
     flow = Flow::stale;
     next_cycle();
-    ASSERT_EQ(stops.size(), 1u);
-    EXPECT_EQ(stops[0].first, StopReason::stale_input);
-    EXPECT_EQ(stops[0].second, 17u) << "the connection's row";
+    EXPECT_EQ(stops, (Stops{{StopReason::stale_input, 17}})) << "the connection's row";
     next_cycle();
     EXPECT_EQ(stops.size(), 1u) << "asked once for one loss";
 }
@@ -300,16 +294,13 @@ TEST_F(ExecutionEngine, wakes_a_sporadic_activity_by_itself_when_a_guarded_input
     EXPECT_EQ(log.lines, Lines{}) << "nothing happened that a component could hear of";
     EXPECT_EQ(engine.next_wake(), at_ns(0) + 50ms + 1ns);
     next_cycle();
-    ASSERT_EQ(stops.size(), 1u);
-    EXPECT_EQ(stops[0], (std::pair{StopReason::stale_input, std::uint64_t{17}}));
+    EXPECT_EQ(stops, (Stops{{StopReason::stale_input, 17}}));
     EXPECT_EQ(log.lines, (Lines{"a steps", "b steps"})) << "that it is stale is news";
     EXPECT_EQ(engine.next_wake(), never) << "told once";
     EXPECT_EQ(statistics().wakes_too_many, 0u);
 }
 
-TEST_F(ExecutionEngine, does_what_was_told_before_the_stop_then_what_the_behaviours_tell_at_their_end) {
-    Wish wish{&log};
-    std::array behaviours{Wish::behaviour(wish)};
+TEST_F(EngineWithABehaviour, does_what_was_told_before_the_stop_then_what_the_behaviours_tell_at_their_end) {
     behaviours[0].self = this;
     behaviours[0].stop = [](void* self, Time) noexcept TAPPET_REALTIME {
         auto& test = *static_cast<ExecutionEngine*>(self);
@@ -317,7 +308,6 @@ TEST_F(ExecutionEngine, does_what_was_told_before_the_stop_then_what_the_behavio
         TAPPET_ESCAPE("a test asserts", test.tell(0));
     };
     behaviours[0].next = [](const void*) noexcept TAPPET_REALTIME { return never; };
-    plan.behaviours = behaviours;
     begin();
     tell(1);
     engine.stop(clock.now());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
+#include "tests/kernel/exchange/placed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -79,11 +80,7 @@ struct ExecutionEngine : testing::Test {
         plan.parts = parts;
         plan.functions = functions;
         plan.timers = timers;
-        void* at = storage.data();
-        std::size_t room = storage.size();
-        std::align(Mailbox::alignment, Mailbox::bytes_for(4), at, room);
-        mailboxes[0].place(static_cast<std::byte*>(at), 4, Overflow::reject);
-        engine.inbox().place(mailboxes);
+        engine.inbox().place(placed.mailboxes);
     }
     void begin() {
         engine.place(plan, clock);
@@ -126,11 +123,11 @@ struct ExecutionEngine : testing::Test {
     std::array<EnginePart, 2> parts{};
     std::array<EngineTimer, 2> timers{};
     std::array<FunctionTiming, 2 * functions_per_part> functions{};
-    std::vector<std::byte> storage = std::vector<std::byte>(Mailbox::bytes_for(4) + Mailbox::alignment);
-    std::array<Mailbox, 1> mailboxes;
+    PlacedMailboxes<Mailbox> placed{4};
     EnginePlan plan;
     Engine engine;
-    std::vector<std::pair<StopReason, std::uint64_t>> stops;
+    using Stops = std::vector<std::pair<StopReason, std::uint64_t>>;
+    Stops stops;
 };
 
 using Lines = std::vector<std::string>;

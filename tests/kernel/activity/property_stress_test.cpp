@@ -2,6 +2,7 @@
 // transaction or nothing of it, and every transaction ends once.
 #include "kernel/component/property_transaction.hpp"
 
+#include "tests/kernel/exchange/placed.hpp"
 #include "tests/kernel/exchange/stress.hpp"
 
 #include <gtest/gtest.h>
@@ -33,11 +34,8 @@ struct Row {
 
 TEST(PropertyStress, steps_see_all_of_a_transaction_or_nothing) {
     constexpr std::int64_t transactions = 5000;
-    alignas(Mailbox::alignment) static std::array<std::byte, Mailbox::bytes_for(16)> storage{};
-    static std::array<Mailbox, 1> boxes;
-    boxes[0].place(storage.data(), 16, Overflow::reject);
-    static Inbox inbox;
-    inbox.place(boxes);
+    PlacedInbox placed{16};
+    Inbox& inbox = placed.inbox;
     static Row row;
     std::atomic<bool> ends{false};
 

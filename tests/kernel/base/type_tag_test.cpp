@@ -116,6 +116,8 @@ TEST(Text, refuses_what_is_longer_than_its_room_and_keeps_what_it_has) {
     EXPECT_EQ(text.view(), "warp");
     EXPECT_TRUE(text.assign("io"));
     EXPECT_EQ(text, Text<4>{"io"}) << "no character of the longer text stays behind";
+    EXPECT_TRUE(text.assign(""));
+    EXPECT_EQ(text, Text<4>{});
 }
 
 template <class T>

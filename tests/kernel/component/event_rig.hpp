@@ -2,11 +2,11 @@
 #pragma once
 
 #include "kernel/component/component.hpp"
+#include "tests/kernel/exchange/placed.hpp"
 
 #include <array>
 #include <cstddef>
 #include <deque>
-#include <memory>
 #include <vector>
 
 namespace tappet {
@@ -41,22 +41,7 @@ struct EmitterOf {
 
 using Emitter = EmitterOf<double>;
 
-/// The receiving end: an inbox with room for `capacity` messages of each of so many sending activities.
-struct Receiver {
-    explicit Receiver(std::size_t capacity, std::size_t senders = 1)
-        : storage(senders * Mailbox::bytes_for(capacity) + Mailbox::alignment), mailboxes(senders) {
-        void* at = storage.data();
-        std::size_t room = storage.size();
-        std::align(Mailbox::alignment, senders * Mailbox::bytes_for(capacity), at, room);
-        for (std::size_t i = 0; i < senders; ++i)
-            mailboxes[i].place(static_cast<std::byte*>(at) + i * Mailbox::bytes_for(capacity), capacity,
-                               Overflow::reject);
-        inbox.place(mailboxes);
-    }
-    std::vector<std::byte> storage;
-    std::vector<Mailbox> mailboxes;
-    Inbox inbox;
-};
+using Receiver = PlacedInbox; ///< the receiving end, of so many sending activities
 
 /// An asynchronous row into a receiver with a lane for each of its senders; activity 0 is the first of them.
 struct Row {

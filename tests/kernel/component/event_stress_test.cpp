@@ -243,41 +243,4 @@ TEST(AStorm, leaves_rows_that_work_as_before) {
     std::make_unique<Storm<LargeArgument>>()->abates();
 }
 
-/// The newest of a stream, between two threads.
-TEST(LatestMessage, is_never_torn_never_older_than_the_one_before_and_every_other_is_counted) {
-    LatestMessage cell;
-    Random random{stress_seed()};
-    constexpr std::uint64_t all = 50'000;
-    std::uint64_t announced = 0, replaced = 0, taken = 0, wrong = 0, before = 0;
-    std::atomic<bool> over{false};
-    std::thread sender{[&] {
-        Random dice{stress_seed() * 3};
-        for (std::uint64_t n = 1; n <= all; ++n) {
-            Message message;
-            const auto value = Argument::of(n);
-            std::memcpy(message.arguments.data(), &value, sizeof value);
-            message.epoch = static_cast<std::uint32_t>(n);
-            (cell.put(message) ? announced : replaced) += 1;
-            dither(dice);
-        }
-        over.store(true);
-    }};
-    for (bool last = false; !last;) {
-        last = over.load();
-        if (const Message* message = cell.take()) {
-            Argument value;
-            std::memcpy(&value, message->arguments.data(), sizeof value);
-            wrong += value.whole() && value.number() > before && message->epoch == value.number() ? 0u : 1u;
-            before = value.number();
-            ++taken;
-        }
-        dither(random);
-    }
-    sender.join();
-    EXPECT_EQ(wrong, 0u);
-    EXPECT_EQ(before, all) << "the last one arrives";
-    EXPECT_EQ(taken, announced) << "each that was announced, itself or a later one, was there to be taken";
-    EXPECT_EQ(announced + replaced, all);
-}
-
 } // namespace

@@ -4,10 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstring>
 #include <functional>
-#include <vector>
+#include <utility>
 
 namespace {
 
@@ -117,31 +116,13 @@ struct Handler {
     }
 };
 
-TEST_F(AnEvent, of_large_arguments_keeps_those_that_are_handled_while_the_queue_is_filled) {
-    for (const std::uint32_t quota : {1u, 2u, 3u, 4u, 8u}) {
-        EmitterOf<Large> large;
-        Handler handler{large.event, quota};
-        Receiver receiver{quota + 1};
-        Row row{receiver, hear, &handler, quota, false, sizeof(Large)};
-        row.row.operation = nullptr;
-        row.row.run = &Handler::run;
-        row.row.object = &handler;
-        large.tell(row.row);
-        large.event(Handler::of(1.0));
-        while (receiver.inbox.run_all() != 0) {
-        }
-        std::vector<double> all;
-        for (std::uint32_t i = 0; i <= quota; ++i) all.push_back(1.0 + i);
-        EXPECT_EQ(handler.heard, all) << "queue of " << quota;
-        EXPECT_EQ(row.row.counts().lost, 0u);
-    }
-}
-
-TEST_F(AnEvent, of_large_arguments_of_which_the_latest_is_kept_keeps_the_one_that_is_handled) {
+/// What is heard and what is lost when 1 is emitted, and so many more numbers while it is handled.
+std::pair<std::vector<double>, std::uint64_t> emitted(std::uint32_t more, std::uint32_t quota,
+                                                      bool keeps_latest) {
     EmitterOf<Large> large;
-    Handler handler{large.event, 3};
-    Receiver receiver{2};
-    Row row{receiver, hear, &handler, 1, true, sizeof(Large)};
+    Handler handler{large.event, more};
+    Receiver receiver{quota + 1};
+    Row row{receiver, hear, &handler, quota, keeps_latest, sizeof(Large)};
     row.row.operation = nullptr;
     row.row.run = &Handler::run;
     row.row.object = &handler;
@@ -149,8 +130,19 @@ TEST_F(AnEvent, of_large_arguments_of_which_the_latest_is_kept_keeps_the_one_tha
     large.event(Handler::of(1.0));
     while (receiver.inbox.run_all() != 0) {
     }
-    EXPECT_EQ(handler.heard, (std::vector{1.0, 4.0}));
-    EXPECT_EQ(row.row.counts().lost, 2u);
+    return {handler.heard, row.row.counts().lost};
+}
+
+TEST_F(AnEvent, of_large_arguments_keeps_those_that_are_handled_while_the_queue_is_filled) {
+    for (const std::uint32_t quota : {1u, 2u, 3u, 4u, 8u}) {
+        std::vector<double> all;
+        for (std::uint32_t i = 0; i <= quota; ++i) all.push_back(1.0 + i);
+        EXPECT_EQ(emitted(quota, quota, false), (std::pair{all, std::uint64_t{0}})) << "queue of " << quota;
+    }
+}
+
+TEST_F(AnEvent, of_large_arguments_of_which_the_latest_is_kept_keeps_the_one_that_is_handled) {
+    EXPECT_EQ(emitted(3, 1, true), (std::pair{std::vector{1.0, 4.0}, std::uint64_t{2}}));
 }
 
 TEST_F(AnEvent, of_which_the_latest_is_kept_delivers_that_and_counts_the_ones_it_replaced) {

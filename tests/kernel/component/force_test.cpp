@@ -1,55 +1,26 @@
 // Forced ports (thesis 4.8: a browser changes what a task reads and writes): what is forced is what flows,
 // whatever the component does, and releasing leaves no trace.
-#include "kernel/component/facet.hpp"
+#include "tests/kernel/component/port_rig.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstddef>
 
 namespace {
 
 using namespace tappet;
 
-/// An output and an input, linked as start-up links them, in one activity or across two.
-class Forcing : public testing::TestWithParam<bool> {
-protected:
-    static constexpr const PortOperations& port = PortAccess::data<double>;
-    Output<double> output;
-    Input<double> input;
-    Time now = at_ns(0);
-    double value = -1;
-    alignas(512) std::array<std::byte, 8192> memory{};
-
-    Forcing() {
-        port.set_clock(&output, false, &now);
-        port.set_clock(&input, true, &now);
-        if (GetParam()) port.place_shared(&output, memory.data());
-        link(nullptr);
-    }
-    void link(const Stops* writer) {
-        if (GetParam())
-            port.link_shared(&input, &output, writer);
-        else
-            port.link_local(&input, &output, writer);
-    }
+struct Forcing : PortsOfEachTopology {
     void force_output(double to) { port.force(&output, false, reinterpret_cast<const std::byte*>(&to)); }
     void force_input(double to) { port.force(&input, true, reinterpret_cast<const std::byte*>(&to)); }
     template <class T> static T at(const void* place) { return *static_cast<const T*>(place); }
 };
 
-INSTANTIATE_TEST_SUITE_P(, Forcing, testing::Bool(), [](const auto& each) {
-    return each.param ? "across_activities" : "inside_one_activity";
-});
+INSTANTIATE_TEST_SUITE_P(, Forcing, testing::Bool(), topology);
 
 TEST_P(Forcing, an_output_publishes_the_forced_value_at_once_and_whatever_its_component_writes) {
     output.write(1.0);
     force_output(9.0);
-    EXPECT_EQ(input.read(value), Flow::fresh);
-    EXPECT_EQ(value, 9.0);
+    EXPECT_EQ(read(), (Read{Flow::fresh, 9.0}));
     output.write(2.0);
-    EXPECT_EQ(input.read(value), Flow::fresh) << "each write stays a sign of life";
-    EXPECT_EQ(value, 9.0);
+    EXPECT_EQ(read(), (Read{Flow::fresh, 9.0})) << "each write stays a sign of life";
     EXPECT_EQ(output.last(), 2.0) << "what the component knows of its own is what it wrote";
 }
 
@@ -89,8 +60,7 @@ TEST_P(Forcing, releasing_an_output_makes_no_old_value_new) {
     output.write(2.0);
     now += 2ms;
     port.release(&output, false);
-    EXPECT_EQ(input.read(value), Flow::fresh) << "written meanwhile";
-    EXPECT_EQ(value, 2.0);
+    EXPECT_EQ(read(), (Read{Flow::fresh, 2.0})) << "written meanwhile";
     now += 3ms;
     EXPECT_EQ(input.read(value), Flow::stale);
 }
@@ -102,14 +72,11 @@ TEST_P(Forcing, an_input_reads_the_forced_value_fresh_once_and_never_stale) {
     output.write(1.0);
     EXPECT_EQ(input.get(), 1.0);
     force_input(9.0);
-    EXPECT_EQ(input.read(value), Flow::fresh);
-    EXPECT_EQ(value, 9.0);
+    EXPECT_EQ(read(), (Read{Flow::fresh, 9.0}));
     output.write(2.0);
-    EXPECT_EQ(input.read(value), Flow::old);
-    EXPECT_EQ(value, 9.0);
+    EXPECT_EQ(read(), (Read{Flow::old, 9.0}));
     now += 1h;
-    EXPECT_EQ(input.read(value), Flow::old);
-    EXPECT_EQ(value, 9.0);
+    EXPECT_EQ(read(), (Read{Flow::old, 9.0}));
 }
 
 TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
@@ -125,8 +92,7 @@ TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
     output.write(0.0);
     EXPECT_EQ(input.get(), 9.0);
     writer.count += Stops::of_a_life;
-    EXPECT_EQ(input.read(value), Flow::fresh);
-    EXPECT_EQ(value, 0.0);
+    EXPECT_EQ(read(), (Read{Flow::fresh, 0.0}));
     EXPECT_EQ(forced, 0u);
     force_input(9.0);
     EXPECT_EQ(input.get(), 9.0) << "forced after that";
@@ -134,11 +100,9 @@ TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
 
 TEST_P(Forcing, an_input_that_nobody_ever_wrote_can_be_forced) {
     force_input(9.0);
-    EXPECT_EQ(input.read(value), Flow::fresh);
-    EXPECT_EQ(value, 9.0);
+    EXPECT_EQ(read(), (Read{Flow::fresh, 9.0}));
     port.release(&input, true);
-    EXPECT_EQ(input.read(value), Flow::never_written);
-    EXPECT_EQ(value, 0.0);
+    EXPECT_EQ(read(), (Read{Flow::never_written, 0.0}));
 }
 
 TEST_P(Forcing, releasing_an_input_reads_again_what_stands_at_the_other_end) {
@@ -147,8 +111,7 @@ TEST_P(Forcing, releasing_an_input_reads_again_what_stands_at_the_other_end) {
     force_input(9.0);
     EXPECT_EQ(input.get(), 9.0);
     port.release(&input, true);
-    EXPECT_EQ(input.read(value), Flow::fresh);
-    EXPECT_EQ(value, 1.0) << "although nothing was written meanwhile";
+    EXPECT_EQ(read(), (Read{Flow::fresh, 1.0})) << "although nothing was written meanwhile";
 }
 
 TEST_P(Forcing, releasing_what_is_not_forced_changes_nothing) {
@@ -156,8 +119,7 @@ TEST_P(Forcing, releasing_what_is_not_forced_changes_nothing) {
     EXPECT_EQ(input.get(), 1.0);
     port.release(&input, true);
     port.release(&output, false);
-    EXPECT_EQ(input.read(value), Flow::old);
-    EXPECT_EQ(value, 1.0);
+    EXPECT_EQ(read(), (Read{Flow::old, 1.0}));
 }
 
 TEST_P(Forcing, an_observer_finds_value_time_and_flag) {
@@ -220,9 +182,7 @@ struct AbandonedValue : Forcing {
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(, AbandonedValue, testing::Bool(), [](const auto& each) {
-    return each.param ? "across_activities" : "inside_one_activity";
-});
+INSTANTIATE_TEST_SUITE_P(, AbandonedValue, testing::Bool(), topology);
 
 TEST_P(AbandonedValue, is_what_a_force_hid_when_it_ended_with_a_stop) {
     stop();

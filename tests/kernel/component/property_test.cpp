@@ -85,6 +85,11 @@ std::size_t index_of(std::string_view name) {
 }
 const Facet& facet(std::string_view name) { return type.facets[index_of(name)]; }
 
+PropertySetting real_setting(double value) { return {.kind = PropertySetting::Kind::real, .real = value}; }
+PropertySetting list_setting(const ListSetting& list) {
+    return {.kind = PropertySetting::Kind::list, .list = &list};
+}
+
 struct Proposed : testing::Test {
     Arm arm;
     PropertyTransaction transaction;
@@ -94,9 +99,7 @@ struct Proposed : testing::Test {
         ASSERT_NE(place, nullptr) << name;
         facet(name).property->set(place, to);
     }
-    void real(std::string_view name, double value) {
-        set(name, {.kind = PropertySetting::Kind::real, .real = value});
-    }
+    void real(std::string_view name, double value) { set(name, real_setting(value)); }
     std::string range_fault(std::string_view name) {
         return std::string{
             PropertyTransaction::check_range(facet(name), transaction.change(index_of(name))).view()};
@@ -135,9 +138,7 @@ TEST(Bag, of_one_struct_used_twice_reaches_two_members) {
 TEST_F(Proposed, values_of_every_type_arrive_together) {
     using Kind = PropertySetting::Kind;
     static constexpr std::array<double, 3> three{0.5, -0.5, 1.0};
-    static constexpr ListSetting list{
-        3,
-        [](std::size_t i) { return PropertySetting{.kind = PropertySetting::Kind::real, .real = three[i]}; }};
+    static constexpr ListSetting list{3, [](std::size_t i) { return real_setting(three[i]); }};
     real("gains.roll.p", 4.25);
     set("gains.pitch.p", {.kind = Kind::integer, .integer = 7}); // a whole number is a number
     real("scale", 0.25);
@@ -148,8 +149,8 @@ TEST_F(Proposed, values_of_every_type_arrive_together) {
     set("filter", {.kind = Kind::duration, .integer = 5'000'000});
     set("label", {.kind = Kind::text, .text = "right"});
     set("mode", {.kind = Kind::enumeration, .integer = 2});
-    set("offsets", {.kind = Kind::list, .list = &list});
-    set("axis", {.kind = Kind::list, .list = &list});
+    set("offsets", list_setting(list));
+    set("axis", list_setting(list));
     EXPECT_EQ(arm.roll.p.get(), 1.0) << "nothing takes effect before it is committed";
     transaction.commit();
     EXPECT_EQ(transaction.state(), PropertyTransaction::State::done);
@@ -211,11 +212,8 @@ TEST_F(Proposed, ranges_hold_for_numbers_times_and_every_element) {
     EXPECT_NE(range_fault("limits.low"), "") << "also where every number is allowed";
     set("filter", {.kind = PropertySetting::Kind::duration, .integer = 500'000'001});
     EXPECT_THAT(range_fault("filter"), testing::HasSubstr("over its greatest value 0.5 s"));
-    static constexpr ListSetting list{2, [](std::size_t i) {
-                                          return PropertySetting{.kind = PropertySetting::Kind::real,
-                                                                 .real = i == 0 ? 5.0 : 5.5};
-                                      }};
-    set("offsets", {.kind = PropertySetting::Kind::list, .list = &list});
+    static constexpr ListSetting list{2, [](std::size_t i) { return real_setting(i == 0 ? 5.0 : 5.5); }};
+    set("offsets", list_setting(list));
     EXPECT_THAT(range_fault("offsets"), testing::HasSubstr("element 1 is over its greatest value 5"));
 }
 
@@ -238,9 +236,7 @@ struct Free {
 TEST(PropertyWithoutRange, is_a_number_all_the_same_as_is_each_of_its_elements) {
     using Real = std::numeric_limits<double>;
     static std::array<double, 4> four{};
-    static constexpr ListSetting list{
-        4,
-        [](std::size_t i) { return PropertySetting{.kind = PropertySetting::Kind::real, .real = four[i]}; }};
+    static constexpr ListSetting list{4, [](std::size_t i) { return real_setting(four[i]); }};
     Free free;
     PropertyTransaction transaction;
     transaction.begin("free", component_type<Free>, &free);
@@ -250,10 +246,7 @@ TEST(PropertyWithoutRange, is_a_number_all_the_same_as_is_each_of_its_elements) 
             if (value < 0.0 && is_number(value) && each.name == "time") continue;
             four = {1.0, 2.0, value, 4.0};
             std::byte* const place = transaction.change(f);
-            each.property->set(place,
-                               each.property->is_list
-                                   ? PropertySetting{.kind = PropertySetting::Kind::list, .list = &list}
-                                   : PropertySetting{.kind = PropertySetting::Kind::real, .real = value});
+            each.property->set(place, each.property->is_list ? list_setting(list) : real_setting(value));
             const bool is_good = is_number(each.name == "scale" ? static_cast<float>(value) : value);
             const Sentence fault = PropertyTransaction::check_range(each, place);
             EXPECT_EQ(fault.empty(), is_good) << each.name << " = " << value;
@@ -309,15 +302,6 @@ TEST(Sequence, does_not_take_more_than_it_has_room_for) {
     Eigen::Vector3d vector;
     EXPECT_TRUE(axis.resize(reinterpret_cast<std::byte*>(&vector), 3));
     EXPECT_FALSE(axis.resize(reinterpret_cast<std::byte*>(&vector), 2));
-}
-
-TEST(Text, is_cut_nowhere_but_refused_when_it_is_too_long) {
-    Text<4> text{"warp"};
-    EXPECT_EQ(text.view(), "warp");
-    EXPECT_FALSE(text.assign("wefts"));
-    EXPECT_EQ(text.view(), "warp");
-    EXPECT_TRUE(text.assign(""));
-    EXPECT_EQ(text, Text<4>{});
 }
 
 } // namespace

@@ -1,8 +1,6 @@
 // What belongs to one activity is used by it alone: a device by its component, a port by its own.
-#include "kernel/component/facet.hpp"
 #include "kernel/component/one_activity.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/component/port_rig.hpp"
 
 namespace {
 
@@ -31,22 +29,15 @@ TEST(OneActivityDeathTest, is_not_any_other) {
 
 #ifdef TAPPET_ASSERTS_THREADS
 
-struct PortsOfAnActivityDeathTest : testing::Test {
-    static constexpr const PortOperations& port = PortAccess::data<double>;
-    Output<double> output;
-    Input<double> input;
-    Time own = at_ns(0), others = at_ns(0);
+struct PortsOfAnActivityDeathTest : testing::Test, LinkedPorts<double> {
+    Time others = at_ns(0);
 
-    PortsOfAnActivityDeathTest() {
-        port.set_clock(&output, false, &own);
-        port.set_clock(&input, true, &own);
-        port.link_local(&input, &output, nullptr);
-    }
+    PortsOfAnActivityDeathTest() : LinkedPorts{false} {}
 };
 
 TEST_F(PortsOfAnActivityDeathTest, are_used_in_it_and_by_who_runs_none) {
     output.write(1.0);
-    const RunsActivity here{0, &own};
+    const RunsActivity here{0, &now};
     output.write(2.0);
     EXPECT_EQ(input.get(), 2.0);
 }

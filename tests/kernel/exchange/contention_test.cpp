@@ -6,11 +6,11 @@
 #include "kernel/exchange/ring.hpp"
 
 #include "tests/kernel/exchange/contention.hpp"
+#include "tests/kernel/exchange/placed.hpp"
 #include "tests/kernel/exchange/stress.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -34,15 +34,12 @@ TEST_F(Contention, of_a_data_object) {
     EXPECT_GT(show("data object, read", read, write), 0u);
 }
 
-template <std::size_t Bytes> struct Storage {
-    alignas(128) std::array<std::byte, Bytes> bytes;
-};
-
 TEST_F(Contention, of_a_ring) {
     using Queue = Ring<Sealed<160>>;
-    auto storage = std::make_unique<Storage<Queue::bytes_for(16)>>();
+
     for (const Overflow overflow : {Overflow::reject, Overflow::drop_oldest}) {
-        Queue ring{storage->bytes.data(), 16, overflow};
+        PlacedRing<Queue> placed{16, overflow};
+        Queue& ring = placed.ring;
         Sealed<160> in = Sealed<160>::of(1);
         Sealed<160> out{};
         const auto push = [&] { return ring.push(in); };
@@ -54,13 +51,10 @@ TEST_F(Contention, of_a_ring) {
 }
 
 TEST_F(Contention, of_an_inbox) {
-    auto storage = std::make_unique<std::array<Storage<Mailbox::bytes_for(8)>, 2>>();
-    std::array<Mailbox, 2> mailboxes;
-    for (std::size_t i = 0; i < 2; ++i) mailboxes[i].place((*storage)[i].bytes.data(), 8, Overflow::reject);
-    Inbox inbox{mailboxes};
+    PlacedInbox placed{8, 2};
     const Message message{};
-    const auto post = [&] { return inbox.post(0, message); };
-    const auto serve = [&] { return inbox.run_all() != 0; };
+    const auto post = [&] { return placed.inbox.post(0, message); };
+    const auto serve = [&] { return placed.inbox.run_all() != 0; };
     EXPECT_GT(show("inbox, post", post, serve), 0u);
     EXPECT_GT(show("inbox, serve all", serve, post), 0u);
 }

@@ -8,7 +8,7 @@
 
 #include <atomic>
 #include <cstdint>
-#include <cstring>
+
 #include <thread>
 
 namespace {
@@ -18,11 +18,13 @@ using namespace tappet;
 /// Every byte of it follows from the number.
 Message numbered(std::uint32_t number) {
     Message message;
-    message.id = number;
+    message.id = message.epoch = number;
     message.arguments.fill(static_cast<std::byte>(number * 37));
     return message;
 }
-bool whole(const Message& message) { return message.arguments == numbered(message.id).arguments; }
+bool whole(const Message& message) {
+    return message.epoch == message.id && message.arguments == numbered(message.id).arguments;
+}
 
 TEST(LatestMessage, gives_nothing_before_the_first_and_each_one_once) {
     LatestMessage latest;

@@ -1,12 +1,12 @@
 // Inbox: messages of many senders to one engine, each sender's order kept.
 #include "kernel/exchange/mailbox.hpp"
 
+#include "tests/kernel/exchange/placed.hpp"
 #include "tests/kernel/exchange/stress.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -17,33 +17,7 @@ namespace {
 
 using namespace tappet;
 
-/// An inbox with mailboxes and their storage.
-class Post {
-public:
-    Post(std::size_t senders, std::size_t capacity)
-        : capacity_bytes_(Mailbox::bytes_for(capacity)),
-          storage_((senders * capacity_bytes_ + sizeof(Line) - 1) / sizeof(Line)),
-          boxes(senders) {
-        for (std::size_t i = 0; i < senders; ++i) {
-            const std::size_t offset = i * capacity_bytes_;
-            boxes[i].place(storage_[offset / sizeof(Line)].bytes, capacity, Overflow::reject);
-        }
-        inbox.place(boxes);
-    }
-
-private:
-    struct alignas(64) Line {
-        std::byte bytes[64];
-    };
-    static_assert(Mailbox::alignment == sizeof(Line) && Mailbox::bytes_for(1) % sizeof(Line) == 0);
-
-    std::size_t capacity_bytes_;
-    std::vector<Line> storage_;
-
-public:
-    std::vector<Mailbox> boxes;
-    Inbox inbox;
-};
+static_assert(Mailbox::bytes_for(1) % Mailbox::alignment == 0, "mailboxes lie beside one another");
 
 Message numbered(std::uint32_t id) {
     Message message;
@@ -64,14 +38,14 @@ struct Served {
 };
 
 TEST(Inbox, has_nothing_at_first) {
-    Post post{3, 4};
+    PlacedInbox post{4, 3};
     Served served;
     EXPECT_FALSE(post.inbox.pending());
     EXPECT_EQ(post.inbox.serve(served), 0u);
 }
 
 TEST(Inbox, serves_senders_in_their_order_and_each_in_the_order_it_sent) {
-    Post post{3, 4};
+    PlacedInbox post{4, 3};
     EXPECT_TRUE(post.inbox.post(2, numbered(20)));
     EXPECT_TRUE(post.inbox.post(0, numbered(1)));
     EXPECT_TRUE(post.inbox.post(2, numbered(21)));
@@ -85,7 +59,7 @@ TEST(Inbox, serves_senders_in_their_order_and_each_in_the_order_it_sent) {
 }
 
 TEST(Inbox, takes_64_senders_and_no_65th) {
-    Post post{65, 1};
+    PlacedInbox post{1, 65};
     EXPECT_TRUE(post.inbox.post(63, numbered(63)));
     EXPECT_TRUE(post.inbox.post(0, numbered(0)));
     EXPECT_FALSE(post.inbox.post(64, numbered(64)));
@@ -102,20 +76,20 @@ TEST(Inbox, without_mailboxes_refuses_every_post) {
 }
 
 TEST(Inbox, refuses_a_message_when_the_senders_mailbox_is_full_and_counts_it) {
-    Post post{2, 2};
+    PlacedInbox post{2, 2};
     EXPECT_TRUE(post.inbox.post(1, numbered(1)));
     EXPECT_TRUE(post.inbox.post(1, numbered(2)));
     EXPECT_FALSE(post.inbox.post(1, numbered(3)));
     EXPECT_TRUE(post.inbox.post(0, numbered(4))) << "the other senders have room of their own";
-    EXPECT_EQ(post.boxes[1].lost(), 1u);
-    EXPECT_EQ(post.boxes[0].lost(), 0u);
+    EXPECT_EQ(post.mailboxes[1].lost(), 1u);
+    EXPECT_EQ(post.mailboxes[0].lost(), 0u);
     Served served;
     post.inbox.serve(served);
     EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{4, 1, 2}));
 }
 
 TEST(Inbox, leaves_what_is_posted_while_it_serves_a_mailbox_for_the_next_call) {
-    Post post{1, 8};
+    PlacedInbox post{8};
     EXPECT_TRUE(post.inbox.post(0, numbered(1)));
     EXPECT_TRUE(post.inbox.post(0, numbered(2)));
     std::size_t calls = 0;
@@ -133,7 +107,7 @@ TEST(Inbox, leaves_what_is_posted_while_it_serves_a_mailbox_for_the_next_call) {
 }
 
 TEST(Inbox, runs_each_message_with_its_object_and_its_arguments) {
-    Post post{1, 4};
+    PlacedInbox post{4};
     double sum = 0;
     Message message;
     message.object = &sum;
@@ -161,7 +135,7 @@ TEST(Message, keeps_its_arguments_aligned_for_any_number) {
 TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
     constexpr std::size_t senders = 4;
     constexpr std::uint32_t last = 10'000;
-    Post post{senders, 7};
+    PlacedInbox post{7, senders};
     std::array<std::uint32_t, senders> seen{};
     bool ordered = true;
 

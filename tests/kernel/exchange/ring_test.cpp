@@ -1,10 +1,16 @@
-// Ring: a buffer of one writer and one reader, and what it does when it is full.
+// Ring: a buffer of one writer and one reader, and what it does when it is full. LocalRing: the one inside
+// one activity (thesis 4.4).
 #include "kernel/exchange/ring.hpp"
+
+#include "kernel/exchange/local_ring.hpp"
+#include "tests/kernel/exchange/placed.hpp"
 
 #include "tests/kernel/exchange/preemption.hpp"
 #include "tests/kernel/exchange/stress.hpp"
 
 #include <gtest/gtest.h>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <atomic>
@@ -18,21 +24,10 @@ namespace {
 
 using namespace tappet;
 
-/// A ring with the storage it asks for.
-template <class T, template <class> class Atomic = std::atomic> struct Placed {
-    using Queue = Ring<T, Atomic>;
-    struct alignas(64) Line {
-        std::byte bytes[64];
-    };
-    static_assert(Queue::alignment <= alignof(Line));
+template <class T, template <class> class Atomic = std::atomic>
+using Placed = PlacedRing<Ring<T, Atomic>>;
 
-    Placed(std::size_t capacity, Overflow overflow)
-        : storage((Queue::bytes_for(capacity) + sizeof(Line) - 1) / sizeof(Line)),
-          ring(storage.front().bytes, capacity, overflow) {}
-
-    std::vector<Line> storage;
-    Queue ring;
-};
+static_assert(LocalRing<int>::bytes_for(7) == sizeof(int) * 7 && LocalRing<double>::alignment == 8);
 
 TEST(Ring, refuses_everything_until_it_is_placed) {
     Ring<int> ring;
@@ -129,19 +124,22 @@ TEST(Ring, remembers_the_most_that_were_ever_inside) {
 TEST(Ring, is_empty_again_after_it_is_placed_anew_in_a_machine_that_restarts) {
     Placed<int> placed{4, Overflow::reject};
     EXPECT_TRUE(placed.ring.push(1));
-    Ring<int> again{placed.storage.front().bytes, 4, Overflow::drop_oldest};
+    Ring<int> again{placed.memory.data(), 4, Overflow::drop_oldest};
     int value = 0;
     EXPECT_FALSE(again.pop(value));
 }
 
-// Any sequence of pushes and pops does what a plain queue with the same rule does.
-TEST(Ring, agrees_with_a_plain_queue_on_random_sequences) {
+// Any sequence of pushes and pops does what a plain queue with the same rule does; `of` makes a number's
+// value.
+template <class Queue>
+void agrees_with_a_plain_queue(auto of) {
     Random random{stress_seed()};
+    std::uint64_t lost_in_all = 0;
     for (int round = 0; round < 200; ++round) {
-        const auto capacity = static_cast<std::size_t>(random.between(1, 9));
+        const auto capacity = static_cast<std::size_t>(random.between(1, 16));
         const Overflow overflow = random.one_in(2) ? Overflow::reject : Overflow::drop_oldest;
         const std::uint64_t bias = 2 + random.below(4);
-        Placed<Sealed<40>> placed{capacity, overflow};
+        PlacedRing<Queue> placed{capacity, overflow};
         std::deque<std::uint64_t> model;
         std::uint64_t lost = 0;
         std::size_t mark = 0;
@@ -149,25 +147,37 @@ TEST(Ring, agrees_with_a_plain_queue_on_random_sequences) {
             if (random.below(bias) != 0) {
                 const bool full = model.size() == capacity;
                 const bool taken = !full || overflow == Overflow::drop_oldest;
-                ASSERT_EQ(placed.ring.push(Sealed<40>::of(step)), taken);
+                ASSERT_EQ(placed.ring.push(of(step)), taken);
                 if (full) ++lost;
                 if (full && taken) model.pop_front();
                 if (taken) model.push_back(step);
                 mark = std::max(mark, model.size());
             } else {
-                Sealed<40> value;
+                auto value = of(1000);
                 ASSERT_EQ(placed.ring.pop(value), !model.empty());
-                if (!model.empty()) {
-                    ASSERT_TRUE(value.whole());
-                    ASSERT_EQ(value.number(), model.front());
-                    model.pop_front();
-                }
+                ASSERT_EQ(value, of(model.empty() ? 1000 : model.front())) << "the next, or untouched";
+                if (!model.empty()) model.pop_front();
             }
             ASSERT_EQ(placed.ring.size(), model.size());
+            ASSERT_EQ(placed.ring.empty(), model.empty());
             ASSERT_EQ(placed.ring.lost(), lost);
             ASSERT_EQ(placed.ring.high_water(), mark);
         }
+        ASSERT_EQ(placed.ring.capacity(), capacity);
+        lost_in_all += lost;
     }
+    EXPECT_GT(lost_in_all, 0u) << "full rings were met";
+}
+
+TEST(Ring, agrees_with_a_plain_queue_on_random_sequences) {
+    agrees_with_a_plain_queue<Ring<Sealed<40>>>([](std::uint64_t number) { return Sealed<40>::of(number); });
+}
+
+TEST(LocalRing, agrees_with_a_plain_queue_on_random_sequences) {
+    agrees_with_a_plain_queue<LocalRing<Eigen::Vector3d>>([](std::uint64_t number) {
+        const auto value = static_cast<double>(number);
+        return Eigen::Vector3d{value, 0, -value};
+    });
 }
 
 // What every schedule must keep, checked at the end of one: whole values in order, and each value pushed
@@ -204,10 +214,11 @@ struct Ledger {
     }
 };
 
-TEST(Ring, withstands_any_burst_of_pushes_at_any_point_of_a_pop) {
+/// One call of `tested`, interrupted at each of its accesses by up to `most` calls of `other`.
+void withstands_any_burst(std::size_t most, auto other, auto tested) {
     for (const Overflow overflow : {Overflow::reject, Overflow::drop_oldest}) {
         for (std::size_t before = 0; before < 8; ++before) {
-            for (std::size_t burst = 0; burst < 12; ++burst) {
+            for (std::size_t burst = 0; burst <= most; ++burst) {
                 std::size_t accesses = 1;
                 for (std::size_t at = 0; at < accesses; ++at) {
                     SCOPED_TRACE(testing::Message()
@@ -215,39 +226,31 @@ TEST(Ring, withstands_any_burst_of_pushes_at_any_point_of_a_pop) {
                     Placed<Sealed<16>, Preemptible> placed{3, overflow};
                     Ledger ledger;
                     for (std::size_t i = 0; i < before; ++i) ledger.push(placed.ring);
-                    bool taken = false;
                     const auto intruder = [&] {
-                        for (std::size_t i = 0; i < burst; ++i) ledger.push(placed.ring);
+                        for (std::size_t i = 0; i < burst; ++i) other(ledger, placed.ring);
                     };
-                    accesses = Preemption::here().run(at, intruder, [&] { taken = ledger.pop(placed.ring); });
-                    EXPECT_TRUE(taken || before == 0) << "one burst costs one attempt";
+                    bool is_done = false;
+                    accesses =
+                        Preemption::here().run(at, intruder, [&] { is_done = tested(ledger, placed.ring); });
+                    EXPECT_TRUE(is_done || before == 0) << "one burst costs one attempt";
                     ledger.settle(placed.ring);
                 }
             }
         }
     }
 }
+constexpr auto push_one = [](Ledger& ledger, auto& ring) {
+    ledger.push(ring);
+    return true;
+};
+constexpr auto pop_one = [](Ledger& ledger, auto& ring) { return ledger.pop(ring); };
+
+TEST(Ring, withstands_any_burst_of_pushes_at_any_point_of_a_pop) {
+    withstands_any_burst(11, push_one, pop_one);
+}
 
 TEST(Ring, withstands_any_burst_of_pops_at_any_point_of_a_push) {
-    for (const Overflow overflow : {Overflow::reject, Overflow::drop_oldest}) {
-        for (std::size_t before = 0; before < 8; ++before) {
-            for (std::size_t burst = 0; burst < 6; ++burst) {
-                std::size_t accesses = 1;
-                for (std::size_t at = 0; at < accesses; ++at) {
-                    SCOPED_TRACE(testing::Message()
-                                 << "filled " << before << " burst " << burst << " at " << at);
-                    Placed<Sealed<16>, Preemptible> placed{3, overflow};
-                    Ledger ledger;
-                    for (std::size_t i = 0; i < before; ++i) ledger.push(placed.ring);
-                    const auto intruder = [&] {
-                        for (std::size_t i = 0; i < burst; ++i) ledger.pop(placed.ring);
-                    };
-                    accesses = Preemption::here().run(at, intruder, [&] { ledger.push(placed.ring); });
-                    ledger.settle(placed.ring);
-                }
-            }
-        }
-    }
+    withstands_any_burst(5, pop_one, push_one);
 }
 
 TEST(Ring, that_drops_gives_up_a_pop_after_its_attempts_and_goes_on_after_what_was_lost) {

@@ -3,8 +3,6 @@
 
 #include "kernel/base/random.hpp"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -25,7 +23,8 @@ template <std::size_t Bytes> struct Sealed {
         return value;
     }
     [[nodiscard]] std::uint64_t number() const { return words[0]; }
-    [[nodiscard]] bool whole() const { return words == of(number()).words; }
+    [[nodiscard]] bool whole() const { return *this == of(number()); }
+    bool operator==(const Sealed&) const = default;
 };
 
 /// What the environment gives, so that a failing seed can be repeated and many can be tried.
