@@ -2,25 +2,17 @@
 #pragma once
 
 #include "kernel/base/number.hpp"
-#include "kernel/base/random.hpp"
 #include "kernel/base/time.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/base/seeded.hpp"
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <random>
-#include <string>
 
 namespace tappet::test {
 
-struct Hostile : testing::Test {
-    std::uint64_t seed = std::random_device{}();
-    Random random{seed};
-    testing::ScopedTrace trace{__FILE__, __LINE__, "seed " + std::to_string(seed)};
+struct Hostile : Seeded {
 
     template <class T, std::size_t n>
     T one_of(const std::array<T, n>& of) {
@@ -45,8 +37,9 @@ struct Hostile : testing::Test {
     /// Over all that a double holds, or what machines have.
     double any_size() {
         if (random.one_in(3)) return std::bit_cast<double>(random.next());
-        return std::pow(10.0, 8.0 * random.unit() - 4.0);
+        return usual_size();
     }
+    double usual_size() { return std::pow(10.0, 8.0 * random.unit() - 4.0); }
     Duration step() {
         constexpr auto worst = std::to_array<Duration>({0ns, 1ns, 1ms, 1h, 9'223'372'036s, Duration::max()});
         const Duration size =

@@ -2,7 +2,6 @@
 // exactly.
 #pragma once
 
-#include "kernel/cam/estimator.hpp"
 #include "kernel/cam/schedule.hpp"
 #include "tests/kernel/cam/true_shaft.hpp"
 
@@ -16,12 +15,9 @@ struct Fired {
     Time at{};
 };
 
-inline ShaftProperties properties_for(const Sampling& sampling) {
-    ShaftProperties p;
-    p.codes_per_turn = sampling.codes_per_turn;
+inline ShaftProperties patient_properties_for(const Sampling& sampling) {
+    ShaftProperties p = properties_for(sampling);
     p.max_age = 8ms; // so many samples in a row are never missing by chance
-    p.stamp_latency = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 0.5e9)};
-    p.stamp_jitter = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 1e9 / 3.4641)};
     return p;
 }
 
@@ -31,7 +27,7 @@ template <std::size_t N> struct CamRig {
         : shaft(truth),
           sampling(how),
           random(seed),
-          estimator(properties_for(how)),
+          estimator(patient_properties_for(how)),
           schedule(table, properties) {}
 
     /// Until the true shaft's time `until_s`; the encoder is silent from `dark_from_s` to `dark_to_s`.

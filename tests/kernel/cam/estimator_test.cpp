@@ -1,30 +1,16 @@
 // The estimator against a simulated true shaft: how near it is, and what it does with bad samples.
-#include "kernel/cam/estimator.hpp"
+
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/cam/true_shaft.hpp"
-
-#include <gtest/gtest.h>
-
-#include <random>
-#include <string>
 
 namespace tappet::test {
 namespace {
 
-std::uint64_t any_seed() { return std::random_device{}(); }
-
-ShaftProperties properties_for(const Sampling& sampling) {
-    ShaftProperties p;
-    p.codes_per_turn = sampling.codes_per_turn;
-    p.stamp_latency = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 0.5e9)};
-    p.stamp_jitter = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 1e9 / 3.4641)};
-    return p;
-}
+using AnEstimator = Seeded;
 
 // Follows the shaft and collects the angle's error between the samples (up to 0.9 ms after one) from
 // `from_s` on.
-void follow(const TrueShaft& shaft, const Sampling& sampling, double from_s, std::uint64_t seed,
-            Errors& errors) {
-    Random random(seed);
+void follow(const TrueShaft& shaft, const Sampling& sampling, double from_s, Random& random, Errors& errors) {
     ShaftEstimator estimator{properties_for(sampling)};
     const double offset = random.unit() * 360.0;
     double t = 0.0;
@@ -69,17 +55,15 @@ std::vector<Case> cases() {
     return all;
 }
 
-TEST(ShaftEstimator, is_near_the_true_angle_between_samples) {
+TEST_F(AnEstimator, is_near_the_true_angle_between_samples) {
     for (const double delay_s : {0.0, 100e-6}) {
         for (const std::uint32_t codes : {4096u, 180u}) {
             for (const Case& one : cases()) {
                 Errors errors;
-                const std::uint64_t seed = any_seed();
-                SCOPED_TRACE("seed " + std::to_string(seed));
+
                 const Sampling sampling{
                     .codes_per_turn = codes, .stamp_delay_s = delay_s, .missing_one_in = 20};
-                for (std::uint64_t run = 0; run < 10; ++run)
-                    follow(one.shaft, sampling, one.from_s, seed + run, errors);
+                for (int run = 0; run < 10; ++run) follow(one.shaft, sampling, one.from_s, random, errors);
                 const std::string what = one.name + ", " + std::to_string(codes) + " codes" +
                                          (delay_s > 0.0 ? ", stamps late up to 100 us" : "");
                 errors.print(what.c_str());
@@ -152,9 +136,9 @@ TEST(ShaftEstimator, stands_with_speed_exactly_zero_and_does_not_creep) {
     }
 }
 
-TEST(ShaftEstimator, stands_too_when_the_shaft_rests_on_the_edge_of_two_codes) {
+TEST_F(AnEstimator, stands_too_when_the_shaft_rests_on_the_edge_of_two_codes) {
     Settled s(0.0);
-    Random random{any_seed()};
+
     const std::uint32_t code = s.code();
     const ShaftPosition stood = s.estimator.at(at_s(s.t)).position;
     bool left = false;
@@ -287,10 +271,8 @@ TEST(ShaftEstimator, knows_the_time_of_a_crossing_ahead) {
     EXPECT_EQ(standing.estimator.when(ShaftPosition{1, {}}, at_s(standing.t)), never);
 }
 
-TEST(ShaftEstimator, survives_any_bytes) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+TEST_F(AnEstimator, survives_any_bytes) {
+
     ShaftEstimator estimator{ShaftProperties{}};
     std::int64_t t = 0;
     for (int i = 0; i < 200'000; ++i) {

@@ -1,11 +1,8 @@
 // Rows fire once per crossing, on their angle, whatever the shaft does.
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/cam/cam_rig.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cstring>
-#include <random>
-#include <string>
 
 namespace tappet::test {
 namespace {
@@ -18,7 +15,7 @@ constexpr auto loom =
               cam("last", at(359.9_deg)));
 static_assert(check(loom.view()).empty());
 
-std::uint64_t any_seed() { return std::random_device{}(); }
+using Cams = Seeded;
 
 // The angle at which the effect of a firing falls on the true shaft, against the angle asked for.
 template <std::size_t N>
@@ -46,17 +43,16 @@ template <std::size_t N> void expect_once_per_turn(const CamRig<N>& rig, const C
     }
 }
 
-TEST(CamSchedule, fires_every_row_exactly_once_per_turn_with_jitter_and_missing_samples) {
+TEST_F(Cams, fires_every_row_exactly_once_per_turn_with_jitter_and_missing_samples) {
     for (const std::uint32_t codes : {4096u, 180u}) {
         for (const double rpm : {60.0, 600.0, 2000.0}) {
-            const std::uint64_t seed = any_seed();
-            SCOPED_TRACE("seed " + std::to_string(seed) + " codes " + std::to_string(codes));
+            SCOPED_TRACE("codes " + std::to_string(codes));
             Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 20};
             const double turns = rpm < 100.0 ? 200.0 : 3000.0;
             const double seconds = turns * 60.0 / rpm;
             TrueShaft shaft(123.0);
             shaft.jump(rpm * 6.0).hold(seconds);
-            CamRig rig(loom, shaft, sampling, seed);
+            CamRig rig(loom, shaft, sampling, random.next());
             rig.run(seconds);
             expect_once_per_turn(rig, loom, 1);
             for (std::size_t row = 0; row < loom.size(); ++row) {
@@ -69,8 +65,8 @@ TEST(CamSchedule, fires_every_row_exactly_once_per_turn_with_jitter_and_missing_
     }
 }
 
-TEST(CamSchedule, fires_in_the_order_of_the_effects) {
-    CamRig rig(loom, TrueShaft(10.0).jump(3600.0).hold(10.0), {}, any_seed());
+TEST_F(Cams, fires_in_the_order_of_the_effects) {
+    CamRig rig(loom, TrueShaft(10.0).jump(3600.0).hold(10.0), {}, random.next());
     rig.run(10.0);
     // No dead time lies between these two rows: the one at the greater angle comes later.
     ShaftPosition last{-100, {}};
@@ -82,14 +78,12 @@ TEST(CamSchedule, fires_in_the_order_of_the_effects) {
     EXPECT_GT(rig.fired.size(), 800u);
 }
 
-TEST(CamSchedule, puts_the_effect_on_the_angle_at_even_speeds) {
+TEST_F(Cams, puts_the_effect_on_the_angle_at_even_speeds) {
     for (const std::uint32_t codes : {4096u, 180u}) {
         for (const double rpm : {60.0, 600.0, 1350.0, 2000.0}) {
-            const std::uint64_t seed = any_seed();
-            SCOPED_TRACE("seed " + std::to_string(seed));
             Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 50};
             const double seconds = 30.0;
-            CamRig rig(loom, TrueShaft(17.0).jump(rpm * 6.0).hold(seconds), sampling, seed);
+            CamRig rig(loom, TrueShaft(17.0).jump(rpm * 6.0).hold(seconds), sampling, random.next());
             rig.run(seconds);
             Errors errors;
             for (const Fired& fired : rig.fired)
@@ -106,17 +100,14 @@ TEST(CamSchedule, puts_the_effect_on_the_angle_at_even_speeds) {
     }
 }
 
-TEST(CamSchedule, puts_the_effect_on_the_angle_during_the_run_up) {
+TEST_F(Cams, puts_the_effect_on_the_angle_during_the_run_up) {
     for (const std::uint32_t codes : {4096u, 180u}) {
         Errors errors;
         std::uint64_t skipped = 0;
         for (int run = 0; run < 50; ++run) {
-            const std::uint64_t seed = any_seed();
-            SCOPED_TRACE("seed " + std::to_string(seed));
-            Random random(seed);
             Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 50};
             const double start = random.unit() * 360.0;
-            CamRig rig(loom, TrueShaft(start).hold(0.1).ramp(3600.0, 0.5).hold(0.2), sampling, seed);
+            CamRig rig(loom, TrueShaft(start).hold(0.1).ramp(3600.0, 0.5).hold(0.2), sampling, random.next());
             rig.run(0.8);
             expect_once_per_turn(rig, loom, 1);
             for (const Fired& fired : rig.fired) errors.add(effect_error(rig, loom, fired));
@@ -132,14 +123,12 @@ TEST(CamSchedule, puts_the_effect_on_the_angle_during_the_run_up) {
     }
 }
 
-TEST(CamSchedule, fires_both_ways_when_a_row_says_so) {
+TEST_F(Cams, fires_both_ways_when_a_row_says_so) {
     constexpr auto table =
         cam_table(700_rpm, cam("both", at(90_deg), direction(Direction::both), dead_time(2ms)),
                   cam("forward", at(90_deg)),
                   cam("backward", at(90_deg), direction(Direction::backward), dead_time(2ms)),
                   cam("window", window(40_deg, 140_deg), direction(Direction::both)));
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
     // Ten turns forward, a stop, ten turns backward.
     TrueShaft shaft(0.0);
     shaft.hold(0.1)
@@ -150,7 +139,7 @@ TEST(CamSchedule, fires_both_ways_when_a_row_says_so) {
         .ramp(-1800.0, 0.2)
         .hold(1.8)
         .ramp(0.0, 0.2);
-    CamRig rig(table, shaft.hold(0.2), {.missing_one_in = 30}, seed);
+    CamRig rig(table, shaft.hold(0.2), {.missing_one_in = 30}, random.next());
     rig.run(shaft.end_s());
     EXPECT_EQ(rig.count(0, CamKind::point), 20u);
     EXPECT_EQ(rig.count(1, CamKind::point), 10u);
@@ -165,9 +154,9 @@ TEST(CamSchedule, fires_both_ways_when_a_row_says_so) {
     }
 }
 
-TEST(CamSchedule, has_nothing_due_while_the_shaft_stands) {
+TEST_F(Cams, has_nothing_due_while_the_shaft_stands) {
     for (const std::uint32_t codes : {4096u, 180u}) {
-        CamRig rig(loom, TrueShaft(80.0).hold(5.0), {.codes_per_turn = codes}, any_seed());
+        CamRig rig(loom, TrueShaft(80.0).hold(5.0), {.codes_per_turn = codes}, random.next());
         rig.run(5.0);
         EXPECT_TRUE(rig.fired.empty());
         EXPECT_EQ(rig.schedule.next_due(), never);
@@ -175,7 +164,7 @@ TEST(CamSchedule, has_nothing_due_while_the_shaft_stands) {
     }
 }
 
-TEST(CamSchedule, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
+TEST_F(Cams, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
     constexpr auto table =
         cam_table(700_rpm, cam("cam", at(90_deg)), cam("both", at(90_deg), direction(Direction::both)));
     TrueShaft shaft(0.0);
@@ -193,28 +182,28 @@ TEST(CamSchedule, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
             .ramp(20.0, 0.05)
             .ramp(0.0, 0.05);
     shaft.ramp(180.0, 0.1).ramp(0.0, 0.1);
-    CamRig rig(table, shaft, {}, any_seed());
+    CamRig rig(table, shaft, {}, random.next());
     rig.run(shaft.end_s());
     EXPECT_EQ(rig.count(0, CamKind::point), 2u); // once on the way out, once after the way back
     EXPECT_EQ(rig.count(1, CamKind::point), 3u);
 }
 
-TEST(CamSchedule, fires_once_when_the_shaft_stops_between_firing_and_effect) {
+TEST_F(Cams, fires_once_when_the_shaft_stops_between_firing_and_effect) {
     constexpr auto table = cam_table(700_rpm, cam("slow_valve", at(180_deg), dead_time(20ms)));
     // 72 degrees ahead at 600 rpm; braked at 120, the shaft stands at about 160 and goes on later.
     TrueShaft shaft(-150.0);
     shaft.jump(3600.0).hold(0.075).brake(40.0).hold(0.5).ramp(360.0, 0.05).hold(0.2);
-    CamRig rig(table, shaft, {}, any_seed());
+    CamRig rig(table, shaft, {}, random.next());
     rig.run(shaft.end_s());
     EXPECT_EQ(rig.count(0, CamKind::point), 1u);
 }
 
-TEST(CamSchedule, fires_late_at_once_and_counts_it_when_a_dead_time_reaches_back_before_now) {
+TEST_F(Cams, fires_late_at_once_and_counts_it_when_a_dead_time_reaches_back_before_now) {
     constexpr auto table = cam_table(700_rpm, cam("valve", at(30_deg), dead_time(10ms), min_speed(300_rpm)));
     // min_speed is reached at about 20 degrees, where the effect already lies 18 degrees ahead.
     TrueShaft shaft(0.0);
     shaft.hold(0.1).accelerate(1800.0 * 1800.0 / 40.0, 40.0 / 1800.0).hold(0.3);
-    CamRig rig(table, shaft, {}, any_seed());
+    CamRig rig(table, shaft, {}, random.next());
     rig.run(0.16);
     ASSERT_EQ(rig.count(0, CamKind::point), 1u);
     EXPECT_EQ(rig.schedule.counters().late, 1u);
@@ -222,30 +211,29 @@ TEST(CamSchedule, fires_late_at_once_and_counts_it_when_a_dead_time_reaches_back
     EXPECT_EQ(rig.schedule.counters().latest_deg, rig.fired[0].event.late_deg);
 }
 
-TEST(CamSchedule, fires_nothing_below_its_least_speed_but_leaves_windows) {
+TEST_F(Cams, fires_nothing_below_its_least_speed_but_leaves_windows) {
     constexpr auto table = cam_table(700_rpm, cam("point", at(90_deg), min_speed(100_rpm)),
                                      cam("window", window(40_deg, 270_deg), min_speed(100_rpm)));
     TrueShaft shaft(0.0);
     shaft.hold(0.1).ramp(300.0, 0.1).hold(2.4); // two turns at 50 rpm: nothing
-    CamRig slow(table, shaft, {}, any_seed());
+    CamRig slow(table, shaft, {}, random.next());
     slow.run(shaft.end_s());
     EXPECT_TRUE(slow.fired.empty());
     EXPECT_EQ(slow.schedule.counters().skipped_slow, 4u);
 
     TrueShaft braked(-180.0);
     braked.jump(3600.0).hold(0.09).ramp(120.0, 0.01).hold(1.5); // enters at speed, leaves at 20 rpm
-    CamRig rig(table, braked, {}, any_seed());
+    CamRig rig(table, braked, {}, random.next());
     rig.run(braked.end_s());
     EXPECT_EQ(rig.count(1, CamKind::enter), 1u);
     EXPECT_EQ(rig.count(1, CamKind::leave), 1u);
     EXPECT_FALSE(rig.schedule.inside(1));
 }
 
-TEST(CamSchedule, skips_and_counts_what_passed_in_the_dark_and_never_fires_a_burst) {
+TEST_F(Cams, skips_and_counts_what_passed_in_the_dark_and_never_fires_a_burst) {
     for (const double dark_s : {0.03, 0.35, 2.0}) {
-        const std::uint64_t seed = any_seed();
-        SCOPED_TRACE("seed " + std::to_string(seed) + " dark " + std::to_string(dark_s));
-        CamRig rig(loom, TrueShaft(0.0).jump(3600.0).hold(4.0), {}, seed);
+        SCOPED_TRACE("dark " + std::to_string(dark_s));
+        CamRig rig(loom, TrueShaft(0.0).jump(3600.0).hold(4.0), {}, random.next());
         rig.run(1.0);
         const std::size_t before = rig.fired.size();
         rig.run(1.0 + dark_s, 0.0, 1.0 + dark_s);
@@ -265,10 +253,10 @@ TEST(CamSchedule, skips_and_counts_what_passed_in_the_dark_and_never_fires_a_bur
     }
 }
 
-TEST(CamSchedule, leaves_an_open_window_when_the_encoder_comes_back_elsewhere) {
+TEST_F(Cams, leaves_an_open_window_when_the_encoder_comes_back_elsewhere) {
     constexpr auto table = cam_table(700_rpm, cam("valve", window(60_deg, 120_deg)));
     // At 0.12 s the shaft is at 72 degrees, inside; the encoder is dark until 0.2 s, at 0 degrees.
-    CamRig rig(table, TrueShaft(-360.0).jump(3600.0).hold(1.0), {}, any_seed());
+    CamRig rig(table, TrueShaft(-360.0).jump(3600.0).hold(1.0), {}, random.next());
     rig.run(0.21, 0.12, 0.2);
     ASSERT_EQ(rig.count(0, CamKind::enter), 2u); // a turn before, too
     ASSERT_EQ(rig.count(0, CamKind::leave), 2u);
@@ -291,14 +279,12 @@ void expect_left_once(const CamRig<2>& rig) {
     }
 }
 
-TEST(CamSchedule, leaves_a_window_in_which_the_shaft_comes_to_stand) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
+TEST_F(Cams, leaves_a_window_in_which_the_shaft_comes_to_stand) {
     TrueShaft shaft(-360.0);
     shaft.jump(3600.0).hold(460.0 / 3600.0).brake(40.0); // from 100 to 140 degrees
     const double stands = shaft.end_s();
     shaft.hold(0.5).ramp(1800.0, 0.1).hold(0.5);
-    CamRig rig(valves, shaft, {.missing_one_in = 30}, seed);
+    CamRig rig(valves, shaft, {.missing_one_in = 30}, random.next());
     rig.run(stands + 0.001);
     EXPECT_TRUE(rig.schedule.inside(0));
     rig.run(stands + 0.05);
@@ -314,38 +300,38 @@ TEST(CamSchedule, leaves_a_window_in_which_the_shaft_comes_to_stand) {
     EXPECT_GE(rig.count(0, CamKind::enter), 4u) << "from the next turn on it is entered as before";
 }
 
-TEST(CamSchedule, leaves_a_window_that_a_dead_time_entered_ahead_of_a_shaft_that_stops_before_it) {
+TEST_F(Cams, leaves_a_window_that_a_dead_time_entered_ahead_of_a_shaft_that_stops_before_it) {
     constexpr auto table = cam_table(700_rpm, cam("slow_valve", window(180_deg, 300_deg), dead_time(20ms)));
     TrueShaft shaft(-150.0); // 72 degrees ahead: entered at 108; braked at 120, it stands at 160
     shaft.jump(3600.0).hold(0.075).brake(40.0).hold(0.1);
-    CamRig rig(table, shaft, {}, any_seed());
+    CamRig rig(table, shaft, {}, random.next());
     rig.run(shaft.end_s());
     EXPECT_EQ(rig.count(0, CamKind::enter), 1u);
     EXPECT_EQ(rig.count(0, CamKind::leave), 1u);
 }
 
-TEST(CamSchedule, leaves_a_window_that_was_entered_backward_and_in_which_the_shaft_stands) {
+TEST_F(Cams, leaves_a_window_that_was_entered_backward_and_in_which_the_shaft_stands) {
     TrueShaft shaft(360.0);
     shaft.hold(0.1).ramp(-1800.0, 0.05).hold(0.1).ramp(0.0, 0.02).hold(0.1); // to 117 degrees
-    CamRig rig(valves, shaft, {}, any_seed());
+    CamRig rig(valves, shaft, {}, random.next());
     rig.run(shaft.end_s());
     EXPECT_EQ(rig.count(1, CamKind::enter), 1u);
     EXPECT_EQ(rig.count(0, CamKind::enter), 0u);
     expect_left_once(rig);
 }
 
-TEST(CamSchedule, leaves_a_window_whose_shaft_turns_back_out_of_it) {
+TEST_F(Cams, leaves_a_window_whose_shaft_turns_back_out_of_it) {
     TrueShaft shaft(0.0);
     shaft.hold(0.1).ramp(1800.0, 0.02).hold(0.045).ramp(-1800.0, 0.02).hold(0.08);
-    CamRig rig(valves, shaft, {}, any_seed());
+    CamRig rig(valves, shaft, {}, random.next());
     rig.run(shaft.end_s());
     EXPECT_EQ(rig.count(0, CamKind::enter), 1u);
     expect_left_once(rig);
 }
 
-TEST(CamSchedule, leaves_an_open_window_as_soon_as_the_encoder_is_silent_for_too_long) {
+TEST_F(Cams, leaves_an_open_window_as_soon_as_the_encoder_is_silent_for_too_long) {
     // At 0.12 s the shaft is at 72 degrees, inside, and turns on in the dark.
-    CamRig rig(valves, TrueShaft(-360.0).jump(3600.0).hold(2.0), {}, any_seed());
+    CamRig rig(valves, TrueShaft(-360.0).jump(3600.0).hold(2.0), {}, random.next());
     rig.run(0.12 + 0.011, 0.12, 1.0); // 8 ms are the age of what is believed
     expect_left_once(rig);
     EXPECT_EQ(rig.count(0, CamKind::enter), 2u);
@@ -354,8 +340,8 @@ TEST(CamSchedule, leaves_an_open_window_as_soon_as_the_encoder_is_silent_for_too
     EXPECT_EQ(rig.count(0, CamKind::leave), 2u) << "once";
 }
 
-TEST(CamSchedule, leaves_all_for_who_follows_the_shaft_no_longer) {
-    CamRig rig(valves, TrueShaft(0.0).jump(3600.0).hold(1.0), {}, any_seed());
+TEST_F(Cams, leaves_all_for_who_follows_the_shaft_no_longer) {
+    CamRig rig(valves, TrueShaft(0.0).jump(3600.0).hold(1.0), {}, random.next());
     rig.run(0.03); // 108 degrees
     ASSERT_TRUE(rig.schedule.inside(0) && rig.schedule.inside(1));
     std::size_t left = 0;
@@ -367,14 +353,14 @@ TEST(CamSchedule, leaves_all_for_who_follows_the_shaft_no_longer) {
     EXPECT_FALSE(rig.schedule.inside(0) || rig.schedule.inside(1));
 }
 
-TEST(CamSchedule, keeps_exclusive_windows_apart_when_they_touch) {
+TEST_F(Cams, keeps_exclusive_windows_apart_when_they_touch) {
     constexpr auto table = cam_table(2200_rpm, cam("b", window(120_deg, 240_deg), exclusive("g")),
                                      cam("a", window(0_deg, 120_deg), exclusive("g")),
                                      cam("c", window(240_deg, 0_deg), exclusive("g")));
     static_assert(check(table.view()).empty());
     TrueShaft shaft(10.0);
     shaft.jump(9000.0).hold(3.0);
-    CamRig rig(table, shaft, {.codes_per_turn = 180}, any_seed());
+    CamRig rig(table, shaft, {.codes_per_turn = 180}, random.next());
     rig.run(3.0);
     int open = 0;
     for (const Fired& fired : rig.fired) {
@@ -385,14 +371,11 @@ TEST(CamSchedule, keeps_exclusive_windows_apart_when_they_touch) {
 }
 
 // A shaft that is run up, braked, turned back and forth at random: what fires alternates as the truth does.
-TEST(CamSchedule, keeps_windows_paired_on_any_way_of_the_shaft) {
+TEST_F(Cams, keeps_windows_paired_on_any_way_of_the_shaft) {
     constexpr auto table =
         cam_table(1500_rpm, cam("w", window(50_deg, 170_deg), direction(Direction::both), dead_time(3ms)),
                   cam("v", window(250_deg, 20_deg), direction(Direction::forward), dead_time(1ms, 4ms)));
     for (int run = 0; run < 30; ++run) {
-        const std::uint64_t seed = any_seed();
-        SCOPED_TRACE("seed " + std::to_string(seed));
-        Random random(seed);
         TrueShaft shaft(random.unit() * 360.0);
         shaft.hold(0.1);
         for (int i = 0; i < 40; ++i) {
@@ -403,7 +386,7 @@ TEST(CamSchedule, keeps_windows_paired_on_any_way_of_the_shaft) {
         }
         const std::uint32_t codes = random.one_in(2) ? 180 : 4096;
         CamRig rig(table, shaft, {.codes_per_turn = codes, .stamp_delay_s = 50e-6, .missing_one_in = 40},
-                   seed);
+                   random.next());
         rig.run(shaft.end_s());
         for (std::size_t row = 0; row < 2; ++row) {
             bool inside = false;
@@ -419,7 +402,7 @@ TEST(CamSchedule, keeps_windows_paired_on_any_way_of_the_shaft) {
     }
 }
 
-TEST(CamSchedule, does_the_same_to_the_bit_for_the_same_seed) {
+TEST_F(Cams, does_the_same_to_the_bit_for_the_same_seed) {
     const auto run = [] {
         CamRig rig(loom, TrueShaft(0.0).hold(0.1).ramp(3600.0, 0.5).hold(1.0).brake(80.0),
                    {.stamp_delay_s = 100e-6, .missing_one_in = 20}, 4711);
@@ -438,9 +421,10 @@ TEST(CamSchedule, does_the_same_to_the_bit_for_the_same_seed) {
     EXPECT_EQ(once, 336675540384717305u) << "another compiler, or another estimator";
 }
 
-TEST(CamSchedule, fires_nothing_on_a_stale_estimate_even_when_the_timer_comes_late) {
+TEST_F(Cams, fires_nothing_on_a_stale_estimate_even_when_the_timer_comes_late) {
     constexpr auto table = cam_table(700_rpm, cam("cam", at(0_deg)));
-    CamRig rig(table, TrueShaft(-6.0 - 360.0).jump(3600.0).hold(1.0), {.period_jitter_s = 0.0}, any_seed());
+    CamRig rig(table, TrueShaft(-6.0 - 360.0).jump(3600.0).hold(1.0), {.period_jitter_s = 0.0},
+               random.next());
     rig.run(0.1); // 6 degrees before the cam, with one firing a turn ago
     const std::size_t before = rig.fired.size();
     ASSERT_NE(rig.schedule.next_due(), never);
@@ -451,7 +435,7 @@ TEST(CamSchedule, fires_nothing_on_a_stale_estimate_even_when_the_timer_comes_la
     EXPECT_EQ(rig.fired.size(), before + 1) << "the samples go on, and so does the schedule";
 }
 
-TEST(CamSchedule, does_nothing_before_the_first_samples) {
+TEST_F(Cams, does_nothing_before_the_first_samples) {
     CamSchedule schedule(loom);
     const ShaftEstimator estimator{ShaftProperties{}};
     schedule.update(estimator, Time{1s});

@@ -4,7 +4,7 @@
 
 #include "kernel/base/random.hpp"
 #include "kernel/base/time.hpp"
-#include "kernel/cam/angle.hpp"
+#include "kernel/cam/estimator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -107,5 +107,13 @@ struct Sampling {
     double stamp_delay_s = 0.0;    // the stamp lies up to so much behind the instant, uniformly
     std::uint64_t missing_one_in = 0;
 };
+
+inline ShaftProperties properties_for(const Sampling& sampling) {
+    ShaftProperties p;
+    p.codes_per_turn = sampling.codes_per_turn;
+    p.stamp_latency = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 0.5e9)};
+    p.stamp_jitter = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 1e9 / 3.4641)};
+    return p;
+}
 
 } // namespace tappet::test

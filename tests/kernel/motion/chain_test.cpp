@@ -1,20 +1,22 @@
 // Kinematics and dynamics of chains against values of the literature, and against what has to hold for any.
 #include "kernel/motion/dynamics.hpp"
 #include "kernel/motion/kinematics.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 #include "tests/kernel/motion/robots.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <string>
 
 namespace tappet::motion::test {
 namespace {
 
 using namespace robots;
+using namespace tappet::test;
+using K361 = Seeded;
+using Chains = Seeded;
 constexpr double pi = std::numbers::pi;
 
 template <int n>
@@ -84,7 +86,7 @@ Joints<6> of_cones(Joints<6> q) {
     return q;
 }
 
-TEST(K361, stands_where_its_own_formulas_have_it) {
+TEST_F(K361, stands_where_its_own_formulas_have_it) {
     const Joints<6> q = of_cones({.1, .2, 1.2426, 1.0373, 1.197, -1.0373});
     EXPECT_NEAR(q[4], 1.142269598239, 1e-12);
     const auto flange = forward(folded<k361>, q);
@@ -92,8 +94,7 @@ TEST(K361, stands_where_its_own_formulas_have_it) {
     expect_near<3>(Eigen::Vector3d{flange.rotation.col(2)}, {-.828109586, .274678942, .488657336}, 1e-9);
 }
 
-TEST(K361, is_the_product_of_its_turns_and_ways) {
-    Random random{any_seed()};
+TEST_F(K361, is_the_product_of_its_turns_and_ways) {
     const Joints<6> q = any_joints<6>(random, pi);
     const auto x = [](double angle) { return rotation_about({angle, 0, 0}); };
     const auto z = [](double angle) { return rotation_about({0, 0, angle}); };
@@ -107,8 +108,7 @@ TEST(K361, is_the_product_of_its_turns_and_ways) {
     EXPECT_NEAR((flange.position - position).norm(), 0.0, 1e-14);
 }
 
-TEST(Chains, move_as_their_jacobian_says) {
-    Random random{any_seed()};
+TEST_F(Chains, move_as_their_jacobian_says) {
     for (int round = 0; round < 200; ++round) {
         const Loaded robot{any_chain<6>(random)};
         const Joints<6> q = any_joints<6>(random, 3.0);
@@ -124,8 +124,7 @@ TEST(Chains, move_as_their_jacobian_says) {
     }
 }
 
-TEST(Chains, carry_a_load_at_their_end_by_the_transposed_jacobian) {
-    Random random{any_seed()};
+TEST_F(Chains, carry_a_load_at_their_end_by_the_transposed_jacobian) {
     for (int round = 0; round < 200; ++round) {
         const Loaded robot{any_chain<6>(random)};
         const Joints<6> q = any_joints<6>(random, 3.0);
@@ -141,9 +140,9 @@ TEST(Chains, carry_a_load_at_their_end_by_the_transposed_jacobian) {
 
 TEST(ChainsDeathTest, refuse_what_is_no_number) {
     Joints<6> q = zero;
-    q[4] = std::numeric_limits<double>::quiet_NaN();
+    q[4] = no_number;
     EXPECT_DEATH(static_cast<void>(forward(folded<k361>, q)), "contract 4 not-a-number: Element 4 ");
-    q[4] = std::numeric_limits<double>::infinity();
+    q[4] = infinite;
     EXPECT_DEATH(static_cast<void>(inverse_dynamics(folded<puma_560>, zero, q, zero)),
                  "contract 4 not-a-number: Element 4 ");
 }

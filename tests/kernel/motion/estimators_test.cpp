@@ -1,5 +1,6 @@
 // Estimators against what must come out: least squares over all measurements, and each other at rest.
 #include "kernel/motion/estimators.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -7,13 +8,13 @@
 #include <Eigen/Cholesky>
 
 #include <cmath>
-#include <limits>
-#include <string>
 
 namespace tappet::motion::test {
 namespace {
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+using namespace tappet::test;
+using KalmanFilter = Seeded;
+using SolvePositive = Seeded;
 
 TEST(AlphaBeta, follows_a_ramp_without_an_error_and_predicts_it) {
     for (const double memory : {0.0, 0.3, 0.8}) {
@@ -92,10 +93,7 @@ TEST(Kalman, comes_to_rest_at_the_gains_of_the_tracking_index) {
     EXPECT_NEAR(spread(1, 0) / total * h, gains.beta, 1e-9);
 }
 
-TEST(Kalman, without_noise_of_the_process_is_least_squares) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random{seed};
+TEST_F(KalmanFilter, without_noise_of_the_process_is_least_squares) {
     const Eigen::Matrix3d prior = Eigen::Vector3d{1.0, 4.0, 9.0}.asDiagonal();
     Kalman<3> filter{Eigen::Vector3d::Zero(), prior};
     Eigen::Matrix3d information = prior.inverse();
@@ -128,8 +126,7 @@ TEST(Kalman, refuses_outliers_and_what_is_no_number_and_stays_what_it_was) {
     EXPECT_DOUBLE_EQ(*distance, 4.0) << "four away, with a deviation of two";
 }
 
-TEST(SolvePositive, solves_and_refuses_what_is_singular) {
-    Random random{any_seed()};
+TEST_F(SolvePositive, solves_and_refuses_what_is_singular) {
     for (int round = 0; round < 100; ++round) {
         Eigen::Matrix<double, 6, 6> factor;
         for (int i = 0; i < 36; ++i) factor(i) = within(random, 1.0);

@@ -1,13 +1,12 @@
 // Frames, twists and wrenches: what holds whatever their numbers are, and what does not compile.
 #include "kernel/exchange/words.hpp"
 #include "kernel/motion/twist.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
-#include <string>
 
 namespace tappet::motion::test {
 namespace {
@@ -17,12 +16,7 @@ struct B;
 struct C;
 struct D;
 
-class Frames : public testing::Test {
-protected:
-    std::uint64_t seed = any_seed();
-    Random random{seed};
-    testing::ScopedTrace trace{__FILE__, __LINE__, "seed " + std::to_string(seed)};
-
+struct Frames : tappet::test::Seeded {
     template <class Body, class Reference, class At, class In>
     Twist<Body, Reference, At, In> any_twist() {
         const Eigen::Vector3d linear = any_vector(random, 3.0);

@@ -5,18 +5,13 @@
 #include "kernel/motion/pid.hpp"
 #include "kernel/pieces/integrator.hpp"
 #include "kernel/pieces/lead.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
+#include "tests/kernel/base/seeded.hpp"
 
 namespace tappet::motion {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN(),
-                 infinite = std::numeric_limits<double>::infinity(),
-                 largest = std::numeric_limits<double>::max();
+using test::no_number, test::infinite;
+constexpr double largest = std::numeric_limits<double>::max();
 constexpr Duration step = 1ms, constant = 10ms;
 constexpr int settles = 8000; // 800 time constants: of any double nothing is left
 
@@ -126,8 +121,8 @@ TEST_P(OneSample, does_not_stay_in_a_controller_without_limits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(thatIs, OneSample,
-                         testing::Values(none, infinite, -infinite, largest, -largest, 1e306, -1e306, 3.4e38,
-                                         -3.4e38, 1e-310, 0.0));
+                         testing::Values(no_number, infinite, -infinite, largest, -largest, 1e306, -1e306,
+                                         3.4e38, -3.4e38, 1e-310, 0.0));
 
 } // namespace
 } // namespace tappet::motion

@@ -155,7 +155,7 @@ TEST_F(Sequences, are_forgotten_by_a_kalman_filter) {
             static_cast<void>(filter.update<1>(Eigen::Matrix<double, 1, 1>{1.0}, of.sees, of.noise));
         }
         const Two before = filter;
-        filter.predict(of.f, of.q, {std::numeric_limits<double>::quiet_NaN(), 0.0});
+        filter.predict(of.f, of.q, {test::no_number, 0.0});
         ASSERT_EQ(filter.state(), before.state()) << "what is no number is left out";
         EXPECT_NEAR(filter.state()[0], 1.0, 1e-6);
         EXPECT_NEAR(filter.state()[1], 0.0, 1e-6);

@@ -24,9 +24,9 @@ struct Plans : test::Hostile {
     /// As values of one axis go, or each of any size.
     bool is_usual = random.one_in(2);
     double draw() {
-        return is_usual && !random.one_in(20) ? (2.0 * random.unit() - 1.0) * any_usual() : value();
+        return is_usual && !random.one_in(20) ? (2.0 * random.unit() - 1.0) * usual_size() : value();
     }
-    double any_usual() { return std::pow(10.0, 8.0 * random.unit() - 4.0); }
+
     AxisState any_state() {
         is_usual = random.one_in(2);
         const double position = draw(), velocity = draw();
@@ -178,8 +178,7 @@ TEST_F(Ways, through_any_places_are_numbers_all_along_or_are_refused) {
 
 TEST_F(Ways, with_what_is_no_number_anywhere_are_refused) {
     const Place good = any_place(1.0);
-    for (const double bad :
-         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    for (const double bad : {test::no_number, test::infinite})
         for (int i = 0; i < 12; ++i) {
             Place place;
             (i < 9 ? place.rotation(i) : place.position[i - 9]) = bad;

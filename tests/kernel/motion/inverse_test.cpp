@@ -1,6 +1,7 @@
 // Inverse kinematics: what leads there must be there, every branch of it, and no step may be too large.
 #include "kernel/motion/closed_form.hpp"
 #include "kernel/motion/least_squares.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 #include "tests/kernel/motion/robots.hpp"
 
@@ -8,13 +9,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <string>
 #include <utility>
 
 namespace tappet::motion::test {
 namespace {
+
+using namespace tappet::test;
+using ClosedForm = Seeded;
+using LeastSquares = Seeded;
+using DampedRates = Seeded;
 
 constexpr double pi = std::numbers::pi;
 
@@ -84,16 +88,13 @@ void all_lead_back(std::integer_sequence<std::uint64_t, seeds...>, Random& rando
     (leads_back<arm<seeds>>(random), ...);
 }
 
-TEST(ClosedForm, leads_back_to_the_joints_that_made_the_target) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random{seed};
+TEST_F(ClosedForm, leads_back_to_the_joints_that_made_the_target) {
     leads_back<robots::puma_560_links>(random);
     leads_back<robots::k361>(random);
     all_lead_back(std::make_integer_sequence<std::uint64_t, 16>{}, random);
 }
 
-TEST(ClosedForm, leaves_free_turns_where_they_are) {
+TEST_F(ClosedForm, leaves_free_turns_where_they_are) {
     const auto& k361 = folded<robots::k361>;
     // Stretched wrist: only the sum of joints 4 and 6 is known.
     const Joints<6> stretched{.3, .4, 1.1, .7, 0, -.2};
@@ -108,7 +109,7 @@ TEST(ClosedForm, leaves_free_turns_where_they_are) {
     EXPECT_LT((*kept - above).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST(ClosedForm, says_what_is_out_of_reach_and_what_is_outside_the_limits) {
+TEST_F(ClosedForm, says_what_is_out_of_reach_and_what_is_outside_the_limits) {
     const auto& puma = folded<robots::puma_560_links>;
     const Joints<6> q{.1, .2, .3, .4, .5, .6};
     auto far = forward(puma, q);
@@ -126,7 +127,7 @@ TEST(ClosedForm, says_what_is_out_of_reach_and_what_is_outside_the_limits) {
     EXPECT_NEAR((*turned)[4], .5 + 2.0 * pi, 1e-9);
 }
 
-TEST(ClosedForm, is_had_by_arms_with_a_wrist_only) {
+TEST_F(ClosedForm, is_had_by_arms_with_a_wrist_only) {
     Chain<Base, End, 6> offset = draw_arm(1);
     static_assert(has_closed_form(draw_arm(1)));
     offset.links[4].d_m = 0.1;
@@ -140,10 +141,7 @@ TEST(ClosedForm, is_had_by_arms_with_a_wrist_only) {
     EXPECT_FALSE(has_closed_form(Chain<Base, End, 5>{}));
 }
 
-TEST(LeastSquares, leads_back_from_nearby_in_a_few_steps) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random{seed};
+TEST_F(LeastSquares, leads_back_from_nearby_in_a_few_steps) {
     int most_steps = 0;
     int failures = 0;
     for (int round = 0; round < 300; ++round) {
@@ -171,7 +169,7 @@ TEST(LeastSquares, leads_back_from_nearby_in_a_few_steps) {
     EXPECT_LT((found->q - q).cwiseAbs().maxCoeff(), 1e-7);
 }
 
-TEST(LeastSquares, is_refused_where_no_joints_lead_and_holds_the_limits) {
+TEST_F(LeastSquares, is_refused_where_no_joints_lead_and_holds_the_limits) {
     const auto& puma = folded<robots::puma_560_links>;
     const Joints<6> q{.1, .2, .3, .4, .9, .6};
     auto far = forward(puma, q);
@@ -183,9 +181,8 @@ TEST(LeastSquares, is_refused_where_no_joints_lead_and_holds_the_limits) {
               Refused{Refusal::not_converged});
 }
 
-TEST(DampedRates, bring_about_the_twist_and_spare_the_joints_where_they_cannot) {
+TEST_F(DampedRates, bring_about_the_twist_and_spare_the_joints_where_they_cannot) {
     const auto& k361 = folded<robots::k361>;
-    Random random{any_seed()};
     const Joints<6> most = Joints<6>::Constant(2.0);
     for (int round = 0; round < 100; ++round) {
         const auto pose = forward_with_jacobian(k361, any_joints<6>(random, 3.0));
@@ -207,7 +204,7 @@ TEST(DampedRates, bring_about_the_twist_and_spare_the_joints_where_they_cannot) 
     EXPECT_NEAR(fast->cwiseAbs().maxCoeff(), 1e-3, 1e-15);
     EXPECT_LT((fast->normalized() - found->normalized()).norm(), 1e-12) << "the direction stays";
     EXPECT_EQ(damped_rates(pose.jacobian, twist, 0.0, most).error(), Refused{Refusal::limit_not_positive});
-    twist.angular.y() = std::numeric_limits<double>::quiet_NaN();
+    twist.angular.y() = no_number;
     EXPECT_EQ(damped_rates(pose.jacobian, twist, 0.1, most).error(), (Refused{Refusal::not_a_number, 4}));
 }
 

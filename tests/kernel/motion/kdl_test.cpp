@@ -1,6 +1,7 @@
 // Random chains against KDL, which computes the same another way: joint by joint, with dense matrices.
 #include "kernel/motion/dynamics.hpp"
 #include "kernel/motion/kinematics.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/kdl_chain.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
@@ -11,11 +12,12 @@
 #include <kdl/chainjnttojacsolver.hpp>
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 namespace tappet::motion::test {
 namespace {
+
+using Kdl = tappet::test::Seeded;
 
 /// Kinematics, Jacobian and inverse dynamics of both, with a load on the last link.
 template <int joints, class Robot>
@@ -62,10 +64,7 @@ void many_agree(int rounds, Random& random) {
     }
 }
 
-TEST(Kdl, agrees_on_thousands_of_chains_that_are_loaded) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random{seed};
+TEST_F(Kdl, agrees_on_thousands_of_chains_that_are_loaded) {
     many_agree<1>(300, random);
     many_agree<2>(300, random);
     many_agree<3>(500, random);
@@ -88,10 +87,7 @@ void folded_agree(std::integer_sequence<std::uint64_t, seeds...>, Random& random
         (agree<joints>(folded<drawn<seeds, joints>>, drawn<seeds, joints>, random), ...);
 }
 
-TEST(Kdl, agrees_on_chains_that_the_compiler_folds) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random{seed};
+TEST_F(Kdl, agrees_on_chains_that_the_compiler_folds) {
     folded_agree<3>(std::make_integer_sequence<std::uint64_t, 8>{}, random);
     folded_agree<6>(std::make_integer_sequence<std::uint64_t, 8>{}, random);
 }

@@ -1,14 +1,12 @@
 // Lines and arcs: where they lead, that their twists are the derivatives of their frames, and their limits.
 #include "kernel/motion/path.hpp"
 #include "kernel/motion/trajectory.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <string>
 
 namespace tappet::motion::test {
 namespace {
@@ -17,14 +15,9 @@ struct World;
 struct Tool;
 using Place = Frame<World, Tool>;
 using Way = Path<World, Tool>;
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+using tappet::test::no_number;
 
-class Paths : public testing::Test {
-protected:
-    std::uint64_t seed = any_seed();
-    Random random{seed};
-    testing::ScopedTrace trace{__FILE__, __LINE__, "seed " + std::to_string(seed)};
-
+struct Paths : tappet::test::Seeded {
     void expect_leads(const Way& way, const Place& from, const Place& to) {
         for (const auto& [share, place] : {std::pair{0.0, from}, std::pair{1.0, to}}) {
             const auto there = way.at({share, 0.0, 0.0}).frame;

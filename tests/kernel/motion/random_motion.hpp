@@ -5,11 +5,7 @@
 #include "kernel/motion/chain.hpp"
 #include "kernel/motion/frame.hpp"
 
-#include <random>
-
 namespace tappet::motion::test {
-
-inline std::uint64_t any_seed() { return std::random_device{}(); }
 
 /// In [-most, most).
 constexpr double within(Random& random, double most) { return (2.0 * random.unit() - 1.0) * most; }

@@ -1,15 +1,17 @@
 // Sine and cosine against those of 80 bits, and where they have to be exact.
 #include "kernel/motion/sine.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <string>
 
 namespace tappet::motion::test {
 namespace {
+
+using namespace tappet::test;
+using Sine = Seeded;
 
 // Constants and run time are one function.
 static_assert(sine_cosine(0.0).sine == 0.0 && sine_cosine(0.0).cosine == 1.0);
@@ -23,10 +25,7 @@ void expect_near_the_truth(double angle, SineCosine found) {
         << angle;
 }
 
-TEST(Sine, is_within_the_last_bit_over_many_turns) {
-    const std::uint64_t seed = any_seed();
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random{seed};
+TEST_F(Sine, is_within_the_last_bit_over_many_turns) {
     for (const double most : {1e-9, 0.8, 3.2, 100.0, 1e5, 1e7})
         for (int i = 0; i < 20000; ++i) {
             const double angle = within(random, most);
@@ -39,8 +38,7 @@ TEST(Sine, is_within_the_last_bit_over_many_turns) {
     }
 }
 
-TEST(Sine, of_degrees_is_that_of_their_angle) {
-    Random random{any_seed()};
+TEST_F(Sine, of_degrees_is_that_of_their_angle) {
     for (int i = 0; i < 20000; ++i) {
         const double degrees = within(random, 400.0);
         const auto found = sine_cosine_of_degrees(degrees);
@@ -51,8 +49,7 @@ TEST(Sine, of_degrees_is_that_of_their_angle) {
     }
 }
 
-TEST(Sine, of_two_angles_is_that_of_each) {
-    Random random{any_seed()};
+TEST_F(Sine, of_two_angles_is_that_of_each) {
     for (int i = 0; i < 20000; ++i) {
         const double a = within(random, 1e5);
         const double b = within(random, 7.0);
@@ -66,9 +63,8 @@ TEST(Sine, of_two_angles_is_that_of_each) {
     }
 }
 
-TEST(Sine, of_what_is_no_number_is_none) {
-    for (const double bad :
-         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+TEST_F(Sine, of_what_is_no_number_is_none) {
+    for (const double bad : {no_number, infinite}) {
         EXPECT_TRUE(std::isnan(sine_cosine(bad).sine));
         EXPECT_TRUE(std::isnan(sine_cosine(bad).cosine));
     }

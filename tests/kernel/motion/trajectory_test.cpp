@@ -1,25 +1,19 @@
 // Trajectories against their limits, an integrator and a search for something shorter; whatever the numbers.
 #include "kernel/motion/synchronised.hpp"
 #include "kernel/motion/trajectory.hpp"
+#include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <string>
 
 namespace tappet::motion::test {
 namespace {
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+using namespace tappet::test;
 
-class Trajectories : public testing::Test {
-protected:
-    std::uint64_t seed = any_seed();
-    Random random{seed};
-    testing::ScopedTrace trace{__FILE__, __LINE__, "seed " + std::to_string(seed)};
-
+struct Trajectories : Seeded {
     /// Over four decades.
     double any_size() { return std::pow(10.0, within(random, 2.0)); }
     AxisLimits any_limits() {
@@ -78,8 +72,8 @@ TEST_F(Trajectories, by_trapezoid_lead_from_any_state_to_rest_within_limits) {
         EXPECT_LE(plan->pieces(), 3u);
         EXPECT_EQ(plan->end().position, target);
         EXPECT_EQ(plan->at_s(-1.0).velocity, plan->pieces() > 0 ? from.velocity : 0.0);
-        expect_whole(*plan, {std::max(limits.velocity, std::fabs(from.velocity)), limits.acceleration,
-                             std::numeric_limits<double>::infinity()});
+        expect_whole(*plan,
+                     {std::max(limits.velocity, std::fabs(from.velocity)), limits.acceleration, infinite});
     }
 }
 
@@ -213,8 +207,7 @@ TEST_F(Trajectories, are_refused_for_what_is_no_number_and_no_limit) {
     EXPECT_EQ(trapezoid({0, 0, 0}, no_number, good).error(), Refused{Refusal::not_a_number});
     EXPECT_EQ(trapezoid({0, 0, 0}, 1.0, {0.0, 1.0, 1.0}).error(), Refused{Refusal::limit_not_positive});
     EXPECT_EQ(trapezoid({0, 0, 0}, 1.0, {1.0, no_number, 1.0}).error(), Refused{Refusal::limit_not_positive});
-    EXPECT_EQ(jerk_limited(0.0, std::numeric_limits<double>::infinity(), good).error(),
-              Refused{Refusal::not_a_number});
+    EXPECT_EQ(jerk_limited(0.0, infinite, good).error(), Refused{Refusal::not_a_number});
     EXPECT_EQ(jerk_limited(0.0, 1.0, {1.0, 1.0, -1.0}).error(), Refused{Refusal::limit_not_positive});
     EXPECT_EQ(stop({0, 0, no_number}, good).error(), Refused{Refusal::not_a_number});
     EXPECT_EQ(stop({0, 1, 0}, {1.0, 1.0, 0.0}).error(), Refused{Refusal::limit_not_positive});
