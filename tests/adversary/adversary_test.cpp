@@ -3,14 +3,12 @@
 #include "kernel/services/browsing/protocol.hpp"
 #include "tests/adversary/machine.hpp"
 #include "tests/adversary/plant.hpp"
+#include "tests/kernel/os/folder.hpp"
 #include "toolchain/machine/swarm.hpp"
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <functional>
-
-#include <unistd.h>
 
 namespace adversary {
 
@@ -103,14 +101,12 @@ TEST(Adversary, has_people_of_every_role_and_verb) {
 
 /// What it sent last it keeps: a release would leave it so.
 TEST(Bed, has_nothing_forced_of_a_driver_that_nobody_wrote) {
-    const std::string directory =
-        (std::filesystem::temp_directory_path() / ("tappet-bed-" + std::to_string(::getpid()))).string();
-    std::filesystem::create_directories(directory);
+    const test::Folder folder;
     Plant plant{1};
     VirtualRun run{on_host(), plant, 1};
-    run.browse_in(directory);
+    run.browse_in(folder.path);
     ASSERT_TRUE(run.start());
-    SwarmBrowser browser{directory + "/bed" + std::string{browsing::socket_suffix}};
+    SwarmBrowser browser{folder.path + "/bed" + std::string{browsing::socket_suffix}};
     const auto asked = [&](const std::string& request) {
         std::string said;
         static_cast<void>(browser.hear());
@@ -126,7 +122,6 @@ TEST(Bed, has_nothing_forced_of_a_driver_that_nobody_wrote) {
     EXPECT_THAT(asked("call valve.close"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(asked("force io.valve true"), HasSubstr("\"ok\": true"));
     browser.leave();
-    std::filesystem::remove_all(directory);
 }
 
 } // namespace

@@ -61,15 +61,15 @@ struct AskedClock : Rig {
         switch (what >> 4 & 7) {
         case 0: answer(); break;
         case 1: // it was set, or began anew
-            ahead = Duration{script.number() / 4};
+            ahead = Duration{number_of(script) / 4};
             is_true = false;
             break;
         case 2: tell(asking, given[what & 7U]); break;
-        case 3: tell(asking, script.next(what & 0xFU)); break;
-        case 4: lie(at_ns(script.number()), at_ns(script.number())); break;
+        case 3: tell(asking, bytes_of(script, what & 0xFU)); break;
+        case 4: lie(at_ns(number_of(script)), at_ns(number_of(script))); break;
         case 5:
             ask((what & 1) != 0 ? Bytes{given[what >> 1 & 7U]}
-                                : script.next(udp::clock_packet::bytes + (what & 2U)));
+                                : bytes_of(script, udp::clock_packet::bytes + (what & 2U)));
             break;
         default: step(Duration{1ms} * (1 << (what & 0xF)));
         }

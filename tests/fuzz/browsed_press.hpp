@@ -6,16 +6,44 @@
 #include "kernel/machine/accept.hpp"
 #include "kernel/os/local_socket.hpp"
 #include "kernel/services/configuration/property_files.hpp"
+#include "tests/fuzz/input.hpp"
 
-#include <cstdlib>
+#include <array>
+#include <optional>
 #include <string>
-
-#include <unistd.h>
 
 namespace tappet::press {
 
-inline void demand(bool holds) {
-    if (!holds) std::abort();
+using fuzz::demand;
+
+/// Hears what it is answered, each packet one object.
+struct Browser {
+    std::optional<os::LocalConnection> connection;
+    std::string last{};
+
+    void connect(const std::string& path) {
+        if (auto made = os::LocalConnection::connect(path.c_str())) connection.emplace(std::move(*made));
+    }
+    /// How many packets have come.
+    std::size_t hear() {
+        static std::array<char, browsing::max_packet_bytes + 1> room;
+        for (std::size_t packets = 0;; ++packets) {
+            if (!connection) return packets;
+            const auto received = connection->receive(room);
+            if (received.what == os::LocalConnection::Received::What::closed) connection.reset();
+            if (received.what != os::LocalConnection::Received::What::packet) return packets;
+            demand(received.bytes > 2 && room[0] == '{' && room[received.bytes - 1] == '\n');
+            last.assign(room.data(), received.bytes);
+        }
+    }
+};
+
+/// The first of some lines, which is taken from them.
+inline std::string_view next_line(std::string_view& lines) {
+    const std::size_t end = std::min(lines.find('\n'), lines.size());
+    const std::string_view line = lines.substr(0, end);
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+    return line;
 }
 
 template <const auto& machine_table> struct BrowsedPress {

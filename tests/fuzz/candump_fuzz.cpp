@@ -1,16 +1,12 @@
 // Any bytes as a line of a candump log: the reader says in which column it goes wrong, or gives a frame that
 // can be, and writes what it read in words that say the same.
 #include "drivers/can/candump.hpp"
-
-#include <cstdlib>
+#include "tests/fuzz/input.hpp"
 
 namespace {
 
 using namespace tappet::can;
-
-void demand(bool held) {
-    if (!held) std::abort();
-}
+using tappet::fuzz::demand;
 
 } // namespace
 

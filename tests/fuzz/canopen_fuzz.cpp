@@ -4,17 +4,14 @@
 // Each step is a byte that says who is to hear it, three quarters of a frame's identifier and its length, and
 // then its data.
 #include "tests/drivers/canopen/network_machine.hpp"
+#include "tests/fuzz/input.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace {
 
 using namespace tappet;
-
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
+using tappet::fuzz::demand;
 
 constexpr std::array<std::uint32_t, 10> to_machine{0x585, 0x587, 0x705, 0x707, 0x085,
                                                    0x087, 0x185, 0x187, 0x585, 0x705};

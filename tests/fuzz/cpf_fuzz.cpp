@@ -1,20 +1,17 @@
 // Any bytes as a properties file (thesis 4.7.1): the reader refuses with a sentence or takes values that it
 // then writes and reads back unchanged; it never reads outside its text and never ends.
 #include "kernel/services/configuration/cpf.hpp"
+#include "tests/fuzz/input.hpp"
 #include "tests/kernel/services/configuration/every_property.hpp"
 
 #include <array>
-#include <cstdlib>
 
 namespace {
 
 using namespace tappet;
+using tappet::fuzz::demand;
 
 std::array<char, 2 * max_cpf_bytes> written; // of values that a file gave, which are longer in our spelling
-
-void demand(bool held) {
-    if (!held) std::abort();
-}
 
 std::size_t write(every::Arm& arm, std::span<char> into) {
     static PropertyTransaction all;

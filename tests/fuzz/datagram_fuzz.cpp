@@ -12,8 +12,7 @@ using namespace tappet::fuzz;
 
 template <class Rig> void run(Script script) {
     Rig rig;
-    for (int steps = 0; !script.rest.empty() && steps < 300; ++steps)
-        rig.take(std::to_integer<std::uint8_t>(script.next(1)[0]), script);
+    for (int steps = 0; !script.rest.empty() && steps < 300; ++steps) rig.take(script.next(1)[0], script);
     rig.come_back();
 }
 

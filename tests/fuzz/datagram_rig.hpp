@@ -4,32 +4,20 @@
 
 #include "drivers/udp/twin.hpp"
 #include "kernel/component/component.hpp"
+#include "tests/fuzz/input.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cstdlib>
 
 namespace tappet::fuzz {
 
 using Bytes = std::span<const std::byte>;
 
-inline void demand(bool holds) {
-    if (!holds) std::abort();
+inline Bytes bytes_of(Script& script, std::size_t most) { return std::as_bytes(script.next(most)); }
+inline std::int64_t number_of(Script& script) {
+    std::int64_t value = 0;
+    std::ranges::copy(bytes_of(script, sizeof value), std::as_writable_bytes(std::span{&value, 1}).begin());
+    return value;
 }
-
-struct Script {
-    std::span<const std::uint8_t> rest;
-    Bytes next(std::size_t most) {
-        const auto part = rest.first(std::min(most, rest.size()));
-        rest = rest.subspan(part.size());
-        return std::as_bytes(part);
-    }
-    std::int64_t number() {
-        std::int64_t value = 0;
-        std::ranges::copy(next(sizeof value), std::as_writable_bytes(std::span{&value, 1}).begin());
-        return value;
-    }
-};
 
 struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};

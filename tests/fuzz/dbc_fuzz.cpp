@@ -2,18 +2,14 @@
 // come back as they were decoded; it never reads outside its text and never ends.
 #include "drivers/can/signal_store.hpp"
 #include "tests/drivers/can/dbc_on_host.hpp"
-
-#include <cstdlib>
+#include "tests/fuzz/input.hpp"
 
 namespace {
 
 using namespace tappet::can;
+using tappet::fuzz::demand;
 
 constexpr auto us = node("us");
-
-void demand(bool held) {
-    if (!held) std::abort();
-}
 
 } // namespace
 

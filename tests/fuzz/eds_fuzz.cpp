@@ -1,16 +1,12 @@
 // Any bytes as an EDS file: it is refused with a sentence that names a line, or its objects are in order and
 // within what their types hold.
 #include "drivers/canopen/eds.hpp"
-
-#include <cstdlib>
+#include "tests/fuzz/input.hpp"
 
 namespace {
 
 using namespace tappet::canopen;
-
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
+using tappet::fuzz::demand;
 
 constexpr std::size_t room = 600;
 

@@ -61,13 +61,13 @@ template <class Estimator> struct FollowedCamera : Rig {
         switch (what >> 4 & 7) {
         case 0: tell(twin, packet(++exposure)); break;
         case 1:
-            tell(twin, packet(exposure = static_cast<std::uint16_t>(script.number())));
+            tell(twin, packet(exposure = static_cast<std::uint16_t>(number_of(script))));
             break; // begins anew
         case 2: tell(twin, last); break;
-        case 3: tell(twin, script.next(what & 0xF)); break;
+        case 3: tell(twin, bytes_of(script, what & 0xF)); break;
         case 4: { // another content
             auto changed = packet(++exposure);
-            const Bytes place = script.next(1), by = script.next(8);
+            const Bytes place = bytes_of(script, 1), by = bytes_of(script, 8);
             for (std::size_t i = 0; i < by.size(); ++i)
                 changed[(std::to_integer<std::size_t>(place[0]) + i) % changed.size()] = by[i];
             tell(twin, changed);

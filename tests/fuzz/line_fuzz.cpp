@@ -2,12 +2,7 @@
 // refused with a sentence or come to an end, and leave a machine that goes on.
 #include "tests/kernel/services/interpreter/line_machine.hpp"
 
-#include "kernel/machine/accept.hpp"
-
-#include <cstdlib>
-#include <optional>
-#include <string>
-#include <string_view>
+#include "tests/fuzz/browsed_press.hpp"
 
 #include <unistd.h>
 
@@ -15,16 +10,11 @@ namespace {
 
 using namespace tappet;
 
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
+using fuzz::demand;
 
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<press::line_table, press::board>::machine(), clock};
-    VirtualWorld world{instance};
+struct Rig : press::BrowsedPress<press::line_table> {
+    using BrowsedPress::BrowsedPress;
 
-    void run(Duration time) { demand(world.run_until(clock.now() + time)); }
     /// Whether it was begun.
     bool execute(std::string_view line, Role role) {
         auto& interpreter = *instance.find<CommandInterpreter>("interpreter");
@@ -47,10 +37,7 @@ struct Rig {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const std::string directory = "/tmp/tappet-line-fuzz-" + std::to_string(getpid());
     static std::optional<Rig> rig;
-    rig.emplace();
-    rig->instance.browse_in(directory);
-    demand(rig->instance.configure({}).has_value());
-    rig->world.start();
+    rig.emplace(directory);
     rig->run(50ms);
     const std::string_view line{reinterpret_cast<const char*>(data), size};
     const auto& gauge = *rig->instance.find<press::Gauge>("gauge");
@@ -61,6 +48,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static_cast<void>(rig->execute(line, Role::engineer));
     demand(ram.speed.get() * ram.force.get() <= 100 && gauge.target.get() >= 0 && gauge.target.get() <= 50);
     demand(rig->execute("gauge.force * 2", Role::observer));
-    rig->instance.find<BrowserService>("browser")->finalise();
+    rig.reset();
     return 0;
 }

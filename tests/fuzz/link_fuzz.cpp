@@ -4,15 +4,16 @@
 //
 // Each step is a byte that says what comes, and what that takes of the bytes behind it.
 #include "tests/drivers/system/pair.hpp"
+#include "tests/fuzz/input.hpp"
 #include "toolchain/machine/system_run.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace {
 
 using namespace tappet;
+using tappet::fuzz::demand;
 using namespace tappet::pair;
 constexpr auto& plan = systems::plan_of<tappet::pair::pair>;
 constexpr auto all = [] {
@@ -20,10 +21,6 @@ constexpr auto all = [] {
     for (std::size_t f = 0; f < identifiers.size(); ++f) identifiers[f] = {plan.frames[f].id, false};
     return identifiers;
 }();
-
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
 
 struct Wire {
     std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
@@ -98,14 +95,9 @@ struct Wire {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Wire wire;
-    std::span<const std::uint8_t> rest{data, size};
-    const auto take = [&](std::size_t most) {
-        const auto part = rest.first(std::min(most, rest.size()));
-        rest = rest.subspan(part.size());
-        return part;
-    };
-    for (int steps = 0; !rest.empty() && steps < 60; ++steps) {
-        const std::uint8_t what = take(1)[0];
+    fuzz::Script script{{data, size}};
+    for (int steps = 0; !script.rest.empty() && steps < 60; ++steps) {
+        const std::uint8_t what = script.next(1)[0];
         const WireFrame& as = plan.frames[what % plan.frames.size()];
         can::Frame frame;
         frame.id = as.id;
@@ -113,19 +105,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         switch (what >> 5) {
         case 0: // whatever
             frame.length = std::min<std::uint8_t>(as.bytes, what & 7);
-            std::ranges::copy(take(8), frame.data.begin());
+            std::ranges::copy(script.next(8), frame.data.begin());
             wire.put(frame);
             wire.lies += frame.length == as.bytes ? 1 : 0;
             break;
         case 1: // a lie
-            std::ranges::copy(take(8), frame.data.begin());
+            std::ranges::copy(script.next(8), frame.data.begin());
             demand(protect(std::span{frame.data}.first(frame.length),
                            {.form = Protection::Form::id_both, .id = as.data_id}, frame.data[1] % 15));
             ++wire.lies;
             wire.put(frame);
             break;
         case 2: wire.put(wire.heard[what % wire.heard.size()]); break;
-        case 3: wire.damage(what % wire.heard.size(), take(1)); break;
+        case 3: wire.damage(what % wire.heard.size(), script.next(1)); break;
         case 4: wire.giver().to_send.push_back(++wire.sent); break;
         case 5: wire.giver().tells = wire.sent + 1.0, wire.giver().asks = what & 0xF; break;
         case 6: wire.begin_anew(what & 1, (what & 2) != 0); break;

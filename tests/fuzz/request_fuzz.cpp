@@ -3,28 +3,12 @@
 // right.
 #include "tests/fuzz/browsed_press.hpp"
 
-#include <array>
-#include <optional>
-#include <string>
-#include <string_view>
-
 #include <unistd.h>
 
 namespace {
 
 using namespace tappet;
 using press::demand;
-
-std::size_t read_all(const os::LocalConnection& client) {
-    static std::array<char, browsing::max_packet_bytes + 1> room;
-    std::size_t packets = 0;
-    while (true) {
-        const auto received = client.receive(room);
-        if (received.what != os::LocalConnection::Received::What::packet) return packets;
-        demand(received.bytes > 2 && room[0] == '{' && room[received.bytes - 1] == '\n');
-        ++packets;
-    }
-}
 
 } // namespace
 
@@ -33,21 +17,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const std::string path = directory + "/press.socket";
     static std::optional<press::BrowsedPress<press::table>> rig;
     rig.emplace(directory);
-    const auto client = os::LocalConnection::connect(path.c_str());
-    demand(client.has_value());
+    press::Browser client;
+    client.connect(path);
     std::string_view rest{reinterpret_cast<const char*>(data), size};
     for (int packets = 0; !rest.empty() && packets < 16; ++packets) {
-        const std::size_t end = rest.find('\n');
-        const std::string_view packet = rest.substr(0, end);
-        rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
+        const std::string_view packet = press::next_line(rest);
         if (packet.empty()) continue; // an empty packet reads like the end of the connection
-        demand(client->send(packet) == os::LocalConnection::Sent::sent);
+        demand(client.connection && client.connection->send(packet) == os::LocalConnection::Sent::sent);
         rig->run(60ms);
-        std::size_t answers = read_all(*client);
+        std::size_t answers = client.hear();
         // What an engine that was stopped is asked for, is given up in the end.
         for (int waits = 0; answers == 0 && waits < 60; ++waits) {
             rig->run(50ms);
-            answers = read_all(*client);
+            answers = client.hear();
         }
         demand(answers != 0);
         rig->check();

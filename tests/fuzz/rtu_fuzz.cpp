@@ -6,6 +6,7 @@
 // it.
 #include "drivers/modbus/libmodbus_transport.hpp"
 #include "drivers/modbus/session.hpp"
+#include "tests/fuzz/input.hpp"
 #include "tests/fuzz/serial_line.hpp"
 
 namespace {
@@ -13,10 +14,6 @@ namespace {
 using namespace tappet;
 using namespace tappet::modbus;
 using namespace tappet::fuzz;
-
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
 
 constexpr Duration answer_within = 10ms, silence = 1750us;
 constexpr auto map = register_map(
@@ -82,7 +79,7 @@ private:
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const std::string terminal = a_terminal();
-    Line here{.script = {data, size}, .now = Time{1s}};
+    Line here{.script = {{data, size}}, .now = Time{1s}};
     LibmodbusTransport transport;
     demand(
         transport.open({.line = Serial{terminal, 115200, 'N', 1}, .unit = 17, .answer_within = answer_within})
@@ -98,7 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             for (std::size_t v = 0; v < map.registers.size(); ++v)
                 demand(session.value(v).quality != Quality::good || is_number(session.value(v).value));
         };
-        for (int steps = 0; !here.script.empty() && steps < 2000; ++steps) step();
+        for (int steps = 0; !here.script.rest.empty() && steps < 2000; ++steps) step();
         here.script = {};
         const Time end = here.now;
         const std::uint64_t answers = session.counters().answers, requests = session.counters().requests;

@@ -3,20 +3,17 @@
 #include "tests/differential/unit_bench.hpp"
 
 #include "kernel/script/compile.hpp"
+#include "tests/fuzz/input.hpp"
 
-#include <cstdlib>
 #include <memory>
 #include <string_view>
 
 namespace {
 
 using namespace tappet;
+using tappet::fuzz::demand;
 
 constexpr ScriptSizes capacity = script_sizes_for(400, 8000, 3);
-
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
 
 } // namespace
 

@@ -87,15 +87,10 @@ struct Connection {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Connection c;
-    std::span<const std::uint8_t> rest{data, size};
-    const auto take = [&](std::size_t most) {
-        const auto part = rest.first(std::min(most, rest.size()));
-        rest = rest.subspan(part.size());
-        return part;
-    };
+    Script script{{data, size}};
     sdo::Payload last{};
-    for (int steps = 0; !rest.empty() && steps < 300; ++steps) {
-        const std::uint8_t what = take(1)[0];
+    for (int steps = 0; !script.rest.empty() && steps < 300; ++steps) {
+        const std::uint8_t what = script.next(1)[0];
         const Address of{static_cast<std::uint16_t>(0x2000 + (what & 3u)),
                          static_cast<std::uint8_t>((what & 0x1F) == 0x1F ? 1 : 0)};
         const auto change = static_cast<std::uint8_t>((what & 0x10) != 0 ? 1u << (what & 7u) : 0u);
@@ -103,13 +98,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         switch (what >> 5) {
         case 0: c.begin(false, of, {}); break;
         case 1: {
-            const auto value = take(1 + 4u * (what >> 2 & 7u));
+            const auto value = script.next(1 + 4u * (what >> 2 & 7u));
             if (!value.empty()) c.begin(true, of, value);
             break;
         }
         case 2: // to the client, anything
         case 3: // to the server
-            std::ranges::copy(take(8), frame.begin());
+            std::ranges::copy(script.next(8), frame.begin());
             (what >> 5) == 2 ? c.hear(last = frame) : static_cast<void>(c.serve(frame, answer));
             break;
         case 4: c.wait(Duration{10ms} * (what & 0x1F)); break;

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "drivers/canopen/sdo_server.hpp"
+#include "tests/fuzz/input.hpp"
 
-#include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <vector>
 
@@ -14,10 +13,6 @@ namespace tappet::fuzz {
 using namespace canopen;
 using Bytes = std::vector<std::uint8_t>;
 using Frames = std::vector<sdo::Payload>;
-
-inline void demand(bool holds) {
-    if (!holds) std::abort();
-}
 
 /// Appends what an expedited transfer carries, and says whether it is one.
 inline bool is_expedited(const sdo::Payload& frame, Bytes& into) {

@@ -6,11 +6,9 @@
 #include "tests/drivers/modbus/raw_server.hpp"
 
 #include "kernel/base/time.hpp"
+#include "tests/fuzz/input.hpp"
 
-#include <algorithm>
-#include <cstdlib>
 #include <deque>
-#include <span>
 
 #include <fcntl.h>
 #include <sys/select.h>
@@ -27,7 +25,7 @@ inline void seal(Bytes& frame) {
 }
 
 struct Line {
-    std::span<const std::uint8_t> script{};
+    Script script{};
     Time now{}, asked_at{}, first_taken_at{};
     int terminal = -1; ///< what libmodbus has open
     std::deque<std::pair<Time, std::uint8_t>> coming{};
@@ -35,8 +33,7 @@ struct Line {
     std::uint8_t questions = 0;
 
     Bytes next(std::size_t most) {
-        const auto part = script.first(std::min(most, script.size()));
-        script = script.subspan(part.size());
+        const auto part = script.next(most);
         return {part.begin(), part.end()};
     }
     /// As a good server does; each question has other values.
@@ -54,8 +51,8 @@ struct Line {
         taken.clear();
         ++questions;
         Time at = now;
-        if (script.empty()) return put(right(), true, at, {});
-        for (std::uint8_t what = 0xFF; at < now + 100ms && !script.empty() && what >> 5 != 0;) {
+        if (script.rest.empty()) return put(right(), true, at, {});
+        for (std::uint8_t what = 0xFF; at < now + 100ms && !script.rest.empty() && what >> 5 != 0;) {
             what = next(1)[0];
             Bytes answer = right();
             const Duration between = (what & 0x10) != 0 ? 700us : 0us;

@@ -6,17 +6,12 @@
 
 #include "kernel/services/interpreter/command_interpreter.hpp"
 
-#include <array>
-#include <optional>
-#include <string>
-#include <string_view>
-
 #include <unistd.h>
 
 namespace {
 
 using namespace tappet;
-using press::demand;
+using press::Browser, press::demand;
 
 struct RamCycle {
     static constexpr auto machine() {
@@ -45,24 +40,6 @@ constexpr auto table = machine("press",
 
 using Rig = press::BrowsedPress<table>;
 
-struct Browser {
-    std::optional<os::LocalConnection> connection;
-    std::string last{};
-    void connect(const std::string& path) {
-        if (auto made = os::LocalConnection::connect(path.c_str())) connection.emplace(std::move(*made));
-    }
-    void hear() {
-        static std::array<char, browsing::max_packet_bytes + 1> room;
-        while (connection) {
-            const auto received = connection->receive(room);
-            if (received.what == os::LocalConnection::Received::What::closed) return connection.reset();
-            if (received.what != os::LocalConnection::Received::What::packet) return;
-            demand(received.bytes > 2 && room[0] == '{' && room[received.bytes - 1] == '\n');
-            last.assign(room.data(), received.bytes);
-        }
-    }
-};
-
 /// Commands and lines may take any time; what they leave is asked again for so long.
 constexpr int patience = 400;
 
@@ -90,9 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (Browser& each : browsers) each.connect(path);
         std::string_view rest{reinterpret_cast<const char*>(data), size};
         for (int lines = 0; !rest.empty() && lines < 200; ++lines) {
-            const std::size_t end = rest.find('\n');
-            const std::string_view line = rest.substr(0, end);
-            rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
+            const std::string_view line = press::next_line(rest);
             if (line.size() < 2) {
                 rig->run(20ms);
                 for (Browser& each : browsers) each.hear();

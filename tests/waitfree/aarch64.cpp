@@ -4,11 +4,6 @@
 #include "tests/waitfree/disassembly.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cstdint>
-#include <optional>
-#include <sstream>
 #include <utility>
 
 namespace tappet::waitfree {
@@ -17,17 +12,8 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t");
-    return begin == text.npos ? std::string_view{}
-                              : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
 bool is_any(std::string_view name, std::initializer_list<std::string_view> names) {
     return std::ranges::find(names, name) != names.end();
-}
-bool begins(std::string_view name, std::initializer_list<std::string_view> beginnings) {
-    return std::ranges::any_of(beginnings, [&](auto each) { return name.starts_with(each); });
 }
 
 /// "x0, [x1, #8]!, lsl #2" parted at the commas outside of brackets.
@@ -47,25 +33,7 @@ Texts parts_of(std::string_view text) {
 
 /// "#0x10" or "#-16".
 std::optional<std::int64_t> immediate(std::string_view text) {
-    if (!text.starts_with('#')) return std::nullopt;
-    text.remove_prefix(1);
-    const bool negative = text.starts_with('-');
-    if (negative) text.remove_prefix(1);
-    const bool hexadecimal = text.starts_with("0x");
-    if (hexadecimal) text.remove_prefix(2);
-    std::uint64_t value = 0;
-    const auto [end, error] =
-        std::from_chars(text.data(), text.data() + text.size(), value, hexadecimal ? 16 : 10);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return static_cast<std::int64_t>(negative ? 0 - value : value);
-}
-
-std::string in_words(std::int64_t value) {
-    std::ostringstream text;
-    if (value < 0) text << '-';
-    text << "0x" << std::hex
-         << (value < 0 ? 0 - static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value));
-    return std::move(text).str();
+    return text.starts_with('#') ? as_number(text.substr(1), 10) : std::nullopt;
 }
 
 bool is_zero(std::string_view name) { return name == "xzr" || name == "wzr"; }
@@ -154,26 +122,12 @@ private:
 
     /// Jumps and calls.
     bool goes() {
-        static constexpr std::array<std::pair<std::string_view, std::string_view>, 16> conditions{
-            {{"eq", "je"},
-             {"ne", "jne"},
-             {"cs", "jae"},
-             {"hs", "jae"},
-             {"cc", "jb"},
-             {"lo", "jb"},
-             {"hi", "ja"},
-             {"ls", "jbe"},
-             {"ge", "jge"},
-             {"lt", "jl"},
-             {"gt", "jg"},
-             {"le", "jle"},
-             {"mi", "js"},
-             {"pl", "jns"},
-             {"vs", "jo"},
-             {"vc", "jno"}}};
+        static const std::map<std::string_view, std::string_view> conditions{
+            {"eq", "je"}, {"ne", "jne"}, {"cs", "jae"}, {"hs", "jae"}, {"cc", "jb"}, {"lo", "jb"},
+            {"hi", "ja"}, {"ls", "jbe"}, {"ge", "jge"}, {"lt", "jl"},  {"gt", "jg"}, {"le", "jle"},
+            {"mi", "js"}, {"pl", "jns"}, {"vs", "jo"},  {"vc", "jno"}};
         if (name_.starts_with("b.")) {
-            const auto found = std::ranges::find(conditions, std::string_view{name_}.substr(2, 2),
-                                                 &std::pair<std::string_view, std::string_view>::first);
+            const auto found = conditions.find(std::string_view{name_}.substr(2, 2));
             say(std::string{found == conditions.end() ? "jmp" : found->second}, {operands_[0]});
         } else if (is_any(name_, {"udf", "hlt", "brk"})) {
             say("ud2");
@@ -203,12 +157,13 @@ private:
         const auto add = [&](std::int64_t number) { say("lea", {memory.base, sum(memory.base, number)}); };
         if (memory.before) add(*memory.before);
         // One or two registers, as they lie in memory.
-        const bool is_pair = at == 2 && begins(name_, {"ldp", "ldnp", "stp", "stnp"});
+        const bool is_pair = at == 2 && begins_with_any(name_, {"ldp", "ldnp", "stp", "stnp"});
         const bool loads =
             is_pair ? name_[0] == 'l'
-                    : at == 1 && begins(name_, {"ldr", "ldur", "ldar", "ldapr", "ldapur", "ldlar"});
+                    : at == 1 && begins_with_any(name_, {"ldr", "ldur", "ldar", "ldapr", "ldapur", "ldlar"});
         const bool stores =
-            is_pair ? name_[0] == 's' : at == 1 && begins(name_, {"str", "stur", "stlr", "stlur", "stllr"});
+            is_pair ? name_[0] == 's'
+                    : at == 1 && begins_with_any(name_, {"str", "stur", "stlr", "stlur", "stllr"});
         const bool is_narrow = name_.ends_with('b') || name_.ends_with('h') || name_.ends_with("sw");
         if (loads || stores) {
             // What the address stands on is loaded last.
@@ -235,11 +190,11 @@ private:
                 else
                     unknown(i);
             }
-        } else if (begins(name_, {"ldadd", "ldclr", "ldset", "ldeor", "ldsm", "ldum", "swp"})) {
+        } else if (begins_with_any(name_, {"ldadd", "ldclr", "ldset", "ldeor", "ldsm", "ldum", "swp"})) {
             unknown(1); // what was there before
         } else {
             unknown(0);
-            if (begins(name_, {"casp", "ldxp", "ldaxp"})) unknown(1);
+            if (begins_with_any(name_, {"casp", "ldxp", "ldaxp"})) unknown(1);
         }
         if (memory.after) add(*memory.after);
         if (memory.base_is_lost) say(name_, {memory.base}, true);
@@ -251,9 +206,10 @@ private:
         const auto is_register = [&](std::size_t i) {
             return is_general(operands_[i]) || is_zero(operands_[i]);
         };
-        if (begins(name_, {"ccmp", "ccmn", "fcmp", "fccmp", "msr"})) {
+        if (begins_with_any(name_, {"ccmp", "ccmn", "fcmp", "fccmp", "msr"})) {
             flags();
-        } else if (begins(name_, {"dmb", "dsb", "isb", "hint", "nop", "prfm", "clrex", "dc", "sys"})) {
+        } else if (begins_with_any(name_,
+                                   {"dmb", "dsb", "isb", "hint", "nop", "prfm", "clrex", "dc", "sys"})) {
             say("nop");
         } else if (is_any(name_, {"adds", "subs"}) && count >= 3) {
             auto number = immediate(operands_[2]);

@@ -7,21 +7,17 @@
 #include <cstdio>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <utility>
 
 namespace tappet::waitfree {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t");
-    if (begin == text.npos) return {};
-    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
 bool hexadecimal(std::string_view text, std::uint64_t& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-    return error == std::errc{} && end == text.data() + text.size();
+    const auto number = as_number(text);
+    if (number) value = static_cast<std::uint64_t>(*number);
+    return number.has_value();
 }
 
 /// One function while its lines are read: jumps are known by address until it is complete.
@@ -55,7 +51,7 @@ Instruction instruction(std::uint64_t address, std::string_view text) {
         text = comma == text.size() ? "" : text.substr(comma + 1);
     }
     if (one.is("mov") && one.operands.size() == 2 && one.operands[1].starts_with("0x"))
-        static_cast<void>(hexadecimal(std::string_view{one.operands[1]}.substr(2), one.reckoned));
+        static_cast<void>(hexadecimal(one.operands[1], one.reckoned));
     return one;
 }
 
@@ -99,6 +95,33 @@ void resolve(std::vector<Open>& open) {
 }
 
 } // namespace
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    if (begin == text.npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+bool begins_with_any(std::string_view text, std::initializer_list<std::string_view> beginnings) {
+    return std::ranges::any_of(beginnings, [&](auto each) { return text.starts_with(each); });
+}
+std::optional<std::int64_t> as_number(std::string_view text, int base) {
+    const bool negative = text.starts_with('-');
+    if (negative || text.starts_with('+')) text.remove_prefix(1);
+    const bool is_hexadecimal = text.starts_with("0x");
+    if (is_hexadecimal) text.remove_prefix(2);
+    std::uint64_t value = 0;
+    const auto [end, error] =
+        std::from_chars(text.data(), text.data() + text.size(), value, is_hexadecimal ? 16 : base);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return static_cast<std::int64_t>(negative ? 0 - value : value);
+}
+std::string in_words(std::int64_t number) {
+    std::ostringstream text;
+    if (number < 0) text << '-';
+    const auto size = static_cast<std::uint64_t>(number);
+    text << "0x" << std::hex << (number < 0 ? 0 - size : size);
+    return std::move(text).str();
+}
 
 std::vector<std::size_t> Function::successors(std::size_t at) const {
     const Instruction& one = code[at];

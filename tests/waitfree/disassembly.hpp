@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,13 @@
 namespace tappet::waitfree {
 
 inline constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+[[nodiscard]] bool begins_with_any(std::string_view text, std::initializer_list<std::string_view> beginnings);
+/// Of "-0x10" or "+0x8"; without 0x it is to the base given.
+[[nodiscard]] std::optional<std::int64_t> as_number(std::string_view text, int base = 16);
+/// "-0x10"
+[[nodiscard]] std::string in_words(std::int64_t number);
 
 struct Instruction {
     std::uint64_t address = 0;

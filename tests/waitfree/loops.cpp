@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <sstream>
 
 namespace tappet::waitfree {
 
@@ -53,12 +52,6 @@ std::vector<Nodes> cycles(const Function& function, const Nodes& within) {
 bool leads_to(const Function& function, std::size_t at, std::size_t to) {
     const auto next = function.successors(at);
     return std::ranges::find(next, to) != next.end();
-}
-
-std::string hexadecimal(std::uint64_t number) {
-    std::ostringstream text;
-    text << "0x" << std::hex << number;
-    return text.str();
 }
 
 enum class Leaves : std::uint8_t { when_equal, upwards, downwards, never };
@@ -306,7 +299,8 @@ public:
         for (const Loop& loop : loops_of(function)) {
             verdict_.loops.push_back(loop);
             if (!loop.fault.empty())
-                verdict_.faults.push_back(name + ": the loop at " + hexadecimal(loop.address) + " " +
+                verdict_.faults.push_back(name + ": the loop at " +
+                                          in_words(static_cast<std::int64_t>(loop.address)) + " " +
                                           loop.fault);
         }
         for (std::size_t at = 0; at < function.code.size(); ++at) {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+
 #include <deque>
 
 namespace tappet::waitfree {
@@ -41,21 +41,10 @@ std::optional<Register> as_register(std::string_view name) {
     if (const auto found = in(low, 1)) return found;
     if (const auto found = in(high, 1)) return found;
     // Of aarch64, behind those; its stack pointer goes by the other's name.
-    std::int64_t index = 0;
     if (name.size() < 2 || (name[0] != 'x' && name[0] != 'w')) return std::nullopt;
-    const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), index);
-    if (error != std::errc{} || end != name.data() + name.size() || index > 30) return std::nullopt;
-    return Register{x0 + index, name[0] == 'x' ? 8 : 4};
-}
-
-std::optional<std::int64_t> as_number(std::string_view text) {
-    const bool negative = text.starts_with('-');
-    if (negative) text.remove_prefix(1);
-    if (text.starts_with("0x")) text.remove_prefix(2);
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-    if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return static_cast<std::int64_t>(negative ? 0 - value : value);
+    const auto index = as_number(name.substr(1), 10);
+    if (!index || *index < 0 || *index > 30) return std::nullopt;
+    return Register{x0 + *index, name[0] == 'x' ? 8 : 4};
 }
 
 Value constant(std::int64_t offset) { return {Value::Kind::constant, {}, offset}; }
@@ -132,10 +121,6 @@ void forget(State& state, std::initializer_list<std::int64_t> registers) {
 }
 
 void move_stack(State& state, std::int64_t by) { state[number(rsp)] = value_of(state, number(rsp)).plus(by); }
-
-bool begins_with_any(std::string_view text, std::initializer_list<std::string_view> beginnings) {
-    return std::ranges::any_of(beginnings, [&](auto each) { return text.starts_with(each); });
-}
 
 } // namespace
 

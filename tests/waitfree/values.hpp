@@ -7,7 +7,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
-#include <optional>
+
 #include <set>
 
 namespace tappet::waitfree {

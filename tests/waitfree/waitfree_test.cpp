@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <iostream>
 #include <sstream>
 
@@ -115,10 +114,9 @@ TEST(Check, refuses_a_function_that_is_not_there_and_one_that_calls_into_the_dar
 }
 
 /// Object code written by hand, for shapes that no compiler can be asked for.
-Verdict of(std::string_view lines) {
+Verdict of(std::string_view lines, const std::string& format = {}) {
     Program hand;
-    std::string text = "Disassembly of section .text:\n0000000000000000 <f>:\n";
-    add_disassembly(hand, text.append(lines));
+    add_disassembly(hand, (format + "Disassembly of section .text:\n0000000000000000 <f>:\n").append(lines));
     return check(hand, "f", plain);
 }
 
@@ -148,11 +146,7 @@ TEST(Check, takes_the_same_test_on_each_path_for_one) {
 }
 
 Verdict of_aarch64_code(std::string_view lines) {
-    Program hand;
-    std::string text =
-        "f.o:     file format elf64-littleaarch64\nDisassembly of section .text:\n0000000000000000 <f>:\n";
-    add_disassembly(hand, text.append(lines));
-    return check(hand, "f", plain);
+    return of(lines, "f.o:     file format elf64-littleaarch64\n");
 }
 
 TEST(Aarch64, counts_down_in_the_instruction_that_compares) {
