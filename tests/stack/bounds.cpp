@@ -2,7 +2,7 @@
 #include "tests/stack/bounds.hpp"
 
 #include <algorithm>
-#include <charconv>
+
 #include <cstdlib>
 #include <cxxabi.h>
 #include <memory>
@@ -24,14 +24,7 @@ bool names(const Names& list, const std::string& text) {
 }
 
 std::optional<std::int64_t> number(std::string_view text) {
-    const bool is_negative = text.starts_with('-');
-    if (is_negative || text.starts_with('+')) text.remove_prefix(1);
-    if (!text.starts_with("0x")) return {};
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), value, 16);
-    if (error != std::errc{} || end != text.data() + text.size()) return {};
-    const auto whole = static_cast<std::int64_t>(value);
-    return is_negative ? -whole : whole;
+    return text.contains("0x") ? waitfree::as_number(text) : std::nullopt;
 }
 
 /// Not values.hpp of waitfree: that keeps what all paths agree on and forgets the frame that an alignment

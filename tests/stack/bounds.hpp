@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <map>
 #include <set>
-#include <span>
+
 #include <string>
 #include <string_view>
 #include <vector>
