@@ -7,7 +7,6 @@
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tappet {
 

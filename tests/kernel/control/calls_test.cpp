@@ -1,10 +1,9 @@
 // Method calls that components answer by turns: whoever asks, in whatever activity, is answered in each of
 // its steps by the one that runs.
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/control/axis.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tappet {
 namespace {
@@ -61,22 +60,17 @@ constexpr auto table = machine("axis",
         exclusive("gauge", fallback("drawn", "drawn"), chain("measured", "measured"), chain("guessed", "guessed"))));
 // clang-format on
 
-struct Calls : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, box>::machine(), clock};
-    VirtualWorld world{instance};
-    Calls() {
-        EXPECT_TRUE(instance.configure({}));
-        EXPECT_EQ(std::string{world.start().view()}, "");
+struct Calls : testing::Test, test::VirtualRig {
+    Calls() : VirtualRig{AtRunTime<table, box>::machine()} {
+        start();
         run(20ms);
     }
-    bool run(Duration time) { return world.run_until(clock.now() + time); }
-    Gauge& gauge(std::string_view name) { return *instance.find<Gauge>(name); }
-    Asker& asker(std::string_view name) { return *instance.find<Asker>(name); }
+    Gauge& gauge(std::string_view name) { return part<Gauge>(name); }
+    Asker& asker(std::string_view name) { return part<Asker>(name); }
     void hand_over_to(std::string_view chain) {
         ScriptText name;
         EXPECT_TRUE(name.assign(chain));
-        EXPECT_TRUE(instance.find<ChainSwitch>("gauge")->run(name));
+        EXPECT_TRUE(part<ChainSwitch>("gauge").run(name));
     }
     std::int64_t answers() { return gauge("drawn").asked + gauge("measured").asked + gauge("guessed").asked; }
 };
@@ -109,7 +103,7 @@ TEST_F(Calls, go_to_the_fallback_when_who_answers_stops) {
     hand_over_to("measured");
     EXPECT_TRUE(run(10ms));
     EXPECT_EQ(asker("far").got, 2);
-    instance.life().ask_component(find_component(instance.machine().table, "measured"), LifeChange::stop);
+    change("measured", LifeChange::stop);
     EXPECT_TRUE(run(10ms));
     EXPECT_EQ(asker("near").got, 1);
     EXPECT_EQ(asker("far").got, 1);
@@ -117,7 +111,7 @@ TEST_F(Calls, go_to_the_fallback_when_who_answers_stops) {
 }
 
 TEST_F(Calls, stop_the_machine_when_nobody_is_left_who_answers) {
-    instance.life().ask_component(find_component(instance.machine().table, "drawn"), LifeChange::stop);
+    change("drawn", LifeChange::stop);
     run(10ms);
     ASSERT_TRUE(instance.stop_asked());
     EXPECT_THAT(std::string{instance.describe_stop().view()},

@@ -1,8 +1,6 @@
 // A level that commands a faster one: the command arrives as the row says, and its silence does too.
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/control/axis.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <vector>
 
@@ -64,19 +62,13 @@ constexpr auto cascade = machine(
         loop("place", gain("position.kp"))));
 
 template <RateTransition how>
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<cascade<how>, box>::machine(), clock};
-    VirtualWorld world{instance};
-    Inner* inner = nullptr;
-    Rig() {
-        EXPECT_TRUE(instance.configure({}));
-        EXPECT_EQ(std::string{world.start().view()}, "");
-        inner = instance.template find<Inner>("inner");
-    }
+struct Rig : test::VirtualRig {
+    Inner* inner = instance.find<Inner>("inner");
+
+    Rig() : VirtualRig{AtRunTime<cascade<how>, box>::machine()} { start(); }
     /// The largest change of the command from step to step, once all is under way.
     double largest_step(Duration time) {
-        EXPECT_TRUE(world.run_until(clock.now() + time));
+        EXPECT_TRUE(run(time));
         double largest = 0.0;
         for (std::size_t i = 20; i < inner->count; ++i)
             largest = std::max(largest, inner->seen[i] - inner->seen[i - 1]);
@@ -92,10 +84,9 @@ TEST(Cascade, is_commanded_in_steps_or_on_a_line_as_its_row_says) {
 
 TEST(Cascade, does_what_its_row_says_when_the_outer_level_stops) {
     Rig<interpolated> rig;
-    EXPECT_TRUE(rig.world.run_until(rig.clock.now() + 50ms));
-    rig.instance.life().ask_component(find_component(rig.instance.machine().table, "outer"),
-                                      LifeChange::stop);
-    rig.world.run_until(rig.clock.now() + 50ms);
+    EXPECT_TRUE(rig.run(50ms));
+    rig.change("outer", LifeChange::stop);
+    rig.run(50ms);
     EXPECT_TRUE(rig.instance.stop_asked()) << "stop_machine";
 }
 

@@ -1,12 +1,11 @@
 // Components that run by turns: one writer in every cycle, a hand-over within one cycle and without a bump,
 // and what happens when a part fails.
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/control/axis.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include "kernel/base/random.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tappet {
 namespace {
@@ -15,26 +14,14 @@ using testing::HasSubstr;
 
 constexpr auto table = axis_machine(control(axis_level, process("watcher"), axis_modes));
 
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, box>::machine(), clock};
-    VirtualWorld world{instance};
-    explicit Rig(bool measures = true) {
-        EXPECT_TRUE(instance.configure({}));
-        part<Slide>("slide").is_silent = !measures;
-        EXPECT_EQ(std::string{world.start().view()}, "");
+struct Rig : test::VirtualRig {
+    explicit Rig(bool measures = true) : VirtualRig{AtRunTime<table, box>::machine()} {
+        start([&] { part<Slide>("slide").is_silent = !measures; });
     }
-    template <class T>
-    T& part(std::string_view name) {
-        return *instance.find<T>(name);
-    }
-    bool run(Duration time) { return world.run_until(clock.now() + time); }
     ComponentState state(std::string_view name) {
         return instance.life().state_of(find_component(instance.machine().table, name));
     }
-    void change(std::string_view name, LifeChange how) {
-        ticket = instance.life().ask_component(find_component(instance.machine().table, name), how);
-    }
+
     std::string running() { return std::string{part<ChainSwitch>("mode").chain.last().view()}; }
     std::string hindered() { return std::string{part<ChainSwitch>("mode").hindered.last().view()}; }
     /// Asks as a component would, and waits for the end.
@@ -51,7 +38,18 @@ struct Rig {
         return (state(one) == ComponentState::running ? 1u : 0u) +
                (state(other) == ComponentState::running ? 1u : 0u);
     }
-    LifeTicket ticket{};
+    void force(std::string_view input, double to) {
+        End end;
+        ASSERT_TRUE(resolve(instance.machine().table, input, FacetKind::input, end).empty());
+        port = facet_at(instance.machine().table, end).port;
+        place = instance.place_of(end);
+        port->force(place, true, reinterpret_cast<const std::byte*>(&to));
+    }
+    /// What was forced last.
+    [[nodiscard]] bool is_forced() const { return *port->places(place, true).forced; }
+
+    const PortOperations* port = nullptr;
+    void* place = nullptr;
 };
 
 TEST(Turns, begin_with_the_fallback_and_the_others_wait) {
@@ -222,46 +220,37 @@ TEST(Turns, leave_what_is_forced_until_the_one_stops_that_writes_it_then) {
     Rig rig;
     EXPECT_TRUE(rig.run(5ms));
     ASSERT_EQ(rig.ask("jog"), CommandState::done);
-    End input;
-    ASSERT_TRUE(resolve(rig.instance.machine().table, "limiter.velocity", FacetKind::input, input).empty());
-    const PortOperations& port = *facet_at(rig.instance.machine().table, input).port;
-    const auto is_forced = [&] { return *port.places(rig.instance.place_of(input), true).forced; };
-    const double slow = 0.3;
-    port.force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&slow));
+    rig.force("limiter.velocity", 0.3);
     rig.change("gentle", LifeChange::stop); // which stands, and writes nothing
     EXPECT_TRUE(rig.run(5ms));
-    EXPECT_TRUE(is_forced());
+    EXPECT_TRUE(rig.is_forced());
     ASSERT_EQ(rig.ask("softly"), CommandState::done);
-    EXPECT_TRUE(is_forced());
+    EXPECT_TRUE(rig.is_forced());
     rig.change("position", LifeChange::stop); // which wrote it before
     EXPECT_TRUE(rig.run(5ms));
-    EXPECT_TRUE(is_forced());
+    EXPECT_TRUE(rig.is_forced());
     rig.change("gentle", LifeChange::stop);
     EXPECT_TRUE(rig.run(5ms));
-    EXPECT_FALSE(is_forced());
+    EXPECT_FALSE(rig.is_forced());
 }
 
 TEST(Turns, are_refused_though_a_force_stands_for_what_nobody_wrote_and_leave_it) {
     Rig rig;
     EXPECT_TRUE(rig.run(5ms));
-    End input;
-    ASSERT_TRUE(resolve(rig.instance.machine().table, "position.target", FacetKind::input, input).empty());
-    const PortOperations& port = *facet_at(rig.instance.machine().table, input).port;
-    const double there = 0.3;
-    port.force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&there));
+    rig.force("position.target", 0.3);
     rig.part<Mover>("jogging").is_mute = true;
     EXPECT_NE(rig.ask("jog"), CommandState::done);
     EXPECT_EQ(rig.running(), "stand");
-    EXPECT_TRUE(*port.places(rig.instance.place_of(input), true).forced);
+    EXPECT_TRUE(rig.is_forced());
 }
 
 TEST(Turns, are_not_taken_alone) {
     Rig rig;
     EXPECT_TRUE(rig.run(3ms));
     const std::size_t jogging = find_component(rig.instance.machine().table, "jogging");
-    rig.change("jogging", LifeChange::start);
+    const LifeTicket ticket = rig.change("jogging", LifeChange::start);
     EXPECT_TRUE(rig.run(3ms));
-    const LifeAnswer answer = rig.instance.life().answer_of_component(jogging, rig.ticket);
+    const LifeAnswer answer = rig.instance.life().answer_of_component(jogging, ticket);
     EXPECT_EQ(answer.refusal, LifeRefusal::waits_for_its_turn);
     EXPECT_THAT(std::string{rig.instance.life().describe(0, answer).view()},
                 HasSubstr("it runs by turns with others of activity \"motion\""));
@@ -281,22 +270,17 @@ TEST(Turns, begin_anew_with_their_activity) {
 
 struct ForcedTurn : testing::Test {
     Rig rig;
-    End input;
-    const PortOperations* port = nullptr;
+
     void SetUp() override {
         EXPECT_TRUE(rig.run(5ms));
-        ASSERT_TRUE(
-            resolve(rig.instance.machine().table, "limiter.velocity", FacetKind::input, input).empty());
-        port = facet_at(rig.instance.machine().table, input).port;
-        const double fast = 1.5;
-        port->force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&fast));
+        rig.force("limiter.velocity", 1.5);
         EXPECT_TRUE(rig.run(3ms));
         EXPECT_EQ(rig.part<Limiter>("limiter").sent.last(), 1.5);
     }
-    bool is_forced() { return *port->places(rig.instance.place_of(input), true).forced; }
+
     void expect_it_ends() {
         EXPECT_TRUE(rig.run(20ms));
-        EXPECT_FALSE(is_forced());
+        EXPECT_FALSE(rig.is_forced());
         EXPECT_NE(rig.part<Limiter>("limiter").sent.last(), 1.5);
     }
 };
@@ -321,7 +305,7 @@ TEST_F(ForcedTurn, ends_with_a_restart_of_the_switch) {
 
 TEST_F(ForcedTurn, ends_with_a_restart_of_the_switch_in_another_turn) {
     ASSERT_EQ(rig.ask("jog"), CommandState::done);
-    EXPECT_TRUE(is_forced()) << "it is the next writer's now";
+    EXPECT_TRUE(rig.is_forced()) << "it is the next writer's now";
     rig.change("mode", LifeChange::restart);
     expect_it_ends();
 }
@@ -333,9 +317,8 @@ struct ForcedAfterFallBack : ForcedTurn {
         ASSERT_EQ(rig.ask("softly"), CommandState::done);
         rig.change("gentle", LifeChange::stop);
         EXPECT_TRUE(rig.run(5ms));
-        ASSERT_FALSE(is_forced());
-        const double fast = 1.5;
-        port->force(rig.instance.place_of(input), true, reinterpret_cast<const std::byte*>(&fast));
+        ASSERT_FALSE(rig.is_forced());
+        rig.force("limiter.velocity", 1.5);
         EXPECT_TRUE(rig.run(5ms));
     }
 };
@@ -348,7 +331,7 @@ TEST_F(ForcedAfterFallBack, ends_with_a_stop_of_who_writes_the_input_now) {
 TEST_F(ForcedAfterFallBack, lasts_when_somebody_stops_whose_turn_it_is_not) {
     rig.change("gentle", LifeChange::stop);
     EXPECT_TRUE(rig.run(20ms));
-    EXPECT_TRUE(is_forced());
+    EXPECT_TRUE(rig.is_forced());
 }
 
 } // namespace

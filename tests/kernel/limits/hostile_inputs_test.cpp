@@ -2,11 +2,8 @@
 // within its limits. Ends that a port cannot have are refused.
 #include "kernel/limits/limits.hpp"
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/kernel/base/hostile.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 namespace tappet {
 namespace {
@@ -42,7 +39,7 @@ private:
     }
 };
 
-constexpr Board box{.name = "box", .memory_budget_bytes = 1 << 20};
+using test::box, test::infinite, test::no_number;
 
 template <class... Rows>
 constexpr auto machine_with(const Rows&... rows) {
@@ -57,17 +54,10 @@ constexpr auto held = machine_with(limit("drive.speed", 5.0, 40.0), rate("drive.
                                    limit("drive.force", lowest_force, highest_force),
                                    limit("drive.notch", -3.0, 5.0), rate("drive.place", per_second));
 
-struct Drives : test::Hostile {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<held, box>::machine(), clock};
-    VirtualWorld world{instance};
-    Drive* drive = nullptr;
+struct Drives : test::Hostile, test::VirtualRig {
+    Drive* drive = instance.find<Drive>("drive");
 
-    Drives() {
-        EXPECT_TRUE(instance.configure({}));
-        drive = instance.find<Drive>("drive");
-        want();
-    }
+    Drives() : VirtualRig{AtRunTime<held, box>::machine()} {}
     void want() {
         drive->speed_wanted = value();
         drive->force_wanted = value();
@@ -83,7 +73,7 @@ struct Drives : test::Hostile {
 };
 
 TEST_F(Drives, leave_their_limits_at_no_time) {
-    ASSERT_TRUE(world.start().empty());
+    start([this] { want(); });
     ASSERT_NO_FATAL_FAILURE(expect_held()) << "at the start";
     for (int n = 0; n < 2000; ++n) {
         const double speed = drive->speed.last(), place = drive->place.last();
@@ -92,7 +82,7 @@ TEST_F(Drives, leave_their_limits_at_no_time) {
         };
         const Time before = judged(drive->stamp);
         want();
-        ASSERT_TRUE(world.run_until(clock.now() + 1ms));
+        ASSERT_TRUE(run(1ms));
         ASSERT_NO_FATAL_FAILURE(expect_held()) << n;
         const double most = per_second * std::max(to_seconds(judged(drive->stamp) - before), 0.0);
         ASSERT_LE(std::fabs(drive->speed.last() - speed), most + 1e-9) << n;
@@ -102,7 +92,7 @@ TEST_F(Drives, leave_their_limits_at_no_time) {
     drive->place_wanted = 8;
     for (int n = 0; n < 200'000 && drive->place.last() != 8; ++n) {
         drive->stamp = clock.now();
-        ASSERT_TRUE(world.run_until(clock.now() + 1ms));
+        ASSERT_TRUE(run(1ms));
     }
     for (std::size_t row = 0; row < 5; ++row)
         EXPECT_GT(instance.observation().counted(0, row).times, 100u) << row;
@@ -112,38 +102,24 @@ TEST_F(Drives, leave_their_limits_at_no_time) {
 
 // ---- rows that hold nothing
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN(),
-                 endless = std::numeric_limits<double>::infinity();
-
-template <const auto&... tables>
-void expect_refused() {
-    int row = 0;
-    for (const auto& said : {Sentence{Accepted{tables.view(), box}.refusal()}...}) {
-        EXPECT_FALSE(said.empty()) << "row " << row;
-        ++row;
-    }
+template <class... Rows>
+Sentence refusal(const Rows&... rows) {
+    const auto table = machine_with(rows...);
+    return Accepted{table.view(), box}.refusal();
 }
 
-constexpr auto none_low = machine_with(limit("drive.speed", none, 1.0));
-constexpr auto none_high = machine_with(limit("drive.speed", 0.0, none));
-constexpr auto only_above = machine_with(limit("drive.speed", endless, endless));
-constexpr auto only_below = machine_with(limit("drive.speed", -endless, -endless));
-constexpr auto same = machine_with(limit("drive.speed", -0.0, 0.0));
-constexpr auto none_rate = machine_with(rate("drive.speed", none));
-constexpr auto backwards = machine_with(rate("drive.speed", -1.0));
-constexpr auto endless_rate = machine_with(rate("drive.speed", endless));
-constexpr auto beyond_float = machine_with(limit("drive.force", 1e39, 1e40));
-constexpr auto between_floats = machine_with(limit("drive.force", 0.0, 2.7));
-constexpr auto beyond_byte = machine_with(limit("drive.notch", -129.0, 5.0));
-constexpr auto beyond_word = machine_with(limit("drive.place", 0.0, 1e300));
-constexpr auto below_nought = machine_with(limit("drive.place", -1.0, 5.0));
-constexpr auto to_the_ends = machine_with(limit("drive.speed", -std::numeric_limits<double>::max(), 1e306),
-                                          rate("drive.speed", 1e306), limit("drive.force", 0.0, endless));
-
 TEST(Rows, with_ends_that_a_port_cannot_have_are_refused) {
-    expect_refused<none_low, none_high, only_above, only_below, same, none_rate, backwards, endless_rate,
-                   beyond_float, between_floats, beyond_byte, beyond_word, below_nought>();
-    EXPECT_TRUE(Accepted(to_the_ends.view(), box).refusal().empty());
+    for (const LimitRow& row :
+         {limit("drive.speed", no_number, 1.0), limit("drive.speed", 0.0, no_number),
+          limit("drive.speed", infinite, infinite), limit("drive.speed", -infinite, -infinite),
+          limit("drive.speed", -0.0, 0.0), rate("drive.speed", no_number), rate("drive.speed", -1.0),
+          rate("drive.speed", infinite), limit("drive.force", 1e39, 1e40), limit("drive.force", 0.0, 2.7),
+          limit("drive.notch", -129.0, 5.0), limit("drive.place", 0.0, 1e300),
+          limit("drive.place", -1.0, 5.0)})
+        EXPECT_FALSE(refusal(row).empty()) << row.output << " " << row.low << " " << row.high;
+    EXPECT_TRUE(refusal(limit("drive.speed", -std::numeric_limits<double>::max(), 1e306),
+                        rate("drive.speed", 1e306), limit("drive.force", 0.0, infinite))
+                    .empty());
 }
 
 } // namespace

@@ -2,18 +2,18 @@
 // are refused.
 #include "kernel/limits/limits.hpp"
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace tappet {
 namespace {
 
+using test::box;
 using testing::HasSubstr;
 
 /// Writes what the test wants, each millisecond.
@@ -60,8 +60,6 @@ struct Sink {
     }
 };
 
-constexpr Board box{.name = "box", .memory_budget_bytes = 1 << 20};
-
 template <class... Extra>
 constexpr auto machine_with(const Extra&... extra) {
     return machine("press", components(component<Source>("source"), component<Sink>("sink")),
@@ -72,23 +70,22 @@ constexpr auto machine_with(const Extra&... extra) {
 }
 
 template <const auto& table>
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    Accepted accepted{table.view(), box};
-    MachineInstance instance{accepted.machine(), clock};
-    VirtualWorld world{instance};
-    Source* source = nullptr;
-    Sink* sink = nullptr;
-
-    Rig() {
-        EXPECT_TRUE(instance.configure({}));
-        source = instance.template find<Source>("source");
-        sink = instance.template find<Sink>("sink");
+struct Rig : test::VirtualRig {
+    explicit Rig(const std::function<void(Source&)>& before_start = [](Source&) {})
+        : VirtualRig{AtRunTime<table, box>::machine()} {
+        start([&] { before_start(source); });
     }
-    bool run(Duration time) { return world.run_until(clock.now() + time); }
+    /// What is seen of a speed that is wanted for so long.
+    double seen(double speed, Duration time) {
+        source.speed_wanted = speed;
+        EXPECT_TRUE(run(time));
+        return sink.speed_seen;
+    }
     [[nodiscard]] std::uint64_t breaches(std::size_t row) const {
         return instance.observation().counted(0, row).times;
     }
+    Source& source = *instance.find<Source>("source");
+    Sink& sink = *instance.find<Sink>("sink");
 };
 
 // ---- what goes out
@@ -98,33 +95,23 @@ constexpr auto clamped =
 
 TEST(Limits, let_out_what_they_allow_and_count_nothing) {
     Rig<clamped> rig;
-    rig.source->speed_wanted = 40.0;
-    EXPECT_TRUE(rig.world.start().empty());
-    EXPECT_TRUE(rig.run(10ms));
-    EXPECT_EQ(rig.sink->speed_seen, 40.0);
+    EXPECT_EQ(rig.seen(40.0, 10ms), 40.0);
     EXPECT_EQ(rig.breaches(0), 0u);
 }
 
 TEST(Limits, let_out_the_nearest_value_and_count_each_that_they_held_back) {
     Rig<clamped> rig;
-    EXPECT_TRUE(rig.world.start().empty());
     for (const auto& [wanted, seen] : {std::pair{41.0, 40.0}, {-11.0, -10.0}, {7.0, 7.0}}) {
-        rig.source->speed_wanted = wanted;
-        EXPECT_TRUE(rig.run(10ms));
-        EXPECT_EQ(rig.sink->speed_seen, seen);
-        EXPECT_EQ(rig.source->speed.last(), seen) << "the component sees what went out";
+        EXPECT_EQ(rig.seen(wanted, 10ms), seen);
+        EXPECT_EQ(rig.source.speed.last(), seen) << "the component sees what went out";
     }
     EXPECT_EQ(rig.breaches(0), 20u);
 }
 
 TEST(Limits, hold_the_last_value_in_place_of_what_is_no_number) {
     Rig<clamped> rig;
-    EXPECT_TRUE(rig.world.start().empty());
-    rig.source->speed_wanted = 12.0;
-    EXPECT_TRUE(rig.run(5ms));
-    rig.source->speed_wanted = std::nan("");
-    EXPECT_TRUE(rig.run(5ms));
-    EXPECT_EQ(rig.sink->speed_seen, 12.0);
+    EXPECT_EQ(rig.seen(12.0, 5ms), 12.0);
+    EXPECT_EQ(rig.seen(std::nan(""), 5ms), 12.0);
     EXPECT_EQ(rig.breaches(0), 5u);
 }
 
@@ -136,17 +123,10 @@ constexpr auto counted_only = machine_with(limits(limit("source.speed", -10.0, 4
 template <const auto& table>
 void expect_numbers_only(double later) {
     for (const double first : {std::nan(""), infinite, -infinite, 1.0}) {
-        Rig<table> rig;
-        rig.source->speed_wanted = first;
-        EXPECT_TRUE(rig.world.start().empty());
-        for (const double wanted : {first, infinite, std::nan(""), -infinite}) {
-            rig.source->speed_wanted = wanted;
-            EXPECT_TRUE(rig.run(4ms));
-            EXPECT_TRUE(std::isfinite(rig.sink->speed_seen)) << first << " then " << wanted;
-        }
-        rig.source->speed_wanted = later;
-        EXPECT_TRUE(rig.run(10s));
-        EXPECT_EQ(rig.sink->speed_seen, later) << first;
+        Rig<table> rig{[first](Source& source) { source.speed_wanted = first; }};
+        for (const double wanted : {first, infinite, std::nan(""), -infinite})
+            EXPECT_TRUE(std::isfinite(rig.seen(wanted, 4ms))) << first << " then " << wanted;
+        EXPECT_EQ(rig.seen(later, 10s), later) << first;
     }
 }
 
@@ -158,23 +138,22 @@ TEST(Limits, let_nothing_out_that_is_no_number_whichever_ends_they_have) {
 }
 
 TEST(Limits, hold_for_what_a_start_writes) {
-    Rig<clamped> rig;
-    rig.source->writes_at_start = true;
-    rig.source->speed_wanted = 999.0;
-    EXPECT_TRUE(rig.world.start().empty());
-    EXPECT_EQ(rig.source->speed.last(), 40.0);
+    Rig<clamped> rig{[](Source& source) {
+        source.writes_at_start = true;
+        source.speed_wanted = 999.0;
+    }};
+    EXPECT_EQ(rig.source.speed.last(), 40.0);
     EXPECT_EQ(rig.breaches(0), 1u);
 }
 
 TEST(Limits, of_a_rate_lead_a_whole_number_to_its_end_by_and_by) {
     Rig<clamped> rig;
-    EXPECT_TRUE(rig.world.start().empty());
     EXPECT_TRUE(rig.run(4ms)); // it stands at 0
-    rig.source->place_wanted = 100;
+    rig.source.place_wanted = 100;
     EXPECT_TRUE(rig.run(101ms)); // 500 mm/s: half a millimetre in each cycle
-    EXPECT_NEAR(rig.sink->place_seen, 50, 2);
+    EXPECT_NEAR(rig.sink.place_seen, 50, 2);
     EXPECT_TRUE(rig.run(200ms));
-    EXPECT_EQ(rig.sink->place_seen, 100);
+    EXPECT_EQ(rig.sink.place_seen, 100);
     const std::uint64_t on_the_way = rig.breaches(1);
     EXPECT_NEAR(static_cast<double>(on_the_way), 199.0, 2.0);
     EXPECT_TRUE(rig.run(50ms));
@@ -182,11 +161,9 @@ TEST(Limits, of_a_rate_lead_a_whole_number_to_its_end_by_and_by) {
 }
 
 TEST(Limits, of_a_rate_let_the_first_value_after_a_start_be_any) {
-    Rig<clamped> rig;
-    rig.source->place_wanted = 70;
-    EXPECT_TRUE(rig.world.start().empty());
+    Rig<clamped> rig{[](Source& source) { source.place_wanted = 70; }};
     EXPECT_TRUE(rig.run(4ms));
-    EXPECT_EQ(rig.sink->place_seen, 70);
+    EXPECT_EQ(rig.sink.place_seen, 70);
     EXPECT_EQ(rig.breaches(1), 0u);
 }
 
@@ -194,43 +171,30 @@ constexpr auto never_at_rest =
     machine_with(limits(limit("source.speed", 5.0, 40.0), rate("source.speed", 100.0)));
 
 TEST(Limits, do_not_hold_back_the_safe_value_of_a_stop) {
-    Rig<never_at_rest> rig;
-    rig.source->speed_wanted = 40.0;
-    EXPECT_TRUE(rig.world.start().empty());
+    Rig<never_at_rest> rig{[](Source& source) { source.speed_wanted = 40.0; }};
+    EXPECT_EQ(rig.seen(40.0, 10ms), 40.0);
+    rig.change("source", LifeChange::stop);
     EXPECT_TRUE(rig.run(10ms));
-    EXPECT_EQ(rig.sink->speed_seen, 40.0);
-    rig.instance.life().ask_component(find_component(rig.instance.machine().table, "source"),
-                                      LifeChange::stop);
-    EXPECT_TRUE(rig.run(10ms));
-    EXPECT_EQ(rig.sink->speed_seen, 0.0);
+    EXPECT_EQ(rig.sink.speed_seen, 0.0);
     EXPECT_EQ(rig.breaches(0) + rig.breaches(1), 0u);
 }
 
 TEST(Limits, let_no_safe_value_out_that_is_no_number) {
     for (const double left : {std::nan(""), infinite, -infinite}) {
         Rig<clamped> rig;
-        rig.source->speed_wanted = 20.0;
-        rig.source->speed_left = left;
-        EXPECT_TRUE(rig.world.start().empty());
-        EXPECT_TRUE(rig.run(10ms));
-        rig.instance.life().ask_component(find_component(rig.instance.machine().table, "source"),
-                                          LifeChange::stop);
-        EXPECT_TRUE(rig.run(10ms));
-        EXPECT_EQ(rig.sink->speed_seen, 0.0);
+        rig.source.speed_left = left;
+        EXPECT_EQ(rig.seen(20.0, 10ms), 20.0);
+        rig.change("source", LifeChange::stop);
+        EXPECT_EQ(rig.seen(20.0, 10ms), 0.0);
         EXPECT_EQ(rig.breaches(0), 1u);
     }
 }
 
 TEST(Limits, of_range_and_rate_hold_both_for_one_port) {
-    Rig<never_at_rest> rig;
-    rig.source->speed_wanted = 10.0;
-    EXPECT_TRUE(rig.world.start().empty());
-    EXPECT_TRUE(rig.run(10ms));
-    rig.source->speed_wanted = 90.0; // to 40 at 0.1 for each millisecond
-    EXPECT_TRUE(rig.run(100ms));
-    EXPECT_NEAR(rig.sink->speed_seen, 20.0, 0.3);
-    EXPECT_TRUE(rig.run(300ms));
-    EXPECT_EQ(rig.sink->speed_seen, 40.0);
+    Rig<never_at_rest> rig{[](Source& source) { source.speed_wanted = 10.0; }};
+    EXPECT_EQ(rig.seen(10.0, 10ms), 10.0);
+    EXPECT_NEAR(rig.seen(90.0, 100ms), 20.0, 0.3) << "to 40 at 0.1 for each millisecond";
+    EXPECT_EQ(rig.seen(90.0, 300ms), 40.0);
     EXPECT_EQ(rig.breaches(0), 400u) << "90 is never in range";
     EXPECT_NEAR(static_cast<double>(rig.breaches(1)), 299.0, 2.0);
 }
@@ -241,10 +205,7 @@ constexpr auto counted = machine_with(limits(limit("source.speed", 0.0, 40.0, co
 
 TEST(Limits, that_only_count_change_nothing) {
     Rig<counted> rig;
-    rig.source->speed_wanted = 90.0;
-    EXPECT_TRUE(rig.world.start().empty());
-    EXPECT_TRUE(rig.run(5ms));
-    EXPECT_EQ(rig.sink->speed_seen, 90.0);
+    EXPECT_EQ(rig.seen(90.0, 5ms), 90.0);
     EXPECT_EQ(rig.instance.observation().counted(0, 0).what, "source.speed");
     EXPECT_EQ(rig.breaches(0), 5u);
     EXPECT_EQ(rig.instance.observation().counted(0, 1).what, "") << "there is no second row";
@@ -256,20 +217,18 @@ constexpr auto stopping = machine_with(
 
 TEST(Limits, that_stop_the_machine_say_which_row_and_let_nothing_out) {
     Rig<stopping> rig;
-    EXPECT_TRUE(rig.world.start().empty());
     EXPECT_TRUE(rig.run(5ms));
-    rig.source->speed_wanted = 41.0;
+    rig.source.speed_wanted = 41.0;
     EXPECT_FALSE(rig.run(5ms));
-    EXPECT_EQ(rig.source->speed.last(), 40.0);
+    EXPECT_EQ(rig.source.speed.last(), 40.0);
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::section);
     EXPECT_EQ(rig.instance.describe_stop().view(), "\"source.speed\" was to leave its range from 0 to 40");
 }
 
 TEST(Limits, that_stop_the_machine_say_so_of_a_rate) {
     Rig<stopping> rig;
-    EXPECT_TRUE(rig.world.start().empty());
     EXPECT_TRUE(rig.run(5ms));
-    rig.source->place_wanted = 9;
+    rig.source.place_wanted = 9;
     EXPECT_FALSE(rig.run(5ms));
     EXPECT_EQ(rig.instance.describe_stop().view(),
               "\"source.place\" was to change by more than 10 per second");
@@ -279,66 +238,54 @@ TEST(Limits, that_stop_the_machine_say_so_of_a_rate) {
 
 TEST(Limits, leave_a_forced_value_alone_and_hold_again_after_it) {
     Rig<clamped> rig;
-    EXPECT_TRUE(rig.world.start().empty());
-    rig.source->speed_wanted = 90.0;
-    EXPECT_TRUE(rig.run(5ms));
+    EXPECT_EQ(rig.seen(90.0, 5ms), 40.0);
     const AcceptedMachine& accepted = rig.instance.machine();
     End speed;
     ASSERT_TRUE(resolve(accepted.table, "source.speed", FacetKind::output, speed).empty());
     const PortOperations& port = *facet_at(accepted.table, speed).port;
     const double forced = 60.0;
     port.force(rig.instance.place_of(speed), false, reinterpret_cast<const std::byte*>(&forced));
-    EXPECT_TRUE(rig.run(5ms));
-    EXPECT_EQ(rig.sink->speed_seen, 60.0);
+    EXPECT_EQ(rig.seen(90.0, 5ms), 60.0);
     port.release(rig.instance.place_of(speed), false);
-    EXPECT_TRUE(rig.run(5ms));
-    EXPECT_EQ(rig.sink->speed_seen, 40.0);
+    EXPECT_EQ(rig.seen(90.0, 5ms), 40.0);
 }
 
 // ---- refused rows
 
-constexpr auto misspelt = machine_with(limits(limit("source.sped", 0.0, 1.0)));
-constexpr auto input = machine_with(limits(rate("sink.speed", 1.0)));
-constexpr auto too_wide = machine_with(limits(limit("source.turns", 0.0, 1.0)));
-constexpr auto truth = machine_with(limits(limit("source.on", 0.0, 1.0)));
-constexpr auto buffer = machine_with(limits(limit("source.samples", 0.0, 1.0)));
-constexpr auto reversed = machine_with(limits(limit("source.speed", 1.0, 0.0)));
-constexpr auto no_number =
-    machine_with(limits(limit("source.speed", std::numeric_limits<double>::quiet_NaN(), 1.0)));
-constexpr auto at_rest = machine_with(limits(rate("source.speed", 0.0)));
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr auto endless = machine_with(limits(rate("source.speed", infinity)));
-constexpr auto everything = machine_with(limits(limit("source.speed", -infinity, infinity)));
-constexpr auto fraction = machine_with(limits(limit("source.place", 0.5, 3.0)));
-constexpr auto beyond = machine_with(limits(limit("source.place", 0.0, 2147483648.0)));
-constexpr auto one_end = machine_with(limits(limit("source.place", -2147483648.0, infinity)));
-constexpr auto twice = machine_with(
-    limits(limit("source.speed", 0.0, 1.0), rate("source.speed", 1.0), limit("source.speed", 0.0, 2.0)));
-
-template <const auto& table>
-std::string refusal() {
+template <class... Rows>
+std::string refusal(const Rows&... rows) {
+    const auto table = machine_with(limits(rows...));
     return std::string{Accepted{table.view(), box}.refusal().view()};
 }
 
 TEST(LimitRows, are_refused_with_row_fault_and_cure) {
-    EXPECT_EQ(refusal<clamped>(), "");
-    EXPECT_EQ(refusal<misspelt>(),
+    EXPECT_EQ(refusal(limit("source.speed", -10.0, 40.0), rate("source.place", 500.0)), "");
+    EXPECT_EQ(refusal(limit("source.sped", 0.0, 1.0)),
               "press: limit \"source.sped\": component \"source\" has no output \"sped\"; did "
               "you mean \"speed\"?");
-    EXPECT_EQ(refusal<input>(), "press: rate \"sink.speed\": an input has no limits; name an output");
-    EXPECT_THAT(refusal<too_wide>(), HasSubstr("only numbers that a double holds are limited"));
-    EXPECT_THAT(refusal<truth>(), HasSubstr("only numbers that a double holds are limited"));
-    EXPECT_THAT(refusal<buffer>(), HasSubstr("a buffered output has no limits; name an output"));
-    EXPECT_THAT(refusal<reversed>(),
+    EXPECT_EQ(refusal(rate("sink.speed", 1.0)),
+              "press: rate \"sink.speed\": an input has no limits; name an output");
+    for (const char* output : {"source.turns", "source.on"})
+        EXPECT_THAT(refusal(limit(output, 0.0, 1.0)),
+                    HasSubstr("only numbers that a double holds are limited"));
+    EXPECT_THAT(refusal(limit("source.samples", 0.0, 1.0)),
+                HasSubstr("a buffered output has no limits; name an output"));
+    EXPECT_THAT(refusal(limit("source.speed", 1.0, 0.0)),
                 HasSubstr("its least value is not below its greatest; write the smaller"));
-    EXPECT_THAT(refusal<no_number>(), HasSubstr("its least value is not below its greatest"));
-    EXPECT_THAT(refusal<at_rest>(), HasSubstr("its rate is not above zero or has no end"));
-    EXPECT_THAT(refusal<endless>(), HasSubstr("its rate is not above zero or has no end"));
-    EXPECT_THAT(refusal<everything>(), HasSubstr("it allows everything; give it an end, or leave it out"));
-    EXPECT_THAT(refusal<fraction>(), HasSubstr("an end of it is no value of int;"));
-    EXPECT_THAT(refusal<beyond>(), HasSubstr("an end of it is no value of int;"));
-    EXPECT_EQ(refusal<one_end>(), "");
-    EXPECT_EQ(refusal<twice>(), "press: limit \"source.speed\": it stands twice; keep one");
+    EXPECT_THAT(refusal(limit("source.speed", std::nan(""), 1.0)),
+                HasSubstr("its least value is not below its greatest"));
+    for (const double none : {0.0, infinite})
+        EXPECT_THAT(refusal(rate("source.speed", none)),
+                    HasSubstr("its rate is not above zero or has no end"));
+    EXPECT_THAT(refusal(limit("source.speed", -infinite, infinite)),
+                HasSubstr("it allows everything; give it an end, or leave it out"));
+    EXPECT_THAT(refusal(limit("source.place", 0.5, 3.0)), HasSubstr("an end of it is no value of int;"));
+    EXPECT_THAT(refusal(limit("source.place", 0.0, 2147483648.0)),
+                HasSubstr("an end of it is no value of int;"));
+    EXPECT_EQ(refusal(limit("source.place", -2147483648.0, infinite)), "");
+    EXPECT_EQ(
+        refusal(limit("source.speed", 0.0, 1.0), rate("source.speed", 1.0), limit("source.speed", 0.0, 2.0)),
+        "press: limit \"source.speed\": it stands twice; keep one");
 }
 
 /// Writes far jumps, which claim to be true a second later, all but the first.
@@ -358,15 +305,12 @@ constexpr auto hasty = machine("hasty", components(component<Hasty>("source")),
                                connections(), reactions(), behaviours(), limits(rate("source.speed", 500.0)));
 
 TEST(Rate, is_that_of_the_machines_time_whatever_time_a_value_claims) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<hasty, box>::machine(), clock};
-    VirtualWorld world{instance};
-    ASSERT_TRUE(instance.configure({}));
-    ASSERT_TRUE(world.start().empty());
-    const Output<double>& speed = instance.find<Hasty>("source")->speed;
-    ASSERT_TRUE(world.run_until(clock.now() + 1ms));
+    test::VirtualRig rig{AtRunTime<hasty, box>::machine()};
+    rig.start();
+    const Output<double>& speed = rig.part<Hasty>("source").speed;
+    ASSERT_TRUE(rig.run(1ms));
     const double first = speed.last();
-    ASSERT_TRUE(world.run_until(clock.now() + 1s));
+    ASSERT_TRUE(rig.run(1s));
     EXPECT_LE(speed.last() - first, 500.0 * 1.001);
 }
 

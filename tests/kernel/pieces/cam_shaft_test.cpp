@@ -1,10 +1,8 @@
 // A cam table as a component of a machine, under virtual time: what fires where, and what does not.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/pieces/cam_shaft.hpp"
-#include "tests/kernel/base/hostile.hpp"
 
-#include <gtest/gtest.h>
+#include "tests/kernel/base/hostile.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <cmath>
 #include <vector>
@@ -73,12 +71,6 @@ private:
     }
 };
 
-inline constexpr Board board{.name = "host",
-                             .world = "host",
-                             .memory_budget_bytes = 4'000'000,
-                             .processors = 1,
-                             .highest_priority = 40};
-
 // clang-format off
 #define TAPPET_CAM_TABLE(CODE, ...) machine("press", \
     components(component<Encoder>("encoder"), component<CamShaft<cams>>("shaft", set("codes_per_turn", 4000) __VA_OPT__(,) __VA_ARGS__), \
@@ -93,15 +85,12 @@ inline constexpr Board board{.name = "host",
 inline constexpr auto absolute = TAPPET_CAM_TABLE("encoder.code");
 inline constexpr auto counting = TAPPET_CAM_TABLE("encoder.counter", set("counter_bits", 16));
 
-struct Turning : test::Hostile {
-    explicit Turning(const AcceptedMachine& machine = AtRunTime<absolute, board>::machine())
-        : instance{machine, clock} {
-        const auto configured = instance.configure({});
-        EXPECT_TRUE(configured) << (configured ? "" : configured.error().view());
-        world.start();
+struct Turning : test::Hostile, test::VirtualRig {
+    explicit Turning(const AcceptedMachine& machine = AtRunTime<absolute, test::box>::machine())
+        : VirtualRig{machine} {
+        start();
         ejector.encoder = &encoder;
     }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
 
     /// Numbers meanwhile, and half a second later it is followed as if nothing had been.
     void expect_forgets_noise() {
@@ -123,9 +112,6 @@ struct Turning : test::Hostile {
         EXPECT_EQ(ejector.hits.size(), hits + 2);
     }
 
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance;
-    VirtualWorld world{instance};
     Encoder& encoder = *instance.find<Encoder>("encoder");
     CamShaft<cams>& shaft = *instance.find<CamShaft<cams>>("shaft");
     Ejector& ejector = *instance.find<Ejector>("ejector");
@@ -250,7 +236,7 @@ TEST_F(Turning, windows_are_told_to_be_left_at_start_and_stop) {
 }
 
 struct Counting : Turning {
-    Counting() : Turning{AtRunTime<counting, board>::machine()} {}
+    Counting() : Turning{AtRunTime<counting, test::box>::machine()} {}
 };
 
 TEST_F(Counting, a_turn_begins_where_a_counter_was_seen_first_and_wraps_do_not_matter) {

@@ -8,32 +8,31 @@
 namespace tappet {
 namespace {
 
+/// What an edge answers, value by value: '#' true, '.' false.
+template <class Edge>
+std::string told(Edge& edge, std::string_view input) {
+    std::string answers;
+    for (const char each : input) answers += edge(each == '#') ? '#' : '.';
+    return answers;
+}
+
 TEST(RisingEdge, is_told_once_for_each_change_to_true) {
     RisingEdge rises;
-    EXPECT_FALSE(rises(false));
-    EXPECT_TRUE(rises(true));
-    EXPECT_FALSE(rises(true));
-    EXPECT_FALSE(rises(false));
-    EXPECT_TRUE(rises(true));
+    EXPECT_EQ(told(rises, ".##.#"), ".#..#");
 }
 
 TEST(RisingEdge, of_a_button_that_is_held_at_the_start_is_none) {
     RisingEdge rises;
-    EXPECT_FALSE(rises(true));
-    EXPECT_FALSE(rises(false));
-    EXPECT_TRUE(rises(true));
+    EXPECT_EQ(told(rises, "#.#"), "..#");
     rises.reset();
-    EXPECT_FALSE(rises(true));
+    EXPECT_EQ(told(rises, "#"), ".");
 }
 
 TEST(FallingEdge, is_told_once_for_each_change_to_false_and_not_of_the_first_value) {
     FallingEdge falls;
-    EXPECT_FALSE(falls(false));
-    EXPECT_FALSE(falls(true));
-    EXPECT_TRUE(falls(false));
-    EXPECT_FALSE(falls(false));
+    EXPECT_EQ(told(falls, ".#.."), "..#.");
     falls.reset();
-    EXPECT_FALSE(falls(false));
+    EXPECT_EQ(told(falls, "."), ".");
 }
 
 template <class Counter>

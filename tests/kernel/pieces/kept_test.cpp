@@ -1,17 +1,10 @@
 // Totals that survive the main switch, with files below them, over two lives of a machine.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/pieces/kept.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
 #include "tests/kernel/base/hostile.hpp"
-
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <memory>
-
-#include <unistd.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
+#include "tests/kernel/os/folder.hpp"
 
 namespace tappet {
 namespace {
@@ -31,12 +24,6 @@ struct Press {
     }
 };
 
-inline constexpr Board board{.name = "host",
-                             .world = "host",
-                             .memory_budget_bytes = 4'000'000,
-                             .processors = 1,
-                             .highest_priority = 40};
-
 // clang-format off
 inline constexpr auto table = machine("press",
     components(component<Press>("press"), component<HourMeter>("hours", properties_file("hours.cpf", optional)),
@@ -54,29 +41,19 @@ inline constexpr auto table = machine("press",
 constexpr std::size_t aside = 1; ///< the activity
 
 /// One life of the machine, which ends without a word, as by the main switch.
-struct Life {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
+struct Life : test::VirtualRig {
     PropertyFiles files;
 
-    explicit Life(const std::string& directory) : files{directory} {
+    explicit Life(const std::string& directory)
+        : VirtualRig{AtRunTime<table, test::box>::machine()}, files{directory} {
         instance.read_properties_from(files.store());
-        const auto configured = instance.configure({});
-        EXPECT_TRUE(configured) << (configured ? "" : configured.error().view());
-        world.start();
-    }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
-    template <class T>
-    T& part(std::string_view name) {
-        return *instance.find<T>(name);
+        start();
     }
 };
 
 struct Kept : test::Hostile {
-    std::string directory = testing::TempDir() + "tappet-kept-" + std::to_string(getpid());
-    void SetUp() override { std::filesystem::create_directory(directory); }
-    void TearDown() override { std::filesystem::remove_all(directory); }
+    test::Folder folder;
+    std::string directory = folder.path;
 };
 
 TEST_F(Kept, hours_and_totals_go_on_where_the_keeper_last_saved_them) {
@@ -109,9 +86,9 @@ TEST_F(Kept, a_total_that_is_restarted_counts_nothing_twice) {
     Life life{directory};
     life.part<Press>("press").count = 10'000;
     life.run(1s);
-    const std::size_t strokes = find_component(life.instance.machine().table, "strokes");
+
     for (const LifeChange change : {LifeChange::stop, LifeChange::start, LifeChange::restart}) {
-        static_cast<void>(life.instance.life().ask_component(strokes, change));
+        life.change("strokes", change);
         life.run(100ms);
         life.part<Press>("press").count += 5;
         life.run(100ms);

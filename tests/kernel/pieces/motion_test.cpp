@@ -3,17 +3,15 @@
 #include "kernel/pieces/integrator.hpp"
 #include "kernel/pieces/lead.hpp"
 #include "kernel/pieces/ramp.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/base/seeded.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tappet {
 namespace {
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+using test::no_number, test::infinite;
 constexpr Time at(Duration time) { return Time{time}; }
 
 TEST(Ramp, follows_no_faster_than_it_may_and_does_not_pass_its_target) {
@@ -31,7 +29,7 @@ TEST(Ramp, is_not_moved_by_what_is_no_number_or_by_a_rate_that_is_not_positive) 
     Ramp ramp{10.0};
     EXPECT_EQ(ramp(no_number, 1s), 0.0);
     EXPECT_EQ(ramp(1.0, 0ms), 0.0);
-    EXPECT_EQ(ramp(std::numeric_limits<double>::infinity(), 1s), 0.0);
+    EXPECT_EQ(ramp(infinite, 1s), 0.0);
     Ramp stands{-1.0, no_number};
     EXPECT_EQ(stands(5.0, 1s), 0.0);
     EXPECT_EQ(stands(-5.0, 1s), 0.0);
@@ -54,7 +52,7 @@ TEST(HandOver, goes_without_a_bump_from_what_there_was_to_what_is_wanted) {
 }
 
 TEST(HandOver, leaves_nothing_of_what_was_wanted_at_first_and_is_not_any_more) {
-    for (const double far : {1.0, -1e300, 1.7e308, no_number, -std::numeric_limits<double>::infinity()})
+    for (const double far : {1.0, -1e300, 1.7e308, no_number, -infinite})
         for (const double is : {0.0, 0.2, 1e300, no_number}) {
             HandOver from;
             const double first = from.begin(is, far, 0.5);
