@@ -13,11 +13,8 @@
 namespace tappet {
 namespace {
 
-std::string shortest(double value) {
-    char text[max_real_text];
-    return {text, write_shortest(text, value)};
-}
-std::string shortest(float value) {
+template <class Real>
+std::string shortest(Real value) {
     char text[max_real_text];
     return {text, write_shortest(text, value)};
 }

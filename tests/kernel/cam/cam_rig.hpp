@@ -46,6 +46,7 @@ template <std::size_t N> struct CamRig {
         timers_until(at_s(until_s));
     }
 
+    void run_to_the_end() { run(shaft.end_s()); }
     void timers_until(Time until) {
         for (Time due = schedule.next_due(); due <= until; due = schedule.next_due()) {
             now = std::max(now, due);

@@ -115,9 +115,7 @@ TEST(ShaftEstimator, counts_turns_both_ways_over_the_wrap) {
 
 TEST(ShaftEstimator, stands_with_speed_exactly_zero_and_does_not_creep) {
     for (const std::uint32_t codes : {4096u, 180u}) {
-        ShaftProperties properties;
-        properties.codes_per_turn = codes;
-        ShaftEstimator estimator(properties);
+        ShaftEstimator estimator({.codes_per_turn = codes});
         const TrueShaft shaft = TrueShaft(0.0).jump(3600.0).hold(0.3).brake(80.0).hold(20.0);
         const double stop = 0.3 + 160.0 / 3600.0;
         double t = 0.0;
@@ -295,28 +293,16 @@ TEST_F(AnEstimator, survives_any_bytes) {
 
 TEST(ShaftProperties, are_checked_with_a_sentence) {
     static_assert(check(ShaftProperties{}).empty());
-    ShaftProperties few;
-    few.codes_per_turn = 4;
-    EXPECT_EQ(check(few).view(), "shaft: codes_per_turn is 4; give a number from 8 to 16777216");
-    ShaftProperties slow;
-    slow.max_speed = Speed{};
-    EXPECT_FALSE(check(slow).empty());
-    ShaftProperties soft;
-    soft.max_acceleration_deg_s2 = 0.0;
-    EXPECT_FALSE(check(soft).empty());
-    ShaftProperties sure;
-    sure.jerk_density = 0.0;
-    EXPECT_FALSE(check(sure).empty());
-    ShaftProperties early;
-    early.stamp_jitter = -1us;
-    EXPECT_FALSE(check(early).empty());
-    ShaftProperties patient;
-    patient.lost_after = 1ms;
-    EXPECT_FALSE(check(patient).empty());
-    ShaftProperties blind;
-    blind.lost_after = 100ms;
-    EXPECT_EQ(check(blind).view(), "shaft: in a gap of lost_after the shaft may turn half a turn unseen at "
-                                   "max_acceleration_deg_s2; shorten lost_after");
+    EXPECT_EQ(check({.codes_per_turn = 4}).view(),
+              "shaft: codes_per_turn is 4; give a number from 8 to 16777216");
+    EXPECT_FALSE(check({.max_speed = Speed{}}).empty());
+    EXPECT_FALSE(check({.max_acceleration_deg_s2 = 0.0}).empty());
+    EXPECT_FALSE(check({.jerk_density = 0.0}).empty());
+    EXPECT_FALSE(check({.stamp_jitter = -1us}).empty());
+    EXPECT_FALSE(check({.lost_after = 1ms}).empty());
+    EXPECT_EQ(check({.lost_after = 100ms}).view(),
+              "shaft: in a gap of lost_after the shaft may turn half a turn unseen at "
+              "max_acceleration_deg_s2; shorten lost_after");
 }
 
 } // namespace

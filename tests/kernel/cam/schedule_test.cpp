@@ -50,10 +50,8 @@ TEST_F(Cams, fires_every_row_exactly_once_per_turn_with_jitter_and_missing_sampl
             Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 20};
             const double turns = rpm < 100.0 ? 200.0 : 3000.0;
             const double seconds = turns * 60.0 / rpm;
-            TrueShaft shaft(123.0);
-            shaft.jump(rpm * 6.0).hold(seconds);
-            CamRig rig(loom, shaft, sampling, random.next());
-            rig.run(seconds);
+            CamRig rig(loom, TrueShaft(123.0).jump(rpm * 6.0).hold(seconds), sampling, random.next());
+            rig.run_to_the_end();
             expect_once_per_turn(rig, loom, 1);
             for (std::size_t row = 0; row < loom.size(); ++row) {
                 const CamKind kind = loom.rows[row].is_window ? CamKind::leave : CamKind::point;
@@ -67,7 +65,7 @@ TEST_F(Cams, fires_every_row_exactly_once_per_turn_with_jitter_and_missing_sampl
 
 TEST_F(Cams, fires_in_the_order_of_the_effects) {
     CamRig rig(loom, TrueShaft(10.0).jump(3600.0).hold(10.0), {}, random.next());
-    rig.run(10.0);
+    rig.run_to_the_end();
     // No dead time lies between these two rows: the one at the greater angle comes later.
     ShaftPosition last{-100, {}};
     for (const Fired& fired : rig.fired) {
@@ -82,9 +80,8 @@ TEST_F(Cams, puts_the_effect_on_the_angle_at_even_speeds) {
     for (const std::uint32_t codes : {4096u, 180u}) {
         for (const double rpm : {60.0, 600.0, 1350.0, 2000.0}) {
             Sampling sampling{.codes_per_turn = codes, .stamp_delay_s = 100e-6, .missing_one_in = 50};
-            const double seconds = 30.0;
-            CamRig rig(loom, TrueShaft(17.0).jump(rpm * 6.0).hold(seconds), sampling, random.next());
-            rig.run(seconds);
+            CamRig rig(loom, TrueShaft(17.0).jump(rpm * 6.0).hold(30.0), sampling, random.next());
+            rig.run_to_the_end();
             Errors errors;
             for (const Fired& fired : rig.fired)
                 if (fired.event.target.turns() > 1) errors.add(effect_error(rig, loom, fired));
@@ -191,19 +188,18 @@ TEST_F(Cams, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
 TEST_F(Cams, fires_once_when_the_shaft_stops_between_firing_and_effect) {
     constexpr auto table = cam_table(700_rpm, cam("slow_valve", at(180_deg), dead_time(20ms)));
     // 72 degrees ahead at 600 rpm; braked at 120, the shaft stands at about 160 and goes on later.
-    TrueShaft shaft(-150.0);
-    shaft.jump(3600.0).hold(0.075).brake(40.0).hold(0.5).ramp(360.0, 0.05).hold(0.2);
-    CamRig rig(table, shaft, {}, random.next());
-    rig.run(shaft.end_s());
+    CamRig rig(table,
+               TrueShaft(-150.0).jump(3600.0).hold(0.075).brake(40.0).hold(0.5).ramp(360.0, 0.05).hold(0.2),
+               {}, random.next());
+    rig.run_to_the_end();
     EXPECT_EQ(rig.count(0, CamKind::point), 1u);
 }
 
 TEST_F(Cams, fires_late_at_once_and_counts_it_when_a_dead_time_reaches_back_before_now) {
     constexpr auto table = cam_table(700_rpm, cam("valve", at(30_deg), dead_time(10ms), min_speed(300_rpm)));
     // min_speed is reached at about 20 degrees, where the effect already lies 18 degrees ahead.
-    TrueShaft shaft(0.0);
-    shaft.hold(0.1).accelerate(1800.0 * 1800.0 / 40.0, 40.0 / 1800.0).hold(0.3);
-    CamRig rig(table, shaft, {}, random.next());
+    CamRig rig(table, TrueShaft(0.0).hold(0.1).accelerate(1800.0 * 1800.0 / 40.0, 40.0 / 1800.0).hold(0.3),
+               {}, random.next());
     rig.run(0.16);
     ASSERT_EQ(rig.count(0, CamKind::point), 1u);
     EXPECT_EQ(rig.schedule.counters().late, 1u);
@@ -302,10 +298,9 @@ TEST_F(Cams, leaves_a_window_in_which_the_shaft_comes_to_stand) {
 
 TEST_F(Cams, leaves_a_window_that_a_dead_time_entered_ahead_of_a_shaft_that_stops_before_it) {
     constexpr auto table = cam_table(700_rpm, cam("slow_valve", window(180_deg, 300_deg), dead_time(20ms)));
-    TrueShaft shaft(-150.0); // 72 degrees ahead: entered at 108; braked at 120, it stands at 160
-    shaft.jump(3600.0).hold(0.075).brake(40.0).hold(0.1);
-    CamRig rig(table, shaft, {}, random.next());
-    rig.run(shaft.end_s());
+    // 72 degrees ahead: entered at 108; braked at 120, it stands at 160
+    CamRig rig(table, TrueShaft(-150.0).jump(3600.0).hold(0.075).brake(40.0).hold(0.1), {}, random.next());
+    rig.run_to_the_end();
     EXPECT_EQ(rig.count(0, CamKind::enter), 1u);
     EXPECT_EQ(rig.count(0, CamKind::leave), 1u);
 }
@@ -358,10 +353,8 @@ TEST_F(Cams, keeps_exclusive_windows_apart_when_they_touch) {
                                      cam("a", window(0_deg, 120_deg), exclusive("g")),
                                      cam("c", window(240_deg, 0_deg), exclusive("g")));
     static_assert(check(table.view()).empty());
-    TrueShaft shaft(10.0);
-    shaft.jump(9000.0).hold(3.0);
-    CamRig rig(table, shaft, {.codes_per_turn = 180}, random.next());
-    rig.run(3.0);
+    CamRig rig(table, TrueShaft(10.0).jump(9000.0).hold(3.0), {.codes_per_turn = 180}, random.next());
+    rig.run_to_the_end();
     int open = 0;
     for (const Fired& fired : rig.fired) {
         open += fired.event.kind == CamKind::enter ? 1 : -1;

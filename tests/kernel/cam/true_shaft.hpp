@@ -109,11 +109,9 @@ struct Sampling {
 };
 
 inline ShaftProperties properties_for(const Sampling& sampling) {
-    ShaftProperties p;
-    p.codes_per_turn = sampling.codes_per_turn;
-    p.stamp_latency = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 0.5e9)};
-    p.stamp_jitter = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 1e9 / 3.4641)};
-    return p;
+    return {.codes_per_turn = sampling.codes_per_turn,
+            .stamp_latency = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 0.5e9)},
+            .stamp_jitter = Duration{static_cast<std::int64_t>(sampling.stamp_delay_s * 1e9 / 3.4641)}};
 }
 
 } // namespace tappet::test

@@ -29,6 +29,16 @@ struct AnEvent : testing::Test {
     Listener first, second, third;
 };
 
+/// The only asynchronous row into a receiver, which has more room than the row may take.
+struct Told : Receiver, Row {
+    EventHandle handle;
+
+    Told(Emitter& emitter, Listener& listener, std::uint32_t quota, bool keeps_latest = false)
+        : Receiver{quota + 4},
+          Row{static_cast<Receiver&>(*this), hear, &listener, quota, keeps_latest},
+          handle{emitter.tell(row)} {}
+};
+
 TEST_F(AnEvent, without_subscribers_is_emitted_into_nothing) {
     Event<double> event;
     event.emit(1.0);
@@ -48,34 +58,30 @@ TEST_F(AnEvent, calls_its_synchronous_reactions_at_once_in_the_order_of_their_ro
 }
 
 TEST_F(AnEvent, posts_its_asynchronous_reactions_and_wakes_the_receiver) {
-    Receiver receiver{4};
-    Row row{receiver, hear, &first, 4};
+    Told told{emitter, first, 4};
     int wakes = 0;
-    row.row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
-    emitter.tell(row.row);
+    told.row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
     emitter.event(1.0);
     emitter.event(2.0);
     EXPECT_EQ(first.heard, std::vector<double>{}) << "not before the receiver serves";
     EXPECT_EQ(wakes, 2);
-    EXPECT_EQ(receiver.inbox.run_all(), 2u);
+    EXPECT_EQ(told.inbox.run_all(), 2u);
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
 }
 
 TEST_F(AnEvent, loses_and_counts_what_exceeds_the_quota_of_the_row) {
-    Receiver receiver{8};
-    Row row{receiver, hear, &first, 2};
-    emitter.tell(row.row);
+    Told told{emitter, first, 2};
     for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
-    EXPECT_EQ(row.row.counts().lost, 1u);
-    EXPECT_EQ(row.row.counts().high_water, 2u);
-    receiver.inbox.run_all();
+    EXPECT_EQ(told.row.counts().lost, 1u);
+    EXPECT_EQ(told.row.counts().high_water, 2u);
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
     emitter.event(4.0); // served messages give their place back
-    receiver.inbox.run_all();
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0, 4.0}));
-    EXPECT_EQ(row.row.counts().lost, 1u);
-    EXPECT_EQ(row.row.counts().posted, 3u);
-    EXPECT_EQ(row.row.counts().served, 3u);
+    EXPECT_EQ(told.row.counts().lost, 1u);
+    EXPECT_EQ(told.row.counts().posted, 3u);
+    EXPECT_EQ(told.row.counts().served, 3u);
 }
 
 TEST_F(AnEvent, lets_one_rows_flood_not_take_another_rows_place) {
@@ -146,20 +152,18 @@ TEST_F(AnEvent, of_large_arguments_of_which_the_latest_is_kept_keeps_the_one_tha
 }
 
 TEST_F(AnEvent, of_which_the_latest_is_kept_delivers_that_and_counts_the_ones_it_replaced) {
-    Receiver receiver{1};
-    Row row{receiver, hear, &first, 1, true};
+    Told told{emitter, first, 1, true};
     int wakes = 0;
-    row.row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
-    emitter.tell(row.row);
+    told.row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
     for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
     EXPECT_EQ(wakes, 1) << "who is told already is not told again";
-    receiver.inbox.run_all();
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{3.0}));
-    EXPECT_EQ(row.row.counts().lost, 2u);
+    EXPECT_EQ(told.row.counts().lost, 2u);
     emitter.event(4.0);
-    receiver.inbox.run_all();
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{3.0, 4.0}));
-    EXPECT_EQ(row.row.counts().lost, 2u);
+    EXPECT_EQ(told.row.counts().lost, 2u);
 }
 
 TEST_F(AnEvent, reaches_no_reaction_that_was_disconnected_and_each_that_was_connected_again) {
@@ -192,16 +196,14 @@ TEST_F(AnEvent, leaves_the_other_rows_alone_when_one_is_disconnected) {
 }
 
 TEST_F(AnEvent, drops_and_counts_what_was_caught_before_the_row_was_disconnected) {
-    Receiver receiver{4};
-    Row row{receiver, hear, &first, 4};
-    const EventHandle handle = emitter.tell(row.row);
+    Told told{emitter, first, 4};
     emitter.event(1.0);
     emitter.event(2.0);
-    handle.disconnect();
-    receiver.inbox.run_all();
+    told.handle.disconnect();
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, std::vector<double>{});
-    EXPECT_EQ(row.row.counts().outdated, 2u);
-    EXPECT_EQ(row.row.counts().served, 2u) << "their places are free again";
+    EXPECT_EQ(told.row.counts().outdated, 2u);
+    EXPECT_EQ(told.row.counts().served, 2u) << "their places are free again";
 }
 
 TEST_F(AnEvent, drops_what_was_caught_before_even_when_the_row_is_connected_again) {
@@ -289,14 +291,12 @@ TEST_F(AnEvent, may_have_its_reactions_connect_and_disconnect_each_other_and_tho
 }
 
 TEST_F(AnEvent, may_be_disconnected_in_the_receivers_engine_with_all_that_waits_there) {
-    Receiver receiver{4};
-    Row row{receiver, hear, &first, 4};
-    const EventHandle handle = emitter.tell(row.row);
-    first.then = [&] { handle.disconnect(); };
+    Told told{emitter, first, 4};
+    first.then = [&] { told.handle.disconnect(); };
     for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
-    receiver.inbox.run_all();
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{1.0}));
-    EXPECT_EQ(row.row.counts().outdated, 2u);
+    EXPECT_EQ(told.row.counts().outdated, 2u);
 }
 
 TEST_F(AnEvent, may_be_emitted_again_out_of_its_own_reaction) {
@@ -324,18 +324,16 @@ TEST_F(AnEvent, gives_each_emitting_activity_a_quota_of_its_own_and_keeps_its_or
 }
 
 TEST_F(AnEvent, counts_as_stray_what_an_activity_emits_to_which_no_row_leads) {
-    Receiver receiver{2};
-    Row row{receiver, hear, &first, 2};
-    emitter.tell(row.row);
+    Told told{emitter, first, 2};
     emitter.call(hear, &second);
     for (const std::uint32_t activity : {1u, no_activity}) {
         const RunsActivity there{activity};
         emitter.event(1.0);
     }
-    receiver.inbox.run_all();
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, std::vector<double>{});
-    EXPECT_EQ(row.row.counts().stray, 2u);
-    EXPECT_EQ(row.row.counts().lost, 2u);
+    EXPECT_EQ(told.row.counts().stray, 2u);
+    EXPECT_EQ(told.row.counts().lost, 2u);
     EXPECT_EQ(second.heard, (std::vector{1.0, 1.0})) << "what runs in the emitter needs no lane";
 }
 

@@ -9,8 +9,6 @@
 #include "tests/kernel/exchange/placed.hpp"
 #include "tests/kernel/exchange/stress.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cstdint>
 #include <memory>
 

@@ -25,36 +25,30 @@ Message numbered(std::uint32_t id) {
     return message;
 }
 
-/// The ids served, in place: a visitor is real-time.
-struct Served {
-    std::array<std::uint32_t, 256> ids{};
+using Ids = std::vector<std::uint32_t>;
+
+/// The ids that are served now.
+Ids served(Inbox& inbox) {
+    std::array<std::uint32_t, 256> ids{}; // a visitor is real-time
     std::size_t count = 0;
-    void operator()(const Message& message) noexcept TAPPET_REALTIME {
-        ids[count++ % ids.size()] = message.id;
-    }
-    [[nodiscard]] std::vector<std::uint32_t> list() const {
-        return {ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count)};
-    }
-};
+    const auto visit = [&](const Message& message) noexcept
+        TAPPET_REALTIME { ids[count++ % ids.size()] = message.id; };
+    EXPECT_EQ(inbox.serve(visit), count);
+    return {ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count)};
+}
 
 TEST(Inbox, has_nothing_at_first) {
     PlacedInbox post{4, 3};
-    Served served;
     EXPECT_FALSE(post.inbox.pending());
-    EXPECT_EQ(post.inbox.serve(served), 0u);
+    EXPECT_EQ(served(post.inbox), Ids{});
 }
 
 TEST(Inbox, serves_senders_in_their_order_and_each_in_the_order_it_sent) {
     PlacedInbox post{4, 3};
-    EXPECT_TRUE(post.inbox.post(2, numbered(20)));
-    EXPECT_TRUE(post.inbox.post(0, numbered(1)));
-    EXPECT_TRUE(post.inbox.post(2, numbered(21)));
-    EXPECT_TRUE(post.inbox.post(1, numbered(10)));
-    EXPECT_TRUE(post.inbox.post(0, numbered(2)));
+    for (const std::uint32_t id : {20u, 1u, 21u, 10u, 2u})
+        EXPECT_TRUE(post.inbox.post(id / 10, numbered(id))) << id;
     EXPECT_TRUE(post.inbox.pending());
-    Served served;
-    EXPECT_EQ(post.inbox.serve(served), 5u);
-    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{1, 2, 10, 20, 21}));
+    EXPECT_EQ(served(post.inbox), (Ids{1, 2, 10, 20, 21}));
     EXPECT_FALSE(post.inbox.pending());
 }
 
@@ -64,9 +58,7 @@ TEST(Inbox, takes_64_senders_and_no_65th) {
     EXPECT_TRUE(post.inbox.post(0, numbered(0)));
     EXPECT_FALSE(post.inbox.post(64, numbered(64)));
     EXPECT_FALSE(post.inbox.post(1000, numbered(64)));
-    Served served;
-    EXPECT_EQ(post.inbox.serve(served), 2u);
-    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{0, 63}));
+    EXPECT_EQ(served(post.inbox), (Ids{0, 63}));
 }
 
 TEST(Inbox, without_mailboxes_refuses_every_post) {
@@ -83,9 +75,7 @@ TEST(Inbox, refuses_a_message_when_the_senders_mailbox_is_full_and_counts_it) {
     EXPECT_TRUE(post.inbox.post(0, numbered(4))) << "the other senders have room of their own";
     EXPECT_EQ(post.mailboxes[1].lost(), 1u);
     EXPECT_EQ(post.mailboxes[0].lost(), 0u);
-    Served served;
-    post.inbox.serve(served);
-    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{4, 1, 2}));
+    EXPECT_EQ(served(post.inbox), (Ids{4, 1, 2}));
 }
 
 TEST(Inbox, leaves_what_is_posted_while_it_serves_a_mailbox_for_the_next_call) {
@@ -99,9 +89,7 @@ TEST(Inbox, leaves_what_is_posted_while_it_serves_a_mailbox_for_the_next_call) {
     };
     EXPECT_EQ(post.inbox.serve(answering), 2u) << "a chain of messages cannot hold the engine";
     EXPECT_TRUE(post.inbox.pending());
-    Served served;
-    EXPECT_EQ(post.inbox.serve(served), 2u);
-    EXPECT_EQ(served.list(), (std::vector<std::uint32_t>{11, 12}));
+    EXPECT_EQ(served(post.inbox), (Ids{11, 12}));
     EXPECT_FALSE(post.inbox.pending());
     EXPECT_EQ(calls, 2u);
 }

@@ -5,8 +5,6 @@
 #include "tests/kernel/motion/random_motion.hpp"
 #include "tests/kernel/motion/robots.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

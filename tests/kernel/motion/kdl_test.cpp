@@ -5,8 +5,6 @@
 #include "tests/kernel/motion/kdl_chain.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
-#include <gtest/gtest.h>
-
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacsolver.hpp>

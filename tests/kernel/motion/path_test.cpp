@@ -4,8 +4,6 @@
 #include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 namespace tappet::motion::test {

@@ -12,9 +12,13 @@ namespace {
 
 alignas(4096) std::array<std::byte, 8 * 4096> block{};
 
-TEST(SharedMemory, what_is_written_to_the_block_is_read_through_the_descriptor) {
+struct SharedBlock : testing::Test {
     SharedMemory shared;
-    ASSERT_TRUE(shared.lay_under(block, "tappet-test")) << "no memfd";
+
+    void SetUp() override { ASSERT_TRUE(shared.lay_under(block, "tappet-test")) << "no memfd"; }
+};
+
+TEST_F(SharedBlock, what_is_written_to_the_block_is_read_through_the_descriptor) {
     const auto seen = map_to_read(shared.descriptor());
     ASSERT_EQ(seen.size(), block.size());
     block[0] = std::byte{7};
@@ -31,9 +35,7 @@ TEST(SharedMemory, is_zero_when_it_is_laid_under_whatever_stood_there) {
     for (const std::byte each : block) ASSERT_EQ(each, std::byte{0});
 }
 
-TEST(SharedMemory, cannot_be_mapped_for_writing_written_or_resized_through_the_descriptor) {
-    SharedMemory shared;
-    ASSERT_TRUE(shared.lay_under(block, "tappet-test"));
+TEST_F(SharedBlock, cannot_be_mapped_for_writing_written_or_resized_through_the_descriptor) {
     const int file = shared.descriptor();
     EXPECT_EQ(mmap(nullptr, block.size(), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0), MAP_FAILED);
     EXPECT_LT(pwrite(file, "x", 1, 0), 0);
