@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <thread>
 
 namespace tappet {
@@ -37,29 +36,21 @@ template <int n>
 concept half_is_constant = requires { typename std::integral_constant<int, checked_half(n)>; };
 
 TEST(Contract, numbers_never_change) {
-    EXPECT_EQ(static_cast<int>(Contract::index_out_of_range), 1);
-    EXPECT_EQ(static_cast<int>(Contract::precondition), 2);
-    EXPECT_EQ(static_cast<int>(Contract::single_writer), 103);
-    EXPECT_EQ(static_cast<int>(Contract::single_reader), 104);
-    EXPECT_EQ(static_cast<int>(Contract::command_sender), 105);
-    EXPECT_EQ(static_cast<int>(Contract::timer_unserved), 106);
-    EXPECT_EQ(static_cast<int>(Contract::engine_runs), 107);
-    EXPECT_EQ(static_cast<int>(Contract::wrong_phase), 108);
-    EXPECT_EQ(static_cast<int>(Contract::one_activity), 109);
-    EXPECT_EQ(static_cast<int>(Contract::allocation_after_seal), 201);
-    EXPECT_EQ(static_cast<int>(Contract::mapping_after_seal), 202);
-    EXPECT_EQ(static_cast<int>(Contract::heap_exhausted), 203);
-    EXPECT_EQ(static_cast<int>(Contract::heap_foreign_pointer), 204);
-    EXPECT_EQ(static_cast<int>(Contract::heap_double_free), 205);
-    EXPECT_EQ(static_cast<int>(Contract::heap_damaged), 206);
-    EXPECT_EQ(static_cast<int>(Contract::heap_lock_failed), 207);
-    EXPECT_EQ(static_cast<int>(Contract::memory_not_there), 208);
-    EXPECT_EQ(static_cast<int>(Contract::step_limit_exceeded), 401);
+    using enum Contract;
+    constexpr std::pair<Contract, int> numbers[] = {{index_out_of_range, 1},     {precondition, 2},
+                                                    {single_writer, 103},        {single_reader, 104},
+                                                    {command_sender, 105},       {timer_unserved, 106},
+                                                    {engine_runs, 107},          {wrong_phase, 108},
+                                                    {one_activity, 109},         {allocation_after_seal, 201},
+                                                    {mapping_after_seal, 202},   {heap_exhausted, 203},
+                                                    {heap_foreign_pointer, 204}, {heap_double_free, 205},
+                                                    {heap_damaged, 206},         {heap_lock_failed, 207},
+                                                    {memory_not_there, 208},     {step_limit_exceeded, 401},
+                                                    {not_a_number, 4},           {refused_settings, 5}};
+    for (const auto& [contract, number] : numbers) EXPECT_EQ(static_cast<int>(contract), number);
     for (const int given_up : {3, 101, 102, 301, 402})
         EXPECT_EQ(find_text(static_cast<Contract>(given_up)), nullptr) << given_up << " had another meaning";
-    EXPECT_EQ(static_cast<int>(Contract::not_a_number), 4);
-    EXPECT_EQ(static_cast<int>(Contract::refused_settings), 5);
-    EXPECT_EQ(contract_texts.size(), 20u) << "a new contract gets its line here";
+    EXPECT_EQ(contract_texts.size(), std::size(numbers)) << "a new contract gets its number here";
 }
 
 /// As the way to the safe state may: it allocates, which is a breach of its own.

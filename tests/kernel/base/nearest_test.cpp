@@ -32,22 +32,9 @@ TEST(EditDistance, counts_a_swap_of_neighbours_once) {
     EXPECT_EQ(edit_distance("ca", "abc"), 3u) << "no character is edited twice";
 }
 
-TEST(EditDistance, counts_a_letter_more_less_or_other_once) {
-    EXPECT_EQ(edit_distance("panel", "pannel"), 1u);
-    EXPECT_EQ(edit_distance("panel", "pane"), 1u);
-    EXPECT_EQ(edit_distance("panel", "pabel"), 1u);
-    EXPECT_EQ(edit_distance("", "panel"), 5u);
-}
-
 TEST(EditDistance, tells_capitals_apart_unless_asked_not_to) {
     EXPECT_EQ(edit_distance("Shaft", "shaft"), 1u);
     EXPECT_EQ(edit_distance("SHAFT", "shaft", 64, LetterCase::ignored), 0u);
-}
-
-TEST(EditDistance, reports_more_than_the_limit_as_one_more) {
-    EXPECT_EQ(edit_distance("abcdef", "uvwxyz", 2), 3u);
-    EXPECT_EQ(edit_distance("abcdef", "abcxyz", 3), 3u);
-    EXPECT_EQ(edit_distance("a", "abcdef", 2), 3u);
 }
 
 TEST(EditDistance, compares_64_characters_and_not_65) {

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <bit>
 #include <functional>
 #include <initializer_list>
 #include <vector>
