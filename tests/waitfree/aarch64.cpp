@@ -211,27 +211,19 @@ private:
         } else if (begins_with_any(name_,
                                    {"dmb", "dsb", "isb", "hint", "nop", "prfm", "clrex", "dc", "sys"})) {
             say("nop");
-        } else if (is_any(name_, {"adds", "subs"}) && count >= 3) {
+        } else if (is_any(name_, {"add", "sub", "adds", "subs"}) && count >= 3) {
             auto number = immediate(operands_[2]);
             if (number && count > 3) *number <<= 12; // the only shift that there is
-            const bool adds = name_ == "adds";
+            const bool adds = name_.starts_with("add"), sets_flags = name_.ends_with('s');
             const bool is_plain = number || (count == 3 && is_register(2) && !adds);
-            if (is_plain && !(adds && number == 0))
+            if (sets_flags && is_plain && !(adds && number == 0))
                 say("cmp", {source(operands_[1]),
                             number ? in_words(adds ? -*number : *number) : source(operands_[2])});
-            else
+            else if (sets_flags)
                 flags();
             if (number)
                 into_first(sum(source(operands_[1]), adds ? *number : -*number));
-            else
-                unknown(0);
-        } else if (is_any(name_, {"add", "sub"}) && count >= 3) {
-            auto number = immediate(operands_[2]);
-            if (number && count > 3) *number <<= 12;
-            const bool adds = name_ == "add";
-            if (number)
-                into_first(sum(source(operands_[1]), adds ? *number : -*number));
-            else if (adds && count == 3 && !is_zero(operands_[1]) && !is_zero(operands_[2]))
+            else if (adds && !sets_flags && count == 3 && !is_zero(operands_[1]) && !is_zero(operands_[2]))
                 into_first("[" + source(operands_[1]) + "+" + source(operands_[2]) + "]");
             else
                 unknown(0);
