@@ -1,12 +1,10 @@
 // Angles are exact, wrap by themselves and know the shortest way.
-#include "kernel/base/random.hpp"
 #include "kernel/cam/angle.hpp"
 
-#include <gtest/gtest.h>
+#include "tests/kernel/base/seeded.hpp"
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 namespace tappet {
 namespace {
@@ -27,8 +25,9 @@ TEST(Angle, difference_is_the_shortest_way_with_its_sign) {
     static_assert(forward_way(10_deg, 350_deg) == 340_deg);
 }
 
-TEST(Angle, degrees_there_and_back_lose_less_than_a_unit) {
-    Random random{std::random_device{}()};
+using AnyAngle = test::Seeded;
+
+TEST_F(AnyAngle, in_degrees_there_and_back_loses_less_than_a_unit) {
     for (int i = 0; i < 100'000; ++i) {
         const double degrees = random.unit() * 360.0;
         EXPECT_NEAR(Angle::degrees(degrees).in_degrees(), degrees, 360.0 / 0x1p32);

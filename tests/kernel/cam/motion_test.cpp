@@ -1,10 +1,7 @@
 // A shaft's motion ahead: positions follow the quadratic, crossings are their inverse.
-#include "kernel/base/random.hpp"
 #include "kernel/cam/motion.hpp"
 
-#include <gtest/gtest.h>
-
-#include <random>
+#include "tests/kernel/base/seeded.hpp"
 
 namespace tappet {
 namespace {
@@ -46,9 +43,9 @@ TEST(ShaftMotion, does_not_predict_beyond_an_hour) {
     EXPECT_EQ(creeping.when(creeping.state.position + 350_deg, creeping.stamp), never);
 }
 
-TEST(ShaftMotion, is_at_the_target_at_the_time_it_says_for_any_motion) {
-    const std::uint64_t seed = std::random_device{}();
-    Random random{seed};
+using AnyShaftMotion = test::Seeded;
+
+TEST_F(AnyShaftMotion, is_at_the_target_at_the_time_it_says) {
     int reached = 0;
     for (int i = 0; i < 100'000; ++i) {
         const double velocity = (random.unit() - 0.5) * 24'000.0;
@@ -61,10 +58,10 @@ TEST(ShaftMotion, is_at_the_target_at_the_time_it_says_for_any_motion) {
         const Time when = motion.when(target, not_before);
         if (when == never) continue;
         ++reached;
-        ASSERT_GE(when, std::max(not_before, motion.stamp)) << "seed " << seed;
+        ASSERT_GE(when, std::max(not_before, motion.stamp));
         // At the instant of stopping a nanosecond's rounding is a place's; elsewhere it is speed times a
         // nanosecond.
-        ASSERT_NEAR((motion.at(when).position - target).in_degrees(), 0.0, 1e-4) << "seed " << seed;
+        ASSERT_NEAR((motion.at(when).position - target).in_degrees(), 0.0, 1e-4);
     }
     EXPECT_GT(reached, 10'000);
 }

@@ -210,16 +210,14 @@ TEST_F(AnEvent, drops_what_was_caught_before_even_when_the_row_is_connected_agai
     for (const bool keeps_latest : {false, true}) {
         Emitter emits;
         Listener listener;
-        Receiver receiver{4};
-        Row row{receiver, hear, &listener, keeps_latest ? 1u : 4u, keeps_latest};
-        const EventHandle handle = emits.tell(row.row);
+        Told told{emits, listener, keeps_latest ? 1u : 4u, keeps_latest};
         emits.event(1.0);
-        handle.disconnect();
-        handle.connect();
+        told.handle.disconnect();
+        told.handle.connect();
         if (!keeps_latest) emits.event(2.0);
-        receiver.inbox.run_all();
+        told.inbox.run_all();
         EXPECT_EQ(listener.heard, keeps_latest ? std::vector<double>{} : (std::vector{2.0}));
-        EXPECT_EQ(row.row.counts().outdated, 1u);
+        EXPECT_EQ(told.row.counts().outdated, 1u);
     }
 }
 
@@ -338,16 +336,14 @@ TEST_F(AnEvent, counts_as_stray_what_an_activity_emits_to_which_no_row_leads) {
 }
 
 TEST_F(AnEvent, reaches_no_component_that_does_not_run) {
-    Receiver receiver{2};
-    Row row{receiver, hear, &first, 2};
-    row.gate.state.store(ComponentState::stopped);
-    emitter.tell(row.row);
+    Told told{emitter, first, 2};
+    told.gate.state.store(ComponentState::stopped);
     emitter.event(1.0);
-    receiver.inbox.run_all();
-    EXPECT_EQ(row.row.counts().dropped, 1u);
-    row.gate.state.store(ComponentState::running);
+    told.inbox.run_all();
+    EXPECT_EQ(told.row.counts().dropped, 1u);
+    told.gate.state.store(ComponentState::running);
     emitter.event(2.0);
-    receiver.inbox.run_all();
+    told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{2.0}));
 }
 
