@@ -17,6 +17,7 @@ constexpr auto table = axis_machine(control(axis_level, process("watcher"), axis
 struct Rig : test::VirtualRig {
     explicit Rig(bool measures = true) : VirtualRig{AtRunTime<table, box>::machine()} {
         start([&] { part<Slide>("slide").is_silent = !measures; });
+        EXPECT_TRUE(!measures || run(3ms));
     }
     ComponentState state(std::string_view name) {
         return instance.life().state_of(find_component(instance.machine().table, name));
@@ -54,7 +55,6 @@ struct Rig : test::VirtualRig {
 
 TEST(Turns, begin_with_the_fallback_and_the_others_wait) {
     Rig rig;
-    EXPECT_TRUE(rig.run(3ms));
     EXPECT_EQ(rig.running(), "stand");
     EXPECT_EQ(rig.state("standing"), ComponentState::running);
     EXPECT_EQ(rig.state("position"), ComponentState::running);
@@ -79,7 +79,6 @@ TEST(Turns, begin_when_every_input_has_a_valid_value_and_not_with_a_zero) {
 
 TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {
     Rig rig;
-    EXPECT_TRUE(rig.run(3ms));
     EXPECT_EQ(rig.ask("jog"), CommandState::done);
     EXPECT_EQ(rig.running(), "jog");
     EXPECT_EQ(rig.state("standing"), ComponentState::stopped);
@@ -131,7 +130,6 @@ TEST(Turns, leave_one_writer_in_every_cycle_and_no_jump_of_the_velocity) {
 
 TEST(Turns, do_not_happen_when_one_cannot_start_and_say_what_hinders) {
     Rig rig;
-    EXPECT_TRUE(rig.run(3ms));
     rig.part<Mover>("jogging").is_mute =
         true; // its start() writes nothing: nobody reads what it wrote long ago
     EXPECT_EQ(rig.ask("jog"), CommandState::failed);
@@ -182,7 +180,6 @@ TEST(Turns, fall_back_when_a_part_of_the_chain_stops) {
 
 TEST(Turns, stop_the_machine_when_the_fallback_itself_fails) {
     Rig rig;
-    EXPECT_TRUE(rig.run(3ms));
     rig.change("standing", LifeChange::stop);
     rig.run(5ms);
     ASSERT_TRUE(rig.instance.stop_asked());
@@ -192,7 +189,6 @@ TEST(Turns, stop_the_machine_when_the_fallback_itself_fails) {
 
 TEST(Turns, stop_the_machine_when_a_part_stops_that_always_runs) {
     Rig rig;
-    EXPECT_TRUE(rig.run(3ms));
     rig.change("encoder", LifeChange::stop);
     rig.run(5ms);
     EXPECT_TRUE(rig.instance.stop_asked());
@@ -246,7 +242,6 @@ TEST(Turns, are_refused_though_a_force_stands_for_what_nobody_wrote_and_leave_it
 
 TEST(Turns, are_not_taken_alone) {
     Rig rig;
-    EXPECT_TRUE(rig.run(3ms));
     const std::size_t jogging = find_component(rig.instance.machine().table, "jogging");
     const LifeTicket ticket = rig.change("jogging", LifeChange::start);
     EXPECT_TRUE(rig.run(3ms));
