@@ -2,7 +2,6 @@
 // whatever the component does, and releasing leaves no trace.
 #include "tests/kernel/component/port_rig.hpp"
 
-
 namespace {
 
 using namespace tappet;
