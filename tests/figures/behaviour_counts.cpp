@@ -4,12 +4,11 @@
 //     behaviour_counts FORM EVENTS    drives that form by so many events, of which the last two are measured
 #include "tests/figures/behaviour/by_hand.hpp"
 #include "tests/figures/behaviour/steps.hpp"
+#include "tests/figures/measure/callgrind.hpp"
 
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <iostream>
 #include <string>
 #include <string_view>
 
@@ -49,36 +48,23 @@ int drive_form(std::string_view form, int events) {
     return drive(machine, &measured_by_hand, events);
 }
 
-/// Instructions of the two measured events; 0: it did not come so far.
-long count(const std::string& self, const std::string& form, int events) {
-    const std::string out = self + "." + form;
-    const std::string command =
-        "valgrind --tool=callgrind --toggle-collect='measured_*' --callgrind-out-file='" + out + "' '" +
-        self + "' " + form + " " + std::to_string(events) + " >/dev/null 2>&1";
-    if (std::system(command.c_str()) != 0) return 0;
-    std::ifstream file{out};
-    for (std::string line; std::getline(file, line);)
-        for (const std::string_view word : {"totals: ", "summary: "})
-            if (line.starts_with(word)) return std::atol(line.c_str() + word.size());
-    return 0;
-}
-
 } // namespace
 
 int main(int words, char** word) {
     if (words == 3) return drive_form(word[1], std::atoi(word[2]));
     bool good = true;
-    std::array<long, 4> counts{};
+    std::array<double, 4> counts{};
     const std::array<const char*, 4> forms{"by_hand", "table", "compiled", "loaded"};
     for (std::size_t i = 0; i < forms.size(); ++i) {
-        const long early = count(word[0], forms[i], 4);
-        const long late = count(word[0], forms[i], 4000);
+        const std::string form = forms[i];
+        const double early = count_measured(word[0], form + " 4", form);
+        const double late = count_measured(word[0], form + " 4000", form);
         counts[i] = late;
-        std::printf("%-10s %5.1f instructions an event, %5.1f after 4000 events\n", forms[i],
-                    static_cast<double>(early) / 2, static_cast<double>(late) / 2);
+        std::printf("%-10s %5.1f instructions an event, %5.1f after 4000 events\n", forms[i], early / 2,
+                    late / 2);
         good &= early > 0 && early == late;
     }
-    const double ratio = static_cast<double>(counts[2]) / static_cast<double>(counts[0]);
+    const double ratio = counts[2] / counts[0];
     std::printf("a compiled script takes %.2f times what the switch takes (limit %.2f)\n", ratio, most_times);
     return good && ratio <= most_times ? 0 : 1;
 }

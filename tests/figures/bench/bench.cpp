@@ -76,11 +76,8 @@ std::map<std::string, std::vector<PairOfBlocks>> flooded(std::size_t pairs, cons
 }
 
 void judge(const std::string& id, const std::string& title, const Report& told, Result& result) {
-    Samples ours, bare;
-    for (const PairOfBlocks& pair : told.pairs) {
-        ours.add(pair.ours.front());
-        bare.add(pair.theirs.front());
-    }
+    const Samples ours = all_of(told.pairs, &PairOfBlocks::ours),
+                  bare = all_of(told.pairs, &PairOfBlocks::theirs);
     result.figures.push_back(
         {.id = id,
          .title = title,
@@ -93,32 +90,19 @@ void judge(const std::string& id, const std::string& title, const Report& told, 
                   {"bare: wait, read, write", Standing::floor, bare.summary(), {}}}});
     for (const auto& [q, name] : {std::pair{0.5, "median"}, std::pair{0.99, "p99"}}) {
         const Comparison found = compare(told.pairs, q, margin);
-        char text[160];
-        std::snprintf(text, sizeof text, "ratio %.3f, 90 %% interval %.3f to %.3f from %zu pairs: %s",
-                      found.ratio, found.low, found.high, found.pairs, to_text(found.verdict()));
         result.statements.push_back({title + ": equivalent to a bare program within 5 % at " + name,
-                                     found.verdict() == Verdict::equivalent, text});
+                                     found.verdict() == Verdict::equivalent, found.text()});
     }
     result.statements.push_back({title + ": every request was answered", told.unanswered == 0,
                                  std::to_string(told.unanswered) + " were not"});
-    result.plots.push_back({id,
-                            title,
-                            "request to answer [us]",
-                            "answers",
-                            true,
-                            false,
-                            true,
-                            {histogram("Tappet", Standing::ours, ours, 100, 0.995),
-                             histogram("bare", Standing::floor, bare, 100, 0.995)}});
+    result.plots.push_back(histogram_plot(id, title, "request to answer [us]", "answers",
+                                          {histogram("Tappet", Standing::ours, ours, 100, 0.995),
+                                           histogram("bare", Standing::floor, bare, 100, 0.995)}));
 }
 
 void judge_flood(const std::string& kind, const std::string& title, const std::vector<PairOfBlocks>& pairs,
                  Result& result) {
-    Samples with, without;
-    for (const PairOfBlocks& pair : pairs) {
-        for (const double us : pair.ours) with.add(us);
-        for (const double us : pair.theirs) without.add(us);
-    }
+    const Samples with = all_of(pairs, &PairOfBlocks::ours), without = all_of(pairs, &PairOfBlocks::theirs);
     const std::string id = "bench.flood." + kind;
     result.figures.push_back(
         {.id = id,

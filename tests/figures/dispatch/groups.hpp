@@ -5,10 +5,10 @@
 
 namespace tappet::figures {
 
-void add_events(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
-void add_commands(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
-void add_cycles(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+void add_events(std::vector<Group>& groups);
+void add_commands(std::vector<Group>& groups);
+void add_cycles(std::vector<Group>& groups);
 void add_calls(std::vector<Group>& groups);
-void add_steps(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+void add_steps(std::vector<Group>& groups);
 
 } // namespace tappet::figures

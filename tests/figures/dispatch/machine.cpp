@@ -3,9 +3,7 @@
 
 #include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <cstdlib>
-#include <iostream>
+#include "tests/figures/measure/world.hpp"
 
 namespace tappet::figures {
 
@@ -86,28 +84,22 @@ constexpr auto table = [] {
     }
     return m;
 }();
-constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
 
 } // namespace
 
 Measured& measured() {
     static os::Clock clock{os::Clock::Kind::virtual_time};
-    static MachineInstance instance{AtRunTime<table, board>::machine(), clock};
+    static MachineInstance instance{AtRunTime<table, figures_board>::machine(), clock};
     static VirtualWorld world{instance};
     static Measured all = [] {
         const auto configured = instance.configure({});
-        const Sentence refusal = configured ? world.start() : configured.error();
-        if (!refusal.empty()) {
-            std::cerr << refusal.view() << '\n';
-            std::exit(2);
-        }
+        exit_if(configured ? world.start() : configured.error());
         Measured found;
         found.emitter = instance.find<Emitter>("emitter");
         for (std::size_t i = 0; i < senders; ++i)
             found.sender[i] = instance.find<Sender>(sender_names[i].view());
         for (std::size_t i = 0; i < listeners; ++i)
             found.listener[i] = instance.find<Listener>(listener_names[i].view());
-        found.near = &instance.engines()[0];
         found.far = &instance.engines()[1];
         found.clocked = &instance.engines()[2];
         return found;

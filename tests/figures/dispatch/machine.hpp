@@ -66,7 +66,6 @@ struct Measured {
     Emitter* emitter = nullptr;
     std::array<Sender*, senders> sender{};
     std::array<Listener*, listeners> listener{};
-    Engine* near = nullptr;    ///< of the emitter and the senders
     Engine* far = nullptr;     ///< of the listeners; it is woken
     Engine* clocked = nullptr; ///< of one more listener; it is periodic
 };

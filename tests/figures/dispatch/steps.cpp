@@ -1,7 +1,7 @@
 // Steps of engines whose components have nothing to do: what the framework itself takes.
 #include "kernel/machine/accept.hpp"
 #include "tests/figures/dispatch/groups.hpp"
-#include "tests/figures/dispatch/world.hpp"
+#include "tests/figures/measure/world.hpp"
 
 #include <memory>
 
@@ -31,36 +31,6 @@ void step_without_stamps(std::size_t times) {
         engine.run(false);
     }
 }
-/// The same in real time, woken instead of waiting for its period.
-struct RealTime {
-    os::Clock clock{os::Clock::Kind::real};
-    Idle idle;
-    EnginePart part;
-    std::array<FunctionTiming, functions_per_part> functions{};
-    Engine engine;
-    RealTime() {
-        static_cast<void>(os::prove_processor_counter()); // as it is when the machine arms
-        part.place(&idle);
-        part.type = &component_type<Idle>;
-        EnginePlan plan;
-        plan.name = "woken";
-        plan.deadline = 1s;
-        plan.parts = {&part, 1};
-        plan.functions = functions;
-        engine.place(plan, clock);
-        engine.start(clock.now());
-    }
-};
-void step_with_stamps(std::size_t times) {
-    static RealTime world;
-    const RunsActivity here{world.engine.plan().activity};
-    for (std::size_t i = 0; i < times; ++i) {
-        Time next = world.engine.next_wake();
-        keep(next);
-        world.engine.run(true);
-    }
-}
-
 std::uint64_t steps = 0;
 [[gnu::noinline]] void step_of(void* context, const Cycle&) noexcept {
     ++*static_cast<std::uint64_t*>(context);
@@ -71,14 +41,6 @@ void two_calls(std::size_t times) {
     for (std::size_t i = 0; i < times; ++i) {
         pointer(&steps, cycle);
         pointer(&steps, cycle);
-    }
-}
-void two_readings(std::size_t times) {
-    for (std::size_t i = 0; i < times; ++i) {
-        Time first = os::Clock::monotonic();
-        keep(first);
-        Time second = os::Clock::monotonic();
-        keep(second);
     }
 }
 
@@ -142,6 +104,18 @@ void call_crowd(std::size_t times) {
     }
 }
 
+/// One of them in real time, woken instead of waiting for its period.
+void step_with_stamps(std::size_t times) {
+    static Crowd crowd{os::Clock::Kind::real, 1, 1};
+    Engine& engine = crowd.engines.front();
+    const RunsActivity here{engine.plan().activity};
+    for (std::size_t i = 0; i < times; ++i) {
+        Time next = engine.next_wake();
+        keep(next);
+        engine.run(true);
+    }
+}
+
 constexpr auto without = os::Clock::Kind::virtual_time;
 constexpr auto with = os::Clock::Kind::real;
 
@@ -160,7 +134,7 @@ Group crowd_of(std::string name) {
 
 } // namespace
 
-void add_steps(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
+void add_steps(std::vector<Group>& groups) {
     groups.push_back({"dispatch.step.empty",
                       "a complete engine step of one component without pending work",
                       "thesis 5.3",
@@ -168,19 +142,18 @@ void add_steps(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                       {{"step, time stamps excluded", Standing::ours, &step_without_stamps},
                        {"step, with its two time stamps", Standing::ours, &step_with_stamps},
                        {"two calls through a function pointer", Standing::floor, &two_calls},
-                       {"two readings of the clock", Standing::floor, &two_readings}}});
-    goals.push_back(
+                       {"two readings of the clock", Standing::floor, &read_clock<2>}}});
+    groups.back().goals.push_back(
         {"empty cycle with its time stamps <= 0.3 x two readings of the clock (13 ns where they take 44)",
-         "dispatch.step.empty",
          "step, with its two time stamps",
          0.3,
          {"two readings of the clock"}});
-    goals.push_back({"empty engine step of a component without pending work, time stamps excluded and shown "
-                     "beside it <= 2 function-pointer calls",
-                     "dispatch.step.empty",
-                     "step, time stamps excluded",
-                     1.0,
-                     {"two calls through a function pointer"}});
+    groups.back().goals.push_back(
+        {"empty engine step of a component without pending work, time stamps excluded and shown "
+         "beside it <= 2 function-pointer calls",
+         "step, time stamps excluded",
+         1.0,
+         {"two calls through a function pointer"}});
     groups.push_back(crowd_of<10>("10"));
     groups.push_back(crowd_of<100>("100"));
     groups.push_back(crowd_of<1000>("1000"));

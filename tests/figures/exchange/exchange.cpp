@@ -1,20 +1,17 @@
 // What data flow between components costs (thesis 4.4.4), beside copies, bare loops, locks and the peers.
+#include "tests/figures/exchange/exchange.hpp"
 #include "tests/figures/exchange/iceoryx.hpp"
-#include "tests/figures/exchange/machine.hpp"
-#include "tests/figures/exchange/one_core.hpp"
-#include "tests/figures/exchange/two_cores.hpp"
-#include "tests/figures/measure/counts.hpp"
 
 int main(int argc, char** argv) {
     using namespace tappet::figures;
     const Options options = read_options(argc, argv);
     Result result{.program = "exchange"};
-    if (!start_machine()) return 1;
+    start_machine();
     // There is one RouDi in a machine, and the process that measures has it when it has itself counted.
     const std::string no_iceoryx = counting() ? "callgrind does not count it" : start_iceoryx();
     const bool with_iceoryx = no_iceoryx.empty();
     if (!with_iceoryx) result.notes.push_back("iceoryx was not measured: " + no_iceoryx);
-    run_candidates(options, argv, one_core_groups(with_iceoryx), one_core_goals(), result);
+    run_candidates(options, argv, one_core_groups(with_iceoryx), result);
     measure_two_cores(options, with_iceoryx, result);
     if (with_iceoryx) stop_iceoryx();
     return finish(options, result);

@@ -13,6 +13,7 @@
 #include <iceoryx_posh/runtime/posh_runtime_single_process.hpp>
 
 #include <memory>
+#include <tuple>
 
 namespace tappet::figures {
 
@@ -45,27 +46,21 @@ struct Pair {
     Pair() : publisher{service()}, subscriber{service(), options()} {}
 };
 
-template <std::size_t bytes, bool queue>
-std::unique_ptr<Pair<bytes, queue>> pair_of;
-
 struct Daemon {
     iox::roudi::IceOryxRouDiComponents components{pools()};
     iox::roudi::RouDi roudi{
         components.rouDiMemoryManager, components.portManager,
         iox::roudi::RouDi::RoudiStartupParameters{iox::roudi::MonitoringMode::OFF, false}};
     iox::runtime::PoshRuntimeSingleProcess runtime{"tappet-figures"};
+    std::tuple<Pair<8, false>, Pair<8, true>, Pair<160, false>, Pair<160, true>, Pair<4096, false>,
+               Pair<4096, true>>
+        pairs{};
 };
 std::unique_ptr<Daemon> daemon;
 
-template <std::size_t bytes>
-void make_pairs() {
-    pair_of<bytes, false> = std::make_unique<Pair<bytes, false>>();
-    pair_of<bytes, true> = std::make_unique<Pair<bytes, true>>();
-}
-template <std::size_t bytes>
-void drop_pairs() {
-    pair_of<bytes, false>.reset();
-    pair_of<bytes, true>.reset();
+template <std::size_t bytes, bool queue>
+auto& pair_of() {
+    return std::get<Pair<bytes, queue>>(daemon->pairs);
 }
 
 } // namespace
@@ -76,23 +71,15 @@ std::string start_iceoryx() {
     if (iox::posix::FileLock::create(iox::roudi::ROUDI_LOCK_NAME).has_error())
         return "another process of this machine runs iceoryx' RouDi, or its lock cannot be made";
     daemon = std::make_unique<Daemon>();
-    make_pairs<8>();
-    make_pairs<160>();
-    make_pairs<4096>();
     return {};
 }
 
-void stop_iceoryx() {
-    drop_pairs<8>();
-    drop_pairs<160>();
-    drop_pairs<4096>();
-    daemon.reset();
-}
+void stop_iceoryx() { daemon.reset(); }
 
 template <std::size_t bytes, bool queue>
 bool Iceoryx<bytes, queue>::give(const Packet<bytes>& value) noexcept {
     bool done = false;
-    pair_of<bytes, queue>->publisher.loan().and_then([&](auto& sample) {
+    pair_of<bytes, queue>().publisher.loan().and_then([&](auto& sample) {
         *sample = value;
         sample.publish();
         done = true;
@@ -103,19 +90,12 @@ bool Iceoryx<bytes, queue>::give(const Packet<bytes>& value) noexcept {
 template <std::size_t bytes, bool queue>
 bool Iceoryx<bytes, queue>::take(Packet<bytes>& into) noexcept {
     bool done = false;
-    pair_of<bytes, queue>->subscriber.take().and_then([&](auto& sample) {
+    pair_of<bytes, queue>().subscriber.take().and_then([&](auto& sample) {
         into = *sample;
         done = true;
     });
     return done;
 }
-
-template struct Iceoryx<8, false>;
-template struct Iceoryx<160, false>;
-template struct Iceoryx<4096, false>;
-template struct Iceoryx<8, true>;
-template struct Iceoryx<160, true>;
-template struct Iceoryx<4096, true>;
 
 } // namespace tappet::figures
 
@@ -132,6 +112,11 @@ template <std::size_t bytes, bool queue>
 bool Iceoryx<bytes, queue>::take(Packet<bytes>&) noexcept {
     return false;
 }
+} // namespace tappet::figures
+
+#endif
+
+namespace tappet::figures {
 template struct Iceoryx<8, false>;
 template struct Iceoryx<160, false>;
 template struct Iceoryx<4096, false>;
@@ -139,5 +124,3 @@ template struct Iceoryx<8, true>;
 template struct Iceoryx<160, true>;
 template struct Iceoryx<4096, true>;
 } // namespace tappet::figures
-
-#endif

@@ -3,8 +3,8 @@
 #include "tests/figures/exchange/machine.hpp"
 
 #include "kernel/machine/accept.hpp"
+#include "tests/figures/measure/world.hpp"
 
-#include <iostream>
 #include <string>
 
 namespace tappet::figures {
@@ -23,22 +23,15 @@ void find_ends(MachineInstance& instance) {
 
 } // namespace
 
-bool start_machine() {
+void start_machine() {
     static os::Clock clock{os::Clock::Kind::virtual_time};
     static MachineInstance instance{AtRunTime<exchange_machine, exchange_board>::machine(), clock};
-    if (const auto done = instance.configure({}); !done) {
-        std::cerr << done.error().view() << '\n';
-        return false;
-    }
     static VirtualWorld world{instance};
-    if (const Sentence refused = world.start(); !refused.empty()) {
-        std::cerr << refused.view() << '\n';
-        return false;
-    }
+    const auto configured = instance.configure({});
+    exit_if(configured ? world.start() : configured.error());
     find_ends<8>(instance);
     find_ends<160>(instance);
     find_ends<4096>(instance);
-    return true;
 }
 
 } // namespace tappet::figures

@@ -77,7 +77,7 @@ struct Ends {
     static inline Reader<Packet<bytes>>* far = nullptr;
 };
 
-/// Brings the machine to life and fills Ends. False: it refused, and said why on the error stream.
-bool start_machine();
+/// Brings the machine to life and fills Ends.
+void start_machine();
 
 } // namespace tappet::figures

@@ -1,5 +1,5 @@
 // Each operation is one packet given and taken.
-#include "tests/figures/exchange/one_core.hpp"
+#include "tests/figures/exchange/exchange.hpp"
 
 #include "tests/figures/exchange/iceoryx.hpp"
 #include "tests/figures/exchange/subjects.hpp"
@@ -53,18 +53,31 @@ void add(std::vector<Group>& groups, bool with_iceoryx) {
     const std::string of = ", " + size + " bytes, one core, warm";
     constexpr std::size_t batch = 64;
     groups.push_back({"exchange.data.local." + size, "data: write and read, same activity" + of, "thesis 4.4",
-                      batch, candidates<bytes, NearPort<bytes>, TwoCopies<bytes>>()});
+                      batch, candidates<bytes, Port<bytes, Reach::near>, TwoCopies<bytes>>()});
+    if constexpr (bytes == 160)
+        groups.back().goals = {
+            {"data write + read, same activity, 160 bytes: at most 1.2 x two struct copies",
+             Port<bytes, Reach::near>::name,
+             1.2,
+             {TwoCopies<bytes>::name}}};
     groups.push_back({"exchange.data.across." + size, "data: write and read, across activities" + of,
                       "thesis 4.4", batch,
-                      candidates<bytes, FarPort<bytes>, TwoCopies<bytes>, LockedValue<bytes, PlainLock>,
-                                 LockedValue<bytes, InheritingLock>>()});
+                      candidates<bytes, Port<bytes, Reach::far>, TwoCopies<bytes>,
+                                 LockedValue<bytes, PlainLock>, LockedValue<bytes, InheritingLock>>()});
     if (with_iceoryx) groups.back().candidates.push_back(candidates<bytes, Iceoryx<bytes, false>>().front());
+    if constexpr (bytes == 160)
+        groups.back().goals = {
+            {"data write + read across activities, 160 bytes, one core, warm: at most 3 x two struct copies",
+             Port<bytes, Reach::far>::name,
+             3,
+             {TwoCopies<bytes>::name}}};
     groups.push_back({"exchange.buffer.local." + size, "buffer: push and pop, same activity" + of,
-                      "thesis 4.4", batch, candidates<bytes, NearBuffer<bytes>, TwoCopies<bytes>>()});
+                      "thesis 4.4", batch,
+                      candidates<bytes, Buffer<bytes, Reach::near>, TwoCopies<bytes>>()});
     groups.push_back(
         {"exchange.buffer.across." + size, "buffer: push and pop, across activities" + of, "thesis 4.4",
          batch,
-         candidates<bytes, FarBuffer<bytes>, TwoCopies<bytes>, BoostSpsc<bytes>, BoostQueue<bytes>,
+         candidates<bytes, Buffer<bytes, Reach::far>, TwoCopies<bytes>, BoostSpsc<bytes>, BoostQueue<bytes>,
                     LockedQueue<bytes, PlainLock>, LockedQueue<bytes, InheritingLock>>()});
     if (with_iceoryx) groups.back().candidates.push_back(candidates<bytes, Iceoryx<bytes, true>>().front());
 }
@@ -77,19 +90,6 @@ std::vector<Group> one_core_groups(bool with_iceoryx) {
     add<160>(groups, with_iceoryx);
     add<4096>(groups, with_iceoryx);
     return groups;
-}
-
-std::vector<RatioGoal> one_core_goals() {
-    return {{"data write + read, same activity, 160 bytes: at most 1.2 x two struct copies",
-             "exchange.data.local.160",
-             NearPort<160>::name,
-             1.2,
-             {TwoCopies<160>::name}},
-            {"data write + read across activities, 160 bytes, one core, warm: at most 3 x two struct copies",
-             "exchange.data.across.160",
-             FarPort<160>::name,
-             3,
-             {TwoCopies<160>::name}}};
 }
 
 } // namespace tappet::figures

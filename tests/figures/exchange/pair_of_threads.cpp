@@ -43,10 +43,7 @@ struct RoundTrips {
 };
 
 RoundTrips round_trips(std::size_t rounds, bool second_asks) {
-    struct alignas(128) Line {
-        std::atomic<std::uint64_t> value{0};
-    };
-    Line there, back;
+    Line<std::uint64_t> there, back;
     Moments sent(rounds + 1), met(rounds + 1), returned(rounds + 1);
     const auto asks = [&] {
         for (std::size_t k = 1; k <= rounds; ++k) {

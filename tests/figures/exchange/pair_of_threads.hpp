@@ -17,13 +17,14 @@ struct Meeting {
     Samples seen; ///< from before the giving to the packet taken by the other thread
     Samples give;
     Samples take;
-    double stream = 0; ///< for each packet, of many in a row
+    Samples stream; ///< for each packet, of many in a row
 };
 
 /// How many packets meet, how long at most: the share of time that Linux leaves to real-time threads.
 struct MeetingPlan {
     std::size_t packets = 2000;
     double longest_ns = 30e6;
+    double clock_ahead_ticks = 0; ///< how far the taker's time stamps are ahead of the giver's
 };
 
 /// Runs both at once on the first two processors; rests afterwards. Empty: done; else what the system
@@ -37,6 +38,11 @@ struct Clocks {
     Samples one_way_ns{};
 };
 Clocks compare_clocks(std::size_t rounds);
+
+/// What two processors write is not joined with its neighbours, nor by the prefetcher of adjacent lines.
+template <class T> struct alignas(128) Line {
+    std::atomic<T> value{};
+};
 
 using Moments = std::vector<std::uint64_t>;
 
@@ -57,13 +63,10 @@ using Parcel = Packet<160>;
 /// One packet at a time, the taker polling without a pause: what a reader sees, and what its polling costs
 /// the writer. Between two packets the writer does something else, as a component does between its cycles.
 template <class Subject>
-Meeting meet_paced(const MeetingPlan& plan, double clock_ahead_ticks) {
+Meeting meet_paced(const MeetingPlan& plan) {
     constexpr double pause_ns = 500;
     Moments begun(plan.packets + 1), ended(plan.packets + 1), seen(plan.packets + 1);
-    struct alignas(128) Line {
-        std::atomic<std::uint64_t> value{0};
-    };
-    Line acknowledged, over;
+    Line<std::uint64_t> acknowledged, over;
     std::size_t given = 0;
     Parcel in{};
     while (Subject::take(in)) {
@@ -99,7 +102,7 @@ Meeting meet_paced(const MeetingPlan& plan, double clock_ahead_ticks) {
     Meeting found;
     for (std::size_t k = 1; k <= given; ++k) {
         const double one_way =
-            static_cast<double>(seen[k]) - clock_ahead_ticks - static_cast<double>(begun[k]);
+            static_cast<double>(seen[k]) - plan.clock_ahead_ticks - static_cast<double>(begun[k]);
         found.seen.add((one_way - ticks_of_reading()) * ns_per_tick());
         found.give.add(took_ns(begun[k], ended[k]));
     }
@@ -141,16 +144,13 @@ Meeting meet_contended(const MeetingPlan& plan) {
     Moments give_begun(plan.packets), give_ended(plan.packets), take_begun(plan.packets),
         take_ended(plan.packets);
     std::size_t given = 0, taken = 0;
-    struct alignas(128) Line {
-        std::atomic<bool> value{false};
-    };
-    Line giver_ready, taker_ready;
+    Line<bool> giver_ready, taker_ready;
     Parcel in{};
     while (Subject::take(in)) {
     }
     // Each goes on after its own last sample until the other has its own.
-    const auto side = [&](auto&& operation, Moments& begun, Moments& ended, std::size_t& done, Line& own,
-                          Line& other) {
+    const auto side = [&](auto&& operation, Moments& begun, Moments& ended, std::size_t& done,
+                          Line<bool>& own, Line<bool>& other) {
         const std::uint64_t start = ticks();
         while (!own.value.load(std::memory_order_relaxed) || !other.value.load(std::memory_order_relaxed)) {
             const std::uint64_t first = ticks();
@@ -209,7 +209,7 @@ Meeting meet_in_a_stream(const MeetingPlan& plan) {
             last = ticks();
         }));
     Meeting found;
-    found.stream = took_ns(first, last) / static_cast<double>(packets);
+    found.stream.add(took_ns(first, last) / static_cast<double>(packets));
     return found;
 }
 

@@ -4,13 +4,12 @@
 
 #include "tests/figures/exchange/machine.hpp"
 #include "tests/figures/measure/candidates.hpp"
+#include "tests/figures/measure/inheriting_mutex.hpp"
 
 #include <atomic>
 #include <boost/lockfree/queue.hpp>
 #include <boost/lockfree/spsc_queue.hpp>
-#include <memory>
 #include <mutex>
-#include <pthread.h>
 
 namespace tappet::figures {
 
@@ -46,80 +45,43 @@ private:
     alignas(128) static inline std::uint64_t taken = 0;
 };
 
-template <std::size_t bytes>
-struct NearPort {
-    static constexpr const char* name = "Tappet data port, same activity";
+/// Whether the reader is in the writer's activity or in another.
+enum class Reach : std::uint8_t { near, far };
+
+template <std::size_t bytes, Reach reach>
+struct Port {
+    static constexpr const char* name =
+        reach == Reach::near ? "Tappet data port, same activity" : "Tappet data port";
     static constexpr Standing role = Standing::ours;
     static bool give(const Packet<bytes>& value) noexcept {
-        Ends<bytes>::writer->near.write(value);
+        (reach == Reach::near ? Ends<bytes>::writer->near : Ends<bytes>::writer->far).write(value);
         return true;
     }
     static bool take(Packet<bytes>& into) noexcept {
-        return Ends<bytes>::near->last.read(into) == Flow::fresh;
+        return (reach == Reach::near ? Ends<bytes>::near : Ends<bytes>::far)->last.read(into) == Flow::fresh;
     }
 };
 
-template <std::size_t bytes>
-struct FarPort {
-    static constexpr const char* name = "Tappet data port";
+template <std::size_t bytes, Reach reach>
+struct Buffer {
+    static constexpr const char* name =
+        reach == Reach::near ? "Tappet buffer port, same activity" : "Tappet buffer port";
     static constexpr Standing role = Standing::ours;
     static bool give(const Packet<bytes>& value) noexcept {
-        Ends<bytes>::writer->far.write(value);
-        return true;
+        return (reach == Reach::near ? Ends<bytes>::writer->near_each : Ends<bytes>::writer->far_each)
+            .push(value);
     }
     static bool take(Packet<bytes>& into) noexcept {
-        return Ends<bytes>::far->last.read(into) == Flow::fresh;
+        return (reach == Reach::near ? Ends<bytes>::near : Ends<bytes>::far)->each.pop(into);
     }
 };
 
-template <std::size_t bytes>
-struct NearBuffer {
-    static constexpr const char* name = "Tappet buffer port, same activity";
-    static constexpr Standing role = Standing::ours;
-    static bool give(const Packet<bytes>& value) noexcept {
-        return Ends<bytes>::writer->near_each.push(value);
-    }
-    static bool take(Packet<bytes>& into) noexcept { return Ends<bytes>::near->each.pop(into); }
-};
-
-template <std::size_t bytes>
-struct FarBuffer {
-    static constexpr const char* name = "Tappet buffer port";
-    static constexpr Standing role = Standing::ours;
-    static bool give(const Packet<bytes>& value) noexcept {
-        return Ends<bytes>::writer->far_each.push(value);
-    }
-    static bool take(Packet<bytes>& into) noexcept { return Ends<bytes>::far->each.pop(into); }
-};
-
-/// POSIX mutexes, the second as the thesis configured it: with priority inheritance.
-class PlainLock {
-public:
+/// POSIX mutexes.
+struct PlainLock : std::mutex {
     static constexpr const char* name = "std::mutex";
-    void lock() { mutex_.lock(); }
-    void unlock() { mutex_.unlock(); }
-
-private:
-    std::mutex mutex_;
 };
-class InheritingLock {
-public:
+struct InheritingLock : InheritingMutex {
     static constexpr const char* name = "mutex with priority inheritance";
-    InheritingLock() {
-        pthread_mutexattr_t attributes;
-        pthread_mutexattr_init(&attributes);
-        pthread_mutexattr_setprotocol(&attributes, PTHREAD_PRIO_INHERIT);
-        pthread_mutex_init(&mutex_, &attributes);
-        pthread_mutexattr_destroy(&attributes);
-    }
-    InheritingLock(const InheritingLock&) = delete;
-    InheritingLock& operator=(const InheritingLock&) = delete;
-    ~InheritingLock() { pthread_mutex_destroy(&mutex_); }
-    void lock() { pthread_mutex_lock(&mutex_); }
-    void unlock() { pthread_mutex_unlock(&mutex_); }
-
-private:
-    pthread_mutex_t mutex_{};
 };
 
 template <std::size_t bytes, class Lock>
@@ -174,26 +136,24 @@ template <std::size_t bytes>
 struct BoostSpsc {
     static constexpr const char* name = "boost::lockfree::spsc_queue";
     static constexpr Standing role = Standing::peer;
-    static bool give(const Packet<bytes>& value) noexcept { return queue().push(value); }
-    static bool take(Packet<bytes>& into) noexcept { return queue().pop(into); }
+    static bool give(const Packet<bytes>& value) noexcept { return queue.push(value); }
+    static bool take(Packet<bytes>& into) noexcept { return queue.pop(into); }
 
 private:
     using Queue = boost::lockfree::spsc_queue<Packet<bytes>, boost::lockfree::capacity<queue_places>>;
-    alignas(128) static inline Queue held{};
-    static Queue& queue() noexcept { return held; }
+    alignas(128) static inline Queue queue{};
 };
 
 template <std::size_t bytes>
 struct BoostQueue {
     static constexpr const char* name = "boost::lockfree::queue";
     static constexpr Standing role = Standing::peer;
-    static bool give(const Packet<bytes>& value) noexcept { return queue().bounded_push(value); }
-    static bool take(Packet<bytes>& into) noexcept { return queue().pop(into); }
+    static bool give(const Packet<bytes>& value) noexcept { return queue.bounded_push(value); }
+    static bool take(Packet<bytes>& into) noexcept { return queue.pop(into); }
 
 private:
     using Queue = boost::lockfree::queue<Packet<bytes>, boost::lockfree::capacity<queue_places>>;
-    alignas(128) static inline Queue held{};
-    static Queue& queue() noexcept { return held; }
+    alignas(128) static inline Queue queue{};
 };
 
 } // namespace tappet::figures

@@ -1,5 +1,5 @@
 // Rounds in which all subjects take turns in a random order, and what follows from them.
-#include "tests/figures/exchange/two_cores.hpp"
+#include "tests/figures/exchange/exchange.hpp"
 
 #include "tests/figures/exchange/iceoryx.hpp"
 #include "tests/figures/exchange/pair_of_threads.hpp"
@@ -16,7 +16,7 @@ namespace tappet::figures {
 namespace {
 
 enum class Mode : std::uint8_t { paced, alone, contended, stream };
-using Meet = Meeting (*)(const MeetingPlan&, double ahead);
+using Meet = Meeting (*)(const MeetingPlan&);
 
 /// How one subject is measured in one way, and what was found in each round.
 struct Entry {
@@ -30,21 +30,18 @@ struct Entry {
 
 template <class Subject, bool queue>
 void add(std::vector<Entry>& entries, bool streams = queue) {
-    entries.push_back(
-        {Subject::name, Subject::role, queue, Mode::paced,
-         [](const MeetingPlan& plan, double ahead) { return meet_paced<Subject>(plan, ahead); }});
-    entries.push_back({Subject::name, Subject::role, queue, Mode::alone,
-                       [](const MeetingPlan& plan, double) { return write_alone<Subject, queue>(plan); }});
-    entries.push_back({Subject::name, Subject::role, queue, Mode::contended,
-                       [](const MeetingPlan& plan, double) { return meet_contended<Subject>(plan); }});
-    if (!streams) return;
+    const auto add_one = [&](Mode mode, Meet run) {
+        entries.push_back({Subject::name, Subject::role, queue, mode, run});
+    };
+    add_one(Mode::paced, &meet_paced<Subject>);
+    add_one(Mode::alone, &write_alone<Subject, queue>);
+    add_one(Mode::contended, &meet_contended<Subject>);
     if constexpr (queue)
-        entries.push_back({Subject::name, Subject::role, queue, Mode::stream,
-                           [](const MeetingPlan& plan, double) { return meet_in_a_stream<Subject>(plan); }});
+        if (streams) add_one(Mode::stream, &meet_in_a_stream<Subject>);
 }
 
-using Ours = FarPort<160>;
-using OurQueue = FarBuffer<160>;
+using Ours = Port<160, Reach::far>;
+using OurQueue = Buffer<160, Reach::far>;
 using Apart = BareHandOver<160, true>;
 using Beside = BareHandOver<160, false>;
 /// The same bare loops once more: between the queues' turns they have the same neighbours as these.
@@ -87,21 +84,6 @@ public:
             if (entry.queue != queue || entry.mode != mode) continue;
             Samples all;
             for (const Meeting& round : entry.rounds) all.add(round.*part);
-            figure.rows.push_back({entry.name, entry.role, all.summary()});
-        }
-        return figure;
-    }
-    [[nodiscard]] Figure streams() const {
-        Figure figure{"exchange.two_cores.buffer.stream.160",
-                      "buffer: a stream of packets of 160 bytes between two cores, for each packet",
-                      "ns",
-                      "thesis 4.4",
-                      "one sample: the mean of a stream of some thousand packets",
-                      {}};
-        for (const Entry& entry : entries_) {
-            if (entry.mode != Mode::stream) continue;
-            Samples all;
-            for (const Meeting& round : entry.rounds) all.add(round.stream);
             figure.rows.push_back({entry.name, entry.role, all.summary()});
         }
         return figure;
@@ -175,8 +157,9 @@ void judge(const Findings& found, std::size_t rounds, Result& result) {
     const auto& boosts = found.of(BoostSpsc<160>::name, true, Mode::stream).rounds;
     goal("buffer push + pop, 160 bytes: at most 0.8 x boost spsc_queue on two cores (a stream, for each "
          "packet)",
-         0.8, "exchange.two_cores.buffer.stream.160: ours / boost::lockfree::spsc_queue",
-         [&](std::size_t r) { return stream[r].stream / boosts[r].stream; });
+         0.8, "exchange.two_cores.buffer.stream.160: ours / boost::lockfree::spsc_queue", [&](std::size_t r) {
+             return median_of(stream[r], &Meeting::stream) / median_of(boosts[r], &Meeting::stream);
+         });
 }
 
 void show(const Findings& found, const Clocks& clocks, Result& result) {
@@ -202,13 +185,16 @@ void show(const Findings& found, const Clocks& clocks, Result& result) {
     add("buffer.push_contended", "buffer: push under contention", true, Mode::contended, &Meeting::give,
         busy);
     add("buffer.pop_contended", "buffer: pop under contention", true, Mode::contended, &Meeting::take, busy);
-    result.figures.push_back(found.streams());
+    result.figures.push_back(found.figure(
+        "exchange.two_cores.buffer.stream.160",
+        "buffer: a stream of packets of 160 bytes between two cores, for each packet", true, Mode::stream,
+        &Meeting::stream, "one sample: the mean of a stream of some thousand packets"));
 }
 
 } // namespace
 
 void measure_two_cores(const Options& options, bool with_iceoryx, Result& result) {
-    if (std::string{"exchange.two_cores"}.find(options.only) == std::string::npos) return;
+    if (!options.wants("exchange.two_cores")) return;
     if (std::thread::hardware_concurrency() < 2) {
         result.notes.push_back("exchange.two_cores.*: not measured, this machine has one processor");
         return;
@@ -221,6 +207,7 @@ void measure_two_cores(const Options& options, bool with_iceoryx, Result& result
     if (!refused.empty()) result.notes.push_back("two threads; the system refused: " + refused);
 
     const Clocks clocks = compare_clocks(plan.packets);
+    plan.clock_ahead_ticks = clocks.ahead_ticks;
     char note[160];
     std::snprintf(
         note, sizeof note,
@@ -234,7 +221,7 @@ void measure_two_cores(const Options& options, bool with_iceoryx, Result& result
     std::minstd_rand random{1};
     for (std::size_t round = 0; round < rounds; ++round) {
         std::ranges::shuffle(turns, random);
-        for (Entry* entry : turns) entry->rounds.push_back(entry->run(plan, clocks.ahead_ticks));
+        for (Entry* entry : turns) entry->rounds.push_back(entry->run(plan));
     }
     const Findings found{entries};
     show(found, clocks, result);

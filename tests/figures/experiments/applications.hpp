@@ -11,13 +11,26 @@
 
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/table/machine.hpp"
-#include "tests/figures/experiments/board.hpp"
 #include "tests/figures/experiments/task.hpp"
 
 #include <array>
 #include <span>
 
 namespace tappet::experiments {
+
+/// Whichever the program was told to run on.
+inline constexpr Board one_processor{
+    .name = "experiments",
+    .world = "host",
+    .memory_budget_bytes = 4 * 1024 * 1024,
+    .heap_bytes = 0,
+    .processors = 1,
+    .highest_priority = 80,
+    .default_processor = -1, // that of the program, which has a single one
+    .only_warned = warn_only("realtime-kernel", "clock-source", "rt-throttling", "cpu-governor",
+                             "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap",
+                             "fifo-priority", "clock-resolution", "processors"),
+};
 
 /// Of an activity that occurs once less in each second than `in_a_second` times.
 constexpr Duration drifting(std::int64_t in_a_second) {

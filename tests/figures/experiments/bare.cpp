@@ -1,5 +1,5 @@
 // A periodic loop on clock_nanosleep.
-#include "tests/figures/experiments/bare.hpp"
+#include "tests/figures/experiments/run.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/os/latency.hpp"
@@ -43,10 +43,22 @@ struct Loop {
     }
 };
 
+/// Period and load of an application's task "high", as its table says.
+std::pair<Duration, Duration> highest_of(const Application& application) {
+    const AcceptedMachine machine = application.machine();
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    const auto instance = std::make_unique<MachineInstance>(machine, clock);
+    static_cast<void>(instance->configure({}));
+    const std::size_t c = find_component(machine.table, "high");
+    return {machine.table.activities[machine.index.activity[c]].period,
+            instance->find<Task>("high")->load.get()};
+}
+
 } // namespace
 
-std::string run_bare(Duration period, Duration load, const Circumstances& circumstances, double seconds,
+std::string run_bare(const Application& application, const Circumstances& circumstances, double seconds,
                      TaskResult& into) {
+    const auto [period, load] = highest_of(application);
     const Duration whole{static_cast<std::int64_t>(seconds * 1e9)};
     const Duration warming = warming_of(whole);
     std::vector<Execution> record(static_cast<std::size_t>((whole + warming) / period) + 2);
@@ -71,16 +83,6 @@ std::string run_bare(Duration period, Duration load, const Circumstances& circum
              static_cast<std::uint64_t>(static_cast<double>(warming.count()) / circumstances.ns_per_tick),
              into);
     return {};
-}
-
-Highest highest_of(const Application& application) {
-    const AcceptedMachine machine = application.machine();
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    const auto instance = std::make_unique<MachineInstance>(machine, clock);
-    static_cast<void>(instance->configure({}));
-    const std::size_t c = find_component(machine.table, "high");
-    return {machine.table.activities[machine.index.activity[c]].period,
-            instance->find<Task>("high")->load.get()};
 }
 
 } // namespace tappet::experiments

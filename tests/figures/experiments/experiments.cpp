@@ -5,10 +5,8 @@
 //     --setting NAME         one of none, locked, data, commands, events
 //     --histograms DIRECTORY one file for each task of each application in each setting, as the thesis kept
 //     them
-#include "tests/figures/experiments/bare.hpp"
 #include "tests/figures/experiments/disturbance.hpp"
 #include "tests/figures/experiments/findings.hpp"
-#include "tests/figures/experiments/histogram_files.hpp"
 #include "tests/figures/measure/candidates.hpp"
 #include "tests/figures/measure/ticks.hpp"
 #include "tests/figures/measure/undisturbed.hpp"
@@ -17,6 +15,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <thread>
 
 #include <sched.h>
 
@@ -26,7 +25,7 @@ using namespace tappet;
 using namespace tappet::experiments;
 
 struct Wanted {
-    double seconds = 0; ///< 0: by the setting
+    std::string seconds = {}; ///< empty: by the setting
     std::string application = {};
     std::string setting = {};
     std::string histograms = {};
@@ -37,39 +36,20 @@ struct Wanted {
     std::exit(2);
 }
 
-/// Takes the words that are this program's own.
-Wanted take_own_words(std::vector<char*>& words) {
-    Wanted wanted;
-    for (std::size_t i = 1; i < words.size();) {
-        const std::string word = words[i];
-        if (word != "--seconds" && word != "--application" && word != "--setting" && word != "--histograms") {
-            ++i;
-            continue;
-        }
-        if (i + 1 == words.size()) refuse(word + " lacks its value");
-        const std::string value = words[i + 1];
-        words.erase(words.begin() + static_cast<std::ptrdiff_t>(i),
-                    words.begin() + static_cast<std::ptrdiff_t>(i) + 2);
-        if (word == "--seconds") {
-            wanted.seconds = std::atof(value.c_str());
-            if (!(wanted.seconds > 0 && wanted.seconds <= 3600))
-                refuse("--seconds " + value + " is no time between 0 and 3600 s");
-        } else if (word == "--histograms") {
-            wanted.histograms = value;
-        } else if (word == "--application") {
-            const auto all = applications();
-            if (std::ranges::find(all, value, &Application::name) == all.end())
-                refuse("there is no application \"" + value +
-                       "\"; there are minimal, small, concurrent, large");
-            wanted.application = value;
-        } else {
-            if (std::ranges::find(setting_names, value) == setting_names.end())
-                refuse("there is no setting \"" + value +
-                       "\"; there are none, locked, data, commands, events");
-            wanted.setting = value;
-        }
-    }
-    return wanted;
+double seconds_of(const std::string& word) {
+    const double seconds = std::atof(word.c_str());
+    if (!(seconds > 0 && seconds <= 3600)) refuse("--seconds " + word + " is no time between 0 and 3600 s");
+    return seconds;
+}
+void refuse_unknown(const Wanted& wanted) {
+    const auto all = applications();
+    if (!wanted.application.empty() &&
+        std::ranges::find(all, wanted.application, &Application::name) == all.end())
+        refuse("there is no application \"" + wanted.application +
+               "\"; there are minimal, small, concurrent, large");
+    if (!wanted.setting.empty() && std::ranges::find(setting_names, wanted.setting) == setting_names.end())
+        refuse("there is no setting \"" + wanted.setting +
+               "\"; there are none, locked, data, commands, events");
 }
 
 /// The last processor that this process may use, and from now on its only one.
@@ -128,11 +108,16 @@ std::vector<Part> parts_of(const Wanted& wanted, const std::string& only) {
 } // namespace
 
 int main(int argc, char** argv) {
-    std::vector<char*> words{argv, argv + argc};
-    const Wanted wanted = take_own_words(words);
-    const figures::Options options = figures::read_options(static_cast<int>(words.size()), words.data());
+    Wanted wanted;
+    const figures::Options options = figures::read_options(argc, argv,
+                                                           {{"--seconds", &wanted.seconds},
+                                                            {"--application", &wanted.application},
+                                                            {"--setting", &wanted.setting},
+                                                            {"--histograms", &wanted.histograms}});
+    refuse_unknown(wanted);
     constexpr double short_seconds = 2;
-    const double seconds = wanted.seconds > 0 ? wanted.seconds : short_seconds * options.scale();
+    const double seconds =
+        wanted.seconds.empty() ? short_seconds * options.scale() : seconds_of(wanted.seconds);
     const std::vector<Part> parts = parts_of(wanted, options.only);
     if (parts.empty())
         refuse("no figure has \"" + options.only + "\" in its id; they begin with experiments.");
@@ -162,23 +147,19 @@ int main(int argc, char** argv) {
             const Application& application = *part.application;
             static_cast<void>(calibrate());
             stay_on(processor);
-            Disturbance disturbance{static_cast<std::uint64_t>(round)};
-            if (const auto started = disturbance.start(); !started)
-                refuse(std::string{started.error().view()});
+            const std::jthread disturbance{&disturb, static_cast<std::uint64_t>(round)};
             check(application, run_experiment(application, circumstances, seconds / rounds,
                                               findings.at(application.name, part.setting)));
             if (part.setting != Setting::none) continue;
-            const Highest highest = highest_of(application);
-            check(application, run_bare(highest.period, highest.load, circumstances, seconds / rounds,
-                                        findings.bare(application.name)));
+            check(application,
+                  run_bare(application, circumstances, seconds / rounds, findings.bare(application.name)));
         }
 
     if (!wanted.histograms.empty())
         if (const std::string why_not = write_histograms(findings, wanted.histograms); !why_not.empty())
             refuse(why_not);
     result.figures = figures_of(findings);
-    std::erase_if(result.figures,
-                  [&](const figures::Figure& each) { return !each.id.contains(options.only); });
+    std::erase_if(result.figures, [&](const figures::Figure& each) { return !options.wants(each.id); });
     result.plots = plots_of(findings);
     result.statements = statements_of(findings);
     result.notes.push_back("each application ran " + std::to_string(seconds) +

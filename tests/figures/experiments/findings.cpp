@@ -40,8 +40,6 @@ const TaskResult* Findings::find_bare(std::string_view application) const {
 
 namespace {
 
-const char* application_names[] = {"minimal", "small", "concurrent", "large"};
-
 Row row_of(std::string name, Standing role, const Samples& samples) {
     return {std::move(name), role, samples.summary()};
 }
@@ -50,7 +48,7 @@ using Select = Samples TaskResult::*;
 
 /// What is known without measuring.
 Row stated(std::string name, double value) {
-    return {std::move(name), Standing::floor, {value, value, value, value, value, 1}};
+    return {std::move(name), Standing::floor, figures::single(value)};
 }
 
 void add(std::vector<Figure>& figures, Figure figure) {
@@ -163,7 +161,8 @@ void add_messages(std::vector<Figure>& figures, const Findings& findings, const 
 void add_plot(std::vector<Plot>& plots, const Experiment* experiment, std::string id, std::string title,
               std::string x, Select samples) {
     if (experiment == nullptr) return;
-    Plot plot{std::move(id), std::move(title), std::move(x), "executions", true, true, true, {}};
+    Plot plot =
+        figures::histogram_plot(std::move(id), std::move(title), std::move(x), "executions", {}, true);
     for (const TaskResult& task : experiment->tasks)
         if (task.real_time && !(task.*samples).empty())
             plot.series.push_back(figures::log_histogram(task.name, Standing::ours, task.*samples));
@@ -174,14 +173,9 @@ void add_plot(std::vector<Plot>& plots, const Experiment* experiment, std::strin
 void add_period_plot(std::vector<Plot>& plots, const Findings& findings, const std::string& application) {
     const Experiment* experiment = findings.find(application, Setting::none);
     if (experiment == nullptr) return;
-    Plot plot{"experiments.figure.4.9." + application,
-              "Figure 4.9: " + application + ", execution periods",
-              "us from the period of the row, 99 % of the executions",
-              "executions",
-              true,
-              false,
-              true,
-              {}};
+    Plot plot = figures::histogram_plot(
+        "experiments.figure.4.9." + application, "Figure 4.9: " + application + ", execution periods",
+        "us from the period of the row, 99 % of the executions", "executions", {});
     for (const TaskResult& task : experiment->tasks) {
         if (!task.real_time || task.periods.empty()) continue;
         const double from = task.periods.quantile(0.005), to = task.periods.quantile(0.995);
@@ -208,17 +202,14 @@ void add_exchange_plot(std::vector<Plot>& plots, const Findings& findings, const
     const TaskResult* ours = findings.find(wanted.application, Setting::data, wanted.task);
     const TaskResult* locked = findings.find(wanted.application, Setting::locked, wanted.task);
     if (ours == nullptr || locked == nullptr) return;
-    plots.push_back(
-        {std::string{"experiments.figure."} + wanted.number,
-         std::string{"Figure "} + wanted.number + ": " + wanted.application +
-             ", communication of the task \"" + wanted.task + "\"",
-         "ns in one execution",
-         "executions",
-         true,
-         true,
-         true,
-         {figures::log_histogram("connectors", Standing::ours, ours->exchanges),
-          figures::log_histogram("mutex with priority inheritance", Standing::peer, locked->exchanges)}});
+    plots.push_back(figures::histogram_plot(
+        std::string{"experiments.figure."} + wanted.number,
+        std::string{"Figure "} + wanted.number + ": " + wanted.application +
+            ", communication of the task \"" + wanted.task + "\"",
+        "ns in one execution", "executions",
+        {figures::log_histogram("connectors", Standing::ours, ours->exchanges),
+         figures::log_histogram("mutex with priority inheritance", Standing::peer, locked->exchanges)},
+        true));
 }
 
 } // namespace

@@ -11,6 +11,8 @@
 
 namespace tappet::experiments {
 
+inline constexpr const char* application_names[] = {"minimal", "small", "concurrent", "large"};
+
 class Findings {
 public:
     /// The experiment of that name and setting, made when it is not there yet.
@@ -36,5 +38,11 @@ std::vector<figures::Plot> plots_of(const Findings& findings);
 /// What the thesis draws from them, true or false as measured. Of experiments that were not run there is
 /// none.
 std::vector<figures::Statement> statements_of(const Findings& findings);
+
+/// The histograms of all tasks as files that gnuplot reads: one for each real-time task, application and
+/// setting, as the thesis kept them (A.2.2). "concurrent-data-high.txt" and so on: a block for each thing
+/// that was measured, two empty lines between them, each line the lower end of a bin and how many executions
+/// fell into it. Empty: written; else why not.
+std::string write_histograms(const Findings& findings, const std::string& directory);
 
 } // namespace tappet::experiments

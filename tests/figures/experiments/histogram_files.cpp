@@ -1,5 +1,5 @@
 // Writes block after block.
-#include "tests/figures/experiments/histogram_files.hpp"
+#include "tests/figures/experiments/findings.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -49,6 +49,11 @@ struct Circumstances {
 std::string run_experiment(const Application& application, const Circumstances& circumstances, double seconds,
                            Experiment& into);
 
+/// The highest priority of an application without the application: one bare thread with its period and its
+/// load, by cyclictest's method. What it shows is the machine's doing, not a framework's. Likewise.
+std::string run_bare(const Application& application, const Circumstances& circumstances, double seconds,
+                     TaskResult& into);
+
 /// What is left out at the beginning of a run of that length: caches, page faults, the start of the others.
 constexpr Duration warming_of(Duration whole) { return std::min<Duration>(50ms, whole / 2); }
 

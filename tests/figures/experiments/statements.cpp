@@ -14,8 +14,6 @@ using figures::Statement;
 
 namespace {
 
-constexpr const char* application_names[] = {"minimal", "small", "concurrent", "large"};
-
 std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof text, std::abs(value) < 10 ? "%.2f" : "%.0f", value);

@@ -3,19 +3,32 @@
 #pragma once
 
 #include "kernel/activity/timing.hpp"
+#include "kernel/base/type_tag.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/exchange/mailbox.hpp"
 #include "tests/figures/experiments/load.hpp"
 #include "tests/figures/experiments/locked.hpp"
-#include "tests/figures/experiments/setting.hpp"
 #include "tests/figures/measure/ticks.hpp"
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
-namespace tappet::experiments {
+namespace tappet {
+
+namespace experiments {
+/// How the activities of an application communicate.
+enum class Setting : std::uint8_t { none, locked, data, commands, events };
+inline constexpr std::array<std::string_view, 5> setting_names{"none", "locked", "data", "commands",
+                                                               "events"};
+} // namespace experiments
+
+template <>
+inline constexpr auto names_of<experiments::Setting> = experiments::setting_names;
+
+namespace experiments {
 
 /// 160 bytes: enough to steer 20 degrees of freedom.
 using Packet = std::array<double, 20>;
@@ -135,4 +148,6 @@ private:
     std::atomic<int> thread_{0};
 };
 
-} // namespace tappet::experiments
+} // namespace experiments
+
+} // namespace tappet

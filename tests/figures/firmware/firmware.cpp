@@ -19,10 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr double megabyte = 1e6;
 
-Row single(const std::string& name, Standing role, double value) {
-    return {name, role, {value, value, value, value, value, 1}};
-}
-
 /// Of a program as it would be flashed; 0 when it cannot be stripped.
 double stripped_bytes(const std::string& program, const fs::path& folder) {
     const fs::path to = folder / "stripped";
@@ -57,9 +53,9 @@ void tell(const nlohmann::json& summary, Result& result) {
                               "MB",
                               "",
                               "once, at the end of 20 picks",
-                              {single("resident", Standing::ours, resident),
-                               single("static: the machine with its stacks", Standing::ours,
-                                      number("static_memory_bytes") / megabyte)}});
+                              {{"resident", Standing::ours, single(resident)},
+                               {"static: the machine with its stacks", Standing::ours,
+                                single(number("static_memory_bytes") / megabyte)}}});
     result.goals.push_back(
         {"firmware of the loom: resident memory <= 4 MB", 4, resident, "MB", "firmware.memory: resident"});
     if (summary.contains("start_to_armed_ms")) {
@@ -69,7 +65,7 @@ void tell(const nlohmann::json& summary, Result& result) {
                                   "ms",
                                   "",
                                   "once, on the bench's emulated processor",
-                                  {single("start to armed", Standing::ours, armed)}});
+                                  {{"start to armed", Standing::ours, single(armed)}}});
         result.goals.push_back({"firmware of the loom: start to armed <= 50 ms without device time-outs", 50,
                                 armed, "ms", "firmware.start; on the bench's emulated processor"});
     } else {
@@ -101,12 +97,12 @@ int main(int argc, char** argv) {
          "MB",
          "",
          "one static binary with kernel, drivers, script compiler and behaviours",
-         {single("carpet loom for the bench", Standing::ours, size),
-          single("a static program that opens a GPIO chip and a thread", Standing::floor,
-                 stripped_bytes(TAPPET_EMPTY, folder) / megabyte),
-          single("station of the woodworking lane, with its end of the wire", Standing::ours,
-                 size_of(TAPPET_STATION)),
-          single("conveyor of the lane, likewise", Standing::ours, size_of(TAPPET_CONVEYOR))}});
+         {{"carpet loom for the bench", Standing::ours, single(size)},
+          {"a static program that opens a GPIO chip and a thread", Standing::floor,
+           single(stripped_bytes(TAPPET_EMPTY, folder) / megabyte)},
+          {"station of the woodworking lane, with its end of the wire", Standing::ours,
+           single(size_of(TAPPET_STATION))},
+          {"conveyor of the lane, likewise", Standing::ours, single(size_of(TAPPET_CONVEYOR))}}});
     result.goals.push_back({"firmware of the loom: <= 1 MB stripped", 1, size, "MB", "firmware.size"});
     if (!options.only.empty() && std::string{"firmware.size"}.contains(options.only)) {
         result.notes.emplace_back("only the size was asked for");

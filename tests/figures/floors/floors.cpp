@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
                       16,
                       {{"clock_gettime(CLOCK_MONOTONIC)", Standing::floor, &read_clock},
                        {"shortest system call (getppid)", Standing::floor, &system_call}}});
-    run_candidates(options, argv, groups, {}, result);
+    run_candidates(options, argv, groups, result);
     measure_two_threads(options, result);
     return finish(options, result);
 }

@@ -163,7 +163,7 @@ constexpr std::array sleepers{
 template <std::size_t count>
 void measure(Figure figure, const std::array<Kind, count>& kinds, std::size_t samples, const Options& options,
              Result& result) {
-    if (!options.only.empty() && figure.id.find(options.only) == std::string::npos) return;
+    if (!options.wants(figure.id)) return;
     constexpr int rounds = 5;
     const auto of_round = std::max<std::size_t>(
         20, static_cast<std::size_t>(static_cast<double>(samples) * options.scale() / rounds));

@@ -1,19 +1,22 @@
-// Rounds under google-benchmark, ratios round by round, and the goals.
+// Rounds in turns, ratios round by round, and the goals.
 #include "tests/figures/measure/candidates.hpp"
 
-#include "tests/figures/measure/counts.hpp"
 #include "tests/figures/measure/ticks.hpp"
 #include "tests/figures/measure/undisturbed.hpp"
 
-#include <benchmark/benchmark.h>
-
+#include <algorithm>
 #include <condition_variable>
 #include <cstdlib>
-#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <mutex>
+#include <random>
 #include <thread>
+
+#include <unistd.h>
+#include <valgrind/callgrind.h>
 
 namespace tappet::figures {
 
@@ -26,11 +29,12 @@ struct Rounds {
     std::vector<Samples> each = {};
 };
 
-constexpr int rounds_of_short = 9;
+constexpr double rounds_of_short = 9;
 constexpr std::size_t samples_of_round = 400;
 constexpr double longest_round_ns = 20e6; ///< of a candidate that is slow
 
-void measure(benchmark::State& state, Rounds& rounds) {
+/// One round of it.
+void measure(Rounds& rounds, std::size_t wanted) {
     const std::size_t batch = rounds.batch;
     const auto prepare = [&] {
         if (rounds.candidate->prepare != nullptr) rounds.candidate->prepare(batch);
@@ -38,16 +42,15 @@ void measure(benchmark::State& state, Rounds& rounds) {
     prepare();
     rounds.candidate->run(batch); // caches
     Samples samples;
-    samples.reserve(samples_of_round);
+    samples.reserve(wanted);
     const double reading = ticks_of_reading();
     double spent = 0;
-    while (state.KeepRunning()) {
+    for (std::size_t sample = 0; sample < wanted && spent <= longest_round_ns; ++sample) {
         prepare();
         const std::uint64_t first = ticks();
         rounds.candidate->run(batch);
         const std::uint64_t last = ticks();
         const double took = static_cast<double>(last - first) - reading;
-        if (spent > longest_round_ns) continue;
         samples.add(std::max(0.0, took * ns_per_tick() / static_cast<double>(batch)));
         spent += took * ns_per_tick();
     }
@@ -55,18 +58,14 @@ void measure(benchmark::State& state, Rounds& rounds) {
     rest_after(spent);
 }
 
-double statistic_of(const Samples& samples, Statistic which) {
-    return samples.quantile(which == Statistic::median ? 0.5 : which == Statistic::p99 ? 0.99 : 0.999);
-}
-
 using Measured = std::map<std::string, Rounds>;
 
-Goal judge(const RatioGoal& plan, const Measured& measured) {
+Goal judge(const std::string& group, const RatioGoal& plan, const Measured& measured) {
     const auto find = [&](const std::string& name) -> const Rounds& {
-        const auto found = measured.find(plan.group + "/" + name);
+        const auto found = measured.find(group + "/" + name);
         if (found == measured.end()) {
-            std::cerr << "goal \"" << plan.text << "\": group " << plan.group << " has no candidate \""
-                      << name << "\"\n";
+            std::cerr << "goal \"" << plan.text << "\": group " << group << " has no candidate \"" << name
+                      << "\"\n";
             std::exit(2);
         }
         return found->second;
@@ -75,59 +74,87 @@ Goal judge(const RatioGoal& plan, const Measured& measured) {
     Samples ratios;
     for (std::size_t round = 0; round < ours.each.size(); ++round) {
         double of = 0;
-        for (const std::string& name : plan.of) of += statistic_of(find(name).each.at(round), plan.statistic);
-        ratios.add(statistic_of(ours.each[round], plan.statistic) / of);
+        for (const std::string& name : plan.of) of += find(name).each.at(round).median();
+        ratios.add(ours.each[round].median() / of);
     }
-    Goal goal{plan.text, plan.times, ratios.median(), "x", plan.group + ": " + plan.ours + " / "};
+    Goal goal{plan.text, plan.times, ratios.median(), "x", group + ": " + plan.ours + " / "};
     for (std::size_t i = 0; i < plan.of.size(); ++i) goal.detail += (i == 0 ? "" : " + ") + plan.of[i];
     return goal;
 }
 
-/// As long as a process has one thread, the C library takes locks without atomic operations; a machine has
-/// several.
-class SecondThread {
-public:
-    SecondThread()
-        : sleeps_{[this] {
-              std::unique_lock<std::mutex> locked{mutex_};
-              ended_.wait(locked, [this] { return is_over_; });
-          }} {}
-    ~SecondThread() {
-        {
-            const std::lock_guard<std::mutex> locked{mutex_};
-            is_over_ = true;
+// ---- instructions
+
+constexpr const char* told_to_count = "TAPPET_FIGURES_COUNT";
+constexpr std::size_t operations = 2000;
+
+/// When this process is the one under callgrind: runs each candidate, has it counted, and ends the process.
+void leave_if_counting(const std::vector<const Group*>& groups) {
+    if (!counting()) return;
+    for (const Group* group : groups)
+        for (const Candidate& candidate : group->candidates) {
+            const std::size_t times = candidate.prepare == nullptr ? operations : group->batch;
+            const std::size_t rounds = operations / times;
+            const std::string name = std::to_string(rounds * times) + " " + group->id + "/" + candidate.name;
+            if (candidate.prepare != nullptr) candidate.prepare(times);
+            candidate.run(times);
+            CALLGRIND_ZERO_STATS;
+            for (std::size_t round = 0; round < rounds; ++round) {
+                if (candidate.prepare != nullptr) {
+                    CALLGRIND_TOGGLE_COLLECT;
+                    candidate.prepare(times);
+                    CALLGRIND_TOGGLE_COLLECT;
+                }
+                candidate.run(times);
+            }
+            CALLGRIND_DUMP_STATS_AT(name.c_str());
         }
-        ended_.notify_one();
-        sleeps_.join();
-    }
-    SecondThread(const SecondThread&) = delete;
-    SecondThread& operator=(const SecondThread&) = delete;
+    std::_Exit(0);
+}
 
-private:
-    std::mutex mutex_{};
-    std::condition_variable ended_{};
-    bool is_over_ = false;
-    std::thread sleeps_;
-};
-
-/// The program's own tables say everything.
-class Silent : public benchmark::BenchmarkReporter {
-public:
-    bool ReportContext(const Context&) override { return true; }
-    void ReportRuns(const std::vector<Run>&) override {}
-};
+/// Of one operation, by "group/candidate": the program starts itself once more under callgrind, which dumps
+/// its counters after each candidate. Empty when valgrind is not there.
+std::map<std::string, double> count_instructions(const char* program, const std::string& only) {
+    std::map<std::string, double> counts;
+    const std::filesystem::path place =
+        std::filesystem::temp_directory_path() / ("tappet-counts-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(place);
+    const std::string command =
+        std::string{told_to_count} + "=1 valgrind --tool=callgrind --callgrind-out-file='" +
+        (place / "out").string() + "' '" + program + "'" + (only.empty() ? "" : " --only '" + only + "'") +
+        " >'" + (place / "log").string() + "' 2>&1";
+    if (std::system(command.c_str()) != 0)
+        std::cerr << "instructions were not counted; is valgrind installed? The log:\n"
+                  << std::ifstream{place / "log"}.rdbuf() << '\n';
+    else
+        for (const auto& entry : std::filesystem::directory_iterator{place}) {
+            std::ifstream file{entry.path()};
+            constexpr std::string_view trigger = "desc: Trigger: Client Request: ", totals = "totals: ";
+            std::string name;
+            double counted = 1;
+            for (std::string line; std::getline(file, line);)
+                if (line.starts_with(trigger)) {
+                    counted = std::atof(line.c_str() + trigger.size());
+                    name = line.substr(line.find(' ', trigger.size()) + 1);
+                } else if (line.starts_with(totals) && !name.empty()) {
+                    counts[name] = std::atof(line.c_str() + totals.size()) / counted;
+                }
+        }
+    std::filesystem::remove_all(place);
+    return counts;
+}
 
 } // namespace
 
-Options read_options(int argc, char** argv) {
+bool counting() { return std::getenv(told_to_count) != nullptr; }
+
+Options read_options(int argc, char** argv, const std::map<std::string, std::string*>& own) {
     Options options;
+    std::map<std::string, std::string*> valued{{"--json", &options.json}, {"--only", &options.only}};
+    valued.insert(own.begin(), own.end());
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        const bool follows = i + 1 < argc;
-        if (word == "--json" && follows)
-            options.json = argv[++i];
-        else if (word == "--only" && follows)
-            options.only = argv[++i];
+        if (const auto found = valued.find(word); found != valued.end() && i + 1 < argc)
+            *found->second = argv[++i];
         else if (word == "--long" || word == "--brief" || word == "--smoke")
             options.setting = word.substr(2);
         else if (word == "--no-counts")
@@ -136,7 +163,9 @@ Options read_options(int argc, char** argv) {
             std::cerr
                 << argv[0] << ": '" << word
                 << "' is no option, or lacks its value; there are --json FILE, --long, --brief, --smoke, "
-                << "--only TEXT, --no-counts\n";
+                << "--only TEXT, --no-counts";
+            for (const auto& [name, value] : own) std::cerr << ", " << name << " VALUE";
+            std::cerr << '\n';
             std::exit(2);
         }
     }
@@ -144,40 +173,36 @@ Options read_options(int argc, char** argv) {
     return options;
 }
 
-void run_candidates(const Options& options, char** argv, const std::vector<Group>& groups,
-                    const std::vector<RatioGoal>& goals, Result& result) {
+void run_candidates(const Options& options, char** argv, const std::vector<Group>& groups, Result& result) {
     std::vector<const Group*> wanted;
     for (const Group& group : groups)
-        if (options.only.empty() || group.id.find(options.only) != std::string::npos)
-            wanted.push_back(&group);
-    const SecondThread second;
+        if (options.wants(group.id)) wanted.push_back(&group);
+    // As long as a process has one thread, the C library takes locks without atomic operations; a machine has
+    // several.
+    const std::jthread second{[](const std::stop_token& over) {
+        std::mutex mutex;
+        std::unique_lock locked{mutex};
+        std::condition_variable_any{}.wait(locked, over, [] { return false; });
+    }};
     leave_if_counting(wanted);
 
-    const int rounds = std::max(3, static_cast<int>(rounds_of_short * std::min(3.0, options.scale())));
+    const auto rounds =
+        static_cast<std::size_t>(std::max(3.0, rounds_of_short * std::min(3.0, options.scale())));
     const auto samples =
         std::max<std::size_t>(20, static_cast<std::size_t>(samples_of_round * options.scale()));
     Measured measured;
+    std::vector<Rounds*> turns;
     for (const Group* group : wanted)
         for (const Candidate& candidate : group->candidates) {
-            const std::string name = group->id + "/" + candidate.name;
-            Rounds& here = measured[name];
-            here.candidate = &candidate;
-            here.batch = group->batch;
-            benchmark::RegisterBenchmark(name.c_str(),
-                                         [&here](benchmark::State& state) { measure(state, here); })
-                ->Iterations(static_cast<std::int64_t>(samples))
-                ->Repetitions(rounds);
+            Rounds& here = measured[group->id + "/" + candidate.name];
+            here = {&candidate, group->batch};
+            turns.insert(turns.end(), rounds, &here);
         }
-    int words = 2;
-    std::string program = argv[0], interleaved = "--benchmark_enable_random_interleaving=true";
-    char* arguments[] = {program.data(), interleaved.data(), nullptr};
-    benchmark::Initialize(&words, arguments);
+    std::ranges::shuffle(turns, std::minstd_rand{std::random_device{}()});
     {
         const Undisturbed quiet{0};
         if (!quiet.refused().empty()) result.notes.push_back("the system refused: " + quiet.refused());
-        Silent silent;
-        if (!wanted.empty()) benchmark::RunSpecifiedBenchmarks(&silent);
-        benchmark::ClearRegisteredBenchmarks();
+        for (Rounds* each : turns) measure(*each, samples);
     }
 
     const std::map<std::string, double> counts = options.counts && !wanted.empty()
@@ -200,10 +225,8 @@ void run_candidates(const Options& options, char** argv, const std::vector<Group
             figure.rows.push_back(row);
         }
         result.figures.push_back(figure);
+        for (const RatioGoal& goal : group->goals) result.goals.push_back(judge(group->id, goal, measured));
     }
-    for (const RatioGoal& goal : goals)
-        for (const Group* group : wanted)
-            if (group->id == goal.group) result.goals.push_back(judge(goal, measured));
 }
 
 int finish(const Options& options, const Result& result) {

@@ -1,11 +1,12 @@
-// Operations of one thread, measured in turns: each is run by google-benchmark in rounds that are interleaved
-// at random, so that whatever the machine does meanwhile meets all of them alike; and once under callgrind,
-// which counts instructions.
+// Operations of one thread, measured in turns: each is run in rounds that are interleaved at random, so that
+// whatever the machine does meanwhile meets all of them alike; and once under callgrind, which counts
+// instructions.
 #pragma once
 
 #include "tests/figures/measure/result.hpp"
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,14 @@ struct Candidate {
     void (*prepare)(std::size_t times) = nullptr;
 };
 
+/// In the median `ours` takes at most `times` what the named candidates of the same group take together.
+struct RatioGoal {
+    std::string text;
+    std::string ours;
+    double times = 1;
+    std::vector<std::string> of = {};
+};
+
 /// Candidates that do the same.
 struct Group {
     std::string id; ///< of the figure
@@ -28,18 +37,7 @@ struct Group {
     std::string source = {};
     std::size_t batch = 64; ///< operations in one sample: so many that reading the clock is lost among them
     std::vector<Candidate> candidates = {};
-};
-
-enum class Statistic : std::uint8_t { median, p99, p999 };
-
-/// `ours` takes at most `times` what the named candidates of the same group take together.
-struct RatioGoal {
-    std::string text;
-    std::string group;
-    std::string ours;
-    double times = 1;
-    std::vector<std::string> of = {};
-    Statistic statistic = Statistic::median;
+    std::vector<RatioGoal> goals = {};
 };
 
 /// Keeps the compiler from leaving out or moving what `value` is needed for.
@@ -58,19 +56,23 @@ struct Options {
     std::string only = {};
     std::string setting = "short"; ///< short, long, brief, smoke
     bool counts = true;
+    [[nodiscard]] bool wants(std::string_view id) const { return id.contains(only); }
     /// So many times what the short setting does.
     [[nodiscard]] double scale() const {
         return setting == "long" ? 10 : setting == "brief" ? 0.2 : setting == "smoke" ? 0.02 : 1;
     }
 };
-/// Exits with 2 and a sentence when a word is wrong.
-Options read_options(int argc, char** argv);
+/// `own`: words of this program alone that take a value, and where it goes. Exits with 2 and a sentence when
+/// a word is wrong.
+Options read_options(int argc, char** argv, const std::map<std::string, std::string*>& own = {});
 
 /// Runs the groups that are wanted and adds figures and goals to the result. A ratio is the median of the
 /// ratios of all rounds. Call it once, early: under callgrind this same program is started again, and leaves
 /// from within this call.
-void run_candidates(const Options& options, char** argv, const std::vector<Group>& groups,
-                    const std::vector<RatioGoal>& goals, Result& result);
+void run_candidates(const Options& options, char** argv, const std::vector<Group>& groups, Result& result);
+
+/// Whether this process is the one under callgrind.
+bool counting();
 
 /// Prints the result, writes it where options.json says. The program's exit code: 0 measured (goals held or
 /// not), 1 not written.

@@ -5,6 +5,8 @@
 #include "kernel/base/random.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 namespace tappet::figures {
 
@@ -40,13 +42,11 @@ double quantile(const std::vector<Weighed>& samples, const std::vector<std::uint
 
 } // namespace
 
-const char* to_text(Verdict verdict) noexcept {
-    switch (verdict) {
-    case Verdict::equivalent: return "equivalent";
-    case Verdict::different: return "different";
-    case Verdict::undecided: return "undecided";
-    }
-    return "unknown";
+Samples all_of(const std::vector<PairOfBlocks>& pairs, std::vector<double> PairOfBlocks::* side) {
+    Samples samples;
+    for (const PairOfBlocks& pair : pairs)
+        for (const double value : pair.*side) samples.add(value);
+    return samples;
 }
 
 double Comparison::worst() const noexcept { return low > 0 ? std::max(high, 1 / low) : 0; }
@@ -57,6 +57,14 @@ Verdict Comparison::verdict() const noexcept {
     if (low >= 1 / most && high <= most) return Verdict::equivalent;
     if (high < 1 / most || low > most) return Verdict::different;
     return Verdict::undecided;
+}
+
+std::string Comparison::text() const {
+    constexpr std::array verdicts{"equivalent", "different", "undecided"};
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), "ratio %.3f, 90 %% interval %.3f to %.3f from %zu pairs: %s",
+                  ratio, low, high, pairs, verdicts[static_cast<std::size_t>(verdict())]);
+    return text.data();
 }
 
 Comparison compare(const std::vector<PairOfBlocks>& pairs, double q, double margin, std::size_t resamples,

@@ -2,8 +2,11 @@
 // few samples show of anything, but that a difference larger than the margin would have been.
 #pragma once
 
+#include "tests/figures/measure/samples.hpp"
+
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tappet::figures {
@@ -14,13 +17,14 @@ struct PairOfBlocks {
     std::vector<double> ours{};
     std::vector<double> theirs{};
 };
+[[nodiscard]] Samples all_of(const std::vector<PairOfBlocks>& pairs,
+                             std::vector<double> PairOfBlocks::* side);
 
 enum class Verdict : std::uint8_t {
     equivalent, ///< the interval lies within the margin
     different,  ///< it lies outside of it
     undecided   ///< it reaches over an edge: there were too few samples, or they scatter too much
 };
-[[nodiscard]] const char* to_text(Verdict verdict) noexcept;
 
 /// Ours by theirs.
 /// Of fewer pairs nothing is concluded: that all of them lie on one side of the truth is likelier than what
@@ -38,6 +42,8 @@ struct Comparison {
     /// further edge.
     [[nodiscard]] double worst() const noexcept;
     [[nodiscard]] Verdict verdict() const noexcept;
+    /// "ratio 1.012, 90 % interval 0.998 to 1.031 from 220 pairs: equivalent"
+    [[nodiscard]] std::string text() const;
 };
 
 /// Compares the quantile `q` of all of ours with that of all of theirs. Two one-sided tests (Schuirmann,

@@ -1,4 +1,4 @@
-// Writes a result as JSON and as text.
+// A result as JSON, to and fro, and as text.
 #include "tests/figures/measure/result.hpp"
 
 #include <nlohmann/json.hpp>
@@ -7,65 +7,71 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <map>
 
 namespace tappet::figures {
 
-namespace {
-
 using nlohmann::json;
 
-const char* word(Standing role) {
+const char* to_text(Standing role) noexcept {
     constexpr std::array words{"ours", "floor", "peer"};
     return words[static_cast<std::size_t>(role)];
 }
-json to_json(const Row& row) {
-    const Summary& s = row.summary;
-    json j{{"name", row.name}, {"role", word(row.role)}, {"median", s.median}, {"mean", s.mean},
-           {"p99", s.p99},     {"p999", s.p999},         {"max", s.max},       {"count", s.count}};
+void to_json(json& j, Standing role) { j = to_text(role); }
+void from_json(const json& j, Standing& role) {
+    const std::string& word = j.get_ref<const std::string&>();
+    role = word == "floor" ? Standing::floor : word == "peer" ? Standing::peer : Standing::ours;
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, median, mean, p99, p999, max, count)
+void to_json(json& j, const Row& row) {
+    j = row.summary;
+    j["name"] = row.name;
+    j["role"] = row.role;
     if (row.instructions) j["instructions"] = *row.instructions;
-    return j;
 }
-json to_json(const Figure& figure) {
-    json j{{"id", figure.id},         {"title", figure.title}, {"unit", figure.unit},
-           {"source", figure.source}, {"how", figure.how},     {"rows", json::array()}};
-    for (const Row& row : figure.rows) j["rows"].push_back(to_json(row));
-    return j;
+void from_json(const json& j, Row& row) {
+    row = {j.at("name"), j.at("role"), j.get<Summary>()};
+    if (const auto found = j.find("instructions"); found != j.end()) row.instructions = found->get<double>();
 }
-json to_json(const Goal& goal) {
-    return {{"text", goal.text}, {"limit", goal.limit},   {"measured", goal.measured},
-            {"unit", goal.unit}, {"detail", goal.detail}, {"held", goal.held()}};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Figure, id, title, unit, source, how, rows)
+void to_json(json& j, const Goal& goal) {
+    j = {{"text", goal.text}, {"limit", goal.limit},   {"measured", goal.measured},
+         {"unit", goal.unit}, {"detail", goal.detail}, {"held", goal.held()}};
 }
-json to_json(const Statement& statement) {
-    return {{"text", statement.text}, {"held", statement.held}, {"measured", statement.measured}};
+void from_json(const json& j, Goal& goal) {
+    goal = {j.at("text"), j.at("limit"), j.at("measured"), j.at("unit"), j.at("detail")};
 }
-json to_json(const Plot& plot) {
-    json j{{"id", plot.id},       {"title", plot.title},         {"x", plot.x},
-           {"y", plot.y},         {"histogram", plot.histogram}, {"log_x", plot.log_x},
-           {"log_y", plot.log_y}, {"series", json::array()}};
-    for (const Series& series : plot.series)
-        j["series"].push_back(
-            {{"name", series.name}, {"role", word(series.role)}, {"points", series.points}});
-    return j;
-}
-template <class T>
-json list(const std::vector<T>& values) {
-    json j = json::array();
-    for (const T& value : values) j.push_back(to_json(value));
-    return j;
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statement, text, held, measured)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Series, name, role, points)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plot, id, title, x, y, histogram, log_x, log_y, series)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, program, setting, figures, goals, statements, plots, notes)
+
+const Row* Result::find(std::string_view figure, std::string_view row) const {
+    for (const Figure& each : figures)
+        if (each.id == figure)
+            for (const Row& found : each.rows)
+                if (found.name == row) return &found;
+    return nullptr;
 }
 
-} // namespace
+std::string Result::text() const { return json(*this).dump(1, ' ', false, json::error_handler_t::replace); }
 
-std::string Result::text() const {
-    return json{{"program", program},
-                {"setting", setting},
-                {"figures", list(figures)},
-                {"goals", list(goals)},
-                {"statements", list(statements)},
-                {"plots", list(plots)},
-                {"notes", notes}}
-        .dump(1, ' ', false, json::error_handler_t::replace);
+std::expected<Result, std::string> read_result(const std::string& path) {
+    std::ifstream file{path};
+    if (!file) return std::unexpected("there is no " + path);
+    if (file.peek() == EOF) return std::unexpected(path + " is empty");
+    const auto null_is_no_number = [](int, json::parse_event_t event, json& value) {
+        if (event == json::parse_event_t::value && value.is_null())
+            value = std::numeric_limits<double>::quiet_NaN();
+        return true;
+    };
+    try {
+        return json::parse(file, null_is_no_number).get<Result>();
+    } catch (const json::exception& wrong) {
+        return std::unexpected(path + " is no result of figures: " + wrong.what());
+    }
 }
 
 std::string Result::write(const std::string& path) const {
@@ -84,8 +90,8 @@ void Result::print() const {
             if (row.role == Standing::ours && ours == 0) ours = row.summary.median;
         for (const Row& row : figure.rows) {
             const Summary& s = row.summary;
-            std::printf("  %-44s %-6s %10.2f %10.2f %10.2f %10.2f %12.1f ", row.name.c_str(), word(row.role),
-                        s.median, s.mean, s.p99, s.p999, s.max);
+            std::printf("  %-44s %-6s %10.2f %10.2f %10.2f %10.2f %12.1f ", row.name.c_str(),
+                        to_text(row.role), s.median, s.mean, s.p99, s.p999, s.max);
             if (row.instructions)
                 std::printf("%9.1f", *row.instructions);
             else
@@ -137,6 +143,12 @@ Series log_histogram(std::string name, Standing role, const Samples& samples, in
                                    found == bins.end() ? 0 : found->second);
     }
     return series;
+}
+
+Plot histogram_plot(std::string id, std::string title, std::string x, std::string y,
+                    std::vector<Series> series, bool log_x) {
+    return {std::move(id), std::move(title), std::move(x), std::move(y), true, log_x,
+            true,          std::move(series)};
 }
 
 } // namespace tappet::figures

@@ -1,12 +1,14 @@
-// What a program of figures found out, in the one form that the report reads: JSON, one file for each
-// program.
+// What a program of figures found out, in the one form that the report and the programs' tests read: JSON,
+// one file for each program.
 #pragma once
 
 #include "tests/figures/measure/samples.hpp"
 
 #include <cstdint>
+#include <expected>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@ namespace tappet::figures {
 
 /// Ours, the physical or the bare limit that it stands beside, or what others offer for the same task.
 enum class Standing : std::uint8_t { ours, floor, peer };
+[[nodiscard]] const char* to_text(Standing role) noexcept;
 
 /// One measured thing.
 struct Row {
@@ -74,13 +77,19 @@ struct Result {
     std::vector<Plot> plots = {};
     std::vector<std::string> notes = {}; ///< what could not be measured here, and why
 
-    /// As JSON; read_result.hpp reads it.
+    /// Null: there is no such row.
+    [[nodiscard]] const Row* find(std::string_view figure, std::string_view row) const;
+    /// As JSON.
     [[nodiscard]] std::string text() const;
     /// Empty: written. Otherwise why not.
     [[nodiscard]] std::string write(const std::string& path) const;
     /// As tables, with the ratio of each row to the first of ours.
     void print() const;
 };
+
+/// Or one sentence: the file is not there, empty or broken. A number that is no number (JSON's null) comes
+/// back as NaN: a goal with one is missed.
+std::expected<Result, std::string> read_result(const std::string& path);
 
 /// Samples as a histogram of `bins` bins of equal width between the smallest and the quantile `upto`; the
 /// last bin holds the rest.
@@ -90,5 +99,9 @@ Series histogram(std::string name, Standing role, const Samples& samples, std::s
 /// As above, of positive samples, over all of them: each bin is so wide that `in_a_decade` of them make a
 /// factor of ten, so that a peak and a worst case far away from it are both seen. For a plot with log_x.
 Series log_histogram(std::string name, Standing role, const Samples& samples, int in_a_decade = 40);
+
+/// How many of each, drawn so that one is seen beside many; with `log_x` for log_histogram.
+Plot histogram_plot(std::string id, std::string title, std::string x, std::string y,
+                    std::vector<Series> series, bool log_x = false);
 
 } // namespace tappet::figures

@@ -13,6 +13,8 @@ struct Summary {
     double median = 0, mean = 0, p99 = 0, p999 = 0, max = 0;
     std::size_t count = 0;
 };
+/// Of what is known without measuring, or was found once.
+constexpr Summary single(double value) { return {value, value, value, value, value, 1}; }
 
 class Samples {
 public:

@@ -1,6 +1,6 @@
 // A cascade of three levels as a table with its control section, beside the same loop written by hand: place
 // commands speed, speed commands torque. Six axes of a robot, and one.
-#include "tests/figures/dispatch/world.hpp"
+#include "tests/figures/measure/world.hpp"
 #include "tests/figures/motion/cascade_laws.hpp"
 #include "tests/figures/motion/groups.hpp"
 
@@ -221,21 +221,19 @@ Group group_of(std::string id, std::string title) {
 
 } // namespace
 
-void add_cascades(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
+void add_cascades(std::vector<Group>& groups) {
     static_cast<void>(os::prove_processor_counter()); // as it is when the machine arms
-    constexpr const char* robot = "motion.cascade.robot";
     groups.push_back(group_of<6>(
-        robot, "a cycle of a cascade of three levels in ten components: flange, six axes, their torques"));
-    groups.push_back(group_of<1>("motion.cascade.axis",
-                                 "the same with laws of one axis: what ten components themselves take"));
-    goals.push_back(
+        "motion.cascade.robot",
+        "a cycle of a cascade of three levels in ten components: flange, six axes, their torques"));
+    groups.back().goals = {
         {"a cascade of three levels at most 1.2 times the same loop by hand, time stamps excluded",
-         robot,
          table_bare,
          1.2,
-         {hand_bare}});
-    goals.push_back(
-        {"the same with each component timed, by hand the whole", robot, table_timed, 1.2, {hand_timed}});
+         {hand_bare}},
+        {"the same with each component timed, by hand the whole", table_timed, 1.2, {hand_timed}}};
+    groups.push_back(group_of<1>("motion.cascade.axis",
+                                 "the same with laws of one axis: what ten components themselves take"));
 }
 
 bool cascades_are_the_same() { return is_the_same<6>() && is_the_same<1>(); }

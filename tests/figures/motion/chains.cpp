@@ -26,7 +26,6 @@ using robots::puma_560;
 using robots::puma_560_links;
 
 /// Postures and motions in which no sine is foretold; KDL has them in its own form.
-constexpr std::size_t many = 64;
 struct Given {
     std::array<Joints<6>, many> q, rates, accelerations;
     std::array<KDL::JntArray, many> kdl_q, kdl_rates, kdl_accelerations;
@@ -56,32 +55,19 @@ Given& given() {
     static Given all;
     return all;
 }
-std::size_t place = 0;
 
 const Loaded loaded_puma{puma_560_links};
 
 template <const auto& chain>
 void pose(std::size_t times) {
-    const Given& at = given();
-    for (std::size_t i = 0; i < times; ++i) {
-        auto result = forward_with_jacobian(folded<chain>, at.q[place++ % many]);
-        keep(result);
-    }
+    in_turn(times, [&at = given()](std::size_t k) { return forward_with_jacobian(folded<chain>, at.q[k]); });
 }
 template <const auto& chain>
 void frame_alone(std::size_t times) {
-    const Given& at = given();
-    for (std::size_t i = 0; i < times; ++i) {
-        auto result = forward(folded<chain>, at.q[place++ % many]);
-        keep(result);
-    }
+    in_turn(times, [&at = given()](std::size_t k) { return forward(folded<chain>, at.q[k]); });
 }
 void pose_loaded(std::size_t times) {
-    const Given& at = given();
-    for (std::size_t i = 0; i < times; ++i) {
-        auto result = forward_with_jacobian(loaded_puma, at.q[place++ % many]);
-        keep(result);
-    }
+    in_turn(times, [&at = given()](std::size_t k) { return forward_with_jacobian(loaded_puma, at.q[k]); });
 }
 
 struct Kdl {
@@ -102,71 +88,47 @@ Kdl& kdl() {
 }
 
 void pose_kdl(std::size_t times) {
-    const Given& at = given();
-    Kdl& peer = kdl();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        peer.forward.JntToCart(at.kdl_q[place % many], peer.frame);
-        peer.jacobian.JntToJac(at.kdl_q[place % many], peer.matrix);
-        clobber();
-    }
+    in_turn(times, [&at = given(), &peer = kdl()](std::size_t k) {
+        peer.forward.JntToCart(at.kdl_q[k], peer.frame);
+        peer.jacobian.JntToJac(at.kdl_q[k], peer.matrix);
+    });
 }
 
 template <const auto& chain>
 void torques(std::size_t times) {
-    const Given& at = given();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        const std::size_t k = place % many;
-        Joints<6> result = inverse_dynamics(folded<chain>, at.q[k], at.rates[k], at.accelerations[k]);
-        keep(result);
-    }
+    in_turn(times, [&at = given()](std::size_t k) -> Joints<6> {
+        return inverse_dynamics(folded<chain>, at.q[k], at.rates[k], at.accelerations[k]);
+    });
 }
 void torques_loaded(std::size_t times) {
-    const Given& at = given();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        const std::size_t k = place % many;
-        Joints<6> result = inverse_dynamics(loaded_puma, at.q[k], at.rates[k], at.accelerations[k]);
-        keep(result);
-    }
+    in_turn(times, [&at = given()](std::size_t k) -> Joints<6> {
+        return inverse_dynamics(loaded_puma, at.q[k], at.rates[k], at.accelerations[k]);
+    });
 }
 void torques_kdl(std::size_t times) {
-    const Given& at = given();
-    Kdl& peer = kdl();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        const std::size_t k = place % many;
+    in_turn(times, [&at = given(), &peer = kdl()](std::size_t k) {
         peer.dynamics.CartToJnt(at.kdl_q[k], at.kdl_rates[k], at.kdl_accelerations[k], peer.loads,
                                 peer.torques);
-        clobber();
-    }
+    });
 }
 
 void all_postures(std::size_t times) {
-    const Given& at = given();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        const std::size_t k = place % many;
-        auto result = closed_form(folded<puma_560_links>, at.targets[k], at.q[k]);
-        keep(result);
-    }
+    in_turn(times, [&at = given()](std::size_t k) {
+        return closed_form(folded<puma_560_links>, at.targets[k], at.q[k]);
+    });
 }
 constexpr double beside = 0.05; // of each joint from where it shall be, rad: some cycles of a fast motion
 void by_least_squares(std::size_t times) {
-    const Given& at = given();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        const std::size_t k = place % many;
+    in_turn(times, [&at = given()](std::size_t k) {
         const Joints<6> from = at.q[k] + Joints<6>::Constant(beside);
-        auto result = least_squares(folded<puma_560_links>, at.targets[k], from);
-        keep(result);
-    }
+        return least_squares(folded<puma_560_links>, at.targets[k], from);
+    });
 }
 void by_kdl(std::size_t times) {
-    const Given& at = given();
-    Kdl& peer = kdl();
-    KDL::JntArray from{6};
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        const std::size_t k = place % many;
+    in_turn(times, [&at = given(), &peer = kdl(), from = KDL::JntArray{6}](std::size_t k) mutable {
         from.data = at.q[k] + Joints<6>::Constant(beside);
         peer.inverse.CartToJnt(from, at.kdl_targets[k], peer.found);
-        clobber();
-    }
+    });
 }
 
 } // namespace
@@ -197,7 +159,7 @@ Differences largest_differences() {
     return largest;
 }
 
-void add_chains(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
+void add_chains(std::vector<Group>& groups) {
     groups.push_back({"motion.kinematics",
                       "forward kinematics and Jacobian of six joints",
                       "",
@@ -206,15 +168,21 @@ void add_chains(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                        {"folded, K361", Standing::ours, &pose<k361>},
                        {"folded, PUMA 560, the frame alone", Standing::ours, &frame_alone<puma_560_links>},
                        {"loaded, PUMA 560", Standing::ours, &pose_loaded},
-                       {"KDL, PUMA 560", Standing::peer, &pose_kdl}}});
-    groups.push_back({"motion.dynamics",
-                      "inverse dynamics of six joints, recursive Newton-Euler",
-                      "",
-                      64,
-                      {{"folded, PUMA 560", Standing::ours, &torques<puma_560_links>},
-                       {"folded, PUMA 560 with its drives", Standing::ours, &torques<puma_560>},
-                       {"loaded, PUMA 560", Standing::ours, &torques_loaded},
-                       {"KDL, PUMA 560", Standing::peer, &torques_kdl}}});
+                       {"KDL, PUMA 560", Standing::peer, &pose_kdl}},
+                      {{"forward kinematics and Jacobian at most a quarter of KDL's",
+                        "folded, PUMA 560",
+                        0.25,
+                        {"KDL, PUMA 560"}}}});
+    groups.push_back(
+        {"motion.dynamics",
+         "inverse dynamics of six joints, recursive Newton-Euler",
+         "",
+         64,
+         {{"folded, PUMA 560", Standing::ours, &torques<puma_560_links>},
+          {"folded, PUMA 560 with its drives", Standing::ours, &torques<puma_560>},
+          {"loaded, PUMA 560", Standing::ours, &torques_loaded},
+          {"KDL, PUMA 560", Standing::peer, &torques_kdl}},
+         {{"inverse dynamics at most a third of KDL's", "folded, PUMA 560", 0.33, {"KDL, PUMA 560"}}}});
     groups.push_back({"motion.inverse",
                       "inverse kinematics of six joints",
                       "",
@@ -222,16 +190,6 @@ void add_chains(std::vector<Group>& groups, std::vector<RatioGoal>& goals) {
                       {{"closed form, all eight postures", Standing::ours, &all_postures},
                        {"least squares to 1e-9, from 0.05 rad beside", Standing::ours, &by_least_squares},
                        {"KDL, Levenberg-Marquardt to 1e-9, from 0.05 rad beside", Standing::peer, &by_kdl}}});
-    goals.push_back({"forward kinematics and Jacobian at most a quarter of KDL's",
-                     "motion.kinematics",
-                     "folded, PUMA 560",
-                     0.25,
-                     {"KDL, PUMA 560"}});
-    goals.push_back({"inverse dynamics at most a third of KDL's",
-                     "motion.dynamics",
-                     "folded, PUMA 560",
-                     0.33,
-                     {"KDL, PUMA 560"}});
 }
 
 } // namespace tappet::figures

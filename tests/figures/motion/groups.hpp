@@ -3,14 +3,32 @@
 
 #include "tests/figures/measure/candidates.hpp"
 
+#include <type_traits>
 #include <vector>
 
 namespace tappet::figures {
 
+/// So many different values are given, in turn: more than are foretold.
+inline constexpr std::size_t many = 64;
+inline std::size_t place = 0;
+/// Each operation makes something of the k-th of what is given.
+template <class Make>
+void in_turn(std::size_t times, Make make) {
+    for (std::size_t i = 0; i < times; ++i, ++place) {
+        if constexpr (std::is_void_v<decltype(make(place))>) {
+            make(place % many);
+            clobber();
+        } else {
+            auto result = make(place % many);
+            keep(result);
+        }
+    }
+}
+
 /// Kinematics, dynamics and their inverses, beside KDL.
-void add_chains(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+void add_chains(std::vector<Group>& groups);
 /// A machine's cascade beside the same loop by hand.
-void add_cascades(std::vector<Group>& groups, std::vector<RatioGoal>& goals);
+void add_cascades(std::vector<Group>& groups);
 /// Whether both put out the same, bit by bit, after as many cycles as the machine has been measured.
 bool cascades_are_the_same();
 /// Sines, trajectories, controllers and estimators.

@@ -21,31 +21,29 @@ namespace {
 
 using namespace motion;
 
-constexpr std::size_t many = 64;
 std::array<double, many> angles = [] {
     Random random{2};
     std::array<double, many> all{};
     for (double& angle : all) angle = 6.0 * random.unit() - 3.0;
     return all;
 }();
-std::size_t place = 0;
 
 template <class Both>
 void six(std::size_t times, Both both) {
-    for (std::size_t i = 0; i < times; ++i, ++place) {
+    in_turn(times, [&](std::size_t k) {
         std::array<SineCosine, 6> result;
-        for (std::size_t axis = 0; axis < 6; ++axis) result[axis] = both(angles[(place + axis) % many]);
-        keep(result);
-    }
+        for (std::size_t axis = 0; axis < 6; ++axis) result[axis] = both(angles[(k + axis) % many]);
+        return result;
+    });
 }
 void own_sine(std::size_t times) {
-    for (std::size_t i = 0; i < times; ++i, ++place) {
+    in_turn(times, [](std::size_t k) {
         std::array<SineCosine, 6> result;
         for (std::size_t axis = 0; axis < 6; axis += 2)
-            sine_cosine_of_two(angles[(place + axis) % many], angles[(place + axis + 1) % many], result[axis],
+            sine_cosine_of_two(angles[(k + axis) % many], angles[(k + axis + 1) % many], result[axis],
                                result[axis + 1]);
-        keep(result);
-    }
+        return result;
+    });
 }
 void own_sine_alone(std::size_t times) { six(times, sine_cosine); }
 void musl_sine(std::size_t times) {
@@ -64,63 +62,48 @@ void glibc_sine(std::size_t times) {
 
 constexpr AxisLimits limits{1.0, 4.0, 40.0};
 void plan_trapezoid(std::size_t times) {
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        auto plan = trapezoid({angles[place % many], 0.3, 0.0}, angles[(place + 1) % many], limits);
-        keep(plan);
-    }
+    in_turn(times,
+            [](std::size_t k) { return trapezoid({angles[k], 0.3, 0.0}, angles[(k + 1) % many], limits); });
 }
 void plan_jerk_limited(std::size_t times) {
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        auto plan = jerk_limited(angles[place % many], angles[(place + 1) % many], limits);
-        keep(plan);
-    }
+    in_turn(times, [](std::size_t k) { return jerk_limited(angles[k], angles[(k + 1) % many], limits); });
 }
 void plan_stop(std::size_t times) {
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        auto plan = stop({0.0, angles[place % many], angles[(place + 1) % many]}, limits);
-        keep(plan);
-    }
+    in_turn(times, [](std::size_t k) { return stop({0.0, angles[k], angles[(k + 1) % many]}, limits); });
 }
 void plan_kdl(std::size_t times) {
     static KDL::VelocityProfile_Trap peer{limits.velocity, limits.acceleration};
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        peer.SetProfile(angles[place % many], angles[(place + 1) % many]);
-        clobber();
-    }
+    in_turn(times, [](std::size_t k) { peer.SetProfile(angles[k], angles[(k + 1) % many]); });
 }
 const Profile& some_profile() {
     static const Profile profile = *jerk_limited(-2.0, 2.0, limits);
     return profile;
 }
 void look_at_profile(std::size_t times) {
-    const Profile& profile = some_profile();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        auto state = profile.at_s((angles[place % many] + 3.0) / 6.0 * profile.duration_s());
-        keep(state);
-    }
+    in_turn(times, [&profile = some_profile()](std::size_t k) {
+        return profile.at_s((angles[k] + 3.0) / 6.0 * profile.duration_s());
+    });
 }
 void look_at_kdl(std::size_t times) {
     static KDL::VelocityProfile_Trap peer{limits.velocity, limits.acceleration};
     peer.SetProfile(-2.0, 2.0);
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        const double t = (angles[place % many] + 3.0) / 6.0 * peer.Duration();
-        AxisState state{peer.Pos(t), peer.Vel(t), peer.Acc(t)};
-        keep(state);
-    }
+    in_turn(times, [](std::size_t k) {
+        const double t = (angles[k] + 3.0) / 6.0 * peer.Duration();
+        return AxisState{peer.Pos(t), peer.Vel(t), peer.Acc(t)};
+    });
 }
 void plan_six(std::size_t times) {
     static constexpr Synchronised<6>::Limits all{limits, limits, limits, limits, limits, limits};
-    for (std::size_t i = 0; i < times; ++i, ++place) {
+    in_turn(times, [](std::size_t k) {
         Joints<6> from;
         Joints<6> target;
         for (int axis = 0; axis < 6; ++axis) {
-            const auto k = place + static_cast<std::size_t>(axis);
-            from[axis] = angles[k % many];
-            target[axis] = angles[(k + 1) % many];
+            const auto at = k + static_cast<std::size_t>(axis);
+            from[axis] = angles[at % many];
+            target[axis] = angles[(at + 1) % many];
         }
-        auto plan = Synchronised<6>::plan(from, target, all);
-        keep(plan);
-    }
+        return Synchronised<6>::plan(from, target, all);
+    });
 }
 
 void step_pid(std::size_t times) {
@@ -131,28 +114,21 @@ void step_pid(std::size_t times) {
                     .tracking_s = 0.5,
                     .lowest = -10.0,
                     .highest = 10.0}};
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        double output = pid(0.5, angles[place % many], 2ms, 0.1);
-        keep(output);
-    }
+    in_turn(times, [](std::size_t k) { return pid(0.5, angles[k], 2ms, 0.1); });
 }
 void step_biquad(std::size_t times) {
     static Biquad filter = *Biquad::low_pass(40.0, 2ms);
-    for (std::size_t i = 0; i < times; ++i, ++place) {
-        double output = filter(angles[place % many]);
-        keep(output);
-    }
+    in_turn(times, [](std::size_t k) { return filter(angles[k]); });
 }
 void step_kalman(std::size_t times) {
     static Kalman<3> filter{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()};
     static const Eigen::Matrix3d move{{1.0, 2e-3, 2e-6}, {0.0, 1.0, 2e-3}, {0.0, 0.0, 1.0}};
     static const Eigen::Matrix3d noise = 1e-3 * Eigen::Matrix3d::Identity();
-    for (std::size_t i = 0; i < times; ++i, ++place) {
+    in_turn(times, [](std::size_t k) {
         filter.predict(move, noise);
-        auto result = filter.update<1>(Eigen::Matrix<double, 1, 1>{angles[place % many]}, {1.0, 0.0, 0.0},
-                                       Eigen::Matrix<double, 1, 1>{0.1});
-        keep(result);
-    }
+        return filter.update<1>(Eigen::Matrix<double, 1, 1>{angles[k]}, {1.0, 0.0, 0.0},
+                                Eigen::Matrix<double, 1, 1>{0.1});
+    });
 }
 
 } // namespace

@@ -14,10 +14,8 @@ namespace {
 /// In nanoseconds, of the median of a row; nothing when it was not measured.
 void add_goal(Result& result, const std::string& text, double ns, const std::string& figure,
               const std::string& row) {
-    for (const Figure& each : result.figures)
-        for (const Row& found : each.rows)
-            if (each.id == figure && found.name == row)
-                result.goals.push_back({text, ns, found.summary.median, "ns", figure + ": " + row});
+    if (const Row* found = result.find(figure, row))
+        result.goals.push_back({text, ns, found->summary.median, "ns", figure + ": " + row});
 }
 
 } // namespace
@@ -29,12 +27,10 @@ int main(int argc, char** argv) {
     const Options options = read_options(argc, argv);
     Result result{.program = "motion", .setting = options.setting};
     std::vector<Group> groups;
-    std::vector<RatioGoal> goals;
-    add_chains(groups, goals);
-    add_cascades(groups, goals);
+    add_chains(groups);
+    add_cascades(groups);
     add_loops(groups);
-    std::erase_if(goals, [&](const RatioGoal& goal) { return !goal.group.contains(options.only); });
-    run_candidates(options, argv, groups, goals, result);
+    run_candidates(options, argv, groups, result);
     add_goal(result,
              "forward kinematics and Jacobian of six joints in 100 ns, with the sine of kernel/motion", 100,
              "motion.kinematics", "folded, PUMA 560");
@@ -47,7 +43,7 @@ int main(int argc, char** argv) {
     result.statements.push_back(
         {"ours and KDL compute the same, to 1e-11 over all postures that are measured",
          std::max(apart.kinematics, apart.torques) < 1e-11, text.data()});
-    if (std::string{"motion.cascade.robot"}.contains(options.only))
+    if (options.wants("motion.cascade.robot"))
         result.statements.push_back({"a machine's cascade and the same loop by hand put out the same",
                                      cascades_are_the_same(), "bit by bit, after all cycles"});
     return finish(options, result);

@@ -61,20 +61,6 @@ struct Rig {
     }
 };
 
-Samples all_of(const std::vector<PairOfBlocks>& pairs, std::vector<double> PairOfBlocks::* side) {
-    Samples samples;
-    for (const PairOfBlocks& pair : pairs)
-        for (const double value : pair.*side) samples.add(value);
-    return samples;
-}
-
-std::string interval(const Comparison& found) {
-    char text[160];
-    std::snprintf(text, sizeof text, "ratio %.3f, 90 %% interval %.3f to %.3f from %zu pairs: %s",
-                  found.ratio, found.low, found.high, found.pairs, to_text(found.verdict()));
-    return text;
-}
-
 // ---- periodic
 
 std::vector<double> late_in(const TickBlock& block) {
@@ -132,17 +118,12 @@ void measure_periodic(Rig& rig, const Options& options, Result& result) {
         result.goals.push_back(
             {std::string{"periodic wake-up lateness: equivalent to cyclictest's within 5 % at "} + name,
              1 + margin, found.worst() > 0 ? found.worst() : 99, "x",
-             "the interval's further edge; " + interval(found)});
+             "the interval's further edge; " + found.text()});
     }
-    result.plots.push_back({"reaction.periodic",
-                            "lateness of periodic wake-ups",
-                            "lateness [ns]",
-                            "cycles",
-                            true,
-                            false,
-                            true,
-                            {histogram("Tappet", Standing::ours, ours, 100, 0.999),
-                             histogram("clock_nanosleep", Standing::floor, theirs, 100, 0.999)}});
+    result.plots.push_back(
+        histogram_plot("reaction.periodic", "lateness of periodic wake-ups", "lateness [ns]", "cycles",
+                       {histogram("Tappet", Standing::ours, ours, 100, 0.999),
+                        histogram("clock_nanosleep", Standing::floor, theirs, 100, 0.999)}));
 }
 
 // ---- from one activity to another
@@ -185,16 +166,11 @@ void measure_handover(Rig& rig, const Options& options, Sender::Reach reach, Res
                   {"bare futex: store and wake to load", Standing::floor, theirs.summary(), {}}}});
     const Comparison found = compare(pairs, 0.5, margin);
     result.goals.push_back({"wake of an event-driven activity, " + where + ": <= 1.05 x the bare futex", 1.05,
-                            found.ratio, "x", interval(found)});
-    result.plots.push_back({id,
-                            "event into a sleeping activity, " + where,
-                            "emission to operation [ns]",
-                            "emissions",
-                            true,
-                            false,
-                            true,
-                            {histogram("Tappet", Standing::ours, ours, 100, 0.995),
-                             histogram("bare futex", Standing::floor, theirs, 100, 0.995)}});
+                            found.ratio, "x", found.text()});
+    result.plots.push_back(histogram_plot(id, "event into a sleeping activity, " + where,
+                                          "emission to operation [ns]", "emissions",
+                                          {histogram("Tappet", Standing::ours, ours, 100, 0.995),
+                                           histogram("bare futex", Standing::floor, theirs, 100, 0.995)}));
 }
 
 int run(int argc, char** argv) {
@@ -202,19 +178,16 @@ int run(int argc, char** argv) {
     Result result{.program = "reaction", .setting = options.setting};
     static_cast<void>(ns_per_tick());
     static_cast<void>(ticks_of_reading());
-    const auto wants = [&](const char* id) {
-        return options.only.empty() || std::string{id}.find(options.only) != std::string::npos;
-    };
     {
         auto rig = std::make_unique<Rig>();
         if (const std::string refused = rig->start(); !refused.empty())
             result.notes.push_back("the reaction path was not measured: " + refused);
         else {
-            if (wants("reaction.event.one_core"))
+            if (options.wants("reaction.event.one_core"))
                 measure_handover(*rig, options, Sender::Reach::near, result);
-            if (wants("reaction.event.two_cores"))
+            if (options.wants("reaction.event.two_cores"))
                 measure_handover(*rig, options, Sender::Reach::far, result);
-            if (wants("reaction.periodic")) measure_periodic(*rig, options, result);
+            if (options.wants("reaction.periodic")) measure_periodic(*rig, options, result);
         }
     }
     return finish(options, result);

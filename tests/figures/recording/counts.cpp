@@ -2,13 +2,11 @@
 //     recording_counts          started by the test: starts valgrind on itself, once for each form
 //     recording_counts FORM     runs that form's cycles, of which the last 100 are measured
 #include "kernel/machine/accept.hpp"
+#include "tests/figures/measure/callgrind.hpp"
 #include "tests/figures/recording/machine.hpp"
 
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <iostream>
-#include <string>
 #include <string_view>
 
 using namespace tappet;
@@ -26,14 +24,10 @@ constexpr auto one_port = machine_with(reporting(report("0.a")));
 
 template <const auto& table>
 int drive() {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    if (!instance.configure({})) return 1;
-    Engine& engine = instance.engines()[0];
-    if (!engine.initialise().empty()) return 1;
-    engine.start(clock.now());
+    World world{os::Clock::Kind::virtual_time, AtRunTime<table, figures_board>::machine()};
+    Engine& engine = world.engine();
     for (int cycle = 0; cycle < unmeasured + measured; ++cycle) {
-        clock.advance_to(engine.next_wake());
+        world.clock.advance_to(engine.next_wake());
         cycle < unmeasured ? engine.run(false) : measured_cycle(engine);
     }
     return engine.statistics().cycles == unmeasured + measured ? 0 : 1;
@@ -49,32 +43,18 @@ int drive_form(std::string_view form) {
     return 2;
 }
 
-/// Instructions of a measured cycle; 0: it did not come so far.
-double count(const std::string& self, const std::string& form) {
-    const std::string out = self + "." + form;
-    const std::string command =
-        "valgrind --tool=callgrind --toggle-collect='measured_*' --callgrind-out-file='" + out + "' '" +
-        self + "' " + form + " >/dev/null 2>&1";
-    if (std::system(command.c_str()) != 0) return 0;
-    std::ifstream file{out};
-    for (std::string line; std::getline(file, line);)
-        for (const std::string_view word : {"totals: ", "summary: "})
-            if (line.starts_with(word))
-                return static_cast<double>(std::atol(line.c_str() + word.size())) / measured;
-    return 0;
-}
-
 } // namespace
 
 int main(int words, char** word) {
     if (words == 2) return drive_form(word[1]);
     /// Room for each port over the copy itself: is it due, its number and its value, each with their places.
     constexpr double most_a_port = 40;
-    const double without = count(word[0], "without");
+    const auto count = [&](const char* form) { return count_measured(word[0], form, form) / measured; };
+    const double without = count("without");
     bool good = without > 0;
     std::printf("%-16s %7.1f instructions a cycle of 100 ports\n", "without", without);
     for (const char* form : {"one_port", "each_step", "each_tenth", "on_change", "on_change_still"}) {
-        const double with = count(word[0], form);
+        const double with = count(form);
         const double a_port = (with - without) / (std::string_view{form} == "one_port" ? 1 : 100);
         std::printf("%-16s %7.1f, %5.1f a recorded port\n", form, with, a_port);
         good &= with > 0 && (std::string_view{form} == "one_port" || a_port <= most_a_port);

@@ -1,9 +1,8 @@
 // The machine whose recording is measured: ten components that write a hundred ports in each step.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
-#include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/reporting/reporting.hpp"
+#include "tests/figures/measure/world.hpp"
 
 namespace tappet::figures {
 
@@ -30,8 +29,6 @@ struct Window {
     void work(const Cycle&) {}
     static constexpr auto interface() { return facets(); }
 };
-
-inline constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 
 template <class... Extra>
 constexpr auto machine_with(const Extra&... extra) {

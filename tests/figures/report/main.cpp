@@ -6,12 +6,12 @@
 #include "tests/figures/report/programs.hpp"
 #include "tests/figures/report/surroundings.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 
 namespace {
 
@@ -51,8 +51,7 @@ std::vector<std::string> arguments(const ReportOptions& options) {
 
 std::string told(const ProgramRun& run) {
     if (!run.failure.empty()) return "FAILED: " + run.failure.substr(0, run.failure.find('\n'));
-    std::size_t held = 0;
-    for (const Goal& goal : run.result.goals) held += goal.held() ? 1u : 0u;
+    const auto held = std::ranges::count_if(run.result.goals, &Goal::held);
     return std::to_string(static_cast<int>(run.usage.seconds + 0.5)) + " s, " +
            std::to_string(run.result.figures.size()) + " figures" +
            (run.result.goals.empty() ? ""
@@ -69,7 +68,7 @@ int write_report(const Run& run, const std::string& output) {
 }
 
 int run_all(const ReportOptions& options, const std::vector<Program>& programs) {
-    Run run{commit_of(options.tree), local_time(), options.setting};
+    Run run{commit_of_tree(), local_time(), options.setting};
     run.machine = describe_machine();
     say("the machine's noise");
     run.before = measure_noise(0, options.setting == "smoke" ? 0.1 : 1);
@@ -82,15 +81,6 @@ int run_all(const ReportOptions& options, const std::vector<Program>& programs) 
         say("figures-" + program.name + ": " + told(run.programs.back()));
     }
     return write_report(run, options.output);
-}
-
-int draw_again(const ReportOptions& options) {
-    std::ifstream file{options.from};
-    std::ostringstream text;
-    text << file.rdbuf();
-    if (text.view().empty()) return refuse("there is nothing in " + options.from, wrong_option);
-    const auto run = parse_run(text.view(), options.from);
-    return run ? write_report(*run, options.output) : refuse(run.error(), wrong_option);
 }
 
 /// One round of one build, the programs in turn with those of the other.
@@ -129,7 +119,7 @@ int compare_builds(const ReportOptions& options, const std::vector<Program>& now
     const Comparison comparison = compare(rounds, options.margin_percent / 100);
     if (comparison.changes.empty())
         return refuse("the two commits have no row of a figure in common; nothing was compared", not_run);
-    std::cout << '\n' << comparison_text(comparison, options.against_name, commit_of(options.tree));
+    std::cout << '\n' << comparison_text(comparison, options.against_name, commit_of_tree());
     if (failures != 0)
         return refuse(std::to_string(failures) + " runs failed; their logs are in " + options.output,
                       not_run);
@@ -143,7 +133,6 @@ int main(int argc, char** argv) {
     if (!options) return refuse(options.error(), wrong_option);
     std::error_code none;
     std::filesystem::create_directories(options->output, none);
-    if (!options->from.empty()) return draw_again(*options);
     const auto programs = find_programs(options->programs);
     if (!programs) return refuse(programs.error(), not_run);
     const auto chosen = choose(*programs, options->only);

@@ -22,16 +22,10 @@ std::expected<ReportOptions, std::string> read_report_options(const std::vector<
         std::string* text;
         double* number;
     } valued[] = {
-        {"--programs", &options.programs, nullptr},
-        {"--output", &options.output, nullptr},
-        {"--tree", &options.tree, nullptr},
-        {"--from", &options.from, nullptr},
-        {"--against", &options.against, nullptr},
-        {"--against-name", &options.against_name, nullptr},
-        {"--limit", nullptr, &options.limit},
-        {"--rounds", nullptr, &rounds},
-        {"--margin", nullptr, &options.margin_percent},
-        {"--only", nullptr, nullptr},
+        {"--programs", &options.programs, nullptr},     {"--output", &options.output, nullptr},
+        {"--against", &options.against, nullptr},       {"--against-name", &options.against_name, nullptr},
+        {"--limit", nullptr, &options.limit},           {"--rounds", nullptr, &rounds},
+        {"--margin", nullptr, &options.margin_percent}, {"--only", nullptr, nullptr},
     };
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
@@ -63,7 +57,7 @@ std::expected<ReportOptions, std::string> read_report_options(const std::vector<
         return std::unexpected("--rounds takes a whole number from 3 to 1000");
     options.rounds = static_cast<std::size_t>(rounds);
     if (options.output.empty()) return std::unexpected("--output DIR is missing: where the report goes");
-    if (options.programs.empty() && options.from.empty())
+    if (options.programs.empty())
         return std::unexpected("--programs DIR is missing: the build's folder of figures");
     return options;
 }

@@ -10,8 +10,6 @@ namespace tappet::figures {
 struct ReportOptions {
     std::string programs = {};     ///< --programs DIR: a build's tests/figures
     std::string output = {};       ///< --output DIR
-    std::string tree = ".";        ///< --tree DIR: whose commit it is
-    std::string from = {};         ///< --from FILE: draw the page of that merged JSON again
     std::string against = {};      ///< --against DIR: the other build's tests/figures
     std::string against_name = {}; ///< --against-name TEXT
     std::vector<std::string> only = {};

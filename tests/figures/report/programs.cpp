@@ -1,7 +1,6 @@
 // Children in process groups of their own, so that one that hangs ends with all that it started.
 #include "tests/figures/report/programs.hpp"
 
-#include "tests/figures/measure/read_result.hpp"
 #include "tests/figures/report/surroundings.hpp"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 
 #include "tests/figures/measure/result.hpp"
 
-#include <expected>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,10 +47,8 @@ struct Run {
     std::vector<ProgramRun> programs = {};
 };
 
-/// As one JSON, for archives and for pages drawn again.
+/// As one JSON, for archives.
 std::string merged(const Run& run);
-/// Or one sentence: what is wrong with the text, called `name`.
-std::expected<Run, std::string> parse_run(std::string_view text, const std::string& name);
 
 /// How many goals and statements of a run were held.
 struct Score {

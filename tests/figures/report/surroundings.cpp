@@ -145,11 +145,10 @@ std::vector<std::pair<std::string, std::string>> describe_machine() {
     };
 }
 
-std::string commit_of(const std::string& tree) {
-    const std::string git = "git -C '" + tree + "' ";
-    const std::string commit = said_by(git + "log -1 --format='%h of %cs: %<(72,trunc)%s'");
+std::string commit_of_tree() {
+    const std::string commit = said_by("git log -1 --format='%h of %cs: %<(72,trunc)%s'");
     if (commit.empty()) return "unknown";
-    return said_by(git + "status --porcelain -uno").empty() ? commit : commit + " (and changes)";
+    return said_by("git status --porcelain -uno").empty() ? commit : commit + " (and changes)";
 }
 
 std::string local_time() {

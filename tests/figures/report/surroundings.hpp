@@ -8,8 +8,8 @@ namespace tappet::figures {
 /// Processor, caches, memory, kernel, clock, power management, isolation, compilers: what, value.
 std::vector<std::pair<std::string, std::string>> describe_machine();
 
-/// The tree's commit; "unknown" outside a repository.
-std::string commit_of(const std::string& tree);
+/// Of the tree that it is started in; "unknown" outside a repository.
+std::string commit_of_tree();
 /// Local time as ISO 8601.
 std::string local_time();
 

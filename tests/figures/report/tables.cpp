@@ -24,9 +24,6 @@ std::string linked(const std::string& detail, const Run& run) {
                        escaped(detail.substr(figure.id.size()));
     return escaped(detail);
 }
-constexpr const char* class_of(Standing role) {
-    return role == Standing::ours ? "ours" : role == Standing::floor ? "floor" : "peer";
-}
 
 /// Which columns a figure has.
 struct Columns {
@@ -68,7 +65,7 @@ std::string table(const Figure& figure) {
     std::string rows;
     for (const Row& row : figure.rows) {
         const Summary& s = row.summary;
-        const std::string role = class_of(row.role);
+        const std::string role = to_text(row.role);
         const auto others = beside(figure, row);
         std::string cells =
             element("td", element("span", "", "class=\"role " + role + "\"") + escaped(row.name)) +

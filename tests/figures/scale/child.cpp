@@ -54,7 +54,6 @@ std::expected<Used, std::string> run_child(const std::vector<std::string>& words
     if (::wait4(child, &status, 0, &taken) != child)
         return std::unexpected(words.front() +
                                " got lost; nothing else may wait for this program's children");
-    used.wall_s = (now_ns() - used.started_ns) * 1e-9;
     used.processor_s = seconds(taken.ru_utime) + seconds(taken.ru_stime);
     used.memory_mb = static_cast<double>(taken.ru_maxrss) / 1000;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return used;

@@ -8,7 +8,6 @@
 namespace tappet::figures {
 
 struct Used {
-    double wall_s = 0;
     double processor_s = 0; ///< of it and of all it started, user and system
     double memory_mb = 0;   ///< the largest resident size of any of them
     double started_ns = 0;  ///< CLOCK_MONOTONIC, just before it was started

@@ -1,8 +1,7 @@
 // Generates, compiles, links and runs machines, and draws what it takes over their size.
-#include "tests/figures/scale/grow.hpp"
+#include "tests/figures/scale/scale.hpp"
 
 #include "tests/diagnostics/large_system.hpp"
-#include "tests/figures/measure/read_result.hpp"
 #include "tests/figures/scale/child.hpp"
 #include "tests/figures/scale/generate.hpp"
 #include "tests/figures/scale/probe.hpp"
@@ -40,7 +39,6 @@ enum class What : std::uint8_t {
     memory,
     stacks,
     configured,
-    first_cycle,
     armed,
     started,
     step,
@@ -63,15 +61,6 @@ struct Subject {
 Row row_of(std::string name, Standing role, const Summary& summary, std::optional<double> instructions = {}) {
     return {.name = std::move(name), .role = role, .summary = summary, .instructions = instructions};
 }
-Summary one(double value) { return {value, value, value, value, value, 1}; }
-
-const Row* find(const Result& result, std::string_view figure, std::string_view row) {
-    for (const Figure& each : result.figures)
-        if (each.id == figure)
-            for (const Row& found : each.rows)
-                if (found.name == row) return &found;
-    return nullptr;
-}
 
 /// A folder of its own that goes with it.
 struct Workshop {
@@ -88,6 +77,17 @@ struct Workshop {
 };
 
 void add(Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); }
+
+/// Which sizes are compiled by which compiler.
+struct Growth {
+    std::vector<std::size_t> sizes;          ///< by the tree's own compiler, linked and run
+    std::vector<std::size_t> sizes_of_clang; ///< compiled by clang as well
+};
+Growth growth(const Options& options) {
+    if (options.setting == "smoke") return {{10}, {}};
+    if (options.setting == "long") return {{10, 50, 100, 250, 500, 1000}, {10, 50, 100, 250, 500, 1000}};
+    return {{10, wired_alike, 100, 1000}, {10, 100}};
+}
 
 /// Machines of every size, one after the other.
 class Growing {
@@ -131,8 +131,8 @@ public:
                 result_.notes.push_back("a system of " + count + " machines: " + used.error());
                 continue;
             }
-            time.rows.push_back(row_of(name, Standing::ours, one(used->processor_s)));
-            memory.rows.push_back(row_of(name, Standing::ours, one(used->memory_mb)));
+            time.rows.push_back(row_of(name, Standing::ours, single(used->processor_s)));
+            memory.rows.push_back(row_of(name, Standing::ours, single(used->memory_mb)));
         }
         if (time.rows.empty()) return;
         result_.figures.push_back(std::move(time));
@@ -162,37 +162,37 @@ private:
     }
 
     [[nodiscard]] Words gcc_words() const {
-        Words words = tools_.words("compiler");
-        add(words, tools_.words("flags"));
+        Words words = tools_.at("compiler");
+        add(words, tools_.at("flags"));
         return words;
     }
     /// The flags of that compiler's own tree; what only the other one knows is left out.
     [[nodiscard]] Words clang_words() const {
         Words words{clang, "-fconstexpr-steps=2000000000", "-fconstexpr-depth=2000", "-Wfunction-effects",
                     "-Wno-c++26-extensions"};
-        for (const std::string& flag : tools_.words("flags"))
+        for (const std::string& flag : tools_.at("flags"))
             if (!flag.starts_with("-fconstexpr")) words.push_back(flag);
         return words;
     }
     [[nodiscard]] std::expected<Used, std::string> compile(Words words, const std::string& source,
                                                            const std::string& object) {
-        add(words, {"-I" + tools_.words("source").front(), "-c", source, "-o", object});
+        add(words, {"-I" + tools_.at("source").front(), "-c", source, "-o", object});
         return run_child(words, shop_.file("log"));
     }
     Fault compile(std::size_t size, Words words, const std::string& source, const std::string& object,
                   What seconds, What memory) {
         const auto used = compile(std::move(words), source, object);
         if (!used) return used.error();
-        at(size)[seconds] = one(used->processor_s);
-        at(size)[memory] = one(used->memory_mb);
+        at(size)[seconds] = single(used->processor_s);
+        at(size)[memory] = single(used->memory_mb);
         return {};
     }
     Fault link(const std::string& object, const char* with, const Words& options,
                const std::string& program) {
-        Words words = tools_.words("compiler");
+        Words words = tools_.at("compiler");
         add(words, {"-o", program, object, "-Wl,--start-group"});
-        add(words, tools_.words(with));
-        add(words, tools_.words("archives"));
+        add(words, tools_.at(with));
+        add(words, tools_.at("archives"));
         words.emplace_back("-Wl,--end-group");
         add(words, options);
         const auto linked = run_child(words, shop_.file("log"));
@@ -209,20 +209,20 @@ private:
         if (!ran) return ran.error();
         const auto read = read_result(json);
         if (!read) return read.error();
-        const Row* engines = find(*read, "probe.step", probe_engines);
-        const Row* steps = find(*read, "probe.step", probe_steps);
-        const Row* memory = find(*read, "probe.memory", "all");
-        const Row* stacks = find(*read, "probe.memory", "stacks");
-        const Row* configured = find(*read, "probe.start", "configure");
+        const Row* engines = read->find("probe.step", probe_engines);
+        const Row* steps = read->find("probe.step", probe_steps);
+        const Row* memory = read->find("probe.memory", "all");
+        const Row* stacks = read->find("probe.memory", "stacks");
+        const Row* configured = read->find("probe.start", "configure");
         if (engines == nullptr || steps == nullptr || memory == nullptr || stacks == nullptr ||
             configured == nullptr)
             return "its probe wrote a result without the figures that were asked for";
         at(size)[What::step] = engines->summary;
         at(size)[What::bare] = steps->summary;
         instructions_[size] = {engines->instructions, steps->instructions};
-        at(size)[What::memory] = one(memory->summary.median / 1000);
-        at(size)[What::stacks] = one(stacks->summary.median / 1000);
-        at(size)[What::configured] = one(configured->summary.median / 1000);
+        at(size)[What::memory] = single(memory->summary.median / 1000);
+        at(size)[What::stacks] = single(stacks->summary.median / 1000);
+        at(size)[What::configured] = single(configured->summary.median / 1000);
         return {};
     }
 
@@ -233,14 +233,14 @@ private:
             return fault;
         std::error_code error;
         at(size)[What::firmware] =
-            one(static_cast<double>(std::filesystem::file_size(program, error)) / 1000);
+            single(static_cast<double>(std::filesystem::file_size(program, error)) / 1000);
         const auto ran = run_child({program}, shop_.file("log"));
         if (!ran) return "it did not arm: " + ran.error();
         std::ifstream log{shop_.file("log")};
         for (std::string line; std::getline(log, line);)
             for (const auto& [word, what] : {std::pair{"armed ", What::armed}, {"started ", What::started}})
                 if (line.starts_with(word))
-                    at(size)[what] = one(
+                    at(size)[what] = single(
                         (std::atof(line.c_str() + std::string_view{word}.size()) - ran->started_ns) / 1000);
         return {};
     }
@@ -352,7 +352,7 @@ void Growing::report() {
 
 } // namespace
 
-std::expected<Toolset, std::string> Toolset::read(const std::string& file) {
+std::expected<Toolset, std::string> read_toolset(const std::string& file) {
     std::ifstream lines{file};
     if (!lines) return std::unexpected(file + " is not there; build figures-scale again");
     Toolset tools;
@@ -360,19 +360,11 @@ std::expected<Toolset, std::string> Toolset::read(const std::string& file) {
         std::istringstream rest{line};
         std::string name;
         rest >> name;
-        for (std::string word; rest >> word;) tools.words_[name].push_back(word);
+        for (std::string word; rest >> word;) tools[name].push_back(word);
     }
     for (const char* name : {"source", "compiler", "flags", "archives", "probe", "real"})
-        if (tools.words_[name].empty()) return std::unexpected(file + " says nothing of " + name);
+        if (tools[name].empty()) return std::unexpected(file + " says nothing of " + name);
     return tools;
-}
-
-const std::vector<std::string>& Toolset::words(const std::string& name) const { return words_.at(name); }
-
-Growth growth(const Options& options) {
-    if (options.setting == "smoke") return {{10}, {}};
-    if (options.setting == "long") return {{10, 50, 100, 250, 500, 1000}, {10, 50, 100, 250, 500, 1000}};
-    return {{10, wired_alike, 100, 1000}, {10, 100}};
 }
 
 void measure_growth(const Options& options, const Toolset& tools, Result& result) {

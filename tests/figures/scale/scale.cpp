@@ -1,7 +1,6 @@
 // What size costs: machines of 10 to 1000 components, a system of ten machines, and a jacquard head of 12288
 // hooks.
-#include "tests/figures/scale/grow.hpp"
-#include "tests/figures/scale/jacquard.hpp"
+#include "tests/figures/scale/scale.hpp"
 
 #include <sstream>
 #include <string>
@@ -27,15 +26,12 @@ void judge_picks(Result& result) {
 int measure(int argc, char** argv) {
     const Options options = read_options(argc, argv);
     Result result{.program = "scale", .setting = options.setting};
-    run_candidates(options, argv, jacquard_groups(), {}, result);
+    run_candidates(options, argv, jacquard_groups(), result);
     judge_picks(result);
-    const auto wanted = [&](const char* id) {
-        return options.only.empty() || std::string{id}.find(options.only) != std::string::npos;
-    };
-    const auto tools = Toolset::read(TAPPET_SCALE_BUILD);
+    const auto tools = read_toolset(TAPPET_SCALE_BUILD);
     if (!tools) result.notes.push_back(tools.error());
-    if (tools && wanted("scale.machine")) measure_growth(options, *tools, result);
-    if (tools && wanted("scale.system")) measure_system(options, *tools, result);
+    if (tools && options.wants("scale.machine")) measure_growth(options, *tools, result);
+    if (tools && options.wants("scale.system")) measure_system(options, *tools, result);
     return finish(options, result);
 }
 

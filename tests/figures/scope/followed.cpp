@@ -14,15 +14,7 @@ namespace tappet::figures {
 
 namespace {
 
-// clang-format off
-constexpr auto followed = machine("followed",
-    components(component<Idle>("a"), component<Idle>("b"), component<Idle>("c"), component<Idle>("d"), component<Idle>("e"),
-               component<Idle>("f"), component<Idle>("g"), component<Idle>("h"), component<Idle>("i"), component<Idle>("j"),
-               component<ThreadScope>("scope")),
-    activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns),
-                        runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j")),
-               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
-// clang-format on
+constexpr auto followed = ten_scoped; // in memory of its own
 
 constexpr std::size_t steps_each = 16; ///< in one sample
 constexpr std::size_t samples_each = 200;
@@ -78,10 +70,10 @@ void add_followed(const Options& options, Result& result) {
         result.notes.push_back("scope.followed: one processor; nobody can follow a step while it runs");
         return;
     }
-    static World world{os::Clock::Kind::real, AtRunTime<followed, board>::machine()};
-    Engine& engine = world.instance.engines()[0];
+    static World world{os::Clock::Kind::real, AtRunTime<followed, figures_board>::machine()};
+    Engine& engine = world.engine();
     const Undisturbed here{0};
-    Follower follower{scope::tape(world.directory(), 0)};
+    Follower follower{scope::tape(directory_of(world), 0)};
     const double unit = ns_per_tick() / steps_each;
     const auto reading = static_cast<double>(ticks_of_reading());
     std::array<Samples, 3> samples;

@@ -1,15 +1,8 @@
-// The machines whose recording is measured: components that do as little as can be seen, and what brings them
-// to life.
+// The machines whose recording is measured: components that do as little as can be seen.
 #pragma once
 
-#include "kernel/machine/firmware.hpp"
-#include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
-#include "tests/figures/measure/candidates.hpp"
-
-#include <array>
-#include <cstdlib>
-#include <iostream>
+#include "tests/figures/measure/world.hpp"
 
 namespace tappet::figures {
 
@@ -25,29 +18,20 @@ struct Idle {
     }
 };
 
-inline constexpr Board board{.name = "figures", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
+// clang-format off
+inline constexpr auto ten_scoped = machine("ten",
+    components(component<Idle>("a"), component<Idle>("b"), component<Idle>("c"), component<Idle>("d"), component<Idle>("e"),
+               component<Idle>("f"), component<Idle>("g"), component<Idle>("h"), component<Idle>("i"), component<Idle>("j"),
+               component<ThreadScope>("scope")),
+    activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns),
+                        runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j")),
+               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
+// clang-format on
 
-struct World {
-    os::Clock clock;
-    MachineInstance instance;
-    World(os::Clock::Kind kind, const AcceptedMachine& machine) : clock{kind}, instance{machine, clock} {
-        if (const auto configured = instance.configure({}); !configured) {
-            std::cerr << configured.error().view() << '\n';
-            std::exit(2);
-        }
-        for (Engine& engine : instance.engines()) {
-            if (const Sentence refusal = engine.initialise(); !refusal.empty()) {
-                std::cerr << refusal.view() << '\n';
-                std::exit(2);
-            }
-            engine.start(clock.now());
-        }
-    }
-    [[nodiscard]] scope::Directory& directory() {
-        const AcceptedMachine& machine = instance.machine();
-        return *reinterpret_cast<scope::Directory*>(machine.memory.data() + machine.plan.scope_at);
-    }
-};
+[[nodiscard]] inline scope::Directory& directory_of(World& world) {
+    const AcceptedMachine& machine = world.instance.machine();
+    return *reinterpret_cast<scope::Directory*>(machine.memory.data() + machine.plan.scope_at);
+}
 
 /// A step while another processor reads each cycle off the tape at once, and while none does.
 void add_followed(const Options& options, Result& result);

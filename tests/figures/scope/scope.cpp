@@ -25,13 +25,6 @@ constexpr auto ten_bare = machine("ten",
                component<Idle>("f"), component<Idle>("g"), component<Idle>("h"), component<Idle>("i"), component<Idle>("j")),
     activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns),
                         runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
-constexpr auto ten_scoped = machine("ten",
-    components(component<Idle>("a"), component<Idle>("b"), component<Idle>("c"), component<Idle>("d"), component<Idle>("e"),
-               component<Idle>("f"), component<Idle>("g"), component<Idle>("h"), component<Idle>("i"), component<Idle>("j"),
-               component<ThreadScope>("scope")),
-    activities(activity("motion", on_work(), at_most(1, 1us), deadline(1s), budget(100ns),
-                        runs("a", "b", "c", "d", "e", "f", "g", "h", "i", "j")),
-               activity("background", every(20ms), not_real_time, runs("scope"))), connections(), reactions(when("a.kicks", tell("a.kick"))), behaviours());
 constexpr auto one_off = one_scoped; // in memory of their own
 constexpr auto ten_off = ten_scoped;
 constexpr auto one_timeless = one_bare;
@@ -42,19 +35,10 @@ constexpr auto looked_at = ten_scoped;
 /// As its activity does it each time that it is woken.
 template <const auto& table, os::Clock::Kind kind, bool off = false>
 void step(std::size_t times) {
-    static World world{kind, AtRunTime<table, board>::machine()};
-    if constexpr (off) scope::tape(world.directory(), 0).turn(false);
-    Engine& engine = world.instance.engines()[0];
+    static World world{kind, AtRunTime<table, figures_board>::machine()};
+    if constexpr (off) scope::tape(directory_of(world), 0).turn(false);
+    Engine& engine = world.engine();
     for (std::size_t i = 0; i < times; ++i) engine.run(true);
-}
-
-template <std::size_t readings>
-void read_clock(std::size_t times) {
-    for (std::size_t i = 0; i < times; ++i)
-        for (std::size_t k = 0; k < readings; ++k) {
-            Time now = os::Clock::monotonic();
-            keep(now);
-        }
 }
 
 alignas(CycleTape::alignment) std::array<std::byte, CycleTape::bytes_for(4096)> tape_memory;
@@ -79,11 +63,11 @@ void plain_store(std::size_t times) {
 
 /// The background's share: what was done since it looked last is looked at, cycle by cycle.
 World& watched() {
-    static World world{os::Clock::Kind::real, AtRunTime<looked_at, board>::machine()};
+    static World world{os::Clock::Kind::real, AtRunTime<looked_at, figures_board>::machine()};
     return world;
 }
 void run_cycles(std::size_t times) {
-    for (std::size_t i = 0; i < times; ++i) watched().instance.engines()[0].run(true);
+    for (std::size_t i = 0; i < times; ++i) watched().engine().run(true);
 }
 void look(std::size_t) {
     auto* scope = watched().instance.find<ThreadScope>("scope");
@@ -91,7 +75,7 @@ void look(std::size_t) {
     scope->work({.now = watched().clock.now()});
 }
 void walk_words(std::size_t times) {
-    const CycleTape& tape = scope::tape(watched().directory(), 0);
+    const CycleTape& tape = scope::tape(directory_of(watched()), 0);
     TapeCycle cycle;
     std::uint64_t after = tape.head();
     for (std::size_t i = 0; i < times && tape.cycle_before(after, cycle); ++i) after = cycle.at;
@@ -139,14 +123,6 @@ std::vector<Group> groups() {
     return all;
 }
 
-const Row* row(const Result& result, std::string_view figure, std::string_view name) {
-    for (const Figure& each : result.figures)
-        if (each.id == figure)
-            for (const Row& found : each.rows)
-                if (found.name == name) return &found;
-    return nullptr;
-}
-
 std::string ns(double value) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.2f ns", value);
@@ -155,11 +131,11 @@ std::string ns(double value) {
 
 /// What follows from the medians of the same run.
 void add_statements(Result& result) {
-    const Row* recorded = row(result, "scope.step.10", "recorded");
-    const Row* off = row(result, "scope.step.10", "recording switched off");
-    const Row* without = row(result, "scope.step.10", "no scope in the table");
-    const Row* mark = row(result, "scope.mark", "mark");
-    const Row* stamp = row(result, "scope.mark", "time stamp");
+    const Row* recorded = result.find("scope.step.10", "recorded");
+    const Row* off = result.find("scope.step.10", "recording switched off");
+    const Row* without = result.find("scope.step.10", "no scope in the table");
+    const Row* mark = result.find("scope.mark", "mark");
+    const Row* stamp = result.find("scope.mark", "time stamp");
     if (recorded == nullptr || off == nullptr || without == nullptr || mark == nullptr || stamp == nullptr)
         return;
     const double added = recorded->summary.median - without->summary.median;
@@ -176,7 +152,7 @@ void add_statements(Result& result) {
     result.statements.push_back({"a mark costs less than a tenth of the time stamp that it notes",
                                  mark->summary.median < 0.1 * stamp->summary.median,
                                  ns(mark->summary.median) + " of " + ns(stamp->summary.median)});
-    const auto subtracted = static_cast<double>(watched().directory().stamp_ns);
+    const auto subtracted = static_cast<double>(directory_of(watched()).stamp_ns);
     result.statements.push_back(
         {"the cost of a stamp that the scope subtracts, found at start-up, is within 20 % of "
          "what is measured here (the thesis: 3174 ns, a system call)",
@@ -192,8 +168,8 @@ int main(int argc, char** argv) {
     using namespace tappet::figures;
     const Options options = read_options(argc, argv);
     Result result{.program = "scope", .setting = options.setting};
-    run_candidates(options, argv, groups(), {}, result);
-    if (std::string_view{"scope.followed"}.contains(options.only)) add_followed(options, result);
+    run_candidates(options, argv, groups(), result);
+    if (options.wants("scope.followed")) add_followed(options, result);
     add_statements(result);
     return finish(options, result);
 }

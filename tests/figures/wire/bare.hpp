@@ -6,11 +6,14 @@
 
 namespace tappet::figures::bare {
 
-struct Sender {
-    can::Device* device = nullptr;
-    double level = 0; ///< what is told
+/// By which both know the frames of the two rows.
+struct Identifiers {
     std::uint32_t level_frame = 0, full_frame = 0, answer_frame = 0;
     std::uint16_t level_data_id = 0, full_data_id = 0, answer_data_id = 0;
+};
+struct Sender : Identifiers {
+    can::Device* device = nullptr;
+    double level = 0; ///< what is told
     std::uint8_t level_counter = 0, full_counter = 0;
     std::uint8_t answer_counter = 0xFF;       ///< the last one that came
     std::uint8_t number = 0;                  ///< of the event
@@ -20,10 +23,8 @@ struct Sender {
     Time repeats_at = never, ends_at = never; ///< and until then
     std::int64_t delivered = 0, refused = 0;
 };
-struct Receiver {
+struct Receiver : Identifiers {
     can::Device* device = nullptr;
-    std::uint32_t level_frame = 0, full_frame = 0, answer_frame = 0;
-    std::uint16_t level_data_id = 0, full_data_id = 0, answer_data_id = 0;
     std::uint8_t level_counter = 0xFF, full_counter = 0xFF, answer_counter = 0;
     double level = 0;
     Time level_at{};

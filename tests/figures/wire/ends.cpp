@@ -4,9 +4,7 @@
 #include "drivers/system/station.hpp"
 #include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <cstdlib>
-#include <iostream>
+#include "tests/figures/measure/world.hpp"
 
 namespace tappet::figures {
 
@@ -47,11 +45,6 @@ std::uint32_t wire_of_from = 0, wire_of_to = 0, hearing_activity = 0;
 
 Cycle cycle_now() { return {.now = the_clock.now(), .release = the_clock.now(), .period = {}}; }
 
-void refuse_unless(const Sentence& refusal) {
-    if (refusal.empty()) return;
-    std::cerr << refusal.view() << '\n';
-    std::exit(2);
-}
 std::uint32_t activity_of_row(const MachineInstance& instance, std::string_view name) {
     for (std::uint32_t a = 0; a < instance.machine().table.activities.size(); ++a)
         if (instance.machine().table.activities[a].name == name) return a;
@@ -73,7 +66,7 @@ Ends& ends() {
              {std::tuple{&a, &world_a, &from}, std::tuple{&b, &world_b, &to}}) {
             const ProvidedDevice provided{type_id<can::Device>, "wire", static_cast<can::Device*>(memory)};
             const auto configured = instance->configure(std::span{&provided, 1});
-            refuse_unless(configured ? world->start() : configured.error());
+            exit_if(configured ? world->start() : configured.error());
         }
         wire_of_from = activity_of_row(a, "wire"), wire_of_to = activity_of_row(b, "wire");
         found.teller = a.find<Teller>("teller");
@@ -100,9 +93,7 @@ Ends& ends() {
         constexpr auto& plan = systems::plan_of<two>;
         const WireFrame &level = plan.frames[plan.place[0].frame], &full = plan.frames[plan.place[1].frame],
                         &answer = plan.frames[plan.place[1].answer];
-        found.level_frame = level.id, found.level_data_id = level.data_id;
-        found.full_frame = full.id, found.full_data_id = full.data_id;
-        found.answer_frame = answer.id, found.answer_data_id = answer.data_id;
+        found.identifiers = {level.id, full.id, answer.id, level.data_id, full.data_id, answer.data_id};
         {
             const RunsActivity here{found.telling};
             found.teller->level.write(1.0);
@@ -134,7 +125,7 @@ Ends& ends() {
             all.exchange();
         }
         if (!link_from->works(1) || !link_to->works(0) || !link_to->works(1))
-            refuse_unless(Sentence{"the two machines have not come to know each other"});
+            exit_if(Sentence{"the two machines have not come to know each other"});
         return true;
     }();
     static_cast<void>(met);

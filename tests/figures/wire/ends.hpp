@@ -4,7 +4,7 @@
 
 #include "kernel/activity/engine.hpp"
 #include "kernel/component/component.hpp"
-#include "tests/figures/wire/memory.hpp"
+#include "tests/figures/wire/bare.hpp"
 
 namespace tappet::figures {
 
@@ -53,8 +53,7 @@ struct Ends {
     // The ends of the wire without their engines: as those call them.
     void (*end_sends)() = nullptr;                     ///< what is due by the clock
     void (*end_receives)(const can::Frame&) = nullptr; ///< a frame that the bus has taken
-    std::uint32_t level_frame = 0, full_frame = 0, answer_frame = 0;
-    std::uint16_t level_data_id = 0, full_data_id = 0, answer_data_id = 0;
+    bare::Identifiers identifiers{};
 };
 Ends& ends();
 

@@ -1,6 +1,5 @@
 // What is made of the records of experiments, and that each statement can be found true and false.
 #include "tests/figures/experiments/findings.hpp"
-#include "tests/figures/experiments/histogram_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,10 +5,12 @@
 #include "tests/figures/soundness/report/runs.hpp"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <tuple>
 
 namespace tappet::figures {
 namespace {
@@ -23,19 +25,22 @@ struct Page : testing::Test {
 
     figures::Run run{"abc", "today", "short"};
     std::string text() { return page(run, folder); }
+    std::string text_with(Result result) {
+        run.programs.push_back(ran(std::move(result)));
+        return text();
+    }
 };
 
 TEST_F(Page, shows_ours_beside_its_floor_and_its_peer_as_ratios) {
-    run.programs.push_back(ran(result("exchange", 12)));
-    EXPECT_THAT(text(), AllOf(HasSubstr("exchange.write"), HasSubstr("<b>1.20 x</b> copy (p99 1.20 x)"),
-                              HasSubstr("<b>0.30 x</b> mutex")));
+    EXPECT_THAT(text_with(result("exchange", 12)),
+                AllOf(HasSubstr("exchange.write"), HasSubstr("<b>1.20 x</b> copy (p99 1.20 x)"),
+                      HasSubstr("<b>0.30 x</b> mutex")));
 }
 
 TEST_F(Page, shows_the_missed_goals_before_those_that_were_held) {
     Result told = result("exchange", 12);
     told.goals = {{"is short", 1.2, 1.1}, {"is lean", 1.0, 3.0}};
-    run.programs.push_back(ran(told));
-    const std::string html = text();
+    const std::string html = text_with(told);
     EXPECT_LT(html.find("is lean"), html.find("is short"));
     EXPECT_THAT(html, HasSubstr("<b>1 of 2</b>goals held"));
 }
@@ -43,8 +48,7 @@ TEST_F(Page, shows_the_missed_goals_before_those_that_were_held) {
 TEST_F(Page, a_goal_that_has_no_number_is_missed) {
     Result told = result("exchange", 12);
     told.goals = {{"is something", 1.2, std::numeric_limits<double>::quiet_NaN()}};
-    run.programs.push_back(ran(told));
-    EXPECT_THAT(text(), HasSubstr("<b>0 of 1</b>goals held"));
+    EXPECT_THAT(text_with(told), HasSubstr("<b>0 of 1</b>goals held"));
     EXPECT_THAT(summary_text(run), HasSubstr("MISSED  - x"));
 }
 
@@ -72,8 +76,7 @@ TEST_F(Page, needs_nothing_from_elsewhere) {
     Result told = result("exchange", 12);
     told.plots = {
         {"p", "a plot", "x", "y", true, false, true, {{"ours", Standing::ours, {{1, 3}, {2, 0}, {3, 9}}}}}};
-    run.programs.push_back(ran(told));
-    const std::string html = text();
+    const std::string html = text_with(told);
     EXPECT_THAT(html, AllOf(Not(HasSubstr(" src=")), Not(HasSubstr("<link")), Not(HasSubstr("@import")),
                             Not(HasSubstr("<?xml")), Not(HasSubstr("url(http"))));
     for (auto at = html.find("href=\""); at != html.npos; at = html.find("href=\"", at + 1))
@@ -84,8 +87,7 @@ TEST_F(Page, needs_nothing_from_elsewhere) {
 TEST_F(Page, statements_are_true_or_false_as_measured) {
     Result told = result("experiments", 12);
     told.statements = {{"the highest never waits", true, "0 of 100"}, {"locks cost nothing", false, "8 us"}};
-    run.programs.push_back(ran(told));
-    EXPECT_THAT(text(), HasSubstr("<b>1 of 2</b>statements true"));
+    EXPECT_THAT(text_with(told), HasSubstr("<b>1 of 2</b>statements true"));
     EXPECT_THAT(summary_text(run), AllOf(HasSubstr("FALSE   locks cost nothing: 8 us"),
                                          Not(HasSubstr("the highest never waits"))));
 }
@@ -140,16 +142,14 @@ TEST(Text, a_floor_of_one_row_of_ours_stands_beside_that_alone) {
 TEST_F(Page, what_was_measured_once_has_no_quantiles) {
     Result told = result("firmware", 12);
     for (Row& each : told.figures[0].rows) each.summary.count = 1;
-    run.programs.push_back(ran(told));
-    EXPECT_THAT(text(), AllOf(HasSubstr("<th>value</th>"), Not(HasSubstr("p99.9</th>")),
-                              HasSubstr("<b>1.20 x</b> copy</span>")));
+    EXPECT_THAT(text_with(told), AllOf(HasSubstr("<th>value</th>"), Not(HasSubstr("p99.9</th>")),
+                                       HasSubstr("<b>1.20 x</b> copy</span>")));
 }
 
 TEST_F(Page, a_goal_leads_to_its_figure) {
     Result told = result("exchange", 12);
     told.goals = {{"is short", 1.2, 1.1, "x", "exchange.write: port / copy"}};
-    run.programs.push_back(ran(told));
-    EXPECT_THAT(text(), HasSubstr("<a href=\"#exchange.write\">exchange.write</a>: port / copy"));
+    EXPECT_THAT(text_with(told), HasSubstr("<a href=\"#exchange.write\">exchange.write</a>: port / copy"));
 }
 
 TEST_F(Page, many_figures_are_folded_by_what_their_ids_begin_with) {
@@ -159,41 +159,47 @@ TEST_F(Page, many_figures_are_folded_by_what_their_ids_begin_with) {
         figure.id = std::string{i % 2 == 0 ? "experiments.small." : "experiments.large."} + std::to_string(i);
         told.figures.push_back(figure);
     }
-    run.programs.push_back(ran(told));
-    const std::string html = text();
+    const std::string html = text_with(told);
     std::size_t folds = 0;
     for (auto at = html.find("<details>"); at != html.npos; at = html.find("<details>", at + 1)) ++folds;
     EXPECT_EQ(folds, 2u);
     for (const Figure& figure : told.figures) EXPECT_THAT(html, HasSubstr("id=\"" + figure.id + "\""));
 }
 
-TEST(Merged, a_run_comes_back_from_its_json_as_it_was) {
-    figures::Run run{"abc", "today", "long"};
-    run.machine = {{"processor", "fast"}};
-    run.before.spread_percent = 1.5;
+TEST(ResultFile, comes_back_as_it_was) {
     Result told = result("exchange", 12);
     told.figures[0].rows[0].instructions = 40;
     told.goals = {{"goal", 1.2, std::numeric_limits<double>::quiet_NaN(), "x", "detail"}};
     told.statements = {{"statement", true, "as measured"}};
     told.plots = {{"p", "t", "x", "y", true, false, true, {{"s", Standing::peer, {{1, 2}}}}}};
     told.notes = {"note"};
-    run.programs = {ran(told), {"scale", "could not be started"}};
-    run.programs[0].usage.seconds = 3;
-    run.programs[0].after.worst_percent = 9;
-    const auto again = parse_run(merged(run), "it");
+    const std::string file = testing::TempDir() + "result.json";
+    ASSERT_EQ(told.write(file), "");
+    const auto again = read_result(file);
+    std::filesystem::remove(file);
     ASSERT_TRUE(again) << again.error();
-    EXPECT_EQ(merged(*again), merged(run));
-    const std::string place = testing::TempDir() + "merged";
-    EXPECT_EQ(page(*again, place), page(run, place));
-    std::filesystem::remove_all(place);
-    EXPECT_EQ(again->programs[1].failure, "could not be started");
-    EXPECT_TRUE(std::isnan(again->programs[0].result.goals[0].measured));
+    EXPECT_EQ(again->text(), told.text());
+    EXPECT_EQ(again->figures[0].rows[0].instructions, 40);
+    EXPECT_EQ(again->plots[0].series[0].role, Standing::peer);
+    EXPECT_TRUE(std::isnan(again->goals[0].measured));
 }
 
-TEST(Merged, what_is_no_run_is_named) {
-    EXPECT_THAT(parse_run("{", "a.json").error(), HasSubstr("a.json is no run of figures"));
-    EXPECT_THAT(parse_run("{\"form\":2}", "a.json").error(), HasSubstr("another form"));
-    EXPECT_THAT(parse_run("{\"form\":1}", "a.json").error(), HasSubstr("commit"));
+TEST(Merged, holds_all_of_a_run) {
+    figures::Run run{"abc", "today", "long"};
+    run.machine = {{"processor", "fast"}};
+    run.before.spread_percent = 1.5;
+    run.programs = {ran(result("exchange", 12)), {"scale", "could not be started"}};
+    run.programs[0].usage.seconds = 3;
+    run.programs[0].after.worst_percent = 9;
+    const auto all = nlohmann::json::parse(merged(run));
+    EXPECT_EQ(all["commit"], "abc");
+    EXPECT_EQ(all["machine"][0][1], "fast");
+    EXPECT_EQ(all["noise_before"]["spread_percent"], 1.5);
+    const auto& [first, second] = std::tie(all["programs"][0], all["programs"][1]);
+    EXPECT_EQ(first["usage"]["seconds"], 3);
+    EXPECT_EQ(first["noise_after"]["worst_percent"], 9);
+    EXPECT_EQ(first["result"]["figures"][0]["rows"][0]["median"], 12);
+    EXPECT_EQ(second["failure"], "could not be started");
 }
 
 } // namespace
