@@ -8,6 +8,7 @@
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "tests/drivers/system/flood.hpp"
+#include "tests/figures/measure/samples.hpp"
 
 #include <algorithm>
 #include <array>
@@ -66,14 +67,8 @@ void look(const Cycle& cycle) noexcept TAPPET_REALTIME {
 enum class Kind : std::uint8_t { none, at_its_rate, of_the_other, of_ours, of_any };
 constexpr std::array kinds{Kind::at_its_rate, Kind::of_the_other, Kind::of_ours, Kind::of_any};
 constexpr const char* name_of(Kind kind) {
-    switch (kind) {
-    case Kind::none: return "quiet";
-    case Kind::at_its_rate: return "at_its_rate";
-    case Kind::of_the_other: return "of_the_other";
-    case Kind::of_ours: return "of_ours";
-    case Kind::of_any: return "of_any";
-    }
-    return "";
+    constexpr std::array names{"quiet", "at_its_rate", "of_the_other", "of_ours", "of_any"};
+    return names[static_cast<std::size_t>(kind)];
 }
 std::atomic<Kind> wanted{Kind::none};
 std::atomic<bool> ends{false};
@@ -124,31 +119,23 @@ struct Pair {
     Kind kind{};
     Block quiet{}, flooded{};
 };
-std::int64_t quantile(std::vector<std::int64_t> of, double q) {
-    if (of.empty()) return -1;
-    std::ranges::sort(of);
-    return of[static_cast<std::size_t>(q * static_cast<double>(of.size() - 1) + 0.5)];
-}
-void add(std::vector<std::int64_t>& all, const Block& block) {
-    all.insert(all.end(), block.response_ns.begin(),
-               block.response_ns.begin() + static_cast<std::ptrdiff_t>(block.count));
+void add(figures::Samples& all_us, const Block& block) {
+    for (std::size_t i = 0; i < block.count; ++i)
+        all_us.add(static_cast<double>(block.response_ns[i]) / 1000);
 }
 
 /// Of one kind: true when the loop was not disturbed.
 bool judge(Kind kind, const std::vector<Pair>& pairs, std::uint64_t misses, std::uint64_t frames) {
-    std::vector<std::int64_t> quiet, flooded;
+    figures::Samples quiet, flooded;
     for (const Pair& pair : pairs)
         if (pair.kind == kind) add(quiet, pair.quiet), add(flooded, pair.flooded);
-    const std::int64_t q99 = quantile(quiet, 0.99), f99 = quantile(flooded, 0.99);
-    const bool well = misses == 0 && f99 >= 0 && f99 <= 2 * q99;
+    const double q99 = quiet.quantile(0.99), f99 = flooded.quantile(0.99);
+    const bool well = misses == 0 && !flooded.empty() && f99 <= 2 * q99;
     std::printf("%s: %zu cycles each, %llu frames; from release to end in us, quiet and flooded: median %.1f "
                 "%.1f, p99 %.1f %.1f, most %.1f %.1f; deadlines missed %llu; undisturbed: %s\n",
-                name_of(kind), flooded.size(), static_cast<unsigned long long>(frames),
-                static_cast<double>(quantile(quiet, 0.5)) / 1000,
-                static_cast<double>(quantile(flooded, 0.5)) / 1000, static_cast<double>(q99) / 1000,
-                static_cast<double>(f99) / 1000, static_cast<double>(quantile(quiet, 1)) / 1000,
-                static_cast<double>(quantile(flooded, 1)) / 1000, static_cast<unsigned long long>(misses),
-                well ? "yes" : "no");
+                name_of(kind), flooded.count(), static_cast<unsigned long long>(frames), quiet.median(),
+                flooded.median(), q99, f99, quiet.max(), flooded.max(),
+                static_cast<unsigned long long>(misses), well ? "yes" : "no");
     return well;
 }
 int write_pairs(const char* path, const std::vector<Pair>& pairs) {

@@ -111,7 +111,7 @@ void carry_out_notices() {
         job.state.store(doing(job) ? 2 : 3, std::memory_order_release);
     }
 }
-void push_jobs(std::size_t receivers = senders) {
+template <std::size_t receivers = senders> void push_jobs() {
     for (std::size_t i = 0; i < senders; ++i) {
         Job& job = jobs[i];
         job.listener = measured().listener[i % receivers];
@@ -121,13 +121,9 @@ void push_jobs(std::size_t receivers = senders) {
         pending.fetch_or(1, std::memory_order_release);
     }
 }
-void prepare_jobs(std::size_t) {
+template <std::size_t receivers> void prepare_jobs(std::size_t) {
     take_notices(senders);
-    push_jobs();
-}
-void prepare_jobs_of_one(std::size_t) {
-    take_notices(senders);
-    push_jobs(1);
+    push_jobs<receivers>();
 }
 void execute_bare(std::size_t) { carry_out_notices(); }
 void whole_bare(std::size_t times) {
@@ -164,7 +160,7 @@ void add_commands(std::vector<Group>& groups) {
                       senders,
                       {{"engine step", Standing::ours, &run_receiver, &send_all},
                        {"boost spsc_queue pop, call through a function pointer, store", Standing::floor,
-                        &execute_bare, &prepare_jobs}}});
+                        &execute_bare, &prepare_jobs<senders>}}});
     constexpr const char *one_receiver = "engine step, all of one component",
                          *clock = "a reading of the clock";
     groups.push_back({"dispatch.command.for_one",
@@ -173,7 +169,7 @@ void add_commands(std::vector<Group>& groups) {
                       senders,
                       {{one_receiver, Standing::ours, &carry_out_clocked, &send_all_to_one},
                        {"boost spsc_queue pop, call through a function pointer, store", Standing::floor,
-                        &execute_bare, &prepare_jobs_of_one},
+                        &execute_bare, &prepare_jobs<1>},
                        {clock, Standing::floor, &read_clock<1>}}});
     groups.back().goals.push_back(
         {"one of 32 queued commands <= 0.9 readings of the clock (20 ns where one takes 22)",

@@ -70,6 +70,21 @@ void stay_on(int processor) {
         refuse("the system does not let it choose its processor");
 }
 
+/// Turns per nanosecond: the median of many short trials on this thread, which stands undisturbed meanwhile.
+double calibrate_load() {
+    constexpr std::uint64_t turns = 50'000; // some 100 us: shorter than most disturbances are apart
+    constexpr int trials = 201;
+    figures::Samples samples;
+    for (int i = 0; i < trials; ++i) {
+        const std::uint64_t first = figures::ticks();
+        turn(turns);
+        const std::uint64_t last = figures::ticks();
+        samples.add(static_cast<double>(turns) /
+                    (static_cast<double>(last - first) * figures::ns_per_tick()));
+    }
+    return samples.median();
+}
+
 struct Part {
     const Application* application;
     Setting setting;

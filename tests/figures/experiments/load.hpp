@@ -17,10 +17,6 @@ inline void turn(std::uint64_t turns) noexcept TAPPET_REALTIME {
     }
 }
 
-/// Turns per nanosecond: the median of many short trials on the calling thread, which stands undisturbed
-/// meanwhile. Not real-time.
-double calibrate_load();
-
 /// The turns that take so long.
 inline std::uint64_t turns_for(Duration time, double turns_per_ns) {
     return static_cast<std::uint64_t>(static_cast<double>(time.count()) * turns_per_ns);
