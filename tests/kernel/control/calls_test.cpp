@@ -1,7 +1,7 @@
 // Method calls that components answer by turns: whoever asks, in whatever activity, is answered in each of
 // its steps by the one that runs.
 #include "tests/kernel/control/axis.hpp"
-#include "tests/kernel/machine/virtual_rig.hpp"
+#include "tests/kernel/machine/accepted_rig.hpp"
 
 #include <gmock/gmock.h>
 

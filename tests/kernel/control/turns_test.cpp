@@ -1,7 +1,7 @@
 // Components that run by turns: one writer in every cycle, a hand-over within one cycle and without a bump,
 // and what happens when a part fails.
 #include "tests/kernel/control/axis.hpp"
-#include "tests/kernel/machine/virtual_rig.hpp"
+#include "tests/kernel/machine/accepted_rig.hpp"
 
 #include "kernel/base/random.hpp"
 

@@ -3,7 +3,7 @@
 #include "kernel/limits/limits.hpp"
 
 #include "tests/kernel/base/hostile.hpp"
-#include "tests/kernel/machine/virtual_rig.hpp"
+#include "tests/kernel/machine/accepted_rig.hpp"
 
 namespace tappet {
 namespace {

@@ -2,7 +2,7 @@
 // are refused.
 #include "kernel/limits/limits.hpp"
 
-#include "tests/kernel/machine/virtual_rig.hpp"
+#include "tests/kernel/machine/accepted_rig.hpp"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 #include "kernel/pieces/cam_shaft.hpp"
 
 #include "tests/kernel/base/hostile.hpp"
-#include "tests/kernel/machine/virtual_rig.hpp"
+#include "tests/kernel/machine/accepted_rig.hpp"
 
 #include <cmath>
 #include <vector>

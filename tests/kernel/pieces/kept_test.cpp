@@ -3,7 +3,7 @@
 #include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
 #include "tests/kernel/base/hostile.hpp"
-#include "tests/kernel/machine/virtual_rig.hpp"
+#include "tests/kernel/machine/accepted_rig.hpp"
 #include "tests/kernel/os/folder.hpp"
 
 namespace tappet {
