@@ -1,9 +1,5 @@
 // Methods and commands that may block (thesis 4.5.2): where they run, and for whom.
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include "kernel/machine/accept.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <vector>
 
@@ -52,31 +48,17 @@ constexpr auto table = machine("blocking",
     connections(),
     reactions(uses("foreman.store", "archive.store"), uses("clerk.count", "archive.count")),
     behaviours());
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 
-struct WhatMayBlock : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    WhatMayBlock() {
-        EXPECT_TRUE(instance.configure({}));
-        EXPECT_EQ(std::string{world.start().view()}, "");
-    }
-    void pass(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
-    template <class T>
-    T& of(std::string_view name) {
-        return *instance.find<T>(name);
-    }
-};
+struct WhatMayBlock : testing::Test, RunningRig<table> {};
 
 TEST_F(WhatMayBlock, is_done_in_an_activity_without_deadline_for_senders_that_have_one) {
-    auto& store = of<Foreman>("foreman").store;
+    auto& store = the<Foreman>("foreman").store;
     EXPECT_TRUE(store.send(21));
     pass(20ms);
     EXPECT_EQ(store.state(), CommandState::done);
     EXPECT_EQ(store.result(), 42);
-    EXPECT_EQ(of<Archive>("archive").stored, std::vector{21});
+    EXPECT_EQ(the<Archive>("archive").stored, std::vector{21});
     store.reset();
     EXPECT_TRUE(store.send(-1));
     pass(20ms);
@@ -84,9 +66,9 @@ TEST_F(WhatMayBlock, is_done_in_an_activity_without_deadline_for_senders_that_ha
 }
 
 TEST_F(WhatMayBlock, is_called_by_a_peer_in_an_activity_without_deadline) {
-    EXPECT_TRUE(of<Foreman>("foreman").store.send(1));
+    EXPECT_TRUE(the<Foreman>("foreman").store.send(1));
     pass(200ms);
-    EXPECT_EQ(of<Clerk>("clerk").counted, 10);
+    EXPECT_EQ(the<Clerk>("clerk").counted, 10);
 }
 
 } // namespace

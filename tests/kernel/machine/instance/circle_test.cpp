@@ -1,10 +1,6 @@
 // Parts that need each other's values (a drive's component and its bus) were stopped together, and start
 // again one by one: whichever is the first starts without, as it did with the machine.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,27 +33,16 @@ constexpr auto table = machine("circle",
         data("guide.out", "bus.in",    stale_after(20ms), hold),
         data("bus.out",   "reader.in", stale_after(20ms), hold)),
     reactions(), behaviours());
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 
 constexpr std::size_t bus = 0, drive = 1, guide = 2, reader = 3;
 constexpr std::size_t wires = 0, motion = 1;
 
-class Circle : public testing::Test {
-protected:
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-
-    void SetUp() override {
-        ASSERT_TRUE(instance.configure({}));
-        ASSERT_EQ(world.start().view(), "");
-        run(50ms);
-    }
-    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
+struct Circle : testing::Test, RunningRig<table> {
+    Circle() { pass(50ms); }
     LifeAnswer change(std::size_t component, LifeChange change) {
         const LifeTicket ticket = instance.life().ask_component(component, change);
-        EXPECT_TRUE(world.run_until(clock.now() + 50ms));
+        EXPECT_TRUE(run(50ms));
         return instance.life().answer_of_component(component, ticket);
     }
     LifeOutcome start(std::size_t component) { return change(component, LifeChange::start).outcome; }
@@ -77,10 +62,10 @@ TEST_F(Circle, of_activities_that_stood_starts_in_any_order) {
     for (const auto& order : {std::array{wires, motion}, std::array{motion, wires}}) {
         for (const std::size_t each : order)
             EXPECT_EQ(world.change_activity(each, LifeChange::stop).view(), "");
-        run(50ms);
+        pass(50ms);
         for (const std::size_t each : order) {
             EXPECT_EQ(world.change_activity(each, LifeChange::start).view(), "");
-            run(50ms);
+            pass(50ms);
         }
     }
 }
@@ -88,7 +73,7 @@ TEST_F(Circle, of_activities_that_stood_starts_in_any_order) {
 TEST_F(Circle, whose_other_part_runs_and_is_silent_is_waited_for) {
     EXPECT_EQ(change(drive, LifeChange::stop).outcome, LifeOutcome::done);
     world.hang(wires, clock.now() + 1s);
-    run(50ms);
+    pass(50ms);
     const LifeAnswer answer = change(drive, LifeChange::start);
     EXPECT_EQ(answer.refusal, LifeRefusal::input_stale);
     EXPECT_EQ(

@@ -1,11 +1,8 @@
 // Data flow between the components of a machine (thesis 4.4): whatever the type, inside one activity and
 // across two, from one to many and from many to one, with every policy that a row may state.
 #include "kernel/base/random.hpp"
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/check/flow.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <Eigen/Core>
 
@@ -101,12 +98,6 @@ struct Sink {
     }
 };
 
-inline constexpr Board board{.name = "host",
-                             .world = "host",
-                             .memory_budget_bytes = 4'000'000,
-                             .processors = 1,
-                             .highest_priority = 40};
-
 // clang-format off
 template <class T>
 inline constexpr auto table = machine("flow",
@@ -128,21 +119,11 @@ inline constexpr auto table = machine("flow",
 // clang-format on
 
 template <class T>
-class Flows : public testing::Test {
-protected:
-    Flows() {
-        EXPECT_TRUE(instance.configure({}));
-        world.start();
-    }
+struct Flows : testing::Test, RunningRig<table<T>> {
     /// One more millisecond.
-    void run() { EXPECT_TRUE(world.run_until(now += 1ms)); }
-    Source<T>& source(std::string_view name) { return *instance.template find<Source<T>>(name); }
-    Sink<T>& sink(std::string_view name) { return *instance.template find<Sink<T>>(name); }
-
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table<T>, board>::machine(), clock};
-    VirtualWorld world{instance};
-    Time now = at_ns(0);
+    void run() { this->pass(1ms); }
+    Source<T>& source(std::string_view name) { return this->template the<Source<T>>(name); }
+    Sink<T>& sink(std::string_view name) { return this->template the<Sink<T>>(name); }
     Random random{static_cast<std::uint64_t>(testing::UnitTest::GetInstance()->random_seed())};
 };
 
@@ -192,8 +173,9 @@ TYPED_TEST(Flows, tell_each_reader_of_one_output_whether_the_value_is_fresh_old_
         const std::uint64_t far_steps = this->sink("far").steps;
         this->run();
         if (writes)
-            for (Expected<T>* each : {&near, &far}) each->stamp = this->now, each->k = k, each->is_new = true;
-        const Flow flow = near.flow(this->now);
+            for (Expected<T>* each : {&near, &far})
+                each->stamp = this->clock.now(), each->k = k, each->is_new = true;
+        const Flow flow = near.flow(this->clock.now());
         ++met[static_cast<std::size_t>(flow)];
         ASSERT_EQ(this->sink("near").flow, flow) << "cycle " << cycle;
         ASSERT_EQ(this->sink("holder").flow, flow) << "cycle " << cycle;
@@ -205,7 +187,7 @@ TYPED_TEST(Flows, tell_each_reader_of_one_output_whether_the_value_is_fresh_old_
         }
         near.is_new = near.is_new && flow == Flow::stale;
         if (this->sink("far").steps == far_steps) continue;
-        const Flow across = far.flow(this->now);
+        const Flow across = far.flow(this->clock.now());
         ASSERT_EQ(this->sink("far").flow, across) << "cycle " << cycle;
         ASSERT_EQ(this->sink("far").seen,
                   across == Flow::stale || far.k == 0 ? Given<T>::substitute : nth<T>(far.k));
@@ -282,10 +264,9 @@ TYPED_TEST(Flows, give_every_reader_of_buffers_each_value_of_each_writer_in_orde
 }
 
 TEST(Flow, through_a_buffer_orders_the_components_of_an_activity_as_data_does) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table<double>, board>::machine(), clock};
+    PlacedRig<table<double>> rig;
     const auto place = [&](std::string_view name) {
-        return instance.machine().index.position[find_component(instance.machine().table, name)];
+        return rig.instance.machine().index.position[find_component(rig.instance.machine().table, name)];
     };
     EXPECT_GT(place("near"), place("source")) << "though its row stands first";
     EXPECT_GT(place("near"), place("other")) << "from which it has a buffer only";
@@ -358,42 +339,24 @@ inline constexpr auto woken = machine("woken",
     reactions(), behaviours());
 // clang-format on
 
-/// A machine in virtual time.
-template <const auto& machine_table>
-struct Running {
-    Running() {
-        EXPECT_TRUE(instance.configure({}));
-        world.start();
-    }
-    bool run() { return world.run_until(now += 1ms); }
-    template <class C>
-    C& find(std::string_view name) {
-        return *instance.template find<C>(name);
-    }
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<machine_table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    Time now = at_ns(0);
-};
-
 TEST(Flow, by_a_delayed_row_gives_the_value_of_the_cycle_before) {
-    Running<echoes> rig;
+    RunningRig<echoes> rig;
     for (int cycle = 0; cycle < 20; ++cycle) {
-        EXPECT_TRUE(rig.run());
-        EXPECT_EQ(rig.find<Echo>("one").last, 100 + 2 * cycle);
-        EXPECT_EQ(rig.find<Echo>("other").last, 101 + 2 * cycle) << "in the same cycle";
+        EXPECT_TRUE(rig.run(1ms));
+        EXPECT_EQ(rig.the<Echo>("one").last, 100 + 2 * cycle);
+        EXPECT_EQ(rig.the<Echo>("other").last, 101 + 2 * cycle) << "in the same cycle";
     }
 }
 
 template <const auto& machine_table>
 void stops_when_the_value_is_stale(std::string_view reader) {
-    Running<machine_table> rig;
-    for (int cycle = 0; cycle < 60; ++cycle) EXPECT_TRUE(rig.run()) << "never written is not stale";
+    RunningRig<machine_table> rig;
+    for (int cycle = 0; cycle < 60; ++cycle) EXPECT_TRUE(rig.run(1ms)) << "never written is not stale";
     for (int cycle = 0; cycle < 60; ++cycle) {
-        rig.template find<Source<double>>("source").writes = cycle % 12 == 0;
-        EXPECT_TRUE(rig.run());
+        rig.template the<Source<double>>("source").writes = cycle % 12 == 0;
+        EXPECT_TRUE(rig.run(1ms));
     }
-    for (int cycle = 0; cycle < 60 && rig.run(); ++cycle) {
+    for (int cycle = 0; cycle < 60 && rig.run(1ms); ++cycle) {
     }
     EXPECT_TRUE(rig.instance.stop_asked());
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::stale_input);
@@ -410,30 +373,30 @@ TEST(Flow, that_went_stale_stops_the_machine_where_its_row_says_so) {
 }
 
 TEST(Flow, that_went_stale_wakes_its_reader_once_where_its_row_wakes) {
-    Running<told_when_stale> rig;
-    const Sink<double>& told = rig.find<Sink<double>>("told");
+    RunningRig<told_when_stale> rig;
+    const Sink<double>& told = rig.the<Sink<double>>("told");
     for (int outage = 0; outage < 3; ++outage) {
-        rig.find<Source<double>>("source").writes = true;
-        for (int cycle = 0; cycle < 15; ++cycle) EXPECT_TRUE(rig.run());
+        rig.the<Source<double>>("source").writes = true;
+        for (int cycle = 0; cycle < 15; ++cycle) EXPECT_TRUE(rig.run(1ms));
         EXPECT_NE(told.flow, Flow::stale);
         const std::uint64_t before = told.steps;
-        for (int cycle = 0; cycle < 100; ++cycle) EXPECT_TRUE(rig.run());
+        for (int cycle = 0; cycle < 100; ++cycle) EXPECT_TRUE(rig.run(1ms));
         EXPECT_EQ(told.flow, Flow::stale);
         EXPECT_EQ(told.steps, before + 1);
     }
-    EXPECT_EQ(rig.find<Sink<double>>("untold").steps, 0u);
+    EXPECT_EQ(rig.the<Sink<double>>("untold").steps, 0u);
 }
 
 TEST(Flow, wakes_the_activities_of_those_readers_whose_rows_say_so) {
-    Running<woken> rig;
-    const Sink<double>& by_data = rig.find<Sink<double>>("by_data");
-    const Sink<double>& by_buffer = rig.find<Sink<double>>("by_buffer");
+    RunningRig<woken> rig;
+    const Sink<double>& by_data = rig.the<Sink<double>>("by_data");
+    const Sink<double>& by_buffer = rig.the<Sink<double>>("by_buffer");
     std::uint64_t writes = 0, pushes = 0;
     for (int cycle = 0; cycle < 200; ++cycle) {
-        rig.find<Source<double>>("source").writes = cycle % 3 == 0;
-        rig.find<Source<double>>("source").pushes = cycle % 4 == 0;
+        rig.the<Source<double>>("source").writes = cycle % 3 == 0;
+        rig.the<Source<double>>("source").pushes = cycle % 4 == 0;
         const std::uint64_t data_before = by_data.steps, buffer_before = by_buffer.steps;
-        EXPECT_TRUE(rig.run());
+        EXPECT_TRUE(rig.run(1ms));
         writes += cycle % 3 == 0;
         pushes += cycle % 4 == 0;
         if (cycle % 3 == 0) {
@@ -445,7 +408,7 @@ TEST(Flow, wakes_the_activities_of_those_readers_whose_rows_say_so) {
     }
     EXPECT_LE(by_data.steps, writes + 1) << "at the start perhaps once, and by nothing else";
     EXPECT_LE(by_buffer.steps, pushes + 1);
-    EXPECT_LE(rig.find<Sink<double>>("asleep").steps, 1u);
+    EXPECT_LE(rig.the<Sink<double>>("asleep").steps, 1u);
 }
 
 /// What the check says of a number for a port of the type.

@@ -1,9 +1,6 @@
 // A forced input of who is woken by what is written lets go when its writer stops: nothing else would wake
 // it.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 namespace tappet {
 namespace {
@@ -41,27 +38,18 @@ constexpr auto growing_stale = machine("growing-stale",
         data("beat.open",  "other.wanted", wakes)), // once, at the start
     reactions(), behaviours());
 // clang-format on
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 
 template <const auto& table>
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    Rig() {
-        EXPECT_TRUE(instance.configure({}));
-        EXPECT_EQ(world.start().view(), "");
-    }
-    bool run(Duration time) { return world.run_until(clock.now() + time); }
+struct Rig : RunningRig<table> {
     void force_open() {
         const std::int64_t open = 1;
         PortAccess::data<std::int64_t>.force(&valve().wanted, true,
                                              reinterpret_cast<const std::byte*>(&open));
-        instance.observation().forced_ports().fetch_add(1);
-        instance.engines()[0].waiter().wake();
+        this->instance.observation().forced_ports().fetch_add(1);
+        this->instance.engines()[0].waiter().wake();
     }
-    void stop_logic() { static_cast<void>(instance.life().ask_component(1, LifeChange::stop)); }
-    Valve& valve() { return *instance.template find<Valve>("valve"); }
+    void stop_logic() { static_cast<void>(this->instance.life().ask_component(1, LifeChange::stop)); }
+    Valve& valve() { return this->template the<Valve>("valve"); }
 };
 
 TEST(ForcedInput, lets_go_when_its_writer_stops_though_that_one_writes_nothing_then) {

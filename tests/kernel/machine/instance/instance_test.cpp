@@ -4,12 +4,10 @@
 #include "kernel/machine/instance/instance.hpp"
 
 #include "kernel/base/random.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/statechart/rows.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
@@ -144,29 +142,19 @@ constexpr auto table = machine("lively",
         data("sensor.angle", "careful.angle")),
     reactions(when("panel.pressed", tell("axis.kick")), when("axis.turned", call("gate.on_turn"))),
     behaviours(behaviour("gate", gate_cycle)));
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 
 constexpr std::size_t sensor = 0, axis = 1, gate = 2, careful = 3, panel = 4;
 constexpr std::size_t field = 0, motion = 1, slow = 2, office = 3;
 
-struct Machine : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-
-    Machine() {
-        notes().clear();
-        EXPECT_TRUE(instance.configure({}));
-    }
+struct Machine : testing::Test, ConfiguredRig<table> {
+    Machine() { notes().clear(); }
     void start() { ASSERT_EQ(world.start().view(), ""); }
-    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
-    template <class T> T& the(std::string_view name) { return *instance.find<T>(name); }
     ComponentState state(std::size_t component) { return instance.life().state_of(component); }
     /// Asks and lets the engine serve it.
     LifeAnswer change(std::size_t component, LifeChange change) {
         const LifeTicket ticket = instance.life().ask_component(component, change);
-        EXPECT_TRUE(world.run_until(clock.now() + 20ms));
+        EXPECT_TRUE(run(20ms));
         return instance.life().answer_of_component(component, ticket);
     }
     std::string words(std::size_t component, LifeAnswer answer) {
@@ -182,7 +170,7 @@ TEST_F(LifeOfAComponent, is_inactive_until_its_activity_starts_and_stopped_when_
     EXPECT_EQ(state(axis), ComponentState::inactive);
     start();
     EXPECT_EQ(state(axis), ComponentState::running);
-    run(5ms);
+    pass(5ms);
     world.stop();
     EXPECT_EQ(state(axis), ComponentState::stopped);
     EXPECT_EQ(the<Axis>("axis").stops, 1u);
@@ -190,13 +178,13 @@ TEST_F(LifeOfAComponent, is_inactive_until_its_activity_starts_and_stopped_when_
 
 TEST_F(LifeOfAComponent, stops_alone_leaves_safe_values_and_the_others_go_on) {
     start();
-    run(10ms);
+    pass(10ms);
     EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
     EXPECT_EQ(change(axis, LifeChange::stop).outcome, LifeOutcome::done);
     EXPECT_EQ(state(axis), ComponentState::stopped);
     EXPECT_EQ(the<Axis>("axis").drive.last(), 0.0);
     const std::uint64_t axis_steps = the<Axis>("axis").steps, sensor_steps = the<Sensor>("sensor").steps;
-    run(30ms);
+    pass(30ms);
     EXPECT_EQ(the<Axis>("axis").steps, axis_steps);
     EXPECT_EQ(the<Sensor>("sensor").steps, sensor_steps + 30);
     EXPECT_EQ(state(gate), ComponentState::running); // of the same activity
@@ -205,7 +193,7 @@ TEST_F(LifeOfAComponent, stops_alone_leaves_safe_values_and_the_others_go_on) {
 
 TEST_F(LifeOfAComponent, is_stopped_once_although_the_machine_stops_later) {
     start();
-    run(5ms);
+    pass(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     static_cast<void>(change(axis, LifeChange::stop));
     world.stop();
@@ -214,7 +202,7 @@ TEST_F(LifeOfAComponent, is_stopped_once_although_the_machine_stops_later) {
 
 TEST_F(LifeOfAComponent, starts_again_where_it_was_stopped) {
     start();
-    run(5ms);
+    pass(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
     EXPECT_EQ(the<Axis>("axis").starts, 2u);
@@ -238,15 +226,15 @@ TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_was_written_an
               "see that \"sensor\" runs and writes \"sensor.angle\"");
     EXPECT_EQ(state(axis), ComponentState::stopped);
     the<Sensor>("sensor").silent = false;
-    run(2ms);
+    pass(2ms);
     EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
 }
 
 TEST_F(LifeOfAComponent, does_not_start_with_a_stale_input_and_a_restart_leaves_it_stopped_and_safe) {
     start();
-    run(10ms);
+    pass(10ms);
     the<Sensor>("sensor").silent = true;
-    run(30ms);
+    pass(30ms);
     const LifeAnswer answer = change(axis, LifeChange::restart);
     EXPECT_EQ(answer.outcome, LifeOutcome::refused);
     EXPECT_EQ(answer.refusal, LifeRefusal::input_stale);
@@ -259,35 +247,35 @@ TEST_F(LifeOfAComponent, does_not_start_with_a_stale_input_and_a_restart_leaves_
 TEST_F(LifeOfAComponent, waits_with_the_whole_machine_for_an_input_that_it_needs_from_its_first_moment) {
     the<Sensor>("sensor").silent = true;
     start();
-    run(50ms);
+    pass(50ms);
     EXPECT_EQ(state(careful), ComponentState::waiting);
     EXPECT_EQ(the<Careful>("careful").first_angle, -1.0);
     EXPECT_EQ(state(axis), ComponentState::running); // which did not say so
     the<Sensor>("sensor").silent = false;
-    run(20ms);
+    pass(20ms);
     EXPECT_EQ(state(careful), ComponentState::running);
     EXPECT_GT(the<Careful>("careful").first_angle, 50.0);
 }
 
 TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_not_run) {
     start();
-    run(5ms);
+    pass(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     the<Panel>("panel").presses_left = 3;
-    run(20ms);
+    pass(20ms);
     EXPECT_EQ(the<Axis>("axis").kicks, 0u);
     EXPECT_EQ(instance.observation().dropped_messages(), 3u);
     static_cast<void>(change(axis, LifeChange::start));
     EXPECT_EQ(the<Axis>("axis").kicks, 0u) << "what was dropped does not come later";
     the<Panel>("panel").presses_left = 2;
-    run(20ms);
+    pass(20ms);
     EXPECT_EQ(the<Axis>("axis").kicks, 2u);
     EXPECT_EQ(instance.observation().lost_emissions(), 0u);
 }
 
 TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_and_that_is_counted_too) {
     start();
-    run(5ms);
+    pass(5ms);
     Axis& the_axis = the<Axis>("axis");
     the_axis.turned();
     EXPECT_EQ(the<Gate>("gate").turns, 1);
@@ -304,18 +292,18 @@ TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_
 TEST_F(LifeOfAComponent, forgets_its_timers_when_it_stops) {
     the<Axis>("axis").alarm_after = 50ms;
     start();
-    run(10ms);
+    pass(10ms);
     static_cast<void>(change(axis, LifeChange::stop));
-    run(100ms);
+    pass(100ms);
     EXPECT_EQ(the<Axis>("axis").alarms, 0u);
     static_cast<void>(change(axis, LifeChange::start));
-    run(100ms);
+    pass(100ms);
     EXPECT_EQ(the<Axis>("axis").alarms, 1u);
 }
 
 TEST_F(LifeOfAComponent, brings_its_state_machine_to_the_final_state_and_back_to_the_initial_one) {
     start();
-    run(5ms);
+    pass(5ms);
     EXPECT_EQ(the<Gate>("gate").opened, 1);
     static_cast<void>(change(gate, LifeChange::stop));
     EXPECT_EQ(the<Gate>("gate").closed, 1);
@@ -326,10 +314,10 @@ TEST_F(LifeOfAComponent, brings_its_state_machine_to_the_final_state_and_back_to
 
 TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_others) {
     start();
-    run(5ms);
+    pass(5ms);
     const LifeTicket first = instance.life().ask_component(axis, LifeChange::restart);
     const LifeTicket second = instance.life().ask_component(axis, LifeChange::stop);
-    run(5ms);
+    pass(5ms);
     EXPECT_EQ(instance.life().answer_of_component(axis, first).outcome, LifeOutcome::superseded);
     EXPECT_EQ(instance.life().answer_of_component(axis, second).outcome, LifeOutcome::done);
     EXPECT_EQ(state(axis), ComponentState::stopped);
@@ -339,18 +327,15 @@ TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_oth
 /// One machine under a hundred random wishes; its event log's digest.
 std::uint64_t under_random_wishes(std::uint64_t seed) {
     Random random{seed};
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    EXPECT_TRUE(instance.configure({}));
-    EXPECT_EQ(world.start().view(), "");
-    const Axis& the_axis = *instance.find<Axis>("axis");
+    RunningRig<table> rig;
+    MachineInstance& instance = rig.instance;
+    const Axis& the_axis = rig.the<Axis>("axis");
     for (int n = 0; n < 100 && !testing::Test::HasFailure(); ++n) {
         const auto component = static_cast<std::size_t>(random.between(sensor, careful));
         const auto change = static_cast<LifeChange>(random.between(0, 2));
-        instance.find<Panel>("panel")->presses_left += static_cast<std::uint64_t>(random.between(0, 2));
+        rig.the<Panel>("panel").presses_left += static_cast<std::uint64_t>(random.between(0, 2));
         const LifeTicket ticket = instance.life().ask_component(component, change);
-        EXPECT_TRUE(world.run_until(clock.now() + 10ms));
+        EXPECT_TRUE(rig.run(10ms));
         const LifeAnswer answer = instance.life().answer_of_component(component, ticket);
         EXPECT_NE(answer.outcome, LifeOutcome::pending);
         const bool runs = answer.outcome == LifeOutcome::done && change != LifeChange::stop;
@@ -364,7 +349,7 @@ std::uint64_t under_random_wishes(std::uint64_t seed) {
         }
     }
     EXPECT_EQ(the_axis.steps_outside, 0u) << "seed " << seed;
-    world.stop();
+    rig.world.stop();
     return instance.observation().event_log_digest();
 }
 
@@ -379,16 +364,16 @@ TEST(LifeUnderRandomWishes, no_component_is_stepped_or_told_outside_of_its_life_
 TEST_F(LifeOfAnActivity, is_initialised_before_and_finalised_after_by_whoever_starts_and_stops_it) {
     start();
     EXPECT_THAT(notes(), testing::ElementsAre("sensor initialised"));
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(world.change_activity(field, LifeChange::stop).view(), "");
     EXPECT_THAT(notes(), testing::ElementsAre("sensor initialised", "sensor finalised"));
     EXPECT_EQ(state(sensor), ComponentState::stopped);
     EXPECT_EQ(the<Sensor>("sensor").angle.last(), 0.0);
     const std::uint64_t steps = the<Sensor>("sensor").steps;
-    run(50ms);
+    pass(50ms);
     EXPECT_EQ(the<Sensor>("sensor").steps, steps);
     EXPECT_EQ(world.change_activity(field, LifeChange::restart).view(), "");
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(the<Sensor>("sensor").steps, steps + 10) << "no period is made up for";
     world.stop();
     EXPECT_THAT(notes(), testing::ElementsAre("sensor initialised", "sensor finalised", "sensor initialised",
@@ -397,7 +382,7 @@ TEST_F(LifeOfAnActivity, is_initialised_before_and_finalised_after_by_whoever_st
 
 TEST_F(LifeOfAnActivity, a_component_that_cannot_be_initialised_keeps_its_activity_stopped_until_it_can) {
     start();
-    run(10ms);
+    pass(10ms);
     the<Sensor>("sensor").refuses = "the probe is not plugged in; plug it in";
     EXPECT_EQ(world.change_activity(field, LifeChange::restart).view(),
               "component \"sensor\" could not be initialised: the probe is not plugged in; plug it in");
@@ -406,7 +391,7 @@ TEST_F(LifeOfAnActivity, a_component_that_cannot_be_initialised_keeps_its_activi
                   .answer_of_component(sensor, instance.life().ask_component(sensor, LifeChange::start))
                   .outcome,
               LifeOutcome::refused);
-    run(10ms); // the others go on
+    pass(10ms); // the others go on
     the<Sensor>("sensor").refuses = {};
     EXPECT_EQ(world.change_activity(field, LifeChange::start).view(), "");
     EXPECT_EQ(state(sensor), ComponentState::running);
@@ -423,28 +408,28 @@ TEST_F(LifeOfAnActivity,
 
 TEST_F(LifeOfAnActivity, does_not_start_while_another_ones_value_that_it_needs_is_stale) {
     start();
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     EXPECT_EQ(world.change_activity(field, LifeChange::stop).view(), "");
-    run(30ms);
+    pass(30ms);
     EXPECT_THAT(std::string{world.change_activity(motion, LifeChange::start).view()},
                 testing::HasSubstr("component \"axis\" is not started: its input \"angle\" is stale"));
     EXPECT_EQ(state(axis), ComponentState::stopped);
     EXPECT_EQ(world.change_activity(field, LifeChange::start).view(), "");
-    run(5ms);
+    pass(5ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
-    run(5ms);
+    pass(5ms);
     EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
 }
 
 TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stopped) {
     start();
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     the<Panel>("panel").presses_left = 5;
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(the<Axis>("axis").kicks, 0u);
     EXPECT_EQ(instance.observation().dropped_messages(), 5u);
     EXPECT_EQ(instance.observation().lost_emissions(), 0u);
@@ -452,7 +437,7 @@ TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stoppe
 
 TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stopped) {
     start();
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     const LifeAnswer answer = change(axis, LifeChange::start);
     EXPECT_EQ(answer.refusal, LifeRefusal::activity_stopped);
@@ -462,14 +447,14 @@ TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stoppe
 
 TEST_F(LifeOfAnActivity, is_restarted_by_the_supervisor_when_a_component_of_another_one_asks) {
     start();
-    run(10ms);
+    pass(10ms);
     the<Panel>("panel").restart_activity = motion;
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(instance.life().answer_of_activity(motion, the<Panel>("panel").ticket).outcome,
               LifeOutcome::done);
     EXPECT_EQ(the<Axis>("axis").starts, 2u);
     the<Panel>("panel").restart_activity = office; // and its own
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(instance.life().answer_of_activity(office, the<Panel>("panel").ticket).outcome,
               LifeOutcome::done);
     EXPECT_EQ(state(panel), ComponentState::running);

@@ -1,13 +1,10 @@
 // Methods and commands through a machine's table (thesis 4.5): methods run in the caller, commands in the
 // receiver's engine; a command goes through its states, brings results back, is rejected, wrapped and handed
 // on.
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/plan/operations.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <vector>
 
@@ -132,15 +129,10 @@ struct Runner {
     static constexpr auto interface() { return facets(operation<&Runner::take>("take", "and send")); }
 };
 
-struct Watcher {
-    static constexpr bool sees_machine = true;
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
-
 // clang-format off
 constexpr auto table = machine("track",
     components(component<Axis>("axis"), component<Panel>("panel"), component<Panel>("urgent"), component<Carriage>("carriage"),
-               component<Planner>("planner"), component<Runner>("runner"), component<Watcher>("watcher"),
+               component<Planner>("planner"), component<Runner>("runner"), component<Onlooker>("watcher"),
                component<Panel>("near"), component<Door>("door")),
     activities(
         activity("motion", every(1ms),  budget(50us), runs("axis", "near", "door")),
@@ -159,29 +151,14 @@ constexpr auto table = machine("track",
         when("urgent.knock", tell("axis.knock")),
         when("planner.planned", tell("runner.take"))),
     behaviours());
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 constexpr std::size_t motion = 0;
 
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    Axis& axis;
-    Panel& panel;
-    Panel& urgent;
-    Rig()
-        : axis{*configured().find<Axis>("axis")},
-          panel{*instance.find<Panel>("panel")},
-          urgent{*instance.find<Panel>("urgent")} {
-        world.start();
-    }
-    MachineInstance& configured() {
-        EXPECT_TRUE(instance.configure({}));
-        return instance;
-    }
+struct Rig : RunningRig<table> {
+    Axis& axis = the<Axis>("axis");
+    Panel& panel = the<Panel>("panel");
+    Panel& urgent = the<Panel>("urgent");
     ~Rig() { axis.~Axis(); } // the test's vectors; a machine's components are never destroyed
-    void pass(Duration time) { EXPECT_TRUE(world.run_until(clock.now() + time)); }
 };
 
 // ---- methods
@@ -196,7 +173,7 @@ TEST(Methods, a_method_runs_in_the_caller_and_returns_its_result) {
 TEST(Methods, inside_an_activity_a_method_needs_no_promise) {
     Rig rig;
     rig.axis.position = 40.0;
-    EXPECT_TRUE(rig.instance.find<Panel>("near")->spare().given());
+    EXPECT_TRUE(rig.the<Panel>("near").spare().given());
     EXPECT_EQ(rig.axis.position, 0.0);
 }
 
@@ -375,7 +352,7 @@ TEST(Commands, one_that_wraps_another_is_done_when_that_one_is) {
 
 TEST(Commands, one_that_forwards_another_as_it_is_needs_no_code) {
     Rig rig;
-    Panel& near = *rig.instance.find<Panel>("near");
+    Panel& near = rig.the<Panel>("near");
     ASSERT_TRUE(near.move.send(3.0));
     rig.pass(3ms);
     EXPECT_EQ(near.move.state(), CommandState::executing);
@@ -396,18 +373,18 @@ TEST(Commands, one_that_wraps_a_rejected_one_fails) {
 
 TEST(Commands, one_that_is_handed_on_is_sent_by_whoever_got_it_and_seen_by_whoever_planned_it) {
     Rig rig;
-    auto& planner = *rig.instance.find<Planner>("planner");
+    auto& planner = rig.the<Planner>("planner");
     planner.plan(2.0);
     EXPECT_EQ(planner.move.state(), CommandState::ready);
     rig.pass(5ms);
-    EXPECT_EQ(rig.instance.find<Runner>("runner")->sent, 1u);
+    EXPECT_EQ(rig.the<Runner>("runner").sent, 1u);
     EXPECT_EQ(planner.move.state(), CommandState::done);
     EXPECT_EQ(planner.move.result(), 2);
 }
 
 TEST(CommandsDeathTest, one_that_is_sent_in_an_activity_that_the_row_does_not_name_breaks_a_contract) {
     Rig rig;
-    auto& planner = *rig.instance.find<Planner>("planner");
+    auto& planner = rig.the<Planner>("planner");
     const RunsActivity in_its_own{2}; // the row says sent_by("runner")
     EXPECT_DEATH(static_cast<void>(planner.move.send(1.0)),
                  "command-sender: A command that activity 3 sends was sent in activity 2");

@@ -1,10 +1,6 @@
 // From the edge to what it caused: each row that tells or wakes knows how often and how long, in virtual time
 // to the nanosecond.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/instance/instance.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 namespace tappet {
 namespace {
@@ -81,29 +77,19 @@ constexpr auto table = machine("reactions",
     connections(data("lines.level", "logic.level", wakes)),
     reactions(when("lines.rises", tell("logic.on_rise")), when("logic.halts", tell("brake.set"))),
     behaviours());
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 
 constexpr std::size_t wakes_logic = 0, tells_logic = 0, tells_brake = 1; ///< rows
 
-class Reactions : public testing::Test {
-protected:
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    bool configured = instance.configure({}).has_value();
-    Lines& lines = *instance.find<Lines>("lines");
-    Logic& logic = *instance.find<Logic>("logic");
-    Brake& brake = *instance.find<Brake>("brake");
-
-    void SetUp() override {
-        ASSERT_TRUE(configured);
+struct Reactions : testing::Test, RunningRig<table> {
+    Lines& lines = the<Lines>("lines");
+    Logic& logic = the<Logic>("logic");
+    Brake& brake = the<Brake>("brake");
+    Reactions() {
         logic.load = 100us;
         brake.load = 20us;
-        world.start();
         pass(10ms);
     }
-    void pass(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
     const ReactionTimes& logic_told() { return *instance.observation().times_of_reaction(tells_logic); }
     const ReactionTimes& brake_told() { return *instance.observation().times_of_reaction(tells_brake); }
     const ReactionTimes& logic_woken() { return *instance.observation().times_of_connection(wakes_logic); }

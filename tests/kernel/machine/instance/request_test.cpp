@@ -1,11 +1,7 @@
 // Requests of a component that sees the machine (thesis 4.2.3): each runs in the engine it is posted to,
 // between two of its steps, and a flood of them takes no place from anybody.
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/plan/operations.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <cstring>
 
@@ -68,18 +64,10 @@ constexpr auto table = machine("watched-by-one",
         activity("logic",  on_work(), at_most(4, 1ms), deadline(1ms), budget(50us), runs("right")),
         activity("office", every(100ms), not_real_time, runs("watcher", "blind"))),
     connections(), reactions(when("left.done", tell("right.on_done"))), behaviours());
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    Rig() {
-        EXPECT_TRUE(instance.configure({}));
-        world.start();
-    }
-    Machinist& machinist(std::string_view name) { return *instance.find<Machinist>(name); }
+struct Rig : RunningRig<table> {
+    Machinist& machinist(std::string_view name) { return the<Machinist>(name); }
     bool ask(std::size_t activity, std::string_view name, std::int64_t value) {
         Message message;
         message.run = &Machinist::ask;
@@ -91,8 +79,8 @@ struct Rig {
 
 TEST(Requests, the_machine_is_given_to_the_component_that_says_it_sees_it_and_to_no_other) {
     Rig rig;
-    EXPECT_EQ(rig.instance.find<Watcher>("watcher")->machine, &rig.instance);
-    EXPECT_FALSE(rig.instance.find<Blind>("blind")->saw);
+    EXPECT_EQ(rig.the<Watcher>("watcher").machine, &rig.instance);
+    EXPECT_FALSE(rig.the<Blind>("blind").saw);
 }
 
 TEST(Requests, a_request_runs_in_the_engine_it_was_posted_to_between_two_steps) {

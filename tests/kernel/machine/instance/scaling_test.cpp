@@ -1,8 +1,5 @@
 // Values that are scaled on their way: one multiplication between two units, inside an activity and across.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <Eigen/Core>
 
@@ -44,12 +41,6 @@ struct Dosing {
     }
 };
 
-inline constexpr Board board{.name = "host",
-                             .world = "host",
-                             .memory_budget_bytes = 4'000'000,
-                             .processors = 1,
-                             .highest_priority = 40};
-
 // clang-format off
 inline constexpr auto table = machine("pumps",
     components(component<Pump>("pump"), component<Dosing>("near"), component<Dosing>("far")),
@@ -63,19 +54,10 @@ inline constexpr auto table = machine("pumps",
     reactions(), behaviours());
 // clang-format on
 
-struct Scaling : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    Pump& pump = *instance.find<Pump>("pump");
-    Dosing& near = *instance.find<Dosing>("near");
-    Dosing& far = *instance.find<Dosing>("far");
-
-    void SetUp() override {
-        ASSERT_TRUE(instance.configure({}));
-        world.start();
-    }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
+struct Scaling : testing::Test, RunningRig<table> {
+    Pump& pump = the<Pump>("pump");
+    Dosing& near = the<Dosing>("near");
+    Dosing& far = the<Dosing>("far");
 };
 
 TEST_F(Scaling, the_reader_gets_the_value_in_its_own_unit_inside_an_activity_and_across) {
@@ -132,9 +114,7 @@ inline constexpr auto cranes =
 
 template <const auto& table>
 std::string begin() {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    const auto configured = instance.configure({});
+    const auto configured = PlacedRig<table>{}.instance.configure({});
     return configured ? "" : std::string{configured.error().view()};
 }
 

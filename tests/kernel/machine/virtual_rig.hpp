@@ -1,0 +1,48 @@
+// A machine under virtual time, as most tests of machines want one.
+#pragma once
+
+#include "kernel/machine/accept.hpp"
+#include "kernel/machine/worlds/virtual_world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string_view>
+
+namespace tappet {
+
+inline constexpr Board test_board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
+
+/// For tables that need somebody who sees the machine, whatever he does.
+struct Onlooker {
+    static constexpr bool sees_machine = true;
+    void work(const Cycle&) {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
+/// A machine that is placed.
+template <const auto& table, const Board& board = test_board> struct PlacedRig {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
+    VirtualWorld world{instance};
+
+    /// False: it stopped meanwhile.
+    bool run(Duration time) { return world.run_until(clock.now() + time); }
+    /// It goes on so long.
+    void pass(Duration time) { ASSERT_TRUE(run(time)); }
+    template <class C> C& the(std::string_view name) { return *instance.template find<C>(name); }
+};
+/// One that is configured.
+template <const auto& table, const Board& board = test_board> struct ConfiguredRig : PlacedRig<table, board> {
+    ConfiguredRig() {
+        const auto configured = this->instance.configure({});
+        EXPECT_TRUE(configured) << configured.error().view();
+    }
+};
+/// One that runs.
+template <const auto& table, const Board& board = test_board> struct RunningRig
+    : ConfiguredRig<table, board> {
+    RunningRig() { EXPECT_EQ(this->world.start().view(), ""); }
+};
+
+} // namespace tappet
