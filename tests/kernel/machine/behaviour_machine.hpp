@@ -2,12 +2,8 @@
 // one.
 #pragma once
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/instance/instance.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/script/compiled.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <string>
 #include <string_view>
@@ -89,28 +85,15 @@ struct Feeder {
     }
 };
 
-struct Watcher {
-    static constexpr bool sees_machine = true;
-    void work(const Cycle&) {}
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
-
-inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
-
-template <class Firmware>
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{Firmware::machine(), clock};
-    VirtualWorld world{instance};
-    Rig() {
-        const auto configured = instance.configure({});
-        EXPECT_TRUE(configured) << configured.error().view();
-        world.start();
+template <const auto& table>
+struct Rig : RunningRig<table> {
+    Oven& oven() { return this->template the<Oven>("oven"); }
+    Door& door() { return this->template the<Door>("door"); }
+    Feeder& feeder() { return this->template the<Feeder>("feeder"); }
+    void tick(Duration then = 2ms) {
+        oven().tick.emit();
+        this->run(then);
     }
-    bool run(Duration time) { return world.run_until(clock.now() + time); }
-    Oven& oven() { return *instance.template find<Oven>("oven"); }
-    Door& door() { return *instance.template find<Door>("door"); }
-    Feeder& feeder() { return *instance.template find<Feeder>("feeder"); }
     std::string state(const BehaviourUnit& unit, std::size_t part = 0) {
         std::string path;
         for (const std::string_view each : unit.parts()[part].machine->path())

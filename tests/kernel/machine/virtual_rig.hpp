@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace tappet {
@@ -31,6 +33,22 @@ template <const auto& table, const Board& board = test_board> struct PlacedRig {
     /// It goes on so long.
     void pass(Duration time) { ASSERT_TRUE(run(time)); }
     template <class C> C& the(std::string_view name) { return *instance.template find<C>(name); }
+    template <class T> T& property(std::string_view component, std::string_view name) {
+        const MachineView& of = instance.machine().table;
+        const std::size_t c = find_component(of, component);
+        return *static_cast<T*>(instance.facet({c, find_facet(of.components[c], name)}));
+    }
+    /// Why a slot refuses a script; empty: it may take over.
+    static std::string compile(BehaviourSlot& slot, std::string_view text, std::string_view name) {
+        if (text.size() > slot.text().size()) return "too long for the text";
+        std::ranges::copy(text, slot.text().begin());
+        return std::string{slot.compile(text.size(), name).view()};
+    }
+    void change(BehaviourSlot& slot, BehaviourSlot::Change what, const SlotMoment& at = {}) {
+        EXPECT_EQ(slot.may(what).view(), "");
+        EXPECT_TRUE(slot.ask(what, at));
+        EXPECT_TRUE(instance.requests().post_change(slot));
+    }
 };
 /// One that is configured.
 template <const auto& table, const Board& board = test_board> struct ConfiguredRig : PlacedRig<table, board> {

@@ -1,6 +1,5 @@
 // A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script, in the
 // component's activity, after its commands and events; what it may touch the table checks.
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -39,7 +38,7 @@ constexpr auto reach =
     script_reach(reachable<Oven>("oven"), reachable<Door>("door"), reachable<Feeder>("feeder", false));
 
 // clang-format off
-constexpr auto parts = components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Watcher>("watcher"));
+constexpr auto parts = components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Onlooker>("watcher"));
 constexpr auto threads = activities(
     activity("fast", every(1ms), budget(50us), runs("oven", "door")),
     activity("slow", every(5ms), budget(50us), runs("feeder")),
@@ -47,7 +46,7 @@ constexpr auto threads = activities(
 constexpr auto table = machine("bakery", parts, threads, connections(), reactions(),
     behaviours(behaviour("oven", compiled_script<baking, reach>, {})));
 // clang-format on
-using Bakery = Rig<AtRunTime<table, board>>;
+using Bakery = Rig<table>;
 
 constexpr ScriptSource cooking{"cooking.osd", R"(
 StateMachine Cooking {
@@ -69,7 +68,7 @@ constexpr auto cooking_table = machine("bakery", parts, threads, connections(), 
                                        behaviours(behaviour("oven", compiled_script<cooking, reach>, {})));
 
 TEST(Behaviour, hears_events_whose_arguments_a_message_has_no_room_for) {
-    Rig<AtRunTime<cooking_table, board>> rig;
+    Rig<cooking_table> rig;
     rig.run(10ms);
     rig.oven().told.clear();
     for (std::int64_t n = 1; n <= 4; ++n) // they wait together
@@ -136,7 +135,7 @@ constexpr auto cooled = machine("cooled", parts, threads, connections(), reactio
 
 TEST(Behaviour, that_takes_its_time_to_end_comes_to_its_end_before_its_component_begins_anew) {
     for (const Duration stopped_for : {0ms, 1ms, 50ms}) {
-        Rig<AtRunTime<cooled, board>> rig;
+        Rig<cooled> rig;
         rig.run(10ms);
         const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
         EXPECT_EQ(rig.state(unit), "Cold");
@@ -166,7 +165,7 @@ constexpr auto failed = machine("failed", parts, threads, connections(), reactio
 // clang-format on
 
 TEST(Behaviour, that_fails_on_its_way_to_the_end_does_not_begin_anew_by_itself) {
-    Rig<AtRunTime<failed, board>> rig;
+    Rig<failed> rig;
     rig.run(10ms);
     const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
     rig.oven().told.clear();
@@ -196,7 +195,7 @@ TEST(Behaviour, an_error_stops_the_machine_and_the_report_names_the_line) {
 template <class... Rows>
 std::string refusal_of(const Rows&... rows) {
     const auto wrong = machine("bakery", parts, threads, connections(), reactions(), behaviours(rows...));
-    return std::string{Accepted{wrong.view(), board}.refusal().view()};
+    return std::string{Accepted{wrong.view(), test_board}.refusal().view()};
 }
 
 TEST(BehaviourChecks, a_script_compiled_for_one_activity_is_refused_where_two_run_its_peers) {

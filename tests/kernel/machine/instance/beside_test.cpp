@@ -1,11 +1,8 @@
 // Programs of a script command those that stand before them (thesis 5.1.6: from activities of the same task,
 // too), and what comes of it is the same in native code, with walked tables and in a slot.
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include "kernel/machine/table/compiled.hpp"
-
-#include <algorithm>
 
 #include <gmock/gmock.h>
 
@@ -89,33 +86,30 @@ template <class Form> constexpr auto row() {
 // clang-format off
 template <class Form>
 constexpr auto table = machine("bakery",
-    components(component<Oven>("oven"), component<Door>("door"), component<Watcher>("watcher")),
+    components(component<Oven>("oven"), component<Door>("door"), component<Onlooker>("watcher")),
     activities(activity("fast", every(1ms), budget(50us), runs("oven", "door")),
                activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
     connections(), reactions(), behaviours(row<Form>()));
 /// Nothing wakes what drives the oven but its events.
 template <class Form>
 constexpr auto woken = machine("bakery",
-    components(component<Oven>("oven"), component<Door>("door"), component<Watcher>("watcher")),
+    components(component<Oven>("oven"), component<Door>("door"), component<Onlooker>("watcher")),
     activities(activity("fast", on_work(), at_most(10, 1ms), deadline(1ms), budget(50us), runs("oven", "door")),
                activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
     connections(), reactions(), behaviours(row<Form>()));
 // clang-format on
 
-template <const auto& Machine> struct Bakery : Rig<AtRunTime<Machine, board>> {
+template <const auto& Machine> struct Bakery : Rig<Machine> {
     void load() {
         BehaviourSlot* const slot = this->instance.slot_of("oven");
         if (slot == nullptr) return;
-        std::ranges::copy(baking.text, slot->text().begin());
-        EXPECT_EQ(slot->compile(baking.text.size(), baking.name).view(), "");
-        EXPECT_TRUE(slot->ask(BehaviourSlot::Change::take_over));
-        EXPECT_TRUE(this->instance.requests().post_change(*slot));
+        EXPECT_EQ(this->compile(*slot, baking.text, baking.name), "");
+        this->change(*slot, BehaviourSlot::Change::take_over);
         this->run(2ms);
     }
     void tick() {
         this->oven().told.clear();
-        this->oven().tick.emit();
-        this->run(20ms);
+        Rig<Machine>::tick(20ms);
     }
 };
 

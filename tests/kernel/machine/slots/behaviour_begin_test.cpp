@@ -1,5 +1,4 @@
 // A slot that begins with what was compiled: it is at work from the start, and gives way to what is loaded.
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/table/compiled.hpp"
 #include "tests/kernel/machine/slots/slot_rig.hpp"
 
@@ -21,7 +20,8 @@ constexpr const ScriptUnit& first = compiled_script<source, reach>;
 
 template <class Begin> constexpr auto bakery(const Begin& begin) {
     return machine(
-        "bakery", components(component<Oven>("oven"), component<Door>("door"), component<Watcher>("watcher")),
+        "bakery",
+        components(component<Oven>("oven"), component<Door>("door"), component<Onlooker>("watcher")),
         activities(activity("fast", every(1ms), budget(50us), runs("oven", "door")),
                    activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
         connections(), reactions(), behaviours(begin));
@@ -31,26 +31,19 @@ constexpr Slot room = slot(nodes(40), data_bytes(512), depth(2), timers(1), text
 constexpr auto native = bakery(behaviour("oven", compiled<first>, room, at_most(30)));
 constexpr auto interpreted = bakery(behaviour("oven", first, {}, room, at_most(30)));
 
-template <class Firmware> struct Begun : testing::Test, Rig<Firmware> {
+template <class Machine> struct Begun : testing::Test, Machine {
     BehaviourSlot& slot = *this->instance.slot_of("oven");
     Begun() { this->run(5ms); }
     [[nodiscard]] std::string compile(std::string_view text) {
-        std::ranges::copy(text, slot.text().begin());
-        return std::string{slot.compile(text.size(), "second.osd").view()};
+        return Machine::compile(slot, text, "second.osd");
     }
     void change(BehaviourSlot::Change how) {
-        ASSERT_EQ(slot.may(how).view(), "");
-        ASSERT_TRUE(slot.ask(how));
-        ASSERT_TRUE(this->instance.requests().post_change(slot));
+        Machine::change(slot, how);
         this->run(3ms);
-    }
-    void tick() {
-        this->oven().tick.emit();
-        this->run(2ms);
     }
     std::string state_now() { return slot.active() == nullptr ? "none" : this->state(*slot.active()); }
 };
-using Kinds = testing::Types<AtRunTime<native, board>, AtRunTime<interpreted, board>>;
+using Kinds = testing::Types<Rig<native>, Rig<interpreted>>;
 TYPED_TEST_SUITE(Begun, Kinds);
 
 TYPED_TEST(Begun, is_at_work_from_the_start) {
@@ -116,7 +109,7 @@ constexpr auto shut = state_machine<Oven>(
     transitions(transition("closed", "open", on("tick")), transition("open", "closed", on("door.moved"))));
 constexpr auto of_a_table = bakery(behaviour("oven", compiled<shut>, room));
 
-struct BegunTable : Begun<AtRunTime<of_a_table, board>> {};
+struct BegunTable : Begun<Rig<of_a_table>> {};
 
 TEST_F(BegunTable, is_at_work_until_a_script_takes_over) {
     EXPECT_EQ(state_now(), "closed");

@@ -1,18 +1,12 @@
 // The end of a behaviour that takes its time, in an activity that nothing wakes but the behaviour's own wait.
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string_view>
 
 namespace tappet::bakery {
 namespace {
 
 // clang-format off
 constexpr auto sporadic = machine("gate",
-    components(component<Door>("door"), component<Watcher>("watcher")),
+    components(component<Door>("door"), component<Onlooker>("watcher")),
     activities(
         activity("gate", on_work(), at_most(8, 1ms), deadline(500us), budget(50us), runs("door")),
         activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
@@ -20,7 +14,7 @@ constexpr auto sporadic = machine("gate",
     behaviours(behaviour("door", slot(nodes(40), data_bytes(512), depth(3), timers(2), text_bytes(2000), trial(2)))));
 // clang-format on
 
-struct Gate : testing::Test, Rig<AtRunTime<sporadic, board>> {
+struct Gate : testing::Test, Rig<sporadic> {
     Door& gate = *instance.find<Door>("door");
     BehaviourSlot& slot = *instance.slot_of("door");
     Gate() {
@@ -28,10 +22,8 @@ struct Gate : testing::Test, Rig<AtRunTime<sporadic, board>> {
             "StateMachine Slow { initial state A { transition door.moved() select B }\n"
             "state B { transition door.moved() select A }\n"
             "final state End { entry { wait(20ms); set door.open = true; } } }";
-        std::ranges::copy(text, slot.text().begin());
-        EXPECT_EQ(slot.compile(text.size(), "gate.osd").view(), "");
-        EXPECT_TRUE(slot.ask(BehaviourSlot::Change::take_over));
-        EXPECT_TRUE(instance.requests().post_change(slot));
+        EXPECT_EQ(compile(slot, text, "gate.osd"), "");
+        change(slot, BehaviourSlot::Change::take_over);
         run(5ms);
         EXPECT_EQ(state(*slot.active()), "A");
     }

@@ -32,16 +32,14 @@ TEST_F(BehaviourSlotTest, a_script_is_loaded_and_acts_and_nothing_was_there_befo
     EXPECT_EQ(slot.phase(), SlotPhase::trial);
     EXPECT_EQ(slot.script(), "test.osd");
     EXPECT_THAT(oven().told, ElementsAre(1));
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_THAT(oven().told, ElementsAre(1, 10));
     settle();
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
 }
 
 TEST_F(BehaviourSlotTest, its_events_are_heard_only_while_something_loaded_hears_them) {
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_EQ(posted("tick"), 0u);
     load_and_settle(numbered(1));
     const std::uint64_t heard = posted("tick");
@@ -52,8 +50,7 @@ TEST_F(BehaviourSlotTest, its_events_are_heard_only_while_something_loaded_hears
     EXPECT_EQ(posted("moved"), 0u);
     EXPECT_EQ(wish(BehaviourSlot::Change::unload), "");
     run(3ms);
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_EQ(posted("tick"), heard + 1);
 }
 
@@ -64,8 +61,7 @@ TEST_F(BehaviourSlotTest, a_faulty_script_is_refused_with_its_line_and_the_old_o
     EXPECT_THAT(load("StateMachine Faulty {\n    initial state A {\n        entry { do oven.notes(1); }\n"),
                 HasSubstr("did you mean \"note\"?"));
     run(5ms);
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_THAT(oven().told, ElementsAre(10));
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
 }
@@ -77,23 +73,21 @@ TEST_F(BehaviourSlotTest, the_old_behaviour_comes_to_its_final_state_before_the_
     EXPECT_THAT(oven().told, ElementsAre(11, 2));
 }
 
+std::string ends_after(std::string_view wait) {
+    return "StateMachine Slow { initial state A { transition oven.tick() select B }\n"
+           "state B { transition oven.tick() select A }\n"
+           "final state End { entry { wait(" +
+           std::string{wait} + "); do oven.note(2); } } }";
+}
+
 TEST_F(BehaviourSlotTest, an_old_behaviour_that_needs_time_to_end_is_given_it) {
-    load_and_settle("StateMachine Slow { initial state A { transition oven.tick() select B }\n"
-                    "state B { transition oven.tick() select A }\n"
-                    "final state End { entry { wait(20ms); do oven.note(2); } } }");
+    load_and_settle(ends_after("20ms"));
     EXPECT_EQ(load(numbered(3)), "");
     run(10ms);
     EXPECT_EQ(slot.phase(), SlotPhase::handing_over);
     EXPECT_THAT(oven().told, IsEmpty());
     run(20ms);
     EXPECT_THAT(oven().told, ElementsAre(2, 3));
-}
-
-std::string ends_after(std::string_view wait) {
-    return "StateMachine Slow { initial state A { transition oven.tick() select B }\n"
-           "state B { transition oven.tick() select A }\n"
-           "final state End { entry { wait(" +
-           std::string{wait} + "); do oven.note(2); } } }";
 }
 
 TEST_F(BehaviourSlotTest, a_final_state_that_waits_is_finished_before_its_component_stops) {
@@ -143,8 +137,7 @@ TEST_F(BehaviourSlotTest, it_takes_over_at_an_event_of_its_reach) {
     EXPECT_EQ(load(numbered(2), "door.moved"), "");
     run(50ms);
     EXPECT_EQ(slot.phase(), SlotPhase::waiting);
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_THAT(oven().told, ElementsAre(10)); // the old one is at work
     door().moved.emit();
     run(2ms);
@@ -240,8 +233,7 @@ TEST_F(BehaviourSlotTest, one_that_waits_is_let_go_by_a_roll_back_and_what_is_at
     run(2ms);
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
     EXPECT_THAT(oven().told, IsEmpty());
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_THAT(oven().told, ElementsAre(20)) << "the second";
     EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"))
         << "the third was compiled over the first";

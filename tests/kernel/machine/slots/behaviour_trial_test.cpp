@@ -9,10 +9,8 @@ TEST_F(BehaviourSlotTest, while_nobody_asks_it_for_anything_its_trial_does_not_p
     EXPECT_EQ(load(numbered(2, "exit { do oven.note(-1); }")), "");
     run(1s);
     EXPECT_EQ(slot.phase(), SlotPhase::trial) << "only its first program ran, in which nothing failed";
-    oven().tick.emit();
-    run(2ms);
-    oven().tick.emit();
-    run(2ms);
+    tick();
+    tick();
     EXPECT_EQ(slot.last_roll_back(), RollBack::error);
     EXPECT_EQ(state_now(), "Begin") << "the first is at work";
 }
@@ -27,16 +25,14 @@ TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_is_taken_back_and_its_line
                    "    final state End { entry { do oven.note(6); } } }"),
               "");
     run(2ms);
-    oven().tick.emit();
-    run(3ms);
+    tick(3ms);
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
     EXPECT_EQ(slot.last_roll_back(), RollBack::error);
     EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("failed in line 4"));
     EXPECT_FALSE(instance.stop_asked());
     // It was brought to its safe state, and the old one begins anew.
     EXPECT_THAT(oven().told, ElementsAre(11, 5, -1, 6, 1));
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_EQ(state_now(), "Ticked");
 }
 
@@ -65,8 +61,7 @@ TEST_F(BehaviourSlotTest, an_error_after_the_trial_does_what_its_row_says) {
         "final state E {} }");
     for (int i = 0; i < 3; ++i) {
         EXPECT_FALSE(instance.stop_asked());
-        oven().tick.emit();
-        run(3ms);
+        tick(3ms);
     }
     EXPECT_TRUE(instance.stop_asked());
     EXPECT_THAT(std::string{instance.describe_stop().view()}, HasSubstr("failed in line 3"));
@@ -94,8 +89,7 @@ TEST_F(BehaviourSlotTest, one_that_makes_its_activity_late_on_trial_is_taken_bac
     EXPECT_EQ(load(takes(2000)), "");
     run(3ms);
     ASSERT_EQ(slot.phase(), SlotPhase::trial);
-    oven().tick.emit();
-    run(5ms);
+    tick(5ms);
     EXPECT_EQ(slot.last_roll_back(), RollBack::late);
     EXPECT_EQ(slot.describe_roll_back().view(),
               "taken back: test.osd: its activity missed a deadline by it; let it do less in one step");
@@ -107,8 +101,7 @@ TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_i
     EXPECT_EQ(load(takes(200)), "");
     run(3ms);
     for (int i = 0; i < 3; ++i) { // an engine measures its processor once it was busy beyond its budget
-        oven().tick.emit();
-        run(2ms);
+        tick();
     }
     run(2ms);
     EXPECT_EQ(slot.last_roll_back(), RollBack::too_much);
@@ -127,8 +120,7 @@ TEST_F(BehaviourSlotTest, one_whose_statements_take_until_the_deadline_is_stoppe
     run(3ms);
     ASSERT_EQ(slot.phase(), SlotPhase::trial);
     const Time before = instance.clock().now();
-    oven().tick.emit();
-    run(2ms);
+    tick();
     EXPECT_LT(instance.clock().now() - before, 4ms);
     EXPECT_EQ(slot.last_roll_back(), RollBack::left_over);
     EXPECT_THAT(oven().told, testing::Contains(77)) << "its exit program runs although the time is used up";

@@ -1,12 +1,10 @@
 // A machine with a slot, and what loads behaviours into it.
 #pragma once
 
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -18,7 +16,7 @@ using testing::IsEmpty;
 
 // clang-format off
 inline constexpr auto table = machine("bakery",
-    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Watcher>("watcher")),
+    components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Onlooker>("watcher")),
     activities(
         activity("fast", every(1ms), budget(50us), runs("oven", "door")),
         activity("slow", every(5ms), budget(50us), runs("feeder")),
@@ -45,23 +43,20 @@ inline std::string numbered(int number, std::string_view more = {}) {
            "}\n";
 }
 
-class BehaviourSlotTest : public testing::Test, protected Rig<AtRunTime<table, board>> {
+class BehaviourSlotTest : public testing::Test, protected Rig<table> {
 protected:
     BehaviourSlot& slot = *instance.slot_of("oven");
     BehaviourSlotTest() { run(5ms); }
 
     std::string compile(std::string_view text, std::string_view name = "test.osd") {
-        if (text.size() > slot.text().size()) return "too long for the text";
-        std::ranges::copy(text, slot.text().begin());
-        return std::string{slot.compile(text.size(), name).view()};
+        return Rig::compile(slot, text, name);
     }
     std::string wish(BehaviourSlot::Change wish, std::string_view moment = "now") {
         SlotMoment at;
         if (const Sentence fault = slot.parse_moment(moment, at); !fault.empty())
             return std::string{fault.view()};
         if (const Sentence fault = slot.may(wish); !fault.empty()) return std::string{fault.view()};
-        EXPECT_TRUE(slot.ask(wish, at));
-        EXPECT_TRUE(instance.requests().post_change(slot));
+        change(slot, wish, at);
         return {};
     }
     std::string load(std::string_view text, std::string_view moment = "now") {
@@ -72,8 +67,7 @@ protected:
     void settle() {
         run(2ms);
         for (int i = 0; i < 20 && slot.phase() == SlotPhase::trial; ++i) {
-            oven().tick.emit();
-            run(2ms);
+            tick();
         }
     }
     void load_and_settle(std::string_view text) {

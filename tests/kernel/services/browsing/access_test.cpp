@@ -2,7 +2,6 @@
 // of each cycle for everybody, and nothing that one client does reaches another.
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
-#include "kernel/machine/accept.hpp"
 #include "kernel/services/browsing/access.hpp"
 
 #include <memory>
@@ -109,7 +108,7 @@ TEST_F(Press, a_client_that_floods_is_served_its_share_and_no_more) {
     Talker flood{path()};
     Talker quiet{path()};
     run(40ms);
-    auto& service = *instance.find<BrowserService>("browser");
+    auto& service = the<BrowserService>("browser");
     std::size_t sent = 0;
     while (flood.send("1 get ram.speed") && sent < 100'000) ++sent;
     EXPECT_LT(sent, 100'000u) << "its own socket fills";
@@ -200,16 +199,15 @@ TEST_F(Press, a_client_that_dies_in_the_middle_leaves_nothing_behind) {
 }
 
 TEST(Access, without_a_directory_the_machine_runs_and_has_no_door) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
+    PlacedRig<table, board> rig;
+    MachineInstance& instance = rig.instance;
     ASSERT_TRUE(instance.browsing_directory().empty()) << "the board names none";
     PropertyFiles none{{}};
     instance.read_properties_from(none.store());
     ASSERT_TRUE(instance.configure({}));
-    VirtualWorld world{instance};
-    world.start();
-    EXPECT_TRUE(world.run_until(at_ns(0) + 1s));
-    EXPECT_EQ(instance.find<BrowserService>("browser")->requests.last(), 0);
+    rig.world.start();
+    EXPECT_TRUE(rig.run(1s));
+    EXPECT_EQ(rig.the<BrowserService>("browser").requests.last(), 0);
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 // A browser sees behaviours, commands them, and loads scripts into a slot of the running machine (thesis 4.8,
 // 5.1.6, 5.2.5): what it may not do, or did not spell well, is said with its cure.
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/plan/operations.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
@@ -52,35 +51,10 @@ std::string in_quotes(std::string_view text) {
     return word + "\"";
 }
 
-class Behaviours : public testing::Test {
+class Behaviours : public Browsed<with_behaviours> {
 protected:
-    std::string directory = testing::TempDir() + "tappet-behaviours-" + std::to_string(getpid());
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<with_behaviours, board>::machine(), clock};
-    VirtualWorld world{instance};
-
-    void SetUp() override {
-        instance.browse_in(directory);
-        const auto configured = instance.configure({});
-        ASSERT_TRUE(configured) << configured.error().view();
-        world.start();
-        run(50ms);
-        talker = std::make_unique<Talker>(directory + "/press.socket");
-    }
-    ~Behaviours() override {
-        instance.find<BrowserService>("browser")->finalise();
-        std::filesystem::remove_all(directory);
-    }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
-    std::string ask(std::string_view request) {
-        EXPECT_TRUE(talker->send("1 " + std::string{request}));
-        std::string answer;
-        for (int i = 0; i < 20 && answer.empty(); ++i) {
-            run(10ms);
-            answer = talker->receive();
-        }
-        return answer;
-    }
+    std::string ask(std::string_view request) { return Browsed::ask("1 " + std::string{request}); }
+    Ram& ram() { return the<Ram>("ram"); }
     std::string load(std::string_view text, std::string_view moment = "now") {
         constexpr std::size_t piece = 50;
         for (std::size_t at = 0; at < text.size(); at += piece)
@@ -88,7 +62,6 @@ protected:
                         HasSubstr("\"ok\": true"));
         return ask("load ram pressing.osd " + std::string{moment});
     }
-    std::unique_ptr<Talker> talker{};
 };
 
 TEST_F(Behaviours, the_list_shows_each_with_its_status_and_state) {
@@ -96,7 +69,7 @@ TEST_F(Behaviours, the_list_shows_each_with_its_status_and_state) {
     EXPECT_THAT(list,
                 HasSubstr(R"({"name": "ram.cycle", "kind": "machine", "status": "running", "state": "up"})"));
     EXPECT_THAT(list, HasSubstr(R"("slot": "ram", "phase": "empty")"));
-    instance.find<Ram>("ram")->arrived.emit(1.0);
+    ram().arrived.emit(1.0);
     run(5ms);
     EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "down", )"));
     EXPECT_THAT(ask("behaviours ram.cicle"), HasSubstr("did you mean \\\"ram.cycle\\\"?"));
@@ -105,7 +78,7 @@ TEST_F(Behaviours, the_list_shows_each_with_its_status_and_state) {
 TEST_F(Behaviours, one_is_paused_and_stepped_and_sent_to_a_state) {
     EXPECT_THAT(ask("behave pause ram.cycle"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr("paused"));
-    instance.find<Ram>("ram")->arrived.emit(1.0);
+    ram().arrived.emit(1.0);
     run(5ms);
     EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "up")"));
     EXPECT_THAT(ask("behave step ram.cycle"), HasSubstr("\"ok\": true")) << "the event is one step";
@@ -125,7 +98,7 @@ TEST_F(Behaviours, one_says_why_it_is_not_in_a_state) {
                 HasSubstr(R"("name": "ram.cycle", "status": "running", "state": "up", "wanted": "held", )"
                           R"("is_final": false, "path": ["up", "down", "held"], )"
                           R"("ways": [{"from": "up", "to": "down", "event": "arrived", "answer": "open"}])"));
-    instance.find<Ram>("ram")->arrived.emit(1.0);
+    ram().arrived.emit(1.0);
     run(5ms);
     const std::string why = ask("why ram.cycle.held");
     EXPECT_THAT(why, HasSubstr(R"("answer": "guard", "because": "it may not hold", "detail": "too fast"})"));
@@ -148,60 +121,54 @@ TEST_F(Behaviours, why_of_a_script_that_is_replaced_meanwhile_is_not_answered_fr
     for (int round = 0; round < 8; ++round) {
         EXPECT_THAT(load(large), HasSubstr("\"ok\": true"));
         run(50ms);
-        ASSERT_TRUE(talker->send("2 why ram.Far"));
-        ASSERT_TRUE(talker->send("3 unload ram"));
+        ASSERT_TRUE(talker().send("2 why ram.Far"));
+        ASSERT_TRUE(talker().send("3 unload ram"));
         for (int again = 0; again < 2; ++again) { // the first one comes while the unloading is under way
-            ASSERT_TRUE(talker->send("4 script ram 0 " + in_quotes(script)));
-            ASSERT_TRUE(talker->send("5 load ram pressing.tappet"));
+            ASSERT_TRUE(talker().send("4 script ram 0 " + in_quotes(script)));
+            ASSERT_TRUE(talker().send("5 load ram pressing.tappet"));
         }
         run(100ms);
-        std::string answers;
-        for (std::string one = talker->receive(); !one.empty(); one = talker->receive()) answers += one;
+        const std::string answers = talker().receive_all();
         EXPECT_THAT(answers, testing::ContainsRegex("\"id\": 5, \"ok\": true")) << "another stands there";
         EXPECT_THAT(answers, testing::ContainsRegex("\"id\": 2, .*another script took over"));
-        ASSERT_TRUE(talker->send("6 unload ram"));
+        ASSERT_TRUE(talker().send("6 unload ram"));
         run(100ms);
-        static_cast<void>(talker->receive());
+        static_cast<void>(talker().receive());
     }
 }
 
 TEST_F(Behaviours, observers_who_ask_without_end_keep_nobody_of_a_higher_role_waiting) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    instance.engines()[0].stop(clock.now());
-    instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // it answers nobody
+    hang(0);
     std::vector<std::unique_ptr<Talker>> observers;
-    for (int i = 0; i < 4; ++i)
-        observers.push_back(std::make_unique<Talker>(directory + "/press.socket", 65534));
+    for (int i = 0; i < 4; ++i) observers.push_back(std::make_unique<Talker>(path(), 65534));
     for (const auto& each : observers)
         for (std::size_t n = 0; n < BrowserService::max_pending; ++n)
             ASSERT_TRUE(each->send("1 why ram.held"));
     run(100ms);
     EXPECT_THAT(ask("force table.height 7"), HasSubstr("\"ok\": true"));
     std::string answers;
-    for (const auto& each : observers)
-        for (std::string one = each->receive(); !one.empty(); one = each->receive()) answers += one;
+    for (const auto& each : observers) answers += each->receive_all();
     EXPECT_THAT(answers, HasSubstr("too many requests are under way"));
 }
 
 TEST_F(Behaviours, observers_who_ask_for_what_nobody_comes_to_leave_room_in_its_mailbox) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    Engine& engine = instance.engines()[0];
-    engine.stop(clock.now());
-    engine.plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
-    Talker observer{directory + "/press.socket", 65534};
+    Engine& engine = hang(0);
+    Talker observer{path(), 65534};
     std::string answers;
     for (std::size_t n = 0; n < 2 * requests_waiting; ++n) {
         ASSERT_TRUE(observer.send("1 why ram.held"));
         run(n % 4 == 3 ? BrowserService::patience + 100ms : 30ms); // what is taken back lies there still
-        for (std::string one = observer.receive(); !one.empty(); one = observer.receive()) answers += one;
+        answers += observer.receive_all();
     }
     EXPECT_THAT(answers, HasSubstr("that engine has too many requests to serve"));
-    ASSERT_TRUE(talker->send("2 force ram.place 7"));
+    ASSERT_TRUE(talker().send("2 force ram.place 7"));
     run(100ms);
-    EXPECT_EQ(talker->receive(), "") << "it waits for its engine";
+    EXPECT_EQ(talker().receive(), "") << "it waits for its engine";
     engine.start(clock.now());
     run(100ms);
-    EXPECT_THAT(talker->receive(), HasSubstr("\"id\": 2, \"ok\": true"));
+    EXPECT_THAT(talker().receive(), HasSubstr("\"id\": 2, \"ok\": true"));
 }
 
 TEST_F(Behaviours, why_of_a_misspelt_name_is_told_the_nearest) {
@@ -214,7 +181,7 @@ TEST_F(Behaviours, why_of_a_misspelt_name_is_told_the_nearest) {
 TEST_F(Behaviours, a_script_is_loaded_in_pieces_and_its_variables_are_seen) {
     EXPECT_THAT(load(script), HasSubstr("\"ok\": true"));
     run(5ms);
-    instance.find<Ram>("ram")->arrived.emit(1.0);
+    ram().arrived.emit(1.0);
     run(30ms);
     const std::string seen = ask("behaviours ram");
     EXPECT_THAT(seen, HasSubstr(R"("name": "ram.Pressing")"));

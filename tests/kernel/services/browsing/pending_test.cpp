@@ -10,22 +10,20 @@ constexpr std::size_t motion = 0;
 constexpr std::string_view left_safe = R"(does not run; start it first)";
 
 TEST_F(Press, nothing_is_forced_over_what_a_stopped_component_left_behind_while_its_activity_goes_on) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 stop table"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "2 force table.height 7"), left_safe));
-    EXPECT_TRUE(has(ask(talker, "3 get table.height"), R"("value": 50, "flow": "fresh", "forced": false)"));
+    EXPECT_TRUE(has(ask("1 stop table"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 force table.height 7"), left_safe));
+    EXPECT_TRUE(has(ask("3 get table.height"), R"("value": 50, "flow": "fresh", "forced": false)"));
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
-    EXPECT_TRUE(has(ask(talker, "4 force shelf.height 7"), R"("ok": true)")) << "that one runs";
-    EXPECT_TRUE(has(ask(talker, "5 start table"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "6 force table.height 7"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("4 force shelf.height 7"), R"("ok": true)")) << "that one runs";
+    EXPECT_TRUE(has(ask("5 start table"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("6 force table.height 7"), R"("ok": true)"));
 }
 
 TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_whatever_commands_wait) {
-    Talker talker{path()};
-    ask(talker, "1 force ram.limit 40");
-    ask(talker, "2 set ram.speed 0.1");
+    ask("1 force ram.limit 40");
+    ask("2 set ram.speed 0.1");
     for (std::size_t i = 0; i < BrowserService::max_pending; ++i)
-        ASSERT_TRUE(talker.send(std::to_string(10 + i) + " send ram.move_to " + std::to_string(22 + i)));
+        ASSERT_TRUE(talker().send(std::to_string(10 + i) + " send ram.move_to " + std::to_string(22 + i)));
     run(100ms);
     ram().target = 1; // none of them comes to its end
     run(100ms);
@@ -66,39 +64,32 @@ TEST_F(Press, commands_of_operators_leave_engineers_some) {
 }
 
 TEST_F(Press, nothing_is_forced_that_was_asked_for_in_the_moment_of_the_stop) {
-    Talker talker{path()};
     for (const char* request : {"1 stop ram", "2 force ram.place 33", "3 force ram.limit 5"})
-        ASSERT_TRUE(talker.send(request));
+        ASSERT_TRUE(talker().send(request));
     run(50ms);
-    std::string answers;
-    for (std::string each = talker.receive(); !each.empty(); each = talker.receive()) answers += each;
+    const std::string answers = talker().receive_all();
     EXPECT_TRUE(has(answers, R"("id": 1, "ok": true)")) << answers;
     for (const char* refused : {R"("id": 2, "ok": false)", R"("id": 3, "ok": false)"})
         EXPECT_TRUE(has(answers, refused)) << answers;
     EXPECT_TRUE(has(answers, left_safe)) << answers;
     EXPECT_EQ(ram().place.last(), 0.0);
-    EXPECT_TRUE(has(ask(talker, "4 get ram.place"), R"("value": 0, "flow": "fresh", "forced": false)"));
-    EXPECT_TRUE(has(ask(talker, "5 get ram.limit"), R"("forced": false)"));
+    EXPECT_TRUE(has(ask("4 get ram.place"), R"("value": 0, "flow": "fresh", "forced": false)"));
+    EXPECT_TRUE(has(ask("5 get ram.limit"), R"("forced": false)"));
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
 TEST_F(Press, a_request_that_its_client_was_told_is_not_done_is_not_done_later_either) {
-    Engine& engine = instance.engines()[motion];
-    engine.stop(clock.now());
-    engine.plan().parts[0].state.store(ComponentState::running); // as of a thread that does not come
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 call ram.let_go", 3s), "its engine did not come to it; nothing was done"));
+    Engine& engine = hang(motion);
+    EXPECT_TRUE(has(ask("1 call ram.let_go", 3s), "its engine did not come to it; nothing was done"));
     engine.start(clock.now());
     run(100ms);
     EXPECT_EQ(ram().let_goes, 0);
-    EXPECT_TRUE(has(ask(talker, "2 call ram.let_go"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 call ram.let_go"), R"("ok": true)"));
     EXPECT_EQ(ram().let_goes, 1);
 }
 
 TEST_F(Press, requests_that_nobody_comes_to_lock_nobody_out_of_the_rest) {
-    Engine& engine = instance.engines()[motion];
-    engine.stop(clock.now());
-    engine.plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
+    Engine& engine = hang(motion);
     Talker talker{path()}, other{path()};
     for (std::size_t i = 0; i < 3 * BrowserService::max_pending; ++i) {
         for (std::size_t k = 0; k < 4; ++k) ASSERT_TRUE(talker.send("1 call ram.let_go"));
@@ -122,8 +113,7 @@ TEST_F(Press, of_an_activity_that_stopped_with_a_component_that_failed_is_told_a
     Engine& engine = instance.engines()[motion];
     engine.stop(clock.now());
     engine.plan().parts[0].state.store(ComponentState::failed);
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 set ram.speed 3"), "is stopped, and nothing of it can be changed"));
+    EXPECT_TRUE(has(ask("1 set ram.speed 3"), "is stopped, and nothing of it can be changed"));
 }
 
 /// Counts how often it ran; may try to take itself back meanwhile.

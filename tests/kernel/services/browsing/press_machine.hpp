@@ -119,7 +119,7 @@ inline constexpr auto table = machine("press",
         activity("archive", on_work(), not_real_time, runs("archive"))),
     connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.light", "lamp.wanted", wakes)),
     reactions(), behaviours());
-inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024,
+inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024,
                              .browsing = {.mode = 0666, .roles = roles(user(1001, Role::machine_operator))}};
 // clang-format on
 

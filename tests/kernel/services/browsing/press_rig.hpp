@@ -1,13 +1,12 @@
-// The press under virtual time, and a client that talks to it.
+// Machines under virtual time that are browsed, the press above all, and a client that talks to them.
 #pragma once
 
-#include "kernel/machine/accept.hpp"
 #include "kernel/services/configuration/property_files.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 #include "tests/kernel/services/browsing/press_machine.hpp"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +38,12 @@ public:
         room.resize(received.bytes);
         return room;
     }
+    /// All that wait.
+    std::string receive_all() {
+        std::string all;
+        for (std::string each = receive(); !each.empty(); each = receive()) all += each;
+        return all;
+    }
     void close() { connection_->close(); }
     [[nodiscard]] bool gone() {
         char byte = 0;
@@ -57,43 +62,62 @@ private:
     Connected connection_;
 };
 
-class Press : public testing::Test {
+/// A machine that is browsed.
+template <const auto& of_table> class Browsed : public testing::Test, protected PlacedRig<of_table, board> {
 protected:
-    std::string directory = testing::TempDir() + "tappet-browsing-" + std::to_string(getpid());
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
+    std::string directory = testing::TempDir() + "tappet-browsed-" + std::to_string(getpid());
     PropertyFiles files{directory};
 
     void SetUp() override {
-        instance.browse_in(directory);
-        instance.read_properties_from(files.store());
-        const auto configured = instance.configure({});
+        this->instance.browse_in(directory);
+        this->instance.read_properties_from(files.store());
+        const auto configured = this->instance.configure({});
         ASSERT_TRUE(configured) << configured.error().view();
-        world.start();
-        run(50ms);
+        this->world.start();
+        this->run(50ms);
     }
-    ~Press() override {
-        instance.find<BrowserService>("browser")->finalise();
+    ~Browsed() override {
+        this->template the<BrowserService>("browser").finalise();
         std::filesystem::remove_all(directory);
     }
-    std::string path() const { return directory + "/press.socket"; }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
-    /// What comes first after a request, within the time of a few cycles.
-    std::string ask(Talker& talker, std::string_view request, Duration time = 100ms) {
-        EXPECT_TRUE(talker.send(request));
+    std::string path() const { return directory + "/" + std::string{of_table.view().name} + ".socket"; }
+    /// Who asks where the test names nobody; connected when it is wanted.
+    Talker& talker() {
+        if (!talker_) talker_.emplace(path());
+        return *talker_;
+    }
+    /// What comes first within the time.
+    std::string next(Talker& to, Duration time = 200ms) {
         std::string answer;
-        const Time end = clock.now() + time;
-        while (answer.empty() && clock.now() < end) {
-            run(10ms);
-            answer = talker.receive();
+        for (const Time end = this->clock.now() + time; answer.empty() && this->clock.now() < end;) {
+            this->run(10ms);
+            answer = to.receive();
         }
         return answer;
     }
-    Ram& ram() { return *instance.find<Ram>("ram"); }
+    std::string ask(Talker& who, std::string_view request, Duration time = 100ms) {
+        EXPECT_TRUE(who.send(request));
+        return next(who, time);
+    }
+    std::string ask(std::string_view request, Duration time = 100ms) { return ask(talker(), request, time); }
+    /// As of a thread that does not come; it starts again by start().
+    Engine& hang(std::size_t activity) {
+        Engine& engine = this->instance.engines()[activity];
+        engine.stop(this->clock.now());
+        engine.plan().parts[0].state.store(ComponentState::running);
+        return engine;
+    }
     static bool has(const std::string& text, std::string_view part) {
         return text.find(part) != std::string::npos;
     }
+
+private:
+    std::optional<Talker> talker_;
+};
+
+class Press : public Browsed<table> {
+protected:
+    Ram& ram() { return the<Ram>("ram"); }
 };
 
 } // namespace tappet::press

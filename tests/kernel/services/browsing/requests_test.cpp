@@ -8,19 +8,17 @@ namespace tappet::press {
 namespace {
 
 TEST_F(Press, hello_tells_the_machine_and_who_the_client_is_to_it) {
-    Talker talker{path()};
-    const std::string answer = ask(talker, "7 hello");
+    const std::string answer = ask("7 hello");
     for (const char* part : {R"("id": 7)", R"("ok": true)", R"("machine": "press")", R"("role": "engineer")",
                              R"("protocol": 1)", R"("board": "test")"})
         EXPECT_TRUE(has(answer, part)) << answer;
 }
 
 TEST_F(Press, map_hands_out_the_memory_read_only) {
-    Talker talker{path()};
-    ASSERT_TRUE(talker.send("1 map"));
+    ASSERT_TRUE(talker().send("1 map"));
     run(40ms);
     int descriptor = -1;
-    EXPECT_TRUE(has(talker.receive(&descriptor), R"("ok": true)"));
+    EXPECT_TRUE(has(talker().receive(&descriptor), R"("ok": true)"));
     ASSERT_GE(descriptor, 0);
     const auto block = os::map_to_read(descriptor);
     close(descriptor);
@@ -31,93 +29,85 @@ TEST_F(Press, map_hands_out_the_memory_read_only) {
 }
 
 TEST_F(Press, get_reads_ports_and_properties_with_what_is_known_of_them) {
-    Talker talker{path()};
-    EXPECT_EQ(ask(talker, "1 get ram.speed"),
+    EXPECT_EQ(ask("1 get ram.speed"),
               "{\"id\": 1, \"ok\": true, \"values\": [{\"name\": \"ram.speed\", \"value\": 1}]}\n");
-    const std::string answer = ask(talker, "2 get ram.limit table.height");
+    const std::string answer = ask("2 get ram.limit table.height");
     EXPECT_TRUE(has(answer, R"("name": "ram.limit", "value": 50, "flow": "fresh", "forced": false)"))
         << answer;
     EXPECT_TRUE(has(answer, R"("name": "table.height", "value": 50)")) << answer;
-    EXPECT_TRUE(has(ask(talker, "3 get browser.clients"), R"("value": 1)"));
+    EXPECT_TRUE(has(ask("3 get browser.clients"), R"("value": 1)"));
 }
 
 TEST_F(Press, set_changes_several_properties_as_one) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 set ram.speed 2.5 ram.force 40"), R"("set": 2)"));
+    EXPECT_TRUE(has(ask("1 set ram.speed 2.5 ram.force 40"), R"("set": 2)"));
     EXPECT_EQ(ram().speed.get(), 2.5);
     EXPECT_EQ(ram().force.get(), 40);
 }
 
 TEST_F(Press, set_changes_nothing_when_one_value_is_wrong) {
-    Talker talker{path()};
     for (const char* request : {"1 set ram.speed 2 ram.force 101", "2 set ram.speed 2 ram.force plenty",
                                 "3 set ram.speed 20 ram.force 100", "4 set ram.speed 2 ram.force",
                                 "5 set ram.speed 2 browser.log false", "6 set ram.speed nan"}) {
-        const std::string answer = ask(talker, request);
+        const std::string answer = ask(request);
         EXPECT_TRUE(has(answer, R"("ok": false)")) << request << answer;
         EXPECT_EQ(ram().speed.get(), 1.0) << request;
         EXPECT_EQ(ram().force.get(), 10.0) << request;
     }
-    EXPECT_TRUE(has(ask(talker, "7 set ram.speed 20 ram.force 100"), "speed times force is over 100"))
+    EXPECT_TRUE(has(ask("7 set ram.speed 20 ram.force 100"), "speed times force is over 100"))
         << "the component's own words";
 }
 
 TEST_F(Press, a_forced_output_shows_everywhere_and_is_released_again) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 force table.height 30"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("1 force table.height 30"), R"("ok": true)"));
     run(50ms);
     EXPECT_EQ(ram().limit.get(), 30.0);
     EXPECT_EQ(instance.observation().forced_ports().load(), 1u);
-    EXPECT_TRUE(has(ask(talker, "2 get table.height"), R"("value": 30, "flow": "fresh", "forced": true)"));
-    EXPECT_TRUE(has(ask(talker, "3 forced"), R"("forced": ["table.height"])"));
-    EXPECT_TRUE(has(ask(talker, "4 force table.height 31"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 get table.height"), R"("value": 30, "flow": "fresh", "forced": true)"));
+    EXPECT_TRUE(has(ask("3 forced"), R"("forced": ["table.height"])"));
+    EXPECT_TRUE(has(ask("4 force table.height 31"), R"("ok": true)"));
     EXPECT_EQ(instance.observation().forced_ports().load(), 1u) << "forced twice is forced";
-    EXPECT_TRUE(has(ask(talker, "5 release table.height"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("5 release table.height"), R"("ok": true)"));
     run(50ms);
     EXPECT_EQ(ram().limit.get(), 50.0);
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
-    EXPECT_TRUE(has(ask(talker, "6 forced"), R"("forced": [])"));
+    EXPECT_TRUE(has(ask("6 forced"), R"("forced": [])"));
 }
 
 TEST_F(Press, a_forced_input_is_what_its_component_reads) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
     EXPECT_EQ(ram().limit.get(), 5.0);
-    EXPECT_EQ(instance.find<Table>("table")->height.last(), 50.0);
-    EXPECT_TRUE(has(ask(talker, "2 get ram.limit"), R"("value": 5, "flow": "fresh", "forced": true)"));
-    EXPECT_TRUE(has(ask(talker, "3 release ram.limit"), R"("ok": true)"));
+    EXPECT_EQ(the<Table>("table").height.last(), 50.0);
+    EXPECT_TRUE(has(ask("2 get ram.limit"), R"("value": 5, "flow": "fresh", "forced": true)"));
+    EXPECT_TRUE(has(ask("3 release ram.limit"), R"("ok": true)"));
     EXPECT_EQ(ram().limit.get(), 50.0);
 }
 
 TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_it_and_its_safe_value_flows) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 force ram.place 33"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "2 force ram.limit 5"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "3 stop ram"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "4 get ram.place"), R"("value": 0, "flow": "fresh", "forced": false)"));
+    EXPECT_TRUE(has(ask("1 force ram.place 33"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("3 stop ram"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("4 get ram.place"), R"("value": 0, "flow": "fresh", "forced": false)"));
     EXPECT_EQ(ram().limit_at_stop, 50.0) << "the forced 5 would hide the last word of whoever writes it";
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
-    EXPECT_TRUE(has(ask(talker, "5 forced"), R"("forced": [])"));
+    EXPECT_TRUE(has(ask("5 forced"), R"("forced": [])"));
 }
 
 TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_those_that_read_it) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "2 stop table"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 stop table"), R"("ok": true)"));
     run(20ms);
     EXPECT_EQ(ram().limit.get(), 50.0) << "what the table left behind";
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
-    EXPECT_TRUE(has(ask(talker, "3 force ram.limit 6"), R"("ok": true)")) << "who wants it again, says so";
-    EXPECT_TRUE(has(ask(talker, "4 stop activity:slow"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("3 force ram.limit 6"), R"("ok": true)")) << "who wants it again, says so";
+    EXPECT_TRUE(has(ask("4 stop activity:slow"), R"("ok": true)"));
     run(20ms);
     EXPECT_EQ(ram().limit.get(), 50.0);
 }
 
 TEST_F(Press, a_stop_that_no_browser_asked_for_ends_what_is_forced_of_those_that_read_it) {
-    Talker talker{path()};
     const std::size_t table = find_component(instance.machine().table, "table");
     for (const LifeChange change : {LifeChange::stop, LifeChange::restart}) {
-        EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
+        EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
         static_cast<void>(instance.life().ask_component(table, change));
         run(60ms);
         EXPECT_EQ(ram().limit.get(), 50.0);
@@ -128,8 +118,7 @@ TEST_F(Press, a_stop_that_no_browser_asked_for_ends_what_is_forced_of_those_that
 }
 
 TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_although_the_browsers_activity_stands) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
     static_cast<void>(world.change_activity(
         instance.machine().index.activity[find_component(instance.machine().table, "browser")],
         LifeChange::stop));
@@ -141,10 +130,9 @@ TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_although_the_browsers_a
 }
 
 TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had_stopped_before) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 force ram.place 33"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "2 force ram.limit 5"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "3 force table.height 7"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("1 force ram.place 33"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 force ram.limit 5"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("3 force table.height 7"), R"("ok": true)"));
     run(20ms);
     EXPECT_EQ(instance.observation().forced_ports().load(), 3u);
     world.stop();
@@ -157,30 +145,27 @@ TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had
 }
 
 TEST_F(Press, what_cannot_be_forced_is_refused_with_the_reason) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 force table.parts 3"), "is a buffered port"));
-    EXPECT_TRUE(has(ask(talker, "2 force ram.speed 3"), "is a property, not an input or an output"));
-    EXPECT_TRUE(has(ask(talker, "3 force ram.limit far"), R"("code": "bad_value")"));
+    EXPECT_TRUE(has(ask("1 force table.parts 3"), "is a buffered port"));
+    EXPECT_TRUE(has(ask("2 force ram.speed 3"), "is a property, not an input or an output"));
+    EXPECT_TRUE(has(ask("3 force ram.limit far"), R"("code": "bad_value")"));
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
 TEST_F(Press, a_method_is_called_in_its_components_engine_and_gives_its_result) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 call ram.distance 8"), R"("result": 8)"));
-    EXPECT_TRUE(has(ask(talker, "2 call ram.halt"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "3 call ram.distance"), "takes 1 arguments"));
-    EXPECT_TRUE(has(ask(talker, "4 call ram.distance far"), R"("code": "bad_value")"));
-    EXPECT_TRUE(has(ask(talker, "5 call ram.move_to 3"), "is a command"));
+    EXPECT_TRUE(has(ask("1 call ram.distance 8"), R"("result": 8)"));
+    EXPECT_TRUE(has(ask("2 call ram.halt"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("3 call ram.distance"), "takes 1 arguments"));
+    EXPECT_TRUE(has(ask("4 call ram.distance far"), R"("code": "bad_value")"));
+    EXPECT_TRUE(has(ask("5 call ram.move_to 3"), "is a command"));
 }
 
 TEST_F(Press, a_command_is_followed_to_its_end) {
-    Talker talker{path()};
-    const std::string answer = ask(talker, "1 send ram.move_to 40");
+    const std::string answer = ask("1 send ram.move_to 40");
     EXPECT_TRUE(has(answer, R"("ok": true, "state": "sent")")) << answer;
     std::vector<std::string> packets;
     for (int i = 0; i < 20; ++i) {
         run(10ms);
-        for (std::string each = talker.receive(); !each.empty(); each = talker.receive())
+        for (std::string each = talker().receive(); !each.empty(); each = talker().receive())
             packets.push_back(each);
     }
     ASSERT_FALSE(packets.empty());
@@ -191,67 +176,61 @@ TEST_F(Press, a_command_is_followed_to_its_end) {
 }
 
 TEST_F(Press, a_command_that_is_rejected_says_so) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 send ram.move_to 51"), R"("state": "sent")"));
+    EXPECT_TRUE(has(ask("1 send ram.move_to 51"), R"("state": "sent")"));
     run(50ms);
-    const std::string packet = talker.receive();
+    const std::string packet = talker().receive();
     EXPECT_TRUE(has(packet, R"("state": "rejected")")) << packet;
     EXPECT_TRUE(has(packet, R"("final": true)")) << packet;
 }
 
 TEST_F(Press, a_component_is_stopped_and_started_while_the_rest_runs) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 stop ram"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("1 stop ram"), R"("ok": true)"));
     EXPECT_EQ(instance.life().state_of(0), ComponentState::stopped);
     EXPECT_EQ(instance.life().state_of(1), ComponentState::running);
-    EXPECT_TRUE(has(ask(talker, "2 call ram.distance 8"), "does not run; start it first"));
-    EXPECT_TRUE(has(ask(talker, "3 start ram"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 call ram.distance 8"), "does not run; start it first"));
+    EXPECT_TRUE(has(ask("3 start ram"), R"("ok": true)"));
     EXPECT_EQ(instance.life().state_of(0), ComponentState::running);
-    EXPECT_TRUE(has(ask(talker, "4 restart ram"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("4 restart ram"), R"("ok": true)"));
 }
 
 TEST_F(Press, an_event_is_told_to_whoever_subscribed_until_it_unsubscribes) {
-    Talker talker{path()};
     Talker other{path()};
-    EXPECT_TRUE(has(ask(talker, "5 subscribe ram.arrived"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "6 subscribe ram.arrived"), "subscribed to already"));
+    EXPECT_TRUE(has(ask("5 subscribe ram.arrived"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("6 subscribe ram.arrived"), "subscribed to already"));
     EXPECT_TRUE(has(ask(other, "1 send ram.move_to 20"), R"("state": "sent")"));
     run(200ms);
-    const std::string event = talker.receive();
+    const std::string event = talker().receive();
     EXPECT_TRUE(has(event, R"({"id": 5, "event": "ram.arrived", "time_ns": )")) << event;
     EXPECT_TRUE(has(event, R"("arguments": [20], "lost": 0})")) << event;
-    EXPECT_EQ(talker.receive(), "") << "once";
-    EXPECT_TRUE(has(ask(talker, "7 unsubscribe ram.arrived"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "8 unsubscribe ram.arrived"), "is not subscribed to"));
+    EXPECT_EQ(talker().receive(), "") << "once";
+    EXPECT_TRUE(has(ask("7 unsubscribe ram.arrived"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("8 unsubscribe ram.arrived"), "is not subscribed to"));
     EXPECT_TRUE(other.send("2 send ram.move_to 10"));
     run(200ms);
-    EXPECT_EQ(talker.receive(), "");
+    EXPECT_EQ(talker().receive(), "");
 }
 
 TEST_F(Press, an_event_of_large_arguments_is_told_too_and_of_too_large_ones_refused) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 subscribe table.pictured"), "more than the 512 that browsers are told"));
-    EXPECT_TRUE(has(ask(talker, "2 subscribe table.scanned"), R"("ok": true)"));
-    instance.find<Table>("table")->scanned.emit({1, 2, 3, 4, 5, 6, 7});
-    instance.find<Table>("table")->scanned.emit({7, 6, 5, 4, 3, 2, 1});
+    EXPECT_TRUE(has(ask("1 subscribe table.pictured"), "more than the 512 that browsers are told"));
+    EXPECT_TRUE(has(ask("2 subscribe table.scanned"), R"("ok": true)"));
+    the<Table>("table").scanned.emit({1, 2, 3, 4, 5, 6, 7});
+    the<Table>("table").scanned.emit({7, 6, 5, 4, 3, 2, 1});
     run(100ms);
-    EXPECT_TRUE(has(talker.receive(), R"("arguments": [[1, 2, 3, 4, 5, 6, 7]])"));
-    EXPECT_TRUE(has(talker.receive(), R"("arguments": [[7, 6, 5, 4, 3, 2, 1]])"));
+    EXPECT_TRUE(has(talker().receive(), R"("arguments": [[1, 2, 3, 4, 5, 6, 7]])"));
+    EXPECT_TRUE(has(talker().receive(), R"("arguments": [[7, 6, 5, 4, 3, 2, 1]])"));
 }
 
 TEST_F(Press, a_refusal_is_utf_8_whatever_was_asked) {
-    Talker talker{path()};
-    const std::string answer = ask(talker, "1 get caf\xc3\xa9\xff.x");
+    const std::string answer = ask("1 get caf\xc3\xa9\xff.x");
     EXPECT_TRUE(has(answer, "caf\xc3\xa9?\\\"")) << answer;
 }
 
 TEST_F(Press, the_log_tells_of_what_was_accepted_and_is_not_done) {
-    Talker talker{path()};
-    instance.find<BrowserService>("browser")->log.set(true);
+    the<BrowserService>("browser").log.set(true);
     testing::internal::CaptureStdout();
-    ask(talker, "1 stop table");
-    ask(talker, "2 force table.height 7");
-    talker.send("3 send ram.move_to -1");
+    ask("1 stop table");
+    ask("2 force table.height 7");
+    talker().send("3 send ram.move_to -1");
     run(100ms);
     const std::string log = testing::internal::GetCapturedStdout();
     EXPECT_TRUE(has(log, ": 2 force table.height 7\nbrowser: not done (not_now) at ")) << log;
@@ -260,15 +239,13 @@ TEST_F(Press, the_log_tells_of_what_was_accepted_and_is_not_done) {
 }
 
 TEST_F(Press, what_may_block_is_called_and_sent_where_no_deadline_is) {
-    Talker talker{path()};
-    EXPECT_TRUE(talker.send("1 send archive.store 1"));
+    EXPECT_TRUE(talker().send("1 send archive.store 1"));
     run(100ms);
-    std::string told;
-    for (std::string packet = talker.receive(); !packet.empty(); packet = talker.receive()) told += packet;
+    const std::string told = talker().receive_all();
     EXPECT_TRUE(has(told, R"("state": "done")")) << told;
-    EXPECT_TRUE(has(ask(talker, "2 call archive.count"), R"("result": 1)"));
+    EXPECT_TRUE(has(ask("2 call archive.count"), R"("result": 1)"));
     for (const char* call : {"3 call ram.weigh 30", "4 call ram.survey"}) { // also one that is any_thread
-        const std::string refused = ask(talker, call);
+        const std::string refused = ask(call);
         EXPECT_TRUE(has(refused, R"("code": "unsupported")")) << refused;
         EXPECT_TRUE(has(refused, "may block, and activity \\\"motion\\\" of its component is real-time"))
             << refused;
@@ -276,27 +253,25 @@ TEST_F(Press, what_may_block_is_called_and_sent_where_no_deadline_is) {
 }
 
 TEST_F(Press, a_force_and_its_end_are_heeded_by_who_rests) {
-    Talker talker{path()};
-    const Lamp& lamp = *instance.find<Lamp>("lamp");
-    EXPECT_TRUE(has(ask(talker, "1 force lamp.wanted true"), R"("ok": true)"));
+    const Lamp& lamp = the<Lamp>("lamp");
+    EXPECT_TRUE(has(ask("1 force lamp.wanted true"), R"("ok": true)"));
     EXPECT_TRUE(lamp.lit);
-    EXPECT_TRUE(has(ask(talker, "2 release lamp.wanted"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 release lamp.wanted"), R"("ok": true)"));
     EXPECT_FALSE(lamp.lit);
 }
 
 TEST_F(Press, whoever_subscribed_is_told_what_came_while_the_browser_stood) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 subscribe ram.arrived"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "2 send ram.move_to 20"), R"("state": "sent")"));
+    EXPECT_TRUE(has(ask("1 subscribe ram.arrived"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 send ram.move_to 20"), R"("state": "sent")"));
     const std::size_t browser = find_component(instance.machine().table, "browser");
     static_cast<void>(instance.life().ask_component(browser, LifeChange::stop));
     run(200ms);
     static_cast<void>(instance.life().ask_component(browser, LifeChange::start));
     run(50ms);
-    EXPECT_TRUE(talker.send("3 send ram.move_to 10"));
+    EXPECT_TRUE(talker().send("3 send ram.move_to 10"));
     run(200ms);
     std::string told;
-    for (std::string packet = talker.receive(); !packet.empty(); packet = talker.receive())
+    for (std::string packet = talker().receive(); !packet.empty(); packet = talker().receive())
         if (has(packet, R"("event")")) told += packet;
     EXPECT_TRUE(has(told, R"("arguments": [10], "lost": 1})")) << told;
     EXPECT_FALSE(has(told, R"("arguments": [20])")) << told;
@@ -319,40 +294,36 @@ TEST_F(Press, an_event_stays_subscribed_while_anybody_wants_it) {
 }
 
 TEST_F(Press, the_browser_does_not_stop_itself) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 stop browser"), R"("code": "unsupported")"));
-    EXPECT_TRUE(has(ask(talker, "2 stop activity:browser"), R"("code": "unsupported")"));
+    EXPECT_TRUE(has(ask("1 stop browser"), R"("code": "unsupported")"));
+    EXPECT_TRUE(has(ask("2 stop activity:browser"), R"("code": "unsupported")"));
 }
 
 TEST_F(Press, an_activity_is_stopped_and_started_and_meanwhile_nothing_of_it_is_changed) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 stop slow"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "2 force table.height 3"), "is stopped"));
-    EXPECT_TRUE(has(ask(talker, "3 start activity:slow"), R"("ok": true)"));
-    EXPECT_TRUE(has(ask(talker, "4 force table.height 3"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("1 stop slow"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("2 force table.height 3"), "is stopped"));
+    EXPECT_TRUE(has(ask("3 start activity:slow"), R"("ok": true)"));
+    EXPECT_TRUE(has(ask("4 force table.height 3"), R"("ok": true)"));
 }
 
 TEST_F(Press, names_that_are_wrong_lead_to_the_right_ones) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 get ram.sped"), R"(did you mean \"speed\"?)"));
-    EXPECT_TRUE(has(ask(talker, "2 get rum.speed"), R"(did you mean \"ram\"?)"));
-    EXPECT_TRUE(has(ask(talker, "3 get speed"), R"(write \"component.facet\")"));
-    EXPECT_TRUE(has(ask(talker, "4 hallo"), R"(did you mean \"hello\"?)"));
-    EXPECT_TRUE(has(ask(talker, "5 stop motoin"), R"(did you mean \"motion\"?)"));
+    EXPECT_TRUE(has(ask("1 get ram.sped"), R"(did you mean \"speed\"?)"));
+    EXPECT_TRUE(has(ask("2 get rum.speed"), R"(did you mean \"ram\"?)"));
+    EXPECT_TRUE(has(ask("3 get speed"), R"(write \"component.facet\")"));
+    EXPECT_TRUE(has(ask("4 hallo"), R"(did you mean \"hello\"?)"));
+    EXPECT_TRUE(has(ask("5 stop motoin"), R"(did you mean \"motion\"?)"));
 }
 
 TEST_F(Press, what_is_no_request_is_refused_and_the_next_is_served) {
-    Talker talker{path()};
     for (const std::string& packet :
          {std::string{"hello"}, std::string{"1"}, std::string{"-1 hello"}, std::string{"99999999999 hello"},
           std::string{"1 get \"ram"}, std::string{"1 get [1, 2"}, std::string{"1 hello\x01"},
           std::string(5000, 'x'), std::string{"1 get"}, std::string{"1 hello you"}, std::string(4000, '1')}) {
-        const std::string answer = ask(talker, packet);
+        const std::string answer = ask(packet);
         EXPECT_TRUE(has(answer, R"("code": "bad_request")")) << packet.substr(0, 40) << answer;
         EXPECT_TRUE(has(answer, R"("error": ")"));
     }
-    EXPECT_TRUE(has(ask(talker, "8 hello"), R"("id": 8, "ok": true)"));
-    EXPECT_EQ(instance.find<BrowserService>("browser")->refused.last(), 11);
+    EXPECT_TRUE(has(ask("8 hello"), R"("id": 8, "ok": true)"));
+    EXPECT_EQ(the<BrowserService>("browser").refused.last(), 11);
 }
 
 } // namespace

@@ -16,10 +16,9 @@ protected:
 };
 
 TEST_F(Saving, writes_what_was_set_and_says_how_many_files) {
-    Talker talker{path()};
     EXPECT_EQ(kept(), "");
-    EXPECT_TRUE(has(ask(talker, "1 set ram.speed 2.5 ram.force 40"), R"("set": 2)"));
-    EXPECT_TRUE(has(ask(talker, "2 save"), R"("id": 2, "ok": true, "files": 1)"));
+    EXPECT_TRUE(has(ask("1 set ram.speed 2.5 ram.force 40"), R"("set": 2)"));
+    EXPECT_TRUE(has(ask("2 save"), R"("id": 2, "ok": true, "files": 1)"));
     EXPECT_TRUE(has(kept(), "<value>2.5</value>")) << kept();
     PropertyTransaction again;
     Ram ram_of_tomorrow;
@@ -31,29 +30,24 @@ TEST_F(Saving, writes_what_was_set_and_says_how_many_files) {
 }
 
 TEST_F(Saving, of_one_component_needs_one_that_has_a_file) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 save ram"), R"("files": 1)"));
-    EXPECT_TRUE(has(ask(talker, "2 save table"), "has no properties file; give its row"));
-    EXPECT_TRUE(has(ask(talker, "3 save rma"), R"(did you mean \"ram\"?)"));
+    EXPECT_TRUE(has(ask("1 save ram"), R"("files": 1)"));
+    EXPECT_TRUE(has(ask("2 save table"), "has no properties file; give its row"));
+    EXPECT_TRUE(has(ask("3 save rma"), R"(did you mean \"ram\"?)"));
 }
 
 TEST_F(Saving, that_cannot_be_done_says_why_and_leaves_the_old_file) {
-    Talker talker{path()};
-    EXPECT_TRUE(has(ask(talker, "1 save"), R"("files": 1)"));
+    EXPECT_TRUE(has(ask("1 save"), R"("files": 1)"));
     const std::string before = kept();
     std::filesystem::create_directory(directory + "/ram.cpf.new"); // where the new one would be written
-    EXPECT_TRUE(has(ask(talker, "2 set ram.speed 3"), R"("set": 1)"));
-    EXPECT_TRUE(has(ask(talker, "3 save"), "the old file stands"));
+    EXPECT_TRUE(has(ask("2 set ram.speed 3"), R"("set": 1)"));
+    EXPECT_TRUE(has(ask("3 save"), "the old file stands"));
     EXPECT_EQ(kept(), before);
 }
 
 TEST_F(Saving, of_an_engine_that_does_not_come_is_given_up_and_keeps_nobody_from_saving_again) {
-    Engine& engine = instance.engines()[0];
-    engine.stop(clock.now());
-    engine.plan().parts[0].state.store(ComponentState::running); // as of a thread that does not come
-    Talker talker{path()};
+    Engine& engine = hang(0);
     for (int i = 0; i < 3; ++i) {
-        const std::string answer = ask(talker, "1 save", 3s);
+        const std::string answer = ask("1 save", 3s);
         EXPECT_TRUE(has(answer, R"("code": "not_now")") &&
                     has(answer, R"(look at activity \"motion\"; the old file stands)"))
             << answer;
@@ -61,7 +55,7 @@ TEST_F(Saving, of_an_engine_that_does_not_come_is_given_up_and_keeps_nobody_from
     engine.start(clock.now());
     run(100ms);
     EXPECT_EQ(kept(), "") << "what was called not saved is not saved later";
-    EXPECT_TRUE(has(ask(talker, "2 save"), R"("files": 1)"));
+    EXPECT_TRUE(has(ask("2 save"), R"("files": 1)"));
 }
 
 } // namespace

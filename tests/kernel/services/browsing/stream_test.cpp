@@ -1,10 +1,7 @@
 // Events that are told to browsers: what one client asks for costs no other of a higher role its own.
-#include "kernel/machine/accept.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include <gmock/gmock.h>
-
-#include <unistd.h>
 
 namespace tappet {
 namespace {
@@ -38,16 +35,10 @@ constexpr auto table = machine("ticking",
     connections(), reactions(), behaviours());
 // clang-format on
 
-TEST(Subscriptions, of_observers_cost_nobody_of_a_higher_role_an_event_and_count_in_nobodys_losses) {
+using Subscriptions = press::Browsed<table>;
+
+TEST_F(Subscriptions, of_observers_cost_nobody_of_a_higher_role_an_event_and_count_in_nobodys_losses) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    const std::string directory = testing::TempDir() + "tappet-ticking-" + std::to_string(getpid());
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, press::board>::machine(), clock};
-    VirtualWorld world{instance};
-    instance.browse_in(directory);
-    ASSERT_TRUE(instance.configure({}));
-    world.start();
-    const auto run = [&](Duration time) { static_cast<void>(world.run_until(clock.now() + time)); };
     /// How many it is told in two seconds, in which twenty come.
     const auto alarms_of = [&](Talker& who) {
         int told = 0;
@@ -61,20 +52,17 @@ TEST(Subscriptions, of_observers_cost_nobody_of_a_higher_role_an_event_and_count
         }
         return told;
     };
-    const std::string path = directory + "/ticking.socket";
-    Talker engineer{path};
+    Talker engineer{path()};
     ASSERT_TRUE(engineer.send("1 subscribe ticker.alarm"));
     run(60ms);
-    Talker observer{path, 65534};
+    Talker observer{path(), 65534};
     for (const char* each : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"})
         ASSERT_TRUE(observer.send(std::string{"2 subscribe ticker."} + each));
     EXPECT_NEAR(alarms_of(engineer), 20, 1);
-    Talker late{path};
+    Talker late{path()};
     ASSERT_TRUE(late.send("3 subscribe ticker.alarm"));
     run(60ms);
     EXPECT_NEAR(alarms_of(late), 20, 1);
-    instance.find<BrowserService>("browser")->finalise();
-    std::filesystem::remove_all(directory);
 }
 
 } // namespace

@@ -54,8 +54,8 @@ TEST_F(Lines, an_expression_changes_nothing) {
 TEST_F(Lines, a_command_is_followed_to_its_end_and_its_result_told) {
     EXPECT_THAT(ask(request("var int stroke; do ram.move_to(20, stroke)")),
                 HasSubstr(R"("ok": true, "state": "sent")"));
-    EXPECT_EQ(talker->receive(), "") << "it is on its way";
-    EXPECT_THAT(next(*talker), AllOf(is_done(), HasSubstr(R"("variables": {"stroke": 1})")));
+    EXPECT_EQ(talker().receive(), "") << "it is on its way";
+    EXPECT_THAT(next(talker()), AllOf(is_done(), HasSubstr(R"("variables": {"stroke": 1})")));
     EXPECT_EQ(ram().place.last(), 20);
     EXPECT_THAT(
         execute("var int n; do ram.move_to(-1, n)"),
@@ -111,15 +111,14 @@ TEST_F(Lines, one_is_at_work_at_a_time_and_is_broken_off_by_whoever_asks) {
     EXPECT_THAT(ask(other, "3 execute 1+1"),
                 AllOf(HasSubstr("not_now"), HasSubstr("another line is at work")));
     EXPECT_THAT(ask(other, "4 break_off"), HasSubstr("\"ok\": true"));
-    EXPECT_THAT(next(*talker), has_failed("it was broken off"));
+    EXPECT_THAT(next(talker()), has_failed("it was broken off"));
     EXPECT_THAT(execute("1"), is_value("1"));
 }
 
 TEST_F(Lines, an_expression_gives_way_to_a_higher_role_which_is_served_next) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
-    instance.engines()[0].stop(clock.now());
-    instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
+    hang(0);
     EXPECT_THAT(ask(observer, request("gauge.target")), HasSubstr("sent"));
     EXPECT_THAT(execute("table.height"),
                 AllOf(HasSubstr("not_now"), HasSubstr("an observer's line gives way to yours")));
@@ -152,12 +151,11 @@ TEST_F(Lines, whoever_waits_is_not_passed_by_somebody_of_a_role_between) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker worker{path(), 1001};
     Talker observer{path(), 65534};
-    instance.engines()[0].stop(clock.now());
-    instance.engines()[0].plan().parts[0].state.store(ComponentState::running); // as of a thread that hangs
+    hang(0);
     EXPECT_THAT(ask(observer, request("gauge.target")), HasSubstr("sent"));
-    ASSERT_TRUE(talker->send(request("table.height")));
+    ASSERT_TRUE(talker().send(request("table.height")));
     ASSERT_TRUE(worker.send(request("1"))); // in the same cycle, behind it
-    EXPECT_THAT(next(*talker), HasSubstr("gives way to yours"));
+    EXPECT_THAT(next(talker()), HasSubstr("gives way to yours"));
     static_cast<void>(next(worker));
     static_cast<void>(next(observer));
     EXPECT_THAT(ask(worker, request("1")), HasSubstr("an engineer is served first"));
@@ -210,7 +208,7 @@ TEST_F(Lines, one_whose_client_leaves_is_broken_off) {
 TEST_F(Lines, one_takes_no_longer_than_lines_may) {
     interpreter().longest.set(1s);
     EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
-    EXPECT_THAT(next(*talker, 2s), has_failed("it took longer than a line may"));
+    EXPECT_THAT(next(talker(), 2s), has_failed("it took longer than a line may"));
 }
 
 TEST_F(Lines, a_command_that_was_left_goes_on_and_the_next_line_has_room_beside_it) {
@@ -219,7 +217,7 @@ TEST_F(Lines, a_command_that_was_left_goes_on_and_the_next_line_has_room_beside_
         EXPECT_THAT(ask(request("var int n; do ram.move_to(" + std::to_string(to) + ", n)")),
                     HasSubstr("sent"));
         EXPECT_THAT(ask("8 break_off"), HasSubstr("\"ok\": true"));
-        EXPECT_THAT(next(*talker), has_failed("it was broken off"));
+        EXPECT_THAT(next(talker()), has_failed("it was broken off"));
     }
     EXPECT_THAT(execute("1"), HasSubstr("commands of earlier lines are still on their way"));
     run(1s);
@@ -240,7 +238,7 @@ TEST_F(Lines, what_stands_is_not_asked) {
 TEST_F(Lines, what_is_stopped_in_the_middle_of_a_line_ends_it) {
     EXPECT_THAT(ask(request("wait gauge.force > 1000")), HasSubstr("sent"));
     EXPECT_THAT(ask("1 stop activity:motion"), HasSubstr("\"ok\": true"));
-    EXPECT_THAT(next(*talker, 4s),
+    EXPECT_THAT(next(talker(), 4s),
                 has_failed(R"(its engine did not come to it: look at activity \"motion\")"));
     EXPECT_THAT(ask("2 start activity:motion"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
@@ -370,10 +368,9 @@ TEST_F(Lines, of_peers_that_say_the_same_are_told_apart) {
 }
 
 TEST_F(Press, a_machine_without_an_interpreter_executes_no_lines) {
-    Talker talker{path()};
-    EXPECT_THAT(ask(talker, "1 execute 1+1"),
+    EXPECT_THAT(ask("1 execute 1+1"),
                 HasSubstr("this machine executes no lines; add component<CommandInterpreter> to its table"));
-    EXPECT_THAT(ask(talker, "2 break_off"), HasSubstr("unsupported"));
+    EXPECT_THAT(ask("2 break_off"), HasSubstr("unsupported"));
 }
 
 } // namespace

@@ -1,17 +1,13 @@
 // Nothing reaches a component that was stopped, and what it left on its outputs stays: whatever way is tried,
 // and whether it was begun before the stop or after it.
-#include "kernel/machine/accept.hpp"
 #include "kernel/services/interpreter/command_interpreter.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
 namespace tappet {
 namespace {
 
-using press::Talker;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -137,41 +133,18 @@ constexpr auto table = machine("plant",
                                         peers("valve"), operations("valve.on", "valve.open", "valve.count"), trial(2)), at_most(30))));
 // clang-format on
 
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
-
-class AStoppedComponent : public testing::Test {
+class AStoppedComponent : public press::Browsed<table> {
 protected:
-    std::string directory = testing::TempDir() + "tappet-stopped-" + std::to_string(getpid());
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    std::unique_ptr<Talker> talker;
-
-    void SetUp() override {
-        instance.browse_in(directory);
-        const auto configured = instance.configure({});
-        ASSERT_TRUE(configured) << configured.error().view();
-        world.start();
-        run(50ms);
-        talker = std::make_unique<Talker>(directory + "/plant.socket");
-    }
-    ~AStoppedComponent() override {
-        instance.find<BrowserService>("browser")->finalise();
-        std::filesystem::remove_all(directory);
-    }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
     /// All that comes within the time, after requests that were sent at once.
     std::string ask(std::initializer_list<std::string_view> requests, Duration time = 60ms) {
-        for (const std::string_view each : requests) EXPECT_TRUE(talker->send(each));
+        for (const std::string_view each : requests) EXPECT_TRUE(talker().send(each));
         run(time);
-        std::string answers;
-        for (std::string each = talker->receive(); !each.empty(); each = talker->receive()) answers += each;
-        return answers;
+        return talker().receive_all();
     }
-    Valve& valve() { return *instance.find<Valve>("valve"); }
-    Panel& panel() { return *instance.find<Panel>("panel"); }
-    Wire& wire() { return *instance.find<Wire>("wire"); }
-    Feeder& feeder() { return *instance.find<Feeder>("feeder"); }
+    Valve& valve() { return the<Valve>("valve"); }
+    Panel& panel() { return the<Panel>("panel"); }
+    Wire& wire() { return the<Wire>("wire"); }
+    Feeder& feeder() { return the<Feeder>("feeder"); }
     std::uint32_t dropped_writes() {
         return instance.gate_of(find_component(instance.machine().table, "valve"))->dropped_writes;
     }
@@ -278,12 +251,8 @@ TEST_F(AStoppedComponent, fails_the_call_of_a_loaded_script) {
     }
     final state End {}
 })";
-    std::ranges::copy(script, slot.text().begin());
-    ASSERT_EQ(slot.compile(script.size(), "feeding.osd").view(), "");
-    SlotMoment now;
-    ASSERT_TRUE(slot.parse_moment("now", now).empty());
-    ASSERT_TRUE(slot.ask(BehaviourSlot::Change::take_over, now));
-    ASSERT_TRUE(instance.requests().post_change(slot));
+    ASSERT_EQ(compile(slot, script, "feeding.osd"), "");
+    change(slot, BehaviourSlot::Change::take_over);
     run(5ms);
     stop_valve();
     feeder().tick.emit();

@@ -5,9 +5,6 @@
 #include "kernel/services/tasks/component_life.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
-#include "kernel/machine/accept.hpp"
-
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -101,7 +98,7 @@ constexpr auto table = machine("bakery",
                component<Baking>("baking", controls("oven"), set("heat", 80.0), properties_file("baking.cpf", optional)),
                component<Loaves>("making", controls("oven")),
                component<ComponentLife>("feeding", controls("feeder")),
-               component<Watcher>("watcher")),
+               component<Onlooker>("watcher")),
     activities(
         activity("fast", every(1ms), budget(50us), runs("oven", "door", "shop", "baking", "making", "feeding")),
         activity("slow", every(5ms), budget(50us), runs("feeder")),
@@ -116,7 +113,7 @@ constexpr auto table = machine("bakery",
 /// The same, and its slot begins with the shape.
 constexpr auto begun = machine("bakery",
     components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Baking>("baking", controls("oven"), set("heat", 80.0)),
-               component<Loaves>("making", controls("oven")), component<Panel>("panel"), component<Watcher>("watcher")),
+               component<Loaves>("making", controls("oven")), component<Panel>("panel"), component<Onlooker>("watcher")),
     activities(
         activity("fast", every(1ms), budget(50us), runs("oven", "door", "baking", "making", "feeder")),
         activity("desk", every(5ms), budget(50us), runs("panel")),
@@ -126,11 +123,8 @@ constexpr auto begun = machine("bakery",
     behaviours(behaviour("oven", script, {}, slot(nodes(60), data_bytes(1024), depth(3), text_bytes(2000), trial(3)))));
 // clang-format on
 
-struct Bakery {
+struct Bakery : PlacedRig<table> {
     PropertyFiles files;
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
 
     explicit Bakery(const std::string& directory) : files{directory} {
         instance.read_properties_from(files.store());
@@ -139,24 +133,13 @@ struct Bakery {
         EXPECT_EQ(world.start().view(), "");
         run(5ms);
     }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
     BehaviourSlot& slot() { return *instance.slot_of("oven"); }
-    Oven& oven() { return *instance.find<Oven>("oven"); }
-    Panel& panel() { return *instance.find<Panel>("panel"); }
-    template <class T> T& property(std::string_view task, std::string_view name) {
-        const MachineView& of = instance.machine().table;
-        const std::size_t c = find_component(of, task);
-        return *static_cast<T*>(instance.facet({c, find_facet(of.components[c], name)}));
-    }
+    Oven& oven() { return the<Oven>("oven"); }
+    Panel& panel() { return the<Panel>("panel"); }
     ScriptInt& count() { return property<ScriptInt>("baking", "count"); }
-    std::string compile(std::string_view text) {
-        std::ranges::copy(text, slot().text().begin());
-        return std::string{slot().compile(text.size(), "new.osd").view()};
-    }
+    std::string compile(std::string_view text) { return PlacedRig::compile(slot(), text, "new.osd"); }
     void change(BehaviourSlot::Change what) {
-        EXPECT_EQ(slot().may(what).view(), "");
-        EXPECT_TRUE(slot().ask(what));
-        EXPECT_TRUE(instance.requests().post_change(slot()));
+        PlacedRig::change(slot(), what);
         run(2ms);
     }
     void load(std::string_view text) {
@@ -319,10 +302,10 @@ TEST_F(Loaded, what_does_not_fit_is_refused_and_says_so) {
 
 TEST_F(Loaded, one_is_commanded_and_set_by_the_behaviour_beside_it) {
     load(counting(10));
-    instance.find<Shop>("shop")->opens.emit();
+    the<Shop>("shop").opens.emit();
     run(20ms);
     EXPECT_THAT(oven().told, ElementsAre(10, 11));
-    EXPECT_EQ(instance.find<Shop>("shop")->got.get(), 20) << "the command's result";
+    EXPECT_EQ(the<Shop>("shop").got.get(), 20) << "the command's result";
     EXPECT_EQ(count(), 40);
     tick();
     EXPECT_EQ(count(), 50);
@@ -330,7 +313,7 @@ TEST_F(Loaded, one_is_commanded_and_set_by_the_behaviour_beside_it) {
 
 TEST_F(Loaded, one_stops_a_component) {
     load(counting(1));
-    instance.find<Door>("door")->moved.emit();
+    the<Door>("door").moved.emit();
     run(30ms);
     EXPECT_THAT(oven().told, ElementsAre(3000));
     EXPECT_EQ(instance.life().state_of(2), ComponentState::stopped);
@@ -349,13 +332,7 @@ TEST(What_is_loaded, goes_on_where_the_machine_was_switched_off) {
     }
 }
 
-struct Begun : testing::Test, Rig<AtRunTime<begun, board>> {
-    template <class T> T& property(std::string_view task, std::string_view name) {
-        const MachineView& of = instance.machine().table;
-        const std::size_t c = find_component(of, task);
-        return *static_cast<T*>(instance.facet({c, find_facet(of.components[c], name)}));
-    }
-};
+struct Begun : testing::Test, Rig<begun> {};
 
 TEST_F(Begun, one_is_given_the_properties_from_the_start_and_does_as_it_is_told) {
     run(5ms);
@@ -366,7 +343,7 @@ TEST_F(Begun, one_is_given_the_properties_from_the_start_and_does_as_it_is_told)
     for (const VariableRow& each : type.tables.variables)
         if (each.name == "heat") std::memcpy(&heat, unit.parts()[0].data + each.at, sizeof heat);
     EXPECT_EQ(heat, 80.0);
-    auto& panel = *instance.find<Panel>("panel");
+    auto& panel = the<Panel>("panel");
     ASSERT_TRUE(panel.bake.send(2, 0.25));
     run(20ms);
     EXPECT_EQ(panel.bake.state(), CommandState::done);

@@ -1,11 +1,8 @@
 // What browsers see, set and command of behaviours as tasks is the same whether a script is compiled with the
 // machine or loaded into its slot (thesis 4.8, 5.1.6, 5.2.5).
-#include "kernel/machine/accept.hpp"
 #include "kernel/script/compiled.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
-
-#include <algorithm>
 
 #include <gmock/gmock.h>
 
@@ -50,58 +47,30 @@ constexpr auto with_tasks = machine("press",
                behaviour("loaded", slot(nodes(60), data_bytes(1024), depth(2), trial(1)))));
 // clang-format on
 
-class Task : public testing::TestWithParam<const char*> {
+class Task : public Browsed<with_tasks>, public testing::WithParamInterface<const char*> {
 protected:
-    std::string directory = testing::TempDir() + "tappet-tasks-" + std::to_string(getpid());
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<with_tasks, board>::machine(), clock};
-    VirtualWorld world{instance};
-    std::unique_ptr<Talker> talker{};
     std::string form = GetParam();
 
     void SetUp() override {
-        instance.browse_in(directory);
-        const auto configured = instance.configure({});
-        ASSERT_TRUE(configured) << configured.error().view();
-        world.start();
-        run(20ms);
-        talker = std::make_unique<Talker>(directory + "/press.socket");
+        Browsed::SetUp();
         if (form == "compiled") return;
         BehaviourSlot& slot = *instance.slot_of("loaded");
-        std::ranges::copy(pressing_source.text, slot.text().begin());
-        EXPECT_EQ(slot.compile(pressing_source.text.size(), "pressing.osd").view(), "");
-        EXPECT_TRUE(slot.ask(BehaviourSlot::Change::take_over));
-        EXPECT_TRUE(instance.requests().post_change(slot));
+        EXPECT_EQ(compile(slot, pressing_source.text, "pressing.osd"), "");
+        change(slot, BehaviourSlot::Change::take_over);
         run(5ms);
     }
-    ~Task() override {
-        instance.find<BrowserService>("browser")->finalise();
-        std::filesystem::remove_all(directory);
-    }
-    void run(Duration time) { static_cast<void>(world.run_until(clock.now() + time)); }
-    std::string receive() {
-        std::string answer;
-        for (int i = 0; i < 20 && answer.empty(); ++i) {
-            run(10ms);
-            answer = talker->receive();
-        }
-        return answer;
-    }
-    std::string ask(const std::string& request) {
-        EXPECT_TRUE(talker->send("1 " + request));
-        return receive();
-    }
+    std::string ask(const std::string& request) { return Browsed::ask("1 " + request); }
     /// How a command ends.
     std::string follow(const std::string& command) {
         std::string answer = ask("send " + command);
         EXPECT_THAT(answer, HasSubstr(R"("state": "sent")"));
         while (!answer.empty() && answer.find("done") == std::string::npos &&
                answer.find("failed") == std::string::npos && answer.find("rejected") == std::string::npos)
-            answer = receive();
+            answer = next(talker());
         return answer;
     }
     void arrive() {
-        instance.find<Ram>(form)->arrived.emit(1.0);
+        the<Ram>(form).arrived.emit(1.0);
         run(5ms);
     }
 };

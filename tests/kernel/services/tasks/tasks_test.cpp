@@ -5,7 +5,6 @@
 #include "kernel/services/tasks/component_life.hpp"
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/table/compiled.hpp"
 
 #include <algorithm>
@@ -114,14 +113,9 @@ constexpr auto table = machine("bakery",
     behaviours(behaviour("oven", compiled<script>, on_error(OnError::report)), behaviour("door", beside, {})));
 // clang-format on
 
-struct Tasks : Rig<AtRunTime<table, board>> {
-    Panel& panel() { return *instance.find<Panel>("panel"); }
+struct Tasks : Rig<table> {
+    Panel& panel() { return the<Panel>("panel"); }
     const BehaviourUnit& unit() { return *instance.behaviour_of("oven"); }
-    template <class T> T property(std::string_view task, std::string_view name) {
-        const MachineView& of = instance.machine().table;
-        const std::size_t c = find_component(of, task);
-        return *static_cast<const T*>(instance.facet({c, find_facet(of.components[c], name)}));
-    }
 };
 
 TEST(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_with_its_result_at_its_end) {
@@ -195,7 +189,7 @@ constexpr auto woken = machine("woken",
 // clang-format on
 
 TEST(A_task, answers_in_an_activity_that_nothing_else_wakes) {
-    Rig<AtRunTime<woken, board>> rig;
+    Rig<woken> rig;
     Panel& panel = *rig.instance.find<Panel>("panel");
     rig.run(20ms);
     ASSERT_TRUE(panel.clean.send());
@@ -247,7 +241,7 @@ TEST(A_task_of_a_machine, keeps_variables_in_its_properties_file) {
     };
     for (const Values expected :
          {Values{}, Values{12, {1, 2, 3}, Colour::red}}) { // the script's, then those kept
-        MachineInstance instance{AtRunTime<kept, board>::machine(), clock};
+        MachineInstance instance{AtRunTime<kept, test_board>::machine(), clock};
         instance.read_properties_from(files->store());
         const auto standing = instance.configure({});
         ASSERT_TRUE(standing) << standing.error().view();
@@ -297,8 +291,7 @@ TEST(A_behaviour, commands_the_one_beside_it_and_the_life_of_components_and_sets
     rig.run(40ms);
     EXPECT_THAT(rig.oven().told, ElementsAre(10, 11, 20, 3000)) << "once the feeder said that it had stopped";
     EXPECT_EQ(rig.instance.life().state_of(2), ComponentState::stopped);
-    rig.oven().tick.emit();
-    rig.run(2ms);
+    rig.tick();
     EXPECT_EQ(rig.state(rig.unit()), "Hot") << "its guard asks for the variable";
     EXPECT_EQ(rig.oven().target.get(), 80.0);
 }
