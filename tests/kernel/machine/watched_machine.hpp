@@ -84,16 +84,18 @@ struct Blocking {
 };
 
 // clang-format off
-inline constexpr auto table = machine("watched",
+template <class... Extra>
+constexpr auto watched_machine(std::string_view name, const Extra&... of_motion) { return machine(name,
     components(
         component<Worker>("driver"),
         component<Worker>("left"), component<Worker>("middle"), component<Worker>("right"),
         component<Worker>("logic")),
     activities(
         activity("drivers", every(2ms), runs("driver"),                  budget(50us), stack(256 * 1024)),
-        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us), stack(256 * 1024)),
+        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us), stack(256 * 1024), of_motion...),
         activity("logic",   every(5ms), runs("logic"),                   budget(50us), stack(256 * 1024))),
-    connections(), reactions(), behaviours());
+    connections(), reactions(), behaviours()); }
+inline constexpr auto table = watched_machine("watched");
 
 /// What is not real-time stands last, so that it would be stopped first.
 inline constexpr auto blocked_table = machine("blocked",
@@ -111,22 +113,7 @@ inline constexpr auto supervised_table = table;
 inline constexpr auto hung_table = table;
 
 /// The same, where a late cycle of "motion" stops the machine.
-inline constexpr auto strict_table = machine("strict",
-    components(component<Worker>("driver"), component<Worker>("left"), component<Worker>("middle"), component<Worker>("right"), component<Worker>("logic")),
-    activities(
-        activity("drivers", every(2ms), runs("driver"),                  budget(50us), stack(256 * 1024)),
-        activity("motion",  every(1ms), runs("left", "middle", "right"), budget(50us), stop_when_late, stack(256 * 1024)),
-        activity("logic",   every(5ms), runs("logic"),                   budget(50us), stack(256 * 1024))),
-    connections(), reactions(), behaviours());
-
-inline constexpr Board board{
-    .name = "test",
-    .world = "host",
-    .memory_budget_bytes = 4 * 1024 * 1024,
-    .processors = 1,
-    .highest_priority = 40,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11},
-};
+inline constexpr auto strict_table = watched_machine("strict", stop_when_late);
 // clang-format on
 
 inline constexpr std::size_t drivers = 0, motion = 1, logic = 2;

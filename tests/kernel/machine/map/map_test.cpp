@@ -2,11 +2,8 @@
 // and another process reads every name, row and live value by it.
 #include "kernel/machine/map/view.hpp"
 
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/firmware.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -72,12 +69,6 @@ struct Road {
     }
 };
 
-struct Onlooker {
-    static constexpr bool sees_machine = true;
-    void work(const Cycle&) {}
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
-
 // clang-format off
 constexpr auto table = machine("cart",
     components(component<Wheel>("left"), component<Wheel>("right", set("gain", 0.25)), component<Road>("road"),
@@ -94,11 +85,10 @@ constexpr auto table = machine("cart",
 constexpr auto blind = machine("blind",
     components(component<Wheel>("left")), activities(activity("wheels", every(1ms), budget(50us), runs("left"))),
     connections(), reactions(), behaviours());
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 
-using Cart = Firmware<table, board>;
-using Blind = Firmware<blind, board>;
+using Cart = Firmware<table, test_board>;
+using Blind = Firmware<blind, test_board>;
 
 // The map is a constant: what follows is seen by the compiler.
 constexpr auto& drawn = Cart::map();
@@ -113,7 +103,7 @@ static_assert(unseen.text(unseen.header.machine) == "blind",
 TEST(Accepted, at_run_time_a_table_has_the_map_and_the_memory_that_the_compiler_gives_it) {
     for (const auto& [of, compiled] :
          {std::pair{table.view(), Cart::machine()}, {blind.view(), Blind::machine()}}) {
-        Accepted accepted{of, board};
+        Accepted accepted{of, test_board};
         ASSERT_EQ(accepted.refusal().view(), "");
         const AcceptedMachine made = accepted.machine();
         EXPECT_TRUE(std::ranges::equal(made.map, compiled.map));

@@ -2,12 +2,7 @@
 // Who owes a sign of life, and for how long it may.
 #include "kernel/machine/worlds/life_watch.hpp"
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/instance/instance.hpp"
-#include "kernel/machine/table/machine.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <functional>
 
@@ -32,14 +27,11 @@ inline constexpr auto table =
             activities(activity("beat", every(10ms), budget(1ms), runs("patient")),
                        activity("slow", every(10ms), not_real_time, runs("blocker"))),
             connections(), reactions(), behaviours());
-inline constexpr Board board{.name = "test", .memory_budget_bytes = 1 << 20, .heap_bytes = 128 * 1024};
 
-class Watched : public testing::Test {
-protected:
+struct Watched : testing::Test, ConfiguredRig<table> {
     static constexpr Time begin = at_ns(1'000'000'000);
 
     void SetUp() override {
-        ASSERT_TRUE(instance.configure({}));
         clock.advance_to(begin);
         for (Engine& engine : instance.engines()) {
             ASSERT_TRUE(engine.initialise().empty());
@@ -64,8 +56,6 @@ protected:
     }
     Time looked = begin;
 
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     LifeWatch watch{instance, 100ms};
 };
 
@@ -93,7 +83,7 @@ TEST_F(Watched, a_cycle_that_begins_or_ends_is_life) {
 }
 
 TEST_F(Watched, one_that_stays_in_its_cycle_is_found) {
-    auto* patient = instance.find<Patient>("patient");
+    auto* patient = &the<Patient>("patient");
     Time found = at_ns(0);
     std::function<void()> hang = [&] { found = found_by(1s); };
     patient->context = &hang;

@@ -2,20 +2,15 @@
 // its messages where it waits, and comes back when its activity stops; under real and under virtual time.
 #include "kernel/component/loop.hpp"
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/real_world.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-#include "kernel/os/sleep.hpp"
+#include "tests/kernel/machine/real_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <atomic>
 #include <vector>
 
-#include <fcntl.h>
 #include <poll.h>
-#include <unistd.h>
 
 namespace tappet {
 namespace {
@@ -110,27 +105,18 @@ constexpr auto table = machine("reading",
     connections(data("reader.got", "talker.heard")),
     reactions(when("talker.speak", tell("reader.tell"))),
     behaviours());
-constexpr auto real_table = table; // in memory of its own
-constexpr Board board{
-    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 constexpr std::size_t blocks = 0;
 // clang-format on
 
-struct ALoopInVirtualTime : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    ALoopInVirtualTime() { EXPECT_TRUE(instance.configure({})); }
+struct ALoopInVirtualTime : testing::Test, ConfiguredRig<table> {
     ~ALoopInVirtualTime() override { world.stop(); }
-    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
-    Reader& reader = *instance.find<Reader>("reader");
-    Talker& talker = *instance.find<Talker>("talker");
+    Reader& reader = the<Reader>("reader");
+    Talker& talker = the<Talker>("talker");
 };
 
 TEST_F(ALoopInVirtualTime, waits_by_the_machines_clock_and_its_outputs_are_stamped_with_it) {
     ASSERT_EQ(world.start().view(), "");
-    run(10ms);
+    pass(10ms);
     EXPECT_THAT(reader.naps_ended, testing::ElementsAre(at_ns(0) + 3ms, at_ns(0) + 6ms, at_ns(0) + 9ms));
     EXPECT_EQ(talker.last, 3);
     EXPECT_EQ(reader.loops, 1);
@@ -140,7 +126,7 @@ TEST_F(ALoopInVirtualTime, is_woken_in_its_wait_by_a_message_and_served_inside_t
     reader.nap = 1h;
     ASSERT_EQ(world.start().view(), "");
     talker.to_say = 2;
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(reader.told, 2);
     EXPECT_EQ(reader.told_outside, 0);
     EXPECT_THAT(reader.naps_ended, testing::ElementsAre(at_ns(0) + 1ms, at_ns(0) + 2ms));
@@ -149,15 +135,15 @@ TEST_F(ALoopInVirtualTime, is_woken_in_its_wait_by_a_message_and_served_inside_t
 TEST_F(ALoopInVirtualTime,
        returns_when_its_activity_stops_leaves_safe_values_and_begins_again_when_it_starts) {
     ASSERT_EQ(world.start().view(), "");
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(world.change_activity(blocks, LifeChange::stop).view(), "");
     EXPECT_FALSE(reader.in_loop);
     EXPECT_EQ(reader.breaks, 1);
     EXPECT_EQ(reader.stops, 1);
-    run(5ms);
+    pass(5ms);
     EXPECT_EQ(talker.last, -1);
     EXPECT_EQ(world.change_activity(blocks, LifeChange::start).view(), "");
-    run(10ms);
+    pass(10ms);
     EXPECT_TRUE(reader.in_loop);
     EXPECT_EQ(reader.loops, 2);
     EXPECT_EQ(reader.starts, 2);
@@ -166,19 +152,19 @@ TEST_F(ALoopInVirtualTime,
 TEST_F(ALoopInVirtualTime, that_returned_by_itself_runs_again_upon_the_next_wake_and_not_before) {
     reader.returns_at_once = true;
     ASSERT_EQ(world.start().view(), "");
-    run(50ms);
+    pass(50ms);
     EXPECT_EQ(reader.loops, 1);
     talker.to_say = 1;
-    run(50ms);
+    pass(50ms);
     EXPECT_EQ(reader.loops, 2);
     EXPECT_EQ(reader.told, 1);
 }
 
 TEST_F(ALoopInVirtualTime, a_wish_to_its_component_is_a_wish_to_its_activity) {
     ASSERT_EQ(world.start().view(), "");
-    run(5ms);
+    pass(5ms);
     const LifeTicket ticket = instance.life().ask_component(0, LifeChange::restart);
-    run(5ms);
+    pass(5ms);
     EXPECT_EQ(instance.life().answer_of_component(0, ticket).outcome, LifeOutcome::done);
     EXPECT_EQ(reader.starts, 2);
     EXPECT_TRUE(reader.in_loop);
@@ -186,42 +172,30 @@ TEST_F(ALoopInVirtualTime, a_wish_to_its_component_is_a_wish_to_its_activity) {
 
 TEST_F(ALoopInVirtualTime, is_the_same_in_every_run) {
     const auto digest = [](int words) {
-        os::Clock its_clock{os::Clock::Kind::virtual_time};
-        MachineInstance again{AtRunTime<table, board>::machine(), its_clock};
-        VirtualWorld its_world{again};
-        EXPECT_TRUE(again.configure({}));
-        again.find<Reader>("reader")->nap = 700us;
-        EXPECT_EQ(its_world.start().view(), "");
-        again.find<Talker>("talker")->to_say = words;
-        EXPECT_TRUE(its_world.run_until(at_ns(0) + 200ms));
-        its_world.stop();
-        return again.observation().event_log_digest();
+        ConfiguredRig<table> again;
+        again.the<Reader>("reader").nap = 700us;
+        EXPECT_EQ(again.world.start().view(), "");
+        again.the<Talker>("talker").to_say = words;
+        EXPECT_TRUE(again.run(200ms));
+        again.world.stop();
+        return again.instance.observation().event_log_digest();
     };
     EXPECT_EQ(digest(100), digest(100));
     EXPECT_NE(digest(100), digest(99));
 }
 
-struct ALoopInRealTime : testing::Test {
-    os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{AtRunTime<real_table, board>::machine(), clock};
-    RealWorld world{instance};
-    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
-    Reader* reader = nullptr;
-    Talker* talker = nullptr;
+struct ALoopInRealTime : InRealTime, RealRig<table> {
+    Reader* reader = &the<Reader>("reader");
+    Talker* talker = &the<Talker>("talker");
     int input[2] = {-1, -1};
 
     void SetUp() override {
-        if (os::observe_process(1).fifo_error != 0)
-            GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
+        InRealTime::SetUp();
+        if (IsSkipped()) return;
         ASSERT_EQ(pipe(input), 0);
-        ASSERT_TRUE(instance.configure({}));
-        reader = instance.find<Reader>("reader");
-        talker = instance.find<Talker>("talker");
-        reader->from = input[0];
-        const int nowhere_to_print = open("/dev/null", O_WRONLY);
-        const auto armed = world.arm(report, nowhere_to_print);
+        const auto armed = arm();
         ASSERT_TRUE(armed);
-        close(nowhere_to_print);
+        reader->from = input[0];
         ASSERT_TRUE(world.start(*armed));
     }
     void say(char byte) { ASSERT_EQ(write(input[1], &byte, 1), 1); }

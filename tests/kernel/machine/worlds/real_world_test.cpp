@@ -1,21 +1,13 @@
 // A machine in threads of its own under real time. What needs SCHED_FIFO is left out, and says so, where it
 // is not granted.
-#include "kernel/machine/worlds/real_world.hpp"
-
 #include "kernel/base/random.hpp"
-#include "kernel/machine/accept.hpp"
 #include "kernel/os/heap.hpp"
-#include "kernel/os/sleep.hpp"
+#include "tests/kernel/machine/real_rig.hpp"
 #include "tests/kernel/machine/watched_machine.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <csignal>
-#include <memory>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace tappet {
 namespace {
@@ -24,40 +16,17 @@ using watched::Order;
 using watched::Worker;
 
 template <const auto& table>
-class Rig {
-public:
-    os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{AtRunTime<table, watched::board>::machine(), clock};
-    std::unique_ptr<RealWorld> world = std::make_unique<RealWorld>(instance);
-    std::unique_ptr<os::ArmingReport> report = std::make_unique<os::ArmingReport>(
-        std::span{watched::board.only_warned.begin(), watched::board.only_warned.end()});
-
-    /// Armed and started.
-    bool runs() {
-        watched::stops().clear();
-        const int nowhere_to_print = open("/dev/null", O_WRONLY);
-        if (!instance.configure({})) return false;
-        const auto armed = world->arm(*report, nowhere_to_print);
-        close(nowhere_to_print);
-        return armed && world->start(*armed);
-    }
-    Worker& worker(std::string_view name) { return *instance.template find<Worker>(name); }
-};
-
-class InRealTime : public testing::Test {
-protected:
-    void SetUp() override {
-        if (os::observe_process(watched::board.highest_priority).fifo_error != 0)
-            GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
-    }
+struct Rig : RealRig<table> {
+    Rig() { watched::stops().clear(); }
+    Worker& worker(std::string_view name) { return this->template the<Worker>(name); }
 };
 
 TEST_F(InRealTime, arms_runs_and_stops_the_last_row_first) {
     Rig<watched::table> rig;
     ASSERT_TRUE(rig.runs());
-    EXPECT_TRUE(rig.report->can_arm());
-    EXPECT_TRUE(rig.world->supervise(300ms));
-    EXPECT_EQ(rig.world->stop(), 0);
+    EXPECT_TRUE(rig.report.can_arm());
+    EXPECT_TRUE(rig.world.supervise(300ms));
+    EXPECT_EQ(rig.world.stop(), 0);
     EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
     EXPECT_GT(rig.worker("middle").cycles, 100u);
     EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
@@ -69,9 +38,9 @@ TEST_F(InRealTime, takes_no_page_fault_in_a_real_time_thread) {
         GTEST_SKIP() << "a sanitizer's shadow is mapped as it is used";
     Rig<watched::table> rig;
     ASSERT_TRUE(rig.runs());
-    EXPECT_TRUE(rig.world->supervise(300ms));
-    EXPECT_EQ(rig.world->stop(), 0);
-    EXPECT_EQ(rig.world->page_faults_in_real_time_threads(), 0u);
+    EXPECT_TRUE(rig.world.supervise(300ms));
+    EXPECT_EQ(rig.world.stop(), 0);
+    EXPECT_EQ(rig.world.page_faults_in_real_time_threads(), 0u);
 }
 
 TEST_F(InRealTime, blames_an_overrun_on_the_component_that_took_the_time) {
@@ -80,10 +49,10 @@ TEST_F(InRealTime, blames_an_overrun_on_the_component_that_took_the_time) {
     Rig<watched::table> rig;
     ASSERT_TRUE(rig.runs());
     rig.worker(victim).overrun = 50ms; // longer than any other delay of this box, one hopes
-    EXPECT_TRUE(rig.world->supervise(100ms));
+    EXPECT_TRUE(rig.world.supervise(100ms));
     rig.worker(victim).order = Order::overrun;
-    EXPECT_TRUE(rig.world->supervise(150ms));
-    EXPECT_EQ(rig.world->stop(), 0);
+    EXPECT_TRUE(rig.world.supervise(150ms));
+    EXPECT_EQ(rig.world.stop(), 0);
     const Engine& engine = rig.instance.engines()[watched::motion];
     std::string_view blamed = "nobody";
     Duration most{};
@@ -103,9 +72,9 @@ TEST_F(InRealTime, stops_for_a_late_cycle_where_the_row_says_so) {
     ASSERT_TRUE(rig.runs());
     rig.worker("right").overrun = 50ms;
     rig.worker("right").order = Order::overrun;
-    while (rig.world->supervise(1s)) {
+    while (rig.world.supervise(1s)) {
     }
-    EXPECT_EQ(rig.world->stop(), 0);
+    EXPECT_EQ(rig.world.stop(), 0);
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::missed_deadline);
     EXPECT_THAT(std::string{rig.instance.describe_stop().view()},
                 testing::StartsWith("activity \"motion\" missed its deadline: "));
@@ -116,15 +85,15 @@ TEST_F(InRealTime, a_broken_contract_stops_the_machine_with_its_sentence_and_lea
     Rig<watched::parked_table> rig;
     ASSERT_TRUE(rig.runs());
     rig.worker("middle").order = Order::break_contract;
-    for (int n = 0; n < 20 && rig.world->supervise(100ms); ++n) {
+    for (int n = 0; n < 20 && rig.world.supervise(100ms); ++n) {
     }
     ASSERT_TRUE(rig.instance.stop_asked());
-    EXPECT_EQ(rig.world->stop(), 0) << "the thread whose contract is broken leaves its safe values itself";
-    EXPECT_EQ(rig.world->lost(), 1);
+    EXPECT_EQ(rig.world.stop(), 0) << "the thread whose contract is broken leaves its safe values itself";
+    EXPECT_EQ(rig.world.lost(), 1);
     EXPECT_FALSE(rig.instance.standing()) << "and goes on nowhere";
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::broken_contract);
     EXPECT_EQ(rig.instance.describe_stop().view(), "a contract was broken in activity \"motion\"");
-    EXPECT_THAT(std::string{rig.world->broken_contract().view()},
+    EXPECT_THAT(std::string{rig.world.broken_contract().view()},
                 testing::HasSubstr("A function was called with 7, which its declaration forbids."));
     for (const char* name : {"driver", "left", "middle", "right", "logic"})
         EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
@@ -137,12 +106,12 @@ TEST_F(InRealTime, a_breach_during_the_stop_is_kept_beside_the_first_one_and_bes
     ASSERT_TRUE(rig.runs());
     rig.worker("driver").breaks_at_stop = rig.worker("logic").breaks_at_stop = true;
     raise(SIGTERM);
-    EXPECT_FALSE(rig.world->supervise(1s));
-    EXPECT_EQ(rig.world->stop(), 2);
+    EXPECT_FALSE(rig.world.supervise(1s));
+    EXPECT_EQ(rig.world.stop(), 2);
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::requested);
-    ASSERT_EQ(rig.world->breaches(), 2u);
+    ASSERT_EQ(rig.world.breaches(), 2u);
     for (std::size_t i = 0; i < 2; ++i)
-        EXPECT_THAT(std::string{rig.world->describe_breach(i).view()},
+        EXPECT_THAT(std::string{rig.world.describe_breach(i).view()},
                     testing::HasSubstr("A function was called with 8, which its declaration forbids."));
     for (const char* name : {"driver", "left", "middle", "right", "logic"})
         EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
@@ -174,10 +143,10 @@ TEST_F(InRealTimeDeathTest, a_contract_broken_on_the_supervisors_thread_stops_th
 TEST_F(InRealTime, what_is_not_real_time_and_blocks_does_not_hold_up_the_stop_of_the_others) {
     Rig<watched::blocked_table> rig;
     ASSERT_TRUE(rig.runs());
-    auto& console = *rig.instance.find<watched::Blocking>("console");
+    auto& console = rig.the<watched::Blocking>("console");
     console.until_safe = &rig.worker("logic").at_wire;
     while (!console.blocks) os::sleep_for(1ms);
-    EXPECT_EQ(rig.world->stop(), 0) << "waited for, it would have hung until it was given up";
+    EXPECT_EQ(rig.world.stop(), 0) << "waited for, it would have hung until it was given up";
     EXPECT_TRUE(console.finalised);
 }
 
@@ -190,10 +159,10 @@ EngineStatistics after(Order order) {
     logic.overrun = 20ms;
     for (int n = 0; n < 4; ++n) {
         logic.order = order;
-        while (logic.order != Order::none) static_cast<void>(rig.world->supervise(50ms));
+        while (logic.order != Order::none) static_cast<void>(rig.world.supervise(50ms));
     }
-    static_cast<void>(rig.world->supervise(100ms));
-    EXPECT_EQ(rig.world->stop(), 0);
+    static_cast<void>(rig.world.supervise(100ms));
+    EXPECT_EQ(rig.world.stop(), 0);
     return rig.instance.engines()[1].statistics();
 }
 
@@ -208,14 +177,14 @@ TEST_F(InRealTime, a_signal_that_would_end_or_freeze_the_process_ends_the_superv
     for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP, SIGUSR1}) {
         Rig<watched::table> rig;
         ASSERT_TRUE(rig.runs());
-        EXPECT_TRUE(rig.world->supervise(50ms));
+        EXPECT_TRUE(rig.world.supervise(50ms));
         raise(SIGPIPE); // is none: a reader went away
-        EXPECT_TRUE(rig.world->supervise(50ms));
+        EXPECT_TRUE(rig.world.supervise(50ms));
         raise(number);
-        EXPECT_FALSE(rig.world->supervise(1s)) << number;
+        EXPECT_FALSE(rig.world.supervise(1s)) << number;
         EXPECT_EQ(rig.instance.stop_request().reason, StopReason::requested);
         EXPECT_EQ(rig.instance.describe_stop().view(), "asked for from outside");
-        EXPECT_EQ(rig.world->stop(), 0);
+        EXPECT_EQ(rig.world.stop(), 0);
     }
 }
 
@@ -226,16 +195,16 @@ TEST_F(InRealTime, a_thread_that_hangs_is_reported_and_nobody_runs_its_stop) {
                                                // for ever
     ASSERT_TRUE(rig.runs());
     rig.worker("logic").order = Order::hang;
-    EXPECT_TRUE(rig.world->supervise(50ms));
-    EXPECT_EQ(rig.world->stop(), 1);
-    EXPECT_EQ(rig.world->first_hung(), "logic");
+    EXPECT_TRUE(rig.world.supervise(50ms));
+    EXPECT_EQ(rig.world.stop(), 1);
+    EXPECT_EQ(rig.world.first_hung(), "logic");
     EXPECT_EQ(rig.worker("logic").at_wire.load(), 1) << "its guardian ends it, where there is one";
     EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
     EXPECT_FALSE(rig.instance.standing());
     rig.worker("logic").let_go = true; // the thread comes back when all is over, and touches nothing any more
-    for (int n = 0; n < 1000 && rig.world->activity(watched::logic).state() != Activity::State::stopped; ++n)
+    for (int n = 0; n < 1000 && rig.world.activity(watched::logic).state() != Activity::State::stopped; ++n)
         os::sleep_for(1ms);
-    EXPECT_EQ(rig.world->activity(watched::logic).state(), Activity::State::stopped);
+    EXPECT_EQ(rig.world.activity(watched::logic).state(), Activity::State::stopped);
     EXPECT_THAT(watched::stops(), testing::ElementsAre("left", "middle", "right", "driver"));
 }
 

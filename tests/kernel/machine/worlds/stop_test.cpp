@@ -2,12 +2,9 @@
 // Whatever a maker's function does for seconds, a stop that is asked for meanwhile leaves the outputs safe
 // within the board's bound: for each cause of a stop, in each such situation.
 #include "kernel/component/loop.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/real_world.hpp"
-#include "kernel/os/sleep.hpp"
+#include "tests/kernel/machine/real_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <csignal>
 #include <filesystem>
@@ -16,9 +13,6 @@
 #include <string>
 #include <thread>
 #include <vector>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace tappet {
 namespace {
@@ -139,9 +133,6 @@ constexpr auto table = machine("stopping",
         activity("look",    every(10ms), not_real_time, runs("camera"),   stack(256 * 1024))),
     connections(data("pulse.beat", "valve.beat", stale_after(500ms), stop_machine)),
     reactions(), behaviours());
-constexpr Board board{
-    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 constexpr std::size_t drivers = 0, spare = 2, receive = 3, look = 4;
 // clang-format on
 
@@ -159,28 +150,17 @@ enum class Situation {
 constexpr std::array causes{Cause::stale_row, Cause::missed_deadline, Cause::termination,
                             Cause::one_that_asks};
 
-template <const auto& of_table> struct Rig {
-    os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{AtRunTime<of_table, board>::machine(), clock};
-    RealWorld world{instance};
-    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
-    Valve* valve = nullptr;
-    Pulse *pulse = nullptr, *spare = nullptr;
-    Camera* camera = nullptr;
-    Receiver* receiver = nullptr;
+template <const auto& of_table> struct Rig : RealRig<of_table> {
+    using RealRig<of_table>::clock, RealRig<of_table>::instance, RealRig<of_table>::world;
+    Valve* valve = &this->template the<Valve>("valve");
+    Pulse *pulse = &this->template the<Pulse>("pulse"), *spare = &this->template the<Pulse>("spare");
+    Camera* camera = &this->template the<Camera>("camera");
+    Receiver* receiver = &this->template the<Receiver>("receiver");
     std::optional<Armed> armed;
 
     Rig() {
         history().lines.clear();
-        EXPECT_TRUE(instance.configure({}));
-        valve = instance.template find<Valve>("valve");
-        pulse = instance.template find<Pulse>("pulse");
-        spare = instance.template find<Pulse>("spare");
-        camera = instance.template find<Camera>("camera");
-        receiver = instance.template find<Receiver>("receiver");
-        const int nowhere_to_print = open("/dev/null", O_WRONLY);
-        armed = world.arm(report, nowhere_to_print);
-        close(nowhere_to_print);
+        armed = this->arm();
         EXPECT_TRUE(armed);
     }
     /// All is under way: a value that was never good does not grow stale.
@@ -227,13 +207,7 @@ template <const auto& of_table> struct Rig {
     [[nodiscard]] Duration until_safe() const { return at_ns(valve->safe_since) - instance.stop_asked_at(); }
 };
 
-class AStop : public testing::TestWithParam<Situation> {
-protected:
-    void SetUp() override {
-        if (os::observe_process(board.highest_priority).fifo_error != 0)
-            GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
-    }
-};
+struct AStop : InRealTime, testing::WithParamInterface<Situation> {};
 
 std::ptrdiff_t threads() { return std::distance(std::filesystem::directory_iterator{"/proc/self/task"}, {}); }
 
@@ -263,7 +237,7 @@ private:
 constexpr auto broken_table = table, broken_beside_table = table;
 
 TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_it) {
-    static_assert(for_seconds > 2 * board.stop_within, "who waited for it would be late");
+    static_assert(for_seconds > 2 * real_board.stop_within, "who waited for it would be late");
     for (const Cause by : causes) {
         SCOPED_TRACE(static_cast<int>(by));
         const LastingRig<table> rig;
@@ -293,7 +267,7 @@ TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_
         other.join();
         static_cast<void>(rig->world.make_safe());
         EXPECT_EQ(rig->valve->at_wire, 0);
-        EXPECT_LT(rig->until_safe(), board.stop_within);
+        EXPECT_LT(rig->until_safe(), real_board.stop_within);
         rig.end();
         EXPECT_EQ(rig->world.unfinished().view(), "");
         EXPECT_EQ(rig->camera->finalised,
@@ -313,7 +287,7 @@ INSTANTIATE_TEST_SUITE_P(While, AStop,
                                          Situation::breaks_loop, Situation::machine_starts),
                          name_of);
 
-using TheMachine = AStop;
+using TheMachine = InRealTime;
 
 TEST_F(TheMachine, stops_all_its_activities_before_it_finalises_one) {
     const LastingRig<table> rig;
@@ -321,7 +295,7 @@ TEST_F(TheMachine, stops_all_its_activities_before_it_finalises_one) {
     rig->camera->slow = Function::finalise;
     const Time begin = rig->clock.now();
     EXPECT_EQ(rig->world.stop(), 0);
-    EXPECT_LT(at_ns(rig->valve->safe_since) - begin, board.stop_within);
+    EXPECT_LT(at_ns(rig->valve->safe_since) - begin, real_board.stop_within);
     EXPECT_THAT(history().lines, testing::ElementsAre("slow stop", "slow stop", "valve stop", "slow finalise",
                                                       "slow finalise"));
 }
@@ -333,7 +307,7 @@ TEST_F(TheMachine, stops_one_activity_at_once_while_another_one_is_initialised) 
     const Time begin = rig->clock.now();
     const LifeTicket ticket = rig->instance.life().ask_activity(drivers, LifeChange::stop);
     ASSERT_TRUE(rig->comes_true([&] { return rig->valve->safe_since != 0; }));
-    EXPECT_LT(at_ns(rig->valve->safe_since) - begin, board.stop_within);
+    EXPECT_LT(at_ns(rig->valve->safe_since) - begin, real_board.stop_within);
     rig->camera->let_go = true;
     EXPECT_TRUE(rig->comes_true([&] {
         return rig->instance.life().answer_of_activity(drivers, ticket).outcome == LifeOutcome::done;
@@ -350,7 +324,7 @@ TEST_F(TheMachine, stops_the_others_in_time_when_a_real_time_activity_hangs_and_
     EXPECT_EQ(rig->world.make_safe(), 1);
     EXPECT_EQ(rig->world.first_hung(), "logic");
     EXPECT_EQ(rig->valve->at_wire, 0);
-    EXPECT_LT(rig->until_safe(), board.stop_within);
+    EXPECT_LT(rig->until_safe(), real_board.stop_within);
     rig.end();
     EXPECT_EQ(rig->pulse->stopped, 0) << "neither the supervisor's thread nor its own, which was given up";
     EXPECT_FALSE(rig->instance.standing());
@@ -368,7 +342,7 @@ TEST_F(TheMachine, stops_when_an_activity_that_was_to_be_stopped_alone_hangs) {
     EXPECT_EQ(rig->instance.life().answer_of_activity(spare, ticket).refusal, LifeRefusal::thread_lost);
     EXPECT_EQ(rig->world.make_safe(), 1);
     EXPECT_EQ(rig->valve->at_wire, 0);
-    EXPECT_LT(rig->until_safe(), board.stop_within);
+    EXPECT_LT(rig->until_safe(), real_board.stop_within);
     rig.end();
 }
 
@@ -381,7 +355,7 @@ TEST_F(TheMachine, stops_in_time_for_a_broken_contract_while_another_activity_is
     EXPECT_EQ(rig->world.make_safe(), 0);
     EXPECT_EQ(rig->instance.stop_request().reason, StopReason::broken_contract);
     EXPECT_EQ(rig->valve->at_wire, 0);
-    EXPECT_LT(rig->until_safe(), board.stop_within);
+    EXPECT_LT(rig->until_safe(), real_board.stop_within);
     EXPECT_EQ(rig->world.lost(), 1);
 }
 
@@ -392,7 +366,7 @@ TEST_F(TheMachine, stops_when_a_contract_breaks_in_what_initialises_it_and_waits
     EXPECT_EQ(rig->instance.stop_request().reason, StopReason::broken_contract);
     EXPECT_EQ(rig->world.stop(), 0);
     EXPECT_EQ(rig->valve->at_wire, 0);
-    EXPECT_LT(rig->until_safe(), board.stop_within);
+    EXPECT_LT(rig->until_safe(), real_board.stop_within);
     EXPECT_THAT(std::string{rig->world.unfinished().view()},
                 testing::StartsWith("activity \"look\": its initialise() or finalise() broke a contract"));
     EXPECT_FALSE(rig->instance.standing());
@@ -427,20 +401,13 @@ constexpr auto oven_table = machine("baking",
 TEST(StopOfWhatBlocks, reaches_the_wire_or_is_told_as_unsafe) {
     for (const int blocks_ms : {5, 150, 400}) {
         SCOPED_TRACE(blocks_ms);
-        os::Clock clock{os::Clock::Kind::real};
-        MachineInstance instance{AtRunTime<oven_table, board>::machine(), clock};
-        RealWorld world{instance};
-        os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
-        ASSERT_TRUE(instance.configure({}));
-        const int nowhere_to_print = open("/dev/null", O_WRONLY);
-        const auto armed = world.arm(report, nowhere_to_print);
-        close(nowhere_to_print);
-        ASSERT_TRUE(armed && world.start(*armed));
-        const Wire& wire = *instance.find<Wire>("wire");
-        instance.find<Oven>("oven")->blocks_ms = blocks_ms;
-        ASSERT_TRUE(world.supervise(100ms));
+        RealRig<oven_table> rig;
+        ASSERT_TRUE(rig.runs());
+        const Wire& wire = rig.the<Wire>("wire");
+        rig.the<Oven>("oven").blocks_ms = blocks_ms;
+        ASSERT_TRUE(rig.world.supervise(100ms));
         EXPECT_EQ(wire.at_wire, 1);
-        const int hung = world.stop();
+        const int hung = rig.world.stop();
         EXPECT_TRUE(hung != 0 || wire.at_wire == 0) << "it said that all is safe";
         if (blocks_ms < 100) {
             EXPECT_EQ(hung, 0);

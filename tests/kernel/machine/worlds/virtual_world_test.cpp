@@ -1,14 +1,12 @@
 // A machine under virtual time: nothing sleeps, every run of a seed is the same, and an overrun is laid at
 // the door of whoever caused it.
-#include "kernel/machine/accept.hpp"
 #include "kernel/machine/check/time.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 
 #include "kernel/base/random.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 #include "tests/kernel/machine/watched_machine.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tappet {
 namespace {
@@ -23,19 +21,15 @@ std::string_view culprit(const Engine& engine, const Miss& miss) {
 }
 
 template <const auto& table>
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, watched::board>::machine(), clock};
-    VirtualWorld world{instance};
+struct Rig : ConfiguredRig<table> {
     /// `seed`: cycles take times.
     explicit Rig(std::optional<std::uint64_t> seed = {}) {
         watched::stops().clear();
-        EXPECT_TRUE(instance.configure({}));
-        if (seed) world.take_times(*seed);
-        world.start();
+        if (seed) this->world.take_times(*seed);
+        this->world.start();
     }
-    Worker& worker(std::string_view name) { return *instance.template find<Worker>(name); }
-    const Engine& engine(std::size_t activity) { return instance.engines()[activity]; }
+    Worker& worker(std::string_view name) { return this->template the<Worker>(name); }
+    const Engine& engine(std::size_t activity) { return this->instance.engines()[activity]; }
 };
 
 TEST(VirtualWorld, runs_every_activity_at_its_period_and_leaps_over_what_lies_between) {
@@ -64,7 +58,7 @@ TEST(VirtualWorld, keeps_an_activity_that_hangs_from_its_cycles_and_no_other) {
 
 /// Cycles that take time, as long as the analysis says at most.
 TEST(VirtualWorld, lets_cycles_take_up_to_their_budgets_and_none_respond_later_than_analysed) {
-    const AcceptedMachine machine = AtRunTime<watched::table, watched::board>::machine();
+    const AcceptedMachine machine = AtRunTime<watched::table, test_board>::machine();
     std::vector<int> processors;
     for (const ActivityPlan& plan : machine.plan.activities) processors.push_back(plan.processor);
     Duration longest{};
@@ -137,7 +131,7 @@ TEST(VirtualWorld, stops_within_no_time_while_makers_functions_take_theirs_and_n
     rig.worker("right").order = Order::overrun;
     EXPECT_FALSE(rig.world.run_until(at_ns(0) + 30s));
     rig.world.stop();
-    EXPECT_LT(rig.clock.now() - rig.instance.stop_asked_at(), watched::board.stop_within);
+    EXPECT_LT(rig.clock.now() - rig.instance.stop_asked_at(), test_board.stop_within);
     for (const char* name : {"driver", "left", "middle", "right", "logic"})
         EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
     EXPECT_EQ(rig.instance.life().answer_of_activity(watched::logic, ticket).refusal,
@@ -146,17 +140,15 @@ TEST(VirtualWorld, stops_within_no_time_while_makers_functions_take_theirs_and_n
 }
 
 TEST(VirtualWorld, does_not_do_later_what_it_refused_before_the_start) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<watched::table, watched::board>::machine(), clock};
-    VirtualWorld world{instance};
-    ASSERT_TRUE(instance.configure({}));
+    ConfiguredRig<watched::table> rig;
+    MachineInstance& instance = rig.instance;
     const std::size_t middle = find_component(instance.machine().table, "middle");
     const LifeTicket ticket = instance.life().ask_component(middle, LifeChange::stop);
     EXPECT_EQ(instance.life().answer_of_component(middle, ticket).refusal, LifeRefusal::activity_stopped);
-    world.start();
-    EXPECT_TRUE(world.run_until(at_ns(0) + 100ms));
+    rig.world.start();
+    EXPECT_TRUE(rig.run(100ms));
     EXPECT_EQ(instance.life().state_of(middle), ComponentState::running);
-    world.stop();
+    rig.world.stop();
 }
 
 TEST(VirtualWorldDeathTest, does_nothing_to_an_engine_that_runs_that_is_for_one_that_stands) {

@@ -1,10 +1,7 @@
 // How a box is: read from a made-up tree of the kernel's, and shown by a machine.
 #include "kernel/services/box/box.hpp"
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -75,15 +72,11 @@ constexpr auto table = machine("boxed",
 constexpr Board board{.name = "host", .world = "host", .heap_bytes = 65536, .simulated = true};
 
 TEST(Box, tells_a_machine_how_it_is) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    ASSERT_TRUE(instance.configure({}));
-    VirtualWorld world{instance};
-    world.start();
-    EXPECT_TRUE(world.run_until(at_ns(0) + 2s));
-    EXPECT_GT(instance.find<Reader>("reader")->seen, 0.0);
-    EXPECT_EQ(instance.find<Box>("box")->watchdog.last(), os::watchdog_counts());
-    world.stop();
+    RunningRig<table, board> rig;
+    EXPECT_TRUE(rig.run(2s));
+    EXPECT_GT(rig.the<Reader>("reader").seen, 0.0);
+    EXPECT_EQ(rig.the<Box>("box").watchdog.last(), os::watchdog_counts());
+    rig.world.stop();
 }
 
 } // namespace

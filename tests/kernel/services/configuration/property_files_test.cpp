@@ -2,12 +2,10 @@
 // that a wrong one keeps it from arming; changed while it runs; saved while it runs and when it has stopped.
 #include "kernel/services/configuration/property_files.hpp"
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/configuration/property_saving.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -70,19 +68,13 @@ struct Tension {
     }
 };
 
-struct Office {
-    static constexpr bool sees_machine = true;
-    void work(const Cycle&) {}
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
-
 // clang-format off
 constexpr auto table = machine("kept",
     components(
         component<Tension>("warp", set("gain", 2.0), properties_file("warp.cpf")),
         component<Tension>("weft", properties_file("weft.cpf", optional)),
         component<Tension>("edge", set("band.low", 15.0)),
-        component<Office>("office")),
+        component<Onlooker>("office")),
     activities(
         activity("motion", every(1ms), budget(50us), runs("warp")),
         activity("logic",  on_work(), at_most(4, 1ms), deadline(1ms), budget(50us), runs("weft", "edge")),
@@ -92,7 +84,6 @@ constexpr auto refused_table = machine("refused",
     components(component<Tension>("edge", set("band.low", 25.0))),
     activities(activity("motion", every(1ms), budget(50us), runs("edge"))),
     connections(), reactions(), behaviours());
-constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024};
 // clang-format on
 constexpr std::size_t motion = 0, logic = 1, office = 2;
 
@@ -104,12 +95,10 @@ std::string band(const std::string& members) {
     return "<struct name=\"band\" type=\"\">" + members + "</struct>";
 }
 
-struct PropertyFilesOfAMachine : testing::Test {
+struct PropertyFilesOfAMachine : testing::Test, PlacedRig<table> {
     std::filesystem::path directory;
     std::string directory_name;
     std::unique_ptr<PropertyFiles> files;
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
 
     PropertyFilesOfAMachine() {
         std::string pattern = (std::filesystem::temp_directory_path() / "tappet-properties-XXXXXX").string();
@@ -134,7 +123,7 @@ struct PropertyFilesOfAMachine : testing::Test {
         const auto configured = instance.configure({});
         return configured ? "" : std::string{configured.error().view()};
     }
-    Tension& tension(std::string_view name) { return *instance.find<Tension>(name); }
+    Tension& tension(std::string_view name) { return the<Tension>(name); }
     std::size_t index_of(std::string_view name) {
         std::size_t f = 0;
         while (component_type<Tension>.facets[f].name != name) ++f;
@@ -207,9 +196,7 @@ TEST_F(PropertyFilesOfAMachine, need_a_directory_unless_all_are_optional) {
 }
 
 TEST(PropertiesOfARow, are_validated_by_their_component_too) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<refused_table, board>::machine(), clock};
-    const auto configured = instance.configure({});
+    const auto configured = PlacedRig<refused_table>{}.instance.configure({});
     ASSERT_FALSE(configured);
     EXPECT_THAT(std::string{configured.error().view()},
                 HasSubstr("component \"edge\" refuses its properties: band.low"));
@@ -323,7 +310,6 @@ TEST_F(PropertyFilesOfAMachineDeathTest, are_not_given_to_a_machine_that_is_conf
 }
 
 struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
-    VirtualWorld world{instance};
     PropertiesOfARunningMachine() {
         put("warp.cpf", cpf(""));
         EXPECT_EQ(configure(), "");
@@ -372,7 +358,7 @@ TEST_F(PropertiesOfARunningMachine, are_not_saved_while_one_is_out_of_its_range)
     tension("warp").gain.set(-1.0);
     saving.begin(instance, office);
     int steps = 0;
-    for (Time now = at_ns(0); saving.step() && steps < 100; ++steps) EXPECT_TRUE(world.run_until(now += 1ms));
+    for (; saving.step() && steps < 100; ++steps) EXPECT_TRUE(run(1ms));
     EXPECT_EQ(saving.saved(), 1u);
     EXPECT_THAT(std::string{saving.fault().view()},
                 AllOf(HasSubstr("property \"gain\""), HasSubstr("under its least value 0")));
@@ -384,7 +370,7 @@ TEST_F(PropertiesOfARunningMachine, are_saved_while_it_runs) {
     tension("warp").gain.set(6.25);
     saving.begin(instance, office);
     int steps = 0;
-    for (Time now = at_ns(0); saving.step() && steps < 100; ++steps) EXPECT_TRUE(world.run_until(now += 1ms));
+    for (; saving.step() && steps < 100; ++steps) EXPECT_TRUE(run(1ms));
     EXPECT_FALSE(saving.busy());
     EXPECT_EQ(saving.saved(), 2u);
     EXPECT_TRUE(saving.fault().empty()) << saving.fault().view();

@@ -1,13 +1,7 @@
 // Lines in a machine of threads: they run in one activity after the other, all of which send to the same
 // engine through the same mailbox; some are broken off on their way.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/real_world.hpp"
+#include "tests/kernel/machine/real_rig.hpp"
 #include "tests/kernel/services/interpreter/line_machine.hpp"
-
-#include <gtest/gtest.h>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace tappet::press {
 namespace {
@@ -60,26 +54,17 @@ constexpr auto threads = machine("press",
         activity("hall",   every(1ms), not_real_time, stack(256 * 1024), runs("interpreter", "typist"))),
     connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.height", "gauge.height")),
     reactions(), behaviours());
-constexpr Board any{.name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 // clang-format on
 
 TEST(LinesInThreads, end_one_after_the_other_wherever_they_run) {
-    os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{AtRunTime<threads, any>::machine(), clock};
-    RealWorld world{instance};
-    os::ArmingReport report{std::span{any.only_warned.begin(), any.only_warned.end()}};
-    const int nowhere_to_print = open("/dev/null", O_WRONLY);
-    ASSERT_TRUE(instance.configure({}));
-    const auto armed = world.arm(report, nowhere_to_print);
-    ASSERT_TRUE(armed && world.start(*armed));
-    close(nowhere_to_print);
-    const Typist& typist = *instance.find<Typist>("typist");
-    while (typist.ended < Typist::wanted) ASSERT_TRUE(world.supervise(20ms));
-    EXPECT_EQ(world.stop(), 0);
+    RealRig<threads> rig;
+    ASSERT_TRUE(rig.runs());
+    const Typist& typist = rig.the<Typist>("typist");
+    while (typist.ended < Typist::wanted) ASSERT_TRUE(rig.world.supervise(20ms));
+    EXPECT_EQ(rig.world.stop(), 0);
     EXPECT_GT(typist.done, 0u);
-    EXPECT_GT(instance.find<Gauge>("gauge")->zeroed, 0);
-    EXPECT_GT(instance.find<Ram>("ram")->strokes, 0);
+    EXPECT_GT(rig.the<Gauge>("gauge").zeroed, 0);
+    EXPECT_GT(rig.the<Ram>("ram").strokes, 0);
 }
 
 } // namespace

@@ -1,9 +1,8 @@
 // A machine whose values are recorded in every way that a row can say, and which knows what they were.
 #pragma once
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "kernel/services/reporting/reporting.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <array>
 #include <cmath>
@@ -82,19 +81,10 @@ struct Press {
     }
 };
 
-/// Somebody from outside may look.
-struct Window {
-    static constexpr bool sees_machine = true;
-    void work(const Cycle&) {}
-    static constexpr auto interface() { return facets(); }
-};
-
-inline constexpr Board box{.name = "box", .world = "host", .memory_budget_bytes = 4 << 20};
-
 template <class... Extra>
 constexpr auto machine_with(const Extra&... extra) {
     return machine(
-        "shop", components(component<Axis>("axis"), component<Press>("press"), component<Window>("window")),
+        "shop", components(component<Axis>("axis"), component<Press>("press"), component<Onlooker>("window")),
         activities(activity("motion", every(1ms), budget(100us), runs("axis")),
                    activity("slow", every(5ms), budget(100us), runs("press")),
                    activity("background", every(20ms), not_real_time, runs("window"))),
@@ -102,18 +92,10 @@ constexpr auto machine_with(const Extra&... extra) {
 }
 
 template <const auto& table>
-struct Rig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, box>::machine(), clock};
-    VirtualWorld world{instance};
-    Axis* axis = nullptr;
+struct Rig : ConfiguredRig<table> {
+    Axis* axis = &this->template the<Axis>("axis");
 
-    Rig() {
-        if (!instance.configure({})) std::abort(); // it needs nothing that could be missing
-        axis = instance.template find<Axis>("axis");
-    }
-    [[nodiscard]] bool start() { return world.start().empty(); }
-    [[nodiscard]] bool run(Duration time) { return world.run_until(clock.now() + time); }
+    [[nodiscard]] bool start() { return this->world.start().empty(); }
 };
 
 } // namespace tappet::recorded_test

@@ -2,10 +2,7 @@
 // what its components consume.
 #include "kernel/services/scope/thread_scope.hpp"
 
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -54,33 +51,19 @@ constexpr auto two_scopes = machine("twice",
     components(component<ThreadScope>("scope"), component<ThreadScope>("other")),
     activities(activity("background", every(20ms), not_real_time, runs("scope", "other"))),
     connections(), reactions(), behaviours());
-constexpr Board board{
-    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 constexpr std::size_t motion = 0, logic = 1, background = 2;
 // clang-format on
 
-struct Scope : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    Worker* first = nullptr;
-    ThreadScope* scope = nullptr;
-    scope::Directory* directory = nullptr;
+struct Scope : testing::Test, RunningRig<table> {
+    Worker* first = &the<Worker>("first");
+    ThreadScope* scope = &the<ThreadScope>("scope");
+    scope::Directory* directory = reinterpret_cast<scope::Directory*>(instance.machine().memory.data() +
+                                                                      instance.machine().plan.scope_at);
 
-    Scope() {
-        EXPECT_TRUE(instance.configure({}));
-        first = instance.find<Worker>("first");
-        scope = instance.find<ThreadScope>("scope");
-        const AcceptedMachine& machine = instance.machine();
-        directory = reinterpret_cast<scope::Directory*>(machine.memory.data() + machine.plan.scope_at);
-        EXPECT_EQ(world.start().view(), "");
-    }
-    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
     /// One cycle of motion in which the first worker takes so long.
     void run_slow(Duration load) {
         first->load = load;
-        run(1ms);
+        pass(1ms);
         first->load = 10us;
     }
     std::vector<scope::Recording*> kept(std::uint32_t activity) {
@@ -94,7 +77,7 @@ struct Scope : testing::Test {
 };
 
 TEST_F(Scope, each_cycle_is_on_the_tape_of_its_activity_function_by_function) {
-    run(3500us);
+    pass(3500us);
     const CycleTape& tape = scope::tape(*directory, motion);
     TapeCycle cycle;
     ASSERT_TRUE(tape.cycle_before(tape.head(), cycle));
@@ -115,10 +98,10 @@ TEST_F(Scope, each_cycle_is_on_the_tape_of_its_activity_function_by_function) {
 }
 
 TEST_F(Scope, the_worst_cycle_is_kept_with_what_ran_around_it) {
-    run(50ms);
+    pass(50ms);
     const Time slow_from = clock.now();
     run_slow(700us);
-    run(50ms);
+    pass(50ms);
     const auto worst = kept(motion);
     ASSERT_FALSE(worst.empty());
     EXPECT_EQ(worst[0]->rank_ns, 710'000);
@@ -148,13 +131,13 @@ TEST_F(Scope, the_worst_cycle_is_kept_with_what_ran_around_it) {
 }
 
 TEST_F(Scope, of_each_part_of_the_span_the_worst_two_are_kept) {
-    run(1s);
+    pass(1s);
     run_slow(300us);
-    run(10ms);
+    pass(10ms);
     run_slow(500us);
-    run(10ms);
+    pass(10ms);
     run_slow(400us);
-    run(100ms);
+    pass(100ms);
     const auto worst = kept(motion);
     ASSERT_GE(worst.size(), 2u);
     EXPECT_EQ(worst[0]->rank_ns, 510'000);
@@ -163,24 +146,24 @@ TEST_F(Scope, of_each_part_of_the_span_the_worst_two_are_kept) {
 }
 
 TEST_F(Scope, the_worst_of_the_whole_span_is_there_until_the_span_is_over) {
-    run(500ms);
+    pass(500ms);
     run_slow(600us);
     for (int tenth = 1; tenth < 40; ++tenth) { // of a span of four seconds
-        run(100ms);
+        pass(100ms);
         ASSERT_EQ(kept(motion).at(0)->rank_ns, 610'000) << tenth;
     }
-    run(3s);
+    pass(3s);
     EXPECT_LT(kept(motion).at(0)->rank_ns, 610'000) << "what is older gave its place away";
 }
 
 TEST_F(Scope, what_takes_longer_than_its_room_is_kept_with_less_around_it) {
-    run(30ms);
+    pass(30ms);
     // Messages without end: every cycle of logic is short, and there are many in the window.
     for (int i = 0; i < 20; ++i) {
         first->load = Duration{(i + 1) * 20'000};
-        run(1ms);
+        pass(1ms);
     }
-    run(60ms);
+    pass(60ms);
     for (const scope::Recording* each : kept(motion)) {
         EXPECT_LE(each->words, scope::recording_words);
         EXPECT_LE(each->from, each->release);
@@ -189,33 +172,33 @@ TEST_F(Scope, what_takes_longer_than_its_room_is_kept_with_less_around_it) {
 }
 
 TEST_F(Scope, switched_off_nothing_is_recorded_and_switched_on_again_it_goes_on) {
-    run(50ms);
+    pass(50ms);
     scope->on.set(false);
-    run(25ms);
+    pass(25ms);
     const std::uint64_t before = scope::tape(*directory, motion).head();
-    run(100ms);
+    pass(100ms);
     EXPECT_EQ(scope::tape(*directory, motion).head(), before);
     scope->on.set(true);
-    run(100ms);
+    pass(100ms);
     EXPECT_GT(scope::tape(*directory, motion).head(), before);
     EXPECT_EQ(directory->overtaken, 0u);
 }
 
 TEST_F(Scope, what_is_kept_can_be_forgotten) {
-    run(50ms);
+    pass(50ms);
     run_slow(700us);
-    run(50ms);
+    pass(50ms);
     scope->forget();
-    run(50ms);
+    pass(50ms);
     ASSERT_FALSE(kept(motion).empty()) << "it goes on";
     EXPECT_LT(kept(motion).at(0)->rank_ns, 700'000);
 }
 
 TEST_F(Scope, by_busy_time_a_late_cycle_is_not_the_worst) {
     scope->by_busy.set(true);
-    run(50ms);
+    pass(50ms);
     run_slow(1500us); // the next cycle begins late, and is short
-    run(50ms);
+    pass(50ms);
     const auto worst = kept(motion);
     ASSERT_GE(worst.size(), 2u);
     EXPECT_EQ(worst[0]->rank_ns, 1'510'000);
@@ -223,19 +206,19 @@ TEST_F(Scope, by_busy_time_a_late_cycle_is_not_the_worst) {
 }
 
 TEST_F(Scope, cycles_of_the_background_are_recorded_and_not_ranked) {
-    run(100ms);
+    pass(100ms);
     EXPECT_GT(scope::tape(*directory, background).head(), 0u);
     EXPECT_TRUE(kept(background).empty());
     EXPECT_GT(directory->judged, 150u);
 }
 
 TEST_F(Scope, an_activity_that_is_stopped_and_started_goes_on_with_its_tape) {
-    run(50ms);
+    pass(50ms);
     ASSERT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
-    run(50ms);
+    pass(50ms);
     ASSERT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
     const std::uint64_t before = scope::tape(*directory, motion).head();
-    run(50ms);
+    pass(50ms);
     const CycleTape& tape = scope::tape(*directory, motion);
     EXPECT_GT(tape.head(), before);
     TapeCycle cycle;
@@ -244,7 +227,7 @@ TEST_F(Scope, an_activity_that_is_stopped_and_started_goes_on_with_its_tape) {
 }
 
 TEST(ScopeTable, two_recorders_in_one_table_are_refused) {
-    const Sentence refusal = Accepted{two_scopes.view(), board}.refusal();
+    const Sentence refusal = Accepted{two_scopes.view(), test_board}.refusal();
     EXPECT_NE(refusal.view().find("\"other\" records the machine's cycles as \"scope\" does already"),
               std::string_view::npos)
         << refusal.view();

@@ -4,19 +4,14 @@
 #include "kernel/services/time/watchdog.hpp"
 
 #include "kernel/base/random.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/real_world.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
+#include "tests/kernel/machine/real_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
 #include <vector>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace tappet {
 namespace {
@@ -105,46 +100,35 @@ constexpr auto table = machine("timely",
         when("cycle_dog.revived", tell("office.on_revived")),
         when("level_dog.silent",  tell("office.on_level_silent"))),
     behaviours());
-constexpr auto real_time_table = table; // in memory of its own
-constexpr Board board{
-    .name = "test", .world = "host", .memory_budget_bytes = 4 * 1024 * 1024, .highest_priority = 40,
-    .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 constexpr std::size_t motion = 0, worker = 0;
 // clang-format on
 
-struct TimeService : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    TimeService() {
-        EXPECT_TRUE(instance.configure({}));
-        EXPECT_EQ(world.start().view(), "");
-        run(10ms);
-    }
-    void run(Duration time) { ASSERT_TRUE(world.run_until(clock.now() + time)); }
+struct TimeService : testing::Test, RunningRig<table> {
+    TimeService() { pass(10ms); }
     /// Emits in the logic's activity, as it were: nothing else runs under virtual time meanwhile.
     template <class E, class... A> void emit(E& event, A... arguments) {
         event(arguments...);
         instance.engines()[2].waiter().wake();
     }
-    Office& office = *instance.find<Office>("office");
-    TimedEvent& bell = *instance.find<TimedEvent>("bell");
-    Worker& the_worker = *instance.find<Worker>("worker");
-    Watchdog& cycle_dog = *instance.find<Watchdog>("cycle_dog");
-    Watchdog& level_dog = *instance.find<Watchdog>("level_dog");
+    Office& office = the<Office>("office");
+    TimedEvent& bell = the<TimedEvent>("bell");
+    Worker& the_worker = the<Worker>("worker");
+    Watchdog& cycle_dog = the<Watchdog>("cycle_dog");
+    Watchdog& level_dog = the<Watchdog>("level_dog");
 };
 
 using ATimedEvent = TimeService;
 using AWatchdog = TimeService;
+using AWatchdogInRealTime = InRealTime;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
 TEST_F(ATimedEvent, is_due_once_at_its_time_and_not_before) {
     emit(office.at, clock.now() + 40ms);
     const Time when = clock.now() + 40ms;
-    run(40ms - 1ns);
+    pass(40ms - 1ns);
     EXPECT_THAT(office.dues, IsEmpty());
-    run(100ms);
+    pass(100ms);
     EXPECT_THAT(office.dues, ElementsAre(when));
     EXPECT_EQ(office.dues_heard_at, office.dues);
     EXPECT_FALSE(bell.armed());
@@ -152,17 +136,17 @@ TEST_F(ATimedEvent, is_due_once_at_its_time_and_not_before) {
 
 TEST_F(ATimedEvent, is_due_after_a_while_and_arming_again_moves_it) {
     emit(office.after, Duration{30ms});
-    run(20ms);
+    pass(20ms);
     const Time when = clock.now() + 50ms;
     emit(office.after, Duration{50ms});
-    run(200ms);
+    pass(200ms);
     EXPECT_THAT(office.dues, ElementsAre(when));
 }
 
 TEST_F(ATimedEvent, that_is_past_is_due_at_once) {
     const Time when = clock.now() - 5ms;
     emit(office.at, when);
-    run(1ns);
+    pass(1ns);
     EXPECT_THAT(office.dues, ElementsAre(when));
     EXPECT_EQ(office.dues_heard_at[0], clock.now() - 1ns);
 }
@@ -170,11 +154,11 @@ TEST_F(ATimedEvent, that_is_past_is_due_at_once) {
 TEST_F(ATimedEvent, comes_again_and_again_until_it_is_cancelled) {
     const Time begin = clock.now();
     emit(office.again, Duration{15ms});
-    run(50ms);
+    pass(50ms);
     EXPECT_THAT(office.dues, ElementsAre(begin + 15ms, begin + 30ms, begin + 45ms));
     EXPECT_EQ(bell.times.last(), 3);
     emit(office.never_mind);
-    run(100ms);
+    pass(100ms);
     EXPECT_EQ(office.dues.size(), 3u);
     EXPECT_EQ(bell.skipped.last(), 0);
 }
@@ -182,9 +166,9 @@ TEST_F(ATimedEvent, comes_again_and_again_until_it_is_cancelled) {
 TEST_F(ATimedEvent, keeps_its_beat_and_counts_the_periods_that_were_lost_to_lateness) {
     const Time begin = clock.now();
     emit(office.again, Duration{10ms});
-    run(10ms);
+    pass(10ms);
     the_worker.load = 35ms; // everything waits for it under virtual time
-    run(60ms);
+    pass(60ms);
     EXPECT_EQ(bell.skipped.last() + bell.times.last(), 7);
     EXPECT_GT(bell.skipped.last(), 0);
     for (const Time due : office.dues) EXPECT_EQ((due - begin) % 10ms, Duration::zero());
@@ -195,7 +179,7 @@ TEST_F(ATimedEvent, with_a_period_that_is_not_positive_is_not_armed) {
     emit(office.again, Duration{0});
     EXPECT_FALSE(bell.armed());
     emit(office.again, Duration{-1});
-    run(100ms);
+    pass(100ms);
     EXPECT_THAT(office.dues, IsEmpty());
 }
 
@@ -203,19 +187,19 @@ TEST_F(ATimedEvent, may_be_armed_anew_by_what_hears_it) {
     office.rearms = true;
     const Time begin = clock.now();
     emit(office.after, Duration{10ms});
-    run(25ms);
+    pass(25ms);
     EXPECT_THAT(office.dues, ElementsAre(begin + 10ms, begin + 17ms, begin + 24ms));
 }
 
 TEST_F(ATimedEvent, is_forgotten_when_its_component_stops) {
     emit(office.after, Duration{10ms});
     static_cast<void>(instance.life().ask_component(2, LifeChange::restart));
-    run(100ms);
+    pass(100ms);
     EXPECT_THAT(office.dues, IsEmpty());
 }
 
 TEST_F(AWatchdog, is_content_while_there_is_life) {
-    run(10s);
+    pass(10s);
     EXPECT_TRUE(cycle_dog.alive.last());
     EXPECT_TRUE(level_dog.alive.last());
     EXPECT_THAT(office.silences, IsEmpty());
@@ -226,39 +210,39 @@ TEST_F(AWatchdog, tells_the_silence_of_a_connection_once_and_two_of_its_periods_
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
         Random random{seed};
         office.level_silences.clear();
-        run(random.between(1, 40'000) * 1us);
+        pass(random.between(1, 40'000) * 1us);
         the_worker.silent = true;
         const Time from = clock.now();
-        while (office.level_silences.empty() && clock.now() < from + 1s) run(100us);
+        while (office.level_silences.empty() && clock.now() < from + 1s) pass(100us);
         EXPECT_GT(clock.now(), from + 29ms); // its last value is up to a millisecond older
         EXPECT_LE(clock.now(), from + 30ms + 2 * 2ms + 100us);
-        run(500ms);
+        pass(500ms);
         ASSERT_EQ(office.level_silences.size(), 1u) << "seed " << seed;
         EXPECT_GE(office.level_silences[0], 30ms);
         EXPECT_LT(office.level_silences[0], 32ms);
         EXPECT_FALSE(level_dog.alive.last());
         EXPECT_TRUE(cycle_dog.alive.last()) << "its activity runs";
         the_worker.silent = false;
-        run(5ms);
+        pass(5ms);
         EXPECT_TRUE(level_dog.alive.last());
     }
 }
 
 TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew_when_it_starts) {
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
-    run(200ms);
+    pass(200ms);
     EXPECT_THAT(office.silences, IsEmpty());
     EXPECT_THAT(office.level_silences, IsEmpty());
     EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
     static_cast<void>(instance.life().ask_component(worker, LifeChange::stop)); // its activity goes on
-    run(200ms);
+    pass(200ms);
     EXPECT_THAT(office.silences, IsEmpty());
     EXPECT_THAT(office.level_silences, IsEmpty());
     static_cast<void>(instance.life().ask_component(worker, LifeChange::start));
     the_worker.silent = true;
-    run(29ms);
+    pass(29ms);
     EXPECT_THAT(office.level_silences, IsEmpty());
-    run(10ms);
+    pass(10ms);
     EXPECT_EQ(office.level_silences.size(), 1u);
 }
 
@@ -266,7 +250,7 @@ TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
     Engine& engine = instance.engines()[motion];
     engine.stop(clock.now()); // as a thread does whose contract is broken
     engine.mark_failed();
-    run(100ms);
+    pass(100ms);
     EXPECT_EQ(office.silences.size(), 1u);
     EXPECT_FALSE(cycle_dog.alive.last());
 }
@@ -325,24 +309,18 @@ constexpr auto sleeping_table = machine("sleeping",
     behaviours());
 // clang-format on
 
-constexpr auto virtual_sleeping_table = sleeping_table; // in memory of its own
-
 TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_that_it_does_not_come) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<virtual_sleeping_table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    ASSERT_TRUE(instance.configure({}));
-    ASSERT_EQ(world.start().view(), "");
-    Rouser& rouser = *instance.find<Rouser>("rouser");
-    EXPECT_TRUE(world.run_until(clock.now() + 1s));
+    RunningRig<sleeping_table> rig;
+    Rouser& rouser = rig.the<Rouser>("rouser");
+    EXPECT_TRUE(rig.run(1s));
     rouser.rouses = true;
-    EXPECT_TRUE(world.run_until(clock.now() + 1s));
+    EXPECT_TRUE(rig.run(1s));
     EXPECT_THAT(rouser.silences, IsEmpty()) << "it rests, and when it was woken it came";
-    Engine& sleeping = instance.engines()[2];
-    sleeping.stop(clock.now()); // as a thread does whose contract is broken
+    Engine& sleeping = rig.instance.engines()[2];
+    sleeping.stop(rig.clock.now()); // as a thread does whose contract is broken
     sleeping.mark_failed();
     sleeping.waiter().wake();
-    EXPECT_TRUE(world.run_until(clock.now() + 100ms));
+    EXPECT_TRUE(rig.run(100ms));
     EXPECT_EQ(rouser.silences.size(), 1u);
 }
 
@@ -357,54 +335,38 @@ constexpr auto rousing_table = machine("rousing", // it is woken just before the
 // clang-format on
 
 TEST(AWatchdogOfAnActivityWithoutAPeriod, takes_no_rest_for_silence_whose_limit_is_below_its_own_period) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<rousing_table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    ASSERT_TRUE(instance.configure({}));
-    ASSERT_EQ(world.start().view(), "");
-    Rouser& rouser = *instance.find<Rouser>("rouser");
+    RunningRig<rousing_table> rig;
+    Rouser& rouser = rig.the<Rouser>("rouser");
     for (int i = 0; i < 20; ++i) {
         rouser.rouses = true;
-        EXPECT_TRUE(world.run_until(clock.now() + 10ms));
+        EXPECT_TRUE(rig.run(10ms));
     }
     EXPECT_THAT(rouser.silences, IsEmpty()) << "it comes at once, each time";
 }
 
 TEST(AWatchdogOfAnActivityWithoutAPeriod, hears_that_it_does_not_come_for_a_timer_that_is_due) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<virtual_sleeping_table, board>::machine(), clock};
-    VirtualWorld world{instance};
-    ASSERT_TRUE(instance.configure({}));
-    ASSERT_EQ(world.start().view(), "");
-    Rouser& rouser = *instance.find<Rouser>("rouser");
-    instance.find<Sleeper>("sleeper")->alarm_after = 50ms;
+    RunningRig<sleeping_table> rig;
+    Rouser& rouser = rig.the<Rouser>("rouser");
+    rig.the<Sleeper>("sleeper").alarm_after = 50ms;
     rouser.rouses = true;
-    EXPECT_TRUE(world.run_until(clock.now() + 40ms));
-    world.hang(2, clock.now() + 1s);
-    EXPECT_TRUE(world.run_until(clock.now() + 25ms));
+    EXPECT_TRUE(rig.run(40ms));
+    rig.world.hang(2, rig.clock.now() + 1s);
+    EXPECT_TRUE(rig.run(25ms));
     EXPECT_THAT(rouser.silences, IsEmpty()) << "nothing was due for longer than the limit";
-    EXPECT_TRUE(world.run_until(clock.now() + 100ms));
+    EXPECT_TRUE(rig.run(100ms));
     EXPECT_EQ(rouser.silences.size(), 1u);
 }
 
-TEST(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) {
-    if (os::observe_process(1).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
-    os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{AtRunTime<sleeping_table, board>::machine(), clock};
-    RealWorld world{instance};
-    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
-    const int nowhere_to_print = open("/dev/null", O_WRONLY);
-    ASSERT_TRUE(instance.configure({}));
-    const auto armed = world.arm(report, nowhere_to_print);
-    ASSERT_TRUE(armed && world.start(*armed));
-    close(nowhere_to_print);
-    Rouser& rouser = *instance.find<Rouser>("rouser");
-    EXPECT_TRUE(world.supervise(300ms)); // fifteen times the limit
+TEST_F(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) {
+    RealRig<sleeping_table> rig;
+    ASSERT_TRUE(rig.runs());
+    Rouser& rouser = rig.the<Rouser>("rouser");
+    EXPECT_TRUE(rig.world.supervise(300ms)); // fifteen times the limit
     EXPECT_TRUE(rouser.silences.empty()) << "nobody woke it";
-    instance.find<Sleeper>("sleeper")->hangs = true;
+    rig.the<Sleeper>("sleeper").hangs = true;
     rouser.rouses = true;
-    EXPECT_TRUE(world.supervise(500ms));
-    EXPECT_EQ(world.stop(), 0);
+    EXPECT_TRUE(rig.world.supervise(500ms));
+    EXPECT_EQ(rig.world.stop(), 0);
     ASSERT_FALSE(rouser.silences.empty());
     EXPECT_GE(rouser.silences[0], 20ms);
     EXPECT_EQ(rouser.revivals.size(), rouser.silences.size());
@@ -413,37 +375,25 @@ TEST(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) 
 TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
     const auto digest = [](std::uint64_t seed) {
         Random random{seed};
-        os::Clock its_clock{os::Clock::Kind::virtual_time};
-        MachineInstance again{AtRunTime<table, board>::machine(), its_clock};
-        VirtualWorld its_world{again};
-        EXPECT_TRUE(again.configure({}));
-        EXPECT_EQ(its_world.start().view(), "");
+        RunningRig<table> again;
         for (int n = 0; n < 50; ++n) {
-            again.find<Worker>("worker")->silent = random.below(2) == 0;
-            EXPECT_TRUE(its_world.run_until(its_clock.now() + random.between(1, 60) * 1ms));
+            again.the<Worker>("worker").silent = random.below(2) == 0;
+            EXPECT_TRUE(again.run(random.between(1, 60) * 1ms));
         }
-        return again.observation().event_log_digest();
+        return again.instance.observation().event_log_digest();
     };
     for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_EQ(digest(seed), digest(seed));
     EXPECT_NE(digest(1), digest(2));
 }
 
-TEST(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cycle_and_its_revival) {
-    if (os::observe_process(1).fifo_error != 0) GTEST_SKIP() << "SCHED_FIFO is not granted here: run as root";
-    os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{AtRunTime<real_time_table, board>::machine(), clock};
-    RealWorld world{instance};
-    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
-    const int nowhere_to_print = open("/dev/null", O_WRONLY);
-    ASSERT_TRUE(instance.configure({}));
-    const auto armed = world.arm(report, nowhere_to_print);
-    ASSERT_TRUE(armed && world.start(*armed));
-    close(nowhere_to_print);
-    EXPECT_TRUE(world.supervise(100ms));
-    instance.find<Worker>("worker")->hang_for = 200ms; // ten times the limit
-    EXPECT_TRUE(world.supervise(500ms));
-    EXPECT_EQ(world.stop(), 0);
-    const Office& office = *instance.find<Office>("office");
+TEST_F(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cycle_and_its_revival) {
+    RealRig<table> rig;
+    ASSERT_TRUE(rig.runs());
+    EXPECT_TRUE(rig.world.supervise(100ms));
+    rig.the<Worker>("worker").hang_for = 200ms; // ten times the limit
+    EXPECT_TRUE(rig.world.supervise(500ms));
+    EXPECT_EQ(rig.world.stop(), 0);
+    const Office& office = rig.the<Office>("office");
     ASSERT_FALSE(office.silences.empty());
     EXPECT_GE(office.silences[0], 20ms);
     ASSERT_EQ(office.revivals.size(), office.silences.size());
