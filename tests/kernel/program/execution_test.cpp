@@ -8,6 +8,13 @@ namespace program_test {
 
 constexpr Time at_ms(std::int64_t ms) { return at_ns(ms * 1'000'000); }
 
+/// One that counts something.
+struct Counting : TableBuilder {
+    DataOffset one = value(ScriptInt{1});
+    DataOffset count = value(ScriptInt{0});
+    Instruction counts() { return increment(count, one); }
+};
+
 /// Counts how often each of its nodes acted: the first always leads on, the second waits for a bool.
 struct WaitingProgram {
     TableBuilder table{};
@@ -18,12 +25,9 @@ struct WaitingProgram {
     DataOffset go = table.value(false);
     ConditionIndex may_go = table.condition({}, go);
     WaitingProgram() {
-        table.node({increment(first, one)});
-        table.arc(1);
-        table.node({increment(second, one)});
-        table.arc(2, may_go);
-        table.node({increment(third, one)});
-        table.arc(end_node);
+        table.node({increment(first, one)}).arc(1);
+        table.node({increment(second, one)}).arc(2, may_go);
+        table.node({increment(third, one)}).arc(end_node);
     }
 };
 
@@ -45,41 +49,33 @@ TEST(A_program, waits_where_no_arc_is_open_and_acts_there_once) {
 }
 
 TEST(A_program, that_yields_goes_on_in_the_next_step) {
-    TableBuilder table;
-    const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset count = table.value(ScriptInt{0});
-    table.node({increment(count, one)});
-    table.arc(0);
+    Counting table;
+    table.node({table.counts()}).arc(0);
     table.last().yields = true;
     Running running{table};
     for (int step = 0; step < 5; ++step) {
         step == 0 ? running.run() : running.step(at_ms(step));
-        EXPECT_EQ(running.get<ScriptInt>(count), step + 1);
+        EXPECT_EQ(running.get<ScriptInt>(table.count), step + 1);
         EXPECT_FALSE(running.execution.left_over());
     }
 }
 
 TEST(Arcs, are_followed_in_their_order) {
-    TableBuilder table;
-    const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset count = table.value(ScriptInt{0});
+    Counting table;
     const DataOffset yes = table.value(true);
     const DataOffset no = table.value(false);
-    table.node({});
-    table.arc(end_node, table.condition({}, no)).arc(1, table.condition({}, yes)).arc(end_node);
-    table.node({increment(count, one)});
-    table.arc(end_node);
+    table.node({}).arc(end_node, table.condition({}, no)).arc(1, table.condition({}, yes)).arc(end_node);
+    table.node({table.counts()}).arc(end_node);
     Running running{table};
     EXPECT_EQ(running.run(), ProgramStatus::stopped);
-    EXPECT_EQ(running.get<ScriptInt>(count), 1);
+    EXPECT_EQ(running.get<ScriptInt>(table.count), 1);
 }
 
 TEST(A_time_out, opens_its_arc_when_its_time_has_passed_since_the_node_was_entered) {
     TableBuilder table;
     const DataOffset after = table.value(Duration{20ms});
     const DataOffset go = table.value(false);
-    table.node({});
-    table.arc(1, table.condition({}, go)).arc(end_node, no_condition, after);
+    table.node({}).arc(1, table.condition({}, go)).arc(end_node, no_condition, after);
     table.node({fail_instruction()});
     Running running{table};
     EXPECT_EQ(running.run(at_ms(100)), ProgramStatus::running);
@@ -94,8 +90,7 @@ TEST(A_time_out, that_leads_nowhere_puts_the_program_in_error_at_its_node) {
     TableBuilder table;
     const DataOffset limit = table.value(Duration{20ms});
     const DataOffset go = table.value(false);
-    table.node({});
-    table.arc(end_node, table.condition({}, go)).arc(no_node, no_condition, limit);
+    table.node({}).arc(end_node, table.condition({}, go)).arc(no_node, no_condition, limit);
     Running running{table};
     EXPECT_EQ(running.run(at_ms(100)), ProgramStatus::running);
     EXPECT_EQ(running.step(at_ms(120)), ProgramStatus::error);
@@ -111,8 +106,7 @@ TEST(A_time_out, opens_its_arc_also_while_the_action_cannot_act_yet_and_a_condit
     TableBuilder table;
     const DataOffset limit = table.value(Duration{20ms});
     const DataOffset done = table.value(true);
-    table.node({{.run = &not_yet}});
-    table.arc(1, table.condition({}, done)).arc(end_node, no_condition, limit);
+    table.node({{.run = &not_yet}}).arc(1, table.condition({}, done)).arc(end_node, no_condition, limit);
     table.node({fail_instruction()});
     Running running{table};
     EXPECT_EQ(running.run(at_ms(100)), ProgramStatus::running);
@@ -122,37 +116,28 @@ TEST(A_time_out, opens_its_arc_also_while_the_action_cannot_act_yet_and_a_condit
 }
 
 TEST(An_action_that_fails, puts_the_program_in_error_at_its_node) {
-    TableBuilder table;
-    const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset after = table.value(ScriptInt{0});
-    table.node({});
-    table.arc(1);
-    table.node({fail_instruction(), increment(after, one)});
-    table.arc(2);
-    table.node({increment(after, one)});
-    table.arc(end_node);
+    Counting table;
+    table.node({}).arc(1);
+    table.node({fail_instruction(), table.counts()}).arc(2);
+    table.node({table.counts()}).arc(end_node);
     Running running{table};
     EXPECT_EQ(running.run(), ProgramStatus::error);
     EXPECT_EQ(running.execution.line(), 2);
     EXPECT_EQ(running.execution.failures(), 1u);
     EXPECT_EQ(running.step(at_ms(1)), ProgramStatus::error);
-    EXPECT_EQ(running.get<ScriptInt>(after), 0);
+    EXPECT_EQ(running.get<ScriptInt>(table.count), 0);
     EXPECT_FALSE(running.execution.start()) << "an error is left by stop or reset";
     EXPECT_TRUE(running.execution.stop());
     EXPECT_EQ(running.execution.status(), ProgramStatus::stopped);
 }
 
 TEST(An_action_that_fails, goes_where_its_node_says) {
-    TableBuilder table;
-    const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset caught = table.value(ScriptInt{0});
-    table.node({fail_instruction()}, 1);
-    table.arc(end_node);
-    table.node({increment(caught, one)});
-    table.arc(end_node);
+    Counting table;
+    table.node({fail_instruction()}, 1).arc(end_node);
+    table.node({table.counts()}).arc(end_node);
     Running running{table};
     EXPECT_EQ(running.run(), ProgramStatus::stopped);
-    EXPECT_EQ(running.get<ScriptInt>(caught), 1);
+    EXPECT_EQ(running.get<ScriptInt>(table.count), 1);
     EXPECT_EQ(running.execution.failures(), 0u);
 }
 
@@ -161,8 +146,7 @@ TEST(A_condition_that_fails, is_a_failure_of_its_node) {
     const DataOffset one = table.value(ScriptInt{1});
     const DataOffset zero = table.value(ScriptInt{0});
     const DataOffset to = table.scratch();
-    table.node({});
-    table.arc(
+    table.node({}).arc(
         end_node,
         table.condition({TableBuilder::with(find_binary(Operator::divide, script_int, script_int).instruction,
                                             to, one, zero)},
@@ -173,34 +157,27 @@ TEST(A_condition_that_fails, is_a_failure_of_its_node) {
 }
 
 TEST(A_program_that_continues_on_error, passes_over_what_fails) {
-    TableBuilder table;
-    const DataOffset one = table.value(ScriptInt{1});
-    const DataOffset after = table.value(ScriptInt{0});
-    table.node({fail_instruction()});
-    table.arc(1);
-    table.node({increment(after, one)});
-    table.arc(0);
+    Counting table;
+    table.node({fail_instruction()}).arc(1);
+    table.node({table.counts()}).arc(0);
     Running running{table, {.statements = 10, .continue_on_error = true}};
     EXPECT_EQ(running.run(), ProgramStatus::running);
     EXPECT_TRUE(running.execution.left_over());
-    EXPECT_EQ(running.get<ScriptInt>(after), 5) << "ten statements: each second one fails";
+    EXPECT_EQ(running.get<ScriptInt>(table.count), 5) << "ten statements: each second one fails";
     EXPECT_EQ(running.execution.failures(), 5u);
 }
 
 TEST(A_step, executes_at_most_so_many_statements_and_says_what_it_left) {
     for (const std::uint32_t bound : {1u, 2u, 7u, 100u}) {
-        TableBuilder table;
-        const DataOffset one = table.value(ScriptInt{1});
-        const DataOffset count = table.value(ScriptInt{0});
-        table.node({increment(count, one)});
-        table.arc(0); // for ever
+        Counting table;
+        table.node({table.counts()}).arc(0); // for ever
         Running running{table, {.statements = bound}};
         running.run(at_ms(5));
         EXPECT_TRUE(running.execution.left_over());
         EXPECT_EQ(running.execution.wakes(), at_ms(5)) << "at once";
-        EXPECT_EQ(running.get<ScriptInt>(count), bound);
+        EXPECT_EQ(running.get<ScriptInt>(table.count), bound);
         running.step(at_ms(6));
-        EXPECT_EQ(running.get<ScriptInt>(count), 2 * bound);
+        EXPECT_EQ(running.get<ScriptInt>(table.count), 2 * bound);
     }
 }
 
@@ -246,9 +223,10 @@ TEST(An_instruction_that_skips, leaves_out_what_follows_it) {
         const DataOffset left = table.value(is);
         const DataOffset skipped = table.value(ScriptInt{0});
         const DataOffset after = table.value(ScriptInt{0});
-        table.node({TableBuilder::with(skip_instruction(true, 2), no_data, left), increment(skipped, one),
-                    increment(skipped, one), increment(after, one)});
-        table.arc(end_node);
+        table
+            .node({TableBuilder::with(skip_instruction(true, 2), no_data, left), increment(skipped, one),
+                   increment(skipped, one), increment(after, one)})
+            .arc(end_node);
         Running running{table};
         EXPECT_EQ(running.run(), ProgramStatus::stopped);
         EXPECT_EQ(running.get<ScriptInt>(skipped), is ? 2 : 0);

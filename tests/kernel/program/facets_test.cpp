@@ -100,15 +100,16 @@ TEST(Ports, are_read_and_written_and_tell_their_age) {
     const DataOffset fresh = p.table.value(false);
     const DataOffset still_fresh = p.table.value(true);
     const DataOffset age = p.table.value(Duration{});
-    p.table.node({p.with(input_valid(facet("measured")), "measured", valid_before),
-                  p.with(find_write(facet("wanted")), "wanted", no_data, value),
-                  p.with(input_valid(facet("measured")), "measured", valid),
-                  p.with(input_fresh(facet("measured")), "measured", fresh),
-                  p.with(find_read(facet("measured")), "measured", read),
-                  p.with(input_fresh(facet("measured")), "measured", still_fresh),
-                  p.with(find_read(facet("wanted")), "wanted", back),
-                  p.with(port_age(facet("measured")), "measured", age)});
-    p.table.arc(end_node);
+    p.table
+        .node({p.with(input_valid(facet("measured")), "measured", valid_before),
+               p.with(find_write(facet("wanted")), "wanted", no_data, value),
+               p.with(input_valid(facet("measured")), "measured", valid),
+               p.with(input_fresh(facet("measured")), "measured", fresh),
+               p.with(find_read(facet("measured")), "measured", read),
+               p.with(input_fresh(facet("measured")), "measured", still_fresh),
+               p.with(find_read(facet("wanted")), "wanted", back),
+               p.with(port_age(facet("measured")), "measured", age)})
+        .arc(end_node);
     const PortOperations& port = PortAccess::data<double>;
     const Time now = at_ms(30);
     port.set_clock(&p.arm.wanted, false, &now);
@@ -133,14 +134,13 @@ TEST(Buffers, are_pushed_popped_and_waited_for) {
     const DataOffset later = p.table.value(0);
     const DataOffset room = p.table.value(false);
     const DataOffset empty = p.table.value(false);
-    p.table.node({p.with(push_buffer(facet("results")), "results", room, in),
-                  p.with(pop_buffer(facet("jobs")), "jobs", out),
-                  p.with(buffer_empty(facet("jobs")), "jobs", empty)});
-    p.table.arc(1);
-    p.table.node({p.with(wait_buffer(facet("jobs")), "jobs", later)});
-    p.table.arc(2);
-    p.table.node({p.with(pop_buffer(facet("jobs")), "jobs", out)});
-    p.table.arc(end_node);
+    p.table
+        .node({p.with(push_buffer(facet("results")), "results", room, in),
+               p.with(pop_buffer(facet("jobs")), "jobs", out),
+               p.with(buffer_empty(facet("jobs")), "jobs", empty)})
+        .arc(1);
+    p.table.node({p.with(wait_buffer(facet("jobs")), "jobs", later)}).arc(2);
+    p.table.node({p.with(pop_buffer(facet("jobs")), "jobs", out)}).arc(end_node);
     alignas(64) std::byte memory[512];
     PortAccess::buffer<int>.link(&p.arm.results, &p.arm.jobs, memory, 1, Overflow::reject, false);
     const auto running = p.bind();
@@ -157,10 +157,8 @@ TEST(Buffers, are_pushed_popped_and_waited_for) {
 TEST(A_buffer_without_room, fails_the_statement_that_writes_to_it) {
     ArmProgram p;
     const DataOffset in = p.table.value(41);
-    p.table.node({p.with(find_write(facet("results")), "results", no_data, in)});
-    p.table.arc(1);
-    p.table.node({p.with(find_write(facet("results")), "results", no_data, in)});
-    p.table.arc(end_node);
+    p.table.node({p.with(find_write(facet("results")), "results", no_data, in)}).arc(1);
+    p.table.node({p.with(find_write(facet("results")), "results", no_data, in)}).arc(end_node);
     alignas(64) std::byte memory[512];
     PortAccess::buffer<int>.link(&p.arm.results, &p.arm.jobs, memory, 1, Overflow::reject, false);
     const auto running = p.bind();
@@ -183,8 +181,7 @@ TEST(Events, are_emitted_with_packed_arguments) {
     std::array<std::byte, 12> packed{};
     detail::pack(packed.data(), 3, 4.5);
     const DataOffset arguments = p.table.value(packed);
-    p.table.node({p.with(emit_event(facet("moved")), "moved", no_data, arguments)});
-    p.table.arc(end_node);
+    p.table.node({p.with(emit_event(facet("moved")), "moved", no_data, arguments)}).arc(end_node);
     EXPECT_EQ(p.bind()->run(), ProgramStatus::stopped);
     EXPECT_EQ(heard.number, 3);
     EXPECT_EQ(heard.value, 4.5);
@@ -197,9 +194,10 @@ TEST(Operations_and_methods, are_called_here_and_now) {
     detail::pack(packed.data(), 1.5, std::int16_t{4});
     const DataOffset arguments = p.table.value(packed);
     const DataOffset result = p.table.value(0.0);
-    p.table.node({p.with(call_operation(facet("tell")), "tell", no_data, told),
-                  p.with(call_method(facet("twice")), "twice", result, arguments)});
-    p.table.arc(end_node);
+    p.table
+        .node({p.with(call_operation(facet("tell")), "tell", no_data, told),
+               p.with(call_method(facet("twice")), "twice", result, arguments)})
+        .arc(end_node);
     const auto running = p.bind();
     EXPECT_EQ(running->run(), ProgramStatus::stopped);
     EXPECT_EQ(p.arm.told, 1.25);
@@ -210,8 +208,7 @@ TEST(A_method_as_a_statement, fails_the_program_when_it_answers_false) {
     for (const bool how : {false, true}) {
         ArmProgram p;
         const DataOffset argument = p.table.value(how);
-        p.table.node({p.with(do_method(facet("enable")), "enable", no_data, argument)});
-        p.table.arc(end_node);
+        p.table.node({p.with(do_method(facet("enable")), "enable", no_data, argument)}).arc(end_node);
         EXPECT_EQ(p.bind()->run(), how ? ProgramStatus::stopped : ProgramStatus::error);
     }
 }
@@ -224,9 +221,9 @@ struct OwnCommand : ArmProgram {
         detail::pack(packed.data(), goal, -1.0);
         values = table.value(packed);
         done = table.scratch();
-        table.node({with(begin_command(facet("move_to")), "move_to", values)});
-        table.arc(end_node,
-                  table.condition({with(command_progress(facet("move_to")), "move_to", done, values)}, done));
+        table.node({with(begin_command(facet("move_to")), "move_to", values)})
+            .arc(end_node,
+                 table.condition({with(command_progress(facet("move_to")), "move_to", done, values)}, done));
     }
 };
 
@@ -278,10 +275,9 @@ struct PeersCommand : ArmProgram {
         route.clock = &clock;
         slot.place(route, values.data());
         links[link("move_to")].slot = &slot;
-        table.node({with(send_command(facet("move_to")), "move_to", no_data, goal)});
-        table.arc(1, table.condition({with(command_ended(facet("move_to")), "move_to", done)}, done));
-        table.node({with(command_results(facet("move_to")), "move_to", way)});
-        table.arc(end_node);
+        table.node({with(send_command(facet("move_to")), "move_to", no_data, goal)})
+            .arc(1, table.condition({with(command_ended(facet("move_to")), "move_to", done)}, done));
+        table.node({with(command_results(facet("move_to")), "move_to", way)}).arc(end_node);
     }
     void serve() {
         processor.serve([this](std::uint32_t, CommandSlot& each) noexcept
@@ -353,9 +349,10 @@ TEST(A_property, is_read_and_written_where_its_range_and_its_component_allow) {
         ArmProgram p;
         const DataOffset value = p.table.value(each.value);
         const DataOffset read = p.table.value(0.0);
-        p.table.node({p.with(find_write(facet("speed")), "speed", no_data, value),
-                      p.with(find_read(facet("speed")), "speed", read)});
-        p.table.arc(end_node);
+        p.table
+            .node({p.with(find_write(facet("speed")), "speed", no_data, value),
+                   p.with(find_read(facet("speed")), "speed", read)})
+            .arc(end_node);
         const auto running = p.bind();
         EXPECT_EQ(running->run(), each.good ? ProgramStatus::stopped : ProgramStatus::error) << each.value;
         EXPECT_EQ(p.arm.speed.get(), each.good ? each.value : 1.0);

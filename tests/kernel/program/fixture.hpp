@@ -46,7 +46,7 @@ public:
         return static_cast<ConditionIndex>(conditions_.size() - 1);
     }
     /// Its arcs are those of the following arc() calls.
-    NodeIndex node(std::initializer_list<Instruction> list, NodeIndex on_error = no_node) {
+    TableBuilder& node(std::initializer_list<Instruction> list, NodeIndex on_error = no_node) {
         NodeRow row;
         row.first = instructions(list);
         row.count = static_cast<std::uint16_t>(list.size());
@@ -54,7 +54,7 @@ public:
         row.on_error = on_error;
         row.line = static_cast<std::uint16_t>(nodes_.size() + 1);
         nodes_.push_back(row);
-        return static_cast<NodeIndex>(nodes_.size() - 1);
+        return *this;
     }
     TableBuilder& arc(NodeIndex to, ConditionIndex condition = no_condition, DataOffset after = no_data) {
         arcs_.push_back({condition, to, after});

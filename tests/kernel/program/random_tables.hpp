@@ -58,6 +58,7 @@ struct Random {
         state = state * 6364136223846793005u + 1442695040888963407u;
         return (state >> 33) % below;
     }
+    constexpr bool one_in(std::uint64_t n) { return (*this)(n) == 0; }
 };
 
 struct Rows {

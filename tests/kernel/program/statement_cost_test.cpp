@@ -54,8 +54,7 @@ TEST(A_statement_of_a_loaded_program, costs_less_than_five_calls_through_a_point
     for (NodeIndex i = 0; i < 32; ++i) {
         static DataOffset count[4];
         if (i < 4) count[i] = assignments.value(ScriptInt{0});
-        assignments.node({increment(count[i % 4], one)});
-        assignments.arc(static_cast<NodeIndex>((i + 1) % 32));
+        assignments.node({increment(count[i % 4], one)}).arc(static_cast<NodeIndex>((i + 1) % 32));
     }
     TableBuilder loop; // while (i >= 0) { set i = i + 1; }
     const DataOffset step = loop.value(ScriptInt{1});
@@ -63,10 +62,10 @@ TEST(A_statement_of_a_loaded_program, costs_less_than_five_calls_through_a_point
     const DataOffset i = loop.value(ScriptInt{0});
     const DataOffset holds = loop.scratch();
     const Instruction not_negative = find_binary(Operator::at_least, script_int, script_int).instruction;
-    loop.node({});
-    loop.arc(1, loop.condition({TableBuilder::with(not_negative, holds, i, zero)}, holds)).arc(end_node);
-    loop.node({increment(i, step)});
-    loop.arc(0);
+    loop.node({})
+        .arc(1, loop.condition({TableBuilder::with(not_negative, holds, i, zero)}, holds))
+        .arc(end_node);
+    loop.node({increment(i, step)}).arc(0);
 
     // A busy neighbour of the processor slows statements down, and calls not: the best of several moments
     // counts.

@@ -233,4 +233,12 @@ private:
     Time now_ = at_ns(0);
 };
 
+/// One of whose machines was started.
+class Started : public Played {
+public:
+    explicit Started(std::string_view text, std::string_view name = "M") : Played{text} {
+        static_cast<void>(machine(name).start(now()));
+    }
+};
+
 } // namespace script_test

@@ -9,7 +9,7 @@ namespace {
 using namespace script_test;
 
 TEST(A_state_machine, enters_the_states_inside_a_state_and_remembers_them) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     initial state Idle {
         transition startMovement select Work
@@ -26,8 +26,8 @@ StateMachine M {
     }
     final state Safe { }
 }
-RootStateMachine M m)"};
-    static_cast<void>(p.machine("m").start(p.now()));
+RootStateMachine M m)",
+              "m"};
     p.event("m", "startMovement");
     EXPECT_EQ(p.state("m"), "Easy");
     p.event("m", "moveCamera", 1.0);
@@ -43,7 +43,7 @@ RootStateMachine M m)"};
 }
 
 TEST(A_state_machine, has_regions_that_are_active_at_the_same_time) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     initial state Both {
         region left {
@@ -58,8 +58,8 @@ StateMachine M {
     }
     final state Safe { }
 }
-RootStateMachine M m)"};
-    static_cast<void>(p.machine("m").start(p.now()));
+RootStateMachine M m)",
+              "m"};
     EXPECT_EQ(p.own.trace, "1 3");
     p.event("m", "halt");
     EXPECT_EQ(p.own.trace, "1 3 2 4");
@@ -68,7 +68,7 @@ RootStateMachine M m)"};
 }
 
 TEST(A_state_machine, may_name_the_state_around_a_state_with_in) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     initial state Outer { transition halt select Safe }
     initial state Inner in Outer region first { transition startMovement select Other }
@@ -76,20 +76,18 @@ StateMachine M {
     initial state Beside in Outer region second { }
     final state Safe { }
 })"};
-    static_cast<void>(p.machine("M").start(p.now()));
     p.event("M", "startMovement");
     EXPECT_TRUE(p.machine("M").is_in(2));
     EXPECT_TRUE(p.machine("M").is_in(3));
 }
 
 TEST(A_script, names_what_a_device_has_as_tables_do) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     initial state Low { transition robot.line.rises select High }
     state High { entry { do robot.line.beep(2); } transition halt select Low }
     final state Safe { }
 })"};
-    static_cast<void>(p.machine("M").start(p.now()));
     p.event("M", "robot.line.rises");
     EXPECT_EQ(p.state("M"), "High");
     EXPECT_EQ(p.robot.trace, "beep2");
@@ -125,14 +123,13 @@ TEST(A_transition, with_an_empty_reason_is_refused) {
 }
 
 TEST(A_timed_transition, is_taken_when_its_state_was_active_so_long) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     initial state Wait {
         transitions { after(30 ms) { do note(1); } select Safe because "nothing came" }
     }
     final state Safe { }
 })"};
-    static_cast<void>(p.machine("M").start(p.now()));
     p.steps(2);
     EXPECT_EQ(p.state("M"), "Wait");
     p.step();
@@ -179,7 +176,7 @@ RootStateMachine Pair pair)"};
 }
 
 TEST(A_run_program, waits_over_steps_while_events_go_on) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     const duration pause = 20ms
     function count(int by) { do note(by); wait(pause); do note(by + 1); }
@@ -191,7 +188,6 @@ StateMachine M {
     state B { transition halt select A }
     final state Z { }
 })"};
-    static_cast<void>(p.machine("M").start(p.now()));
     p.step();
     EXPECT_EQ(p.own.trace, "1");
     p.steps(2);
@@ -207,21 +203,20 @@ StateMachine M {
 }
 
 TEST(A_function, sees_the_machines_variables_in_a_guard_that_stands_before_any_program) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     var int b = 2
     function int times(int n) { return b * n; }
     initial state A { precondition (times(1) == 2) transition halt if times(3) == 6 then select Z }
     final state Z { }
 })"};
-    static_cast<void>(p.machine("M").start(p.now()));
     p.event("M", "halt");
     EXPECT_EQ(p.state("M"), "Z");
 }
 
 // Waiting programs keep what they had: a function is expanded with places of its own at every call.
 TEST(A_function, keeps_its_arguments_and_variables_apart_in_programs_that_wait_at_the_same_time) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     function int sum(int a, int b) { var int made = a + b; wait(20ms); return made + a; }
     function later(int n) { var int twice = n + n; wait(20ms); do note(n); do note(twice); }
@@ -241,7 +236,6 @@ StateMachine M {
     }
     final state Safe { }
 })"};
-    static_cast<void>(p.machine("M").start(p.now()));
     p.step();
     EXPECT_EQ(p.own.trace, "");
     p.own.gain.set(5.0);
@@ -281,23 +275,22 @@ StateMachine M {
 }
 
 TEST(A_failing_program, puts_the_machine_in_error_where_its_line_says) {
-    Played p{"StateMachine M {\n initial state A {\n  entry {\n   do refuse();\n  }\n transition halt select "
-             "Z }\n final state Z { } }"};
-    static_cast<void>(p.machine("M").start(p.now()));
+    Started p{
+        "StateMachine M {\n initial state A {\n  entry {\n   do refuse();\n  }\n transition halt select "
+        "Z }\n final state Z { } }"};
     EXPECT_TRUE(p.machine("M").in_error());
     const NodeIndex node = p.machine("M").fault().node;
     EXPECT_EQ(p.outcome.unit.types[0].tables.nodes[node].line, 4);
 }
 
 TEST(Every_condition_of_a_chain, has_an_else_that_is_the_last_one) {
-    Played p{R"(
+    Started p{R"(
 StateMachine M {
     var int n = 0
     initial state A { transitions { if n == 1 then select B else { do note(7); } select Z } }
     state B { transition halt select Z }
     final state Z { }
 })"};
-    static_cast<void>(p.machine("M").start(p.now()));
     p.step();
     EXPECT_EQ(p.state("M"), "Z");
     EXPECT_EQ(p.own.trace, "7");

@@ -9,7 +9,6 @@ TEST(StateMachineOrder, line_30_runs_and_asks_nothing_in_reactive_mode) {
     Play m{R"(
         state a initial run !a handle ~a
         state b entry +b..
-        state safe final
         from a to safe if g
         from a to safe after 1
         from b to a on back
@@ -56,7 +55,6 @@ TEST(StateMachineOrder, line_32_runs_the_run_programs_once_after_a_request) {
     Play m{R"(
         state a initial
         state b entry +b run !b.
-        state safe final
         from a to b if g
         from b to safe if g)"};
     m.execution.activate(m.now);
@@ -72,7 +70,6 @@ TEST(StateMachineOrder, line_33_asks_no_condition_while_a_program_is_in_hand_in_
         state a initial
         state b entry +b..
         state c
-        state safe final
         from a to b on go
         from b to c if g
         from c to a on back)";
@@ -95,15 +92,13 @@ TEST(StateMachineOrder, line_33_asks_no_condition_while_a_program_is_in_hand_in_
 }
 
 TEST(StateMachineOrder, line_40_defers_events_with_their_arguments_while_a_program_is_in_hand) {
-    Play m{R"(
+    Started m{R"(
         state a initial
         state b entry +b. exit -b
         state c entry +c
-        state safe final
         from a to b on go
         from b to c on take takes if g
         from c to a on back)"};
-    m.start();
     m.yes = {"g"};
     m.send("go");
     EXPECT_EQ(m.send("take", 42), "");
@@ -115,13 +110,11 @@ TEST(StateMachineOrder, line_40_defers_events_with_their_arguments_while_a_progr
 }
 
 TEST(StateMachineOrder, line_40_counts_events_that_find_no_room) {
-    Play m{R"(
+    Started m{R"(
         state a initial
         state b entry +b.
-        state safe final
         from a to b on go
         from b to a on back)"};
-    m.start();
     m.send("go");
     for (std::size_t i = 0; i < StateMachineExecution::max_raised_events; ++i)
         EXPECT_EQ(m.dispatch("go"), StateOutcome::queued);
@@ -131,14 +124,12 @@ TEST(StateMachineOrder, line_40_counts_events_that_find_no_room) {
 }
 
 TEST(StateMachineOrder, line_41_aborts_a_waiting_run_program_by_a_transition_and_keeps_it_by_a_refused_one) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a... exit -a handle ~a
         state b
-        state safe final
         from a to b on go if g
         from a to b on other if g else *else
         from b to a on back)"};
-    m.start();
     EXPECT_EQ(m.step(), "!a:");
     EXPECT_EQ(m.send("go"), "?g ~a");
     EXPECT_EQ(m.send("other"), "?g *else");
@@ -153,7 +144,7 @@ TEST(StateMachineOrder, line_41_aborts_a_waiting_run_program_by_a_transition_and
 }
 
 TEST(StateMachineOrder, line_42_serves_requests_of_programs_after_the_call_and_the_final_state_first) {
-    Play m{R"(
+    Started m{R"(
         state a initial exit -a
         state b entry +b exit -b
         state c entry +c
@@ -162,7 +153,6 @@ TEST(StateMachineOrder, line_42_serves_requests_of_programs_after_the_call_and_t
         from b to c on next
         from c to a if g
         from b to c if g)"};
-    m.start();
     m.yes = {"g"};
     m.act = [&](std::string_view what) {
         if (what != "+b") return;
@@ -187,28 +177,25 @@ TEST(StateMachineOrder, line_43_gives_up_what_waits_for_the_final_state) {
         from a to b on go
         from a to b on slow then *slow....
         from b to a on back)";
-    Play entering{text};
-    entering.start();
+    Started entering{text};
     entering.send("go");
     EXPECT_EQ(entering.stop(), "-b +safe");
     EXPECT_TRUE(entering.execution.is_final());
     EXPECT_EQ(entering.execution.machine_status(), MachineStatus::stopped);
-    Play acting{text};
-    acting.start();
+    Started acting{text};
     acting.send("slow");
     EXPECT_EQ(acting.stop(), "-a +safe");
     EXPECT_FALSE(acting.execution.under_way());
 }
 
 TEST(StateMachineOrder, line_43_brings_an_exit_program_in_hand_to_its_end_first) {
-    Play m{R"(
+    Started m{R"(
         state o initial exit -o
         state a in o initial exit -a..
         state b entry +b
         state safe final entry +safe
         from o to b on go
         from b to o on back)"};
-    m.start();
     EXPECT_EQ(m.send("go"), "-a:");
     EXPECT_EQ(m.stop(), "");
     EXPECT_EQ(m.step(), ":-a -o +safe");
@@ -217,13 +204,11 @@ TEST(StateMachineOrder, line_43_brings_an_exit_program_in_hand_to_its_end_first)
 }
 
 TEST(StateMachineOrder, line_44_drops_what_waits_when_it_is_deactivated) {
-    Play m{R"(
+    Started m{R"(
         state a initial exit -a.
         state b entry +b...
-        state safe final
         from a to b on go
         from b to a on back)"};
-    m.start();
     EXPECT_EQ(m.deactivate(), "-a:");
     EXPECT_EQ(m.send("go"), "");
     EXPECT_EQ(m.outcome, StateOutcome::ignored);
@@ -240,7 +225,6 @@ TEST(StateMachineOrder, line_45_executes_a_bounded_number_of_statements_in_a_cal
     Play m{R"(
         state a initial exit -a run !a
         state b entry +b run !b
-        state safe final
         from a to b on go then *go
         from b to a on back)"};
     m.policy.statements = 2;
@@ -254,14 +238,12 @@ TEST(StateMachineOrder, line_45_executes_a_bounded_number_of_statements_in_a_cal
 }
 
 TEST(StateMachineOrder, line_50_stands_where_a_program_failed) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a!
         state b entry +b!
-        state safe final
         from a to b on go then *go!
         from a to b on enter
         from b to a on back)"};
-    m.start();
     EXPECT_EQ(m.send("go"), "*go!");
     EXPECT_TRUE(m.execution.in_error());
     EXPECT_EQ(m.execution.fault().part, StatePart::then);
@@ -282,13 +264,11 @@ TEST(StateMachineOrder, line_50_stands_where_a_program_failed) {
 }
 
 TEST(StateMachineOrder, line_50_takes_a_condition_that_fails_for_an_error) {
-    Play m{R"(
+    Started m{R"(
         state a initial
         state b pre p
-        state safe final
         from a to b on go if g
         from b to a on back)"};
-    m.start();
     m.broken = {"g"};
     EXPECT_EQ(m.send("go"), "?g");
     EXPECT_EQ(m.execution.fault().part, StatePart::guard);
@@ -303,13 +283,12 @@ TEST(StateMachineOrder, line_50_takes_a_condition_that_fails_for_an_error) {
 }
 
 TEST(StateMachineOrder, line_51_serves_only_the_final_state_and_a_deactivation_in_error) {
-    Play m{R"(
+    Started m{R"(
         state o initial exit -o
         state a in o initial exit -a run !a!
         state safe final entry +safe
         from a to safe on go
         from a to safe after 1)"};
-    m.start();
     m.step();
     ASSERT_TRUE(m.execution.in_error());
     EXPECT_EQ(m.send("go"), "");
@@ -327,13 +306,11 @@ TEST(StateMachineOrder, line_51_serves_only_the_final_state_and_a_deactivation_i
 }
 
 TEST(StateMachineOrder, line_52_goes_on_without_the_failing_program_in_a_second_deactivation) {
-    Play m{R"(
+    Started m{R"(
         state o initial exit -o!
         state p in o initial exit -p
         state a in p initial exit -a!
-        state safe final
         from a to safe on go)"};
-    m.start();
     EXPECT_EQ(m.stop(), "-a!") << "the transition fails too";
     EXPECT_EQ(m.deactivate(), "-a!");
     EXPECT_TRUE(m.execution.in_error());
@@ -345,15 +322,13 @@ TEST(StateMachineOrder, line_52_goes_on_without_the_failing_program_in_a_second_
 }
 
 TEST(StateMachineOrder, line_52_leaves_what_is_around_a_failing_exit_that_was_under_way) {
-    Play m{R"(
+    Started m{R"(
         state o initial exit -o
         state a in o initial exit -a!.
         state b in o
-        state safe final
         from a to b on go
         from b to a on back
         from o to safe on stop)"};
-    m.start();
     m.send("go");
     m.deactivate();
     m.step();
@@ -380,13 +355,11 @@ TEST(StateMachineOrder, line_53_brings_a_parent_into_error_where_the_policy_says
 }
 
 TEST(StateMachineOrder, line_60_does_nothing_while_it_is_paused) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a exit -a
         state b entry +b
-        state safe final
         from a to b on go
         from b to a on back)"};
-    m.start();
     EXPECT_EQ(m.execution.pause(), StateOutcome::taken);
     EXPECT_EQ(m.execution.machine_status(), MachineStatus::paused);
     EXPECT_EQ(m.step(), "");
@@ -402,15 +375,13 @@ TEST(StateMachineOrder, line_60_does_nothing_while_it_is_paused) {
 }
 
 TEST(StateMachineOrder, line_61_steps_one_statement_or_one_condition_at_a_time) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a exit -a handle ~a
         state b entry +b
-        state safe final
         from a to safe if no
         from a to b if g then *go
         from a to b on go if g
         from b to a on back)"};
-    m.start();
     m.execution.pause();
     EXPECT_EQ(m.once(), "!a");
     EXPECT_EQ(m.once(), "?no");
@@ -429,13 +400,11 @@ TEST(StateMachineOrder, line_61_steps_one_statement_or_one_condition_at_a_time) 
 }
 
 TEST(StateMachineOrder, line_61_takes_a_waiting_event_in_a_single_step_when_nothing_is_in_hand) {
-    Play m{R"(
+    Started m{R"(
         state a initial exit -a
         state b entry +b
-        state safe final
         from a to b on go if g
         from b to a on back)"};
-    m.start();
     m.execution.pause();
     m.yes = {"g"};
     m.send("go");
@@ -445,11 +414,9 @@ TEST(StateMachineOrder, line_61_takes_a_waiting_event_in_a_single_step_when_noth
 }
 
 TEST(StateMachineOrder, line_62_goes_on_where_it_was_paused) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a handle ~a
-        state safe final
         from a to safe if g)"};
-    m.start();
     m.execution.pause();
     EXPECT_EQ(m.once(), "!a");
     m.execution.start(m.now);

@@ -17,14 +17,13 @@ const std::string regions = R"(
 )";
 
 TEST(StateMachineOrder, line_03_leaves_the_last_region_first_and_enters_the_first_one_first) {
-    Play m{regions + R"(
+    Started m{regions + R"(
         from idle to x on go then *go
         from x to idle on back
         from a to b on swap
         from c to d on swap
         from b to a on swap
         from d to c on swap)"};
-    m.start();
     EXPECT_EQ(m.send("go"), "*go -idle +x +a +c");
     EXPECT_EQ(m.active(), "x(a c)");
     EXPECT_EQ(m.send("back"), "-c -a -x");
@@ -32,13 +31,12 @@ TEST(StateMachineOrder, line_03_leaves_the_last_region_first_and_enters_the_firs
 }
 
 TEST(StateMachineOrder, line_04_enters_the_other_regions_of_a_state_on_the_way_by_their_initial_states) {
-    Play m{regions + R"(
+    Started m{regions + R"(
         from idle to b on left
         from idle to d on right
         from x to idle on back
         from a to b on never
         from c to d on never)"};
-    m.start();
     EXPECT_EQ(m.send("left"), "-idle +x +b +c");
     m.send("back");
     EXPECT_EQ(m.send("right"), "-idle +x +a +d");
@@ -54,7 +52,6 @@ const std::string nested = R"(
     state bb in b entry +bb
     state c in x region r initial entry +c
     state d in x region r entry +d
-    state safe final
     from out to x on plain
     from out to x on shallow shallow
     from out to x on deep deep
@@ -65,8 +62,7 @@ const std::string nested = R"(
 )";
 
 TEST(StateMachineOrder, line_05_remembers_by_history_what_was_active_when_it_was_last_left) {
-    Play m{nested};
-    m.start();
+    Started m{nested};
     EXPECT_EQ(m.send("deep"), "+x +a +c") << "nothing to remember";
     m.send("move");
     EXPECT_EQ(m.active(), "x(b(bb) d)");
@@ -82,8 +78,7 @@ TEST(StateMachineOrder, line_05_remembers_by_history_what_was_active_when_it_was
 }
 
 TEST(StateMachineOrder, line_05_remembers_nothing_of_before_it_was_bound) {
-    Play m{nested};
-    m.start();
+    Started m{nested};
     m.send("plain");
     m.send("move");
     m.deactivate();
@@ -93,12 +88,11 @@ TEST(StateMachineOrder, line_05_remembers_nothing_of_before_it_was_bound) {
 }
 
 TEST(StateMachineOrder, line_13_gives_an_event_to_every_region_and_asks_all_before_anything_runs) {
-    Play m{regions + R"(
+    Started m{regions + R"(
         from idle to x on go
         from a to b on swap if ga then *ab
         from c to d on swap if gc then *cd
         from x to idle on swap if gx)"};
-    m.start();
     m.send("go");
     m.yes = {"ga", "gc", "gx"};
     EXPECT_EQ(m.send("swap"), "?ga ?gc *ab -a +b *cd -c +d");
@@ -107,12 +101,11 @@ TEST(StateMachineOrder, line_13_gives_an_event_to_every_region_and_asks_all_befo
 }
 
 TEST(StateMachineOrder, line_13_asks_the_state_around_regions_once_and_only_when_none_took_it) {
-    Play m{regions + R"(
+    Started m{regions + R"(
         from idle to x on go
         from a to b on swap if ga
         from c to d on swap if gc
         from x to idle on swap if gx)"};
-    m.start();
     m.send("go");
     EXPECT_EQ(m.send("swap"), "?ga ?gc ?gx");
     m.yes = {"gc", "gx"};
@@ -120,25 +113,23 @@ TEST(StateMachineOrder, line_13_asks_the_state_around_regions_once_and_only_when
 }
 
 TEST(StateMachineOrder, line_13_drops_the_transition_of_a_region_that_an_earlier_one_left) {
-    Play m{regions + R"(
+    Started m{regions + R"(
         from idle to x on go
         from a to idle on out then *out
         from c to d on out then *cd
         from c to d on swap
         from a to b on swap)"};
-    m.start();
     m.send("go");
     EXPECT_EQ(m.send("out"), "*out -c -a -x");
     EXPECT_EQ(m.active(), "idle");
 }
 
 TEST(StateMachineOrder, line_13_takes_the_second_regions_transition_when_that_of_the_first_has_waited) {
-    Play m{regions + R"(
+    Started m{regions + R"(
         from idle to x on go
         from a to b on swap then *ab.
         from c to d on swap then *cd.
         from x to idle on back)"};
-    m.start();
     m.send("go");
     EXPECT_EQ(m.send("swap"), "*ab:");
     EXPECT_EQ(m.step(), ":*ab -a +b *cd:");
@@ -146,13 +137,12 @@ TEST(StateMachineOrder, line_13_takes_the_second_regions_transition_when_that_of
 }
 
 TEST(StateMachineOrder, line_23_asks_a_region_again_that_had_said_no_before_another_was_changed) {
-    Play m{regions + R"(
+    Started m{regions + R"(
         from idle to x on go
         from a to b if ga
         from c to d if gc
         from b to idle on never
         from x to idle on back)"};
-    m.start();
     m.send("go");
     m.yes = {"gc"};
     EXPECT_EQ(m.step(), "!x !a !c ?ga ?gc -c +d !d ?ga ~x");

@@ -9,7 +9,6 @@ TEST(StateMachineOrder, line_01_runs_the_transition_program_then_exits_then_entr
     Play m{R"(
         state a initial entry +a exit -a
         state b entry +b
-        state safe final
         from a to b on go then *go
         from b to a on back)"};
     EXPECT_EQ(m.start(), "+a");
@@ -17,13 +16,11 @@ TEST(StateMachineOrder, line_01_runs_the_transition_program_then_exits_then_entr
 }
 
 TEST(StateMachineOrder, line_01_keeps_that_order_when_each_program_waits) {
-    Play m{R"(
+    Started m{R"(
         state a initial entry +a exit -a.
         state b entry +b..
-        state safe final
         from a to b on go then *go.
         from b to a on back)"};
-    m.start();
     EXPECT_EQ(m.send("go"), "*go:");
     EXPECT_TRUE(m.execution.under_way());
     EXPECT_EQ(m.active(), "a");
@@ -39,20 +36,18 @@ TEST(StateMachineOrder, line_01_keeps_that_order_when_each_program_waits) {
 }
 
 TEST(StateMachineOrder, line_02_leaves_all_below_the_innermost_state_around_source_and_target) {
-    Play m{R"(
+    Started m{R"(
         state o initial entry +o exit -o
         state p in o initial entry +p exit -p
         state a in p initial entry +a exit -a
         state b in p entry +b exit -b
         state q in o entry +q exit -q
-        state safe final
         from a to b on near
         from p to q on far
         from q to q on self
         from q to o on out
         from b to safe on end
         from o to a on inwards)"};
-    m.start();
     EXPECT_EQ(m.send("near"), "-a +b");
     EXPECT_EQ(m.send("far"), "-b -p +q");
     EXPECT_EQ(m.send("self"), "-q +q");
@@ -61,12 +56,10 @@ TEST(StateMachineOrder, line_02_leaves_all_below_the_innermost_state_around_sour
 }
 
 TEST(StateMachineOrder, line_06_keeps_a_waiting_run_program_through_an_internal_transition) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a.. exit -a
-        state safe final
         from a to - on poke then *poke
         from a to safe on end)"};
-    m.start();
     EXPECT_EQ(m.step(), "!a:");
     EXPECT_EQ(m.send("poke"), "*poke");
     EXPECT_EQ(m.step(), "");
@@ -74,7 +67,7 @@ TEST(StateMachineOrder, line_06_keeps_a_waiting_run_program_through_an_internal_
 }
 
 TEST(StateMachineOrder, line_07_asks_the_preconditions_of_all_that_would_be_entered_after_the_guard) {
-    Play m{R"(
+    Started m{R"(
         state idle initial exit -idle
         state x pre px
         state a in x region l initial pre pa
@@ -82,7 +75,6 @@ TEST(StateMachineOrder, line_07_asks_the_preconditions_of_all_that_would_be_ente
         state safe final pre never
         from idle to x on go if g
         from x to idle on back)"};
-    m.start();
     EXPECT_EQ(m.send("go"), "?g");
     m.yes = {"g", "px", "pc"};
     EXPECT_EQ(m.send("go"), "?g ?px ?pa");
@@ -94,13 +86,11 @@ TEST(StateMachineOrder, line_07_asks_the_preconditions_of_all_that_would_be_ente
 }
 
 TEST(StateMachineOrder, line_08_counts_a_states_time_from_before_its_entry_program) {
-    Play m{R"(
+    Started m{R"(
         state a initial
         state b entry +b..
-        state safe final
         from a to b on go
         from b to a after 3)"};
-    m.start();
     m.send("go");
     const Time entered = m.now;
     m.step();
@@ -113,18 +103,16 @@ TEST(StateMachineOrder, line_08_counts_a_states_time_from_before_its_entry_progr
 }
 
 TEST(StateMachineOrder, line_10_asks_the_innermost_first_with_the_arguments_in_their_place) {
-    Play m{R"(
+    Started m{R"(
         state o initial
         state a in o initial
         state b in o
         state c in o
-        state safe final
         from o to b on go
         from a to b on go takes if first
         from a to c on go takes if second
         from b to c on go
         from c to a on go)"};
-    m.start();
     m.yes = {"second"};
     EXPECT_EQ(m.send("go", 7), "?first ?second");
     EXPECT_EQ(m.active(), "o(c)");
@@ -139,26 +127,22 @@ TEST(StateMachineOrder, line_10_asks_the_innermost_first_with_the_arguments_in_t
 }
 
 TEST(StateMachineOrder, line_10_ignores_an_event_without_the_arguments_that_are_taken) {
-    Play m{R"(
+    Started m{R"(
         state a initial
-        state safe final
         from a to safe on go takes)"};
-    m.start();
     EXPECT_EQ(m.execution.dispatch(0, m.now), StateOutcome::ignored);
     EXPECT_EQ(m.active(), "a");
 }
 
 TEST(StateMachineOrder, line_11_takes_the_else_branch_of_the_transition_that_was_refused) {
-    Play m{R"(
+    Started m{R"(
         state a initial exit -a handle ~a
         state b entry +b
         state c entry +c
-        state safe final
         from a to b on one if g then *one else *no otherwise c
         from a to b on two if g else *stay
         from b to a on back
         from c to a on back)"};
-    m.start();
     EXPECT_EQ(m.send("two"), "?g *stay");
     EXPECT_EQ(m.outcome, StateOutcome::taken);
     EXPECT_EQ(m.active(), "a");
@@ -169,25 +153,21 @@ TEST(StateMachineOrder, line_11_takes_the_else_branch_of_the_transition_that_was
 }
 
 TEST(StateMachineOrder, line_12_runs_the_handle_program_of_the_innermost_state_that_refused) {
-    Play m{R"(
+    Started m{R"(
         state o initial handle ~o
         state a in o initial handle ~a
-        state safe final
         from a to safe on go if inner
         from o to safe on go if outer
         from o to safe on far if outer)"};
-    m.start();
     EXPECT_EQ(m.send("go"), "?inner ?outer ~a");
     EXPECT_EQ(m.outcome, StateOutcome::ignored);
     EXPECT_EQ(m.send("far"), "?outer ~o");
 }
 
 TEST(StateMachineOrder, line_14_asks_the_guard_of_a_due_time_out_in_every_step) {
-    Play m{R"(
+    Started m{R"(
         state a initial
-        state safe final
         from a to safe after 2 if g)"};
-    m.start();
     EXPECT_EQ(m.step(), "");
     EXPECT_EQ(m.step(), "?g");
     EXPECT_EQ(m.step(), "?g");
@@ -197,13 +177,11 @@ TEST(StateMachineOrder, line_14_asks_the_guard_of_a_due_time_out_in_every_step) 
 }
 
 TEST(StateMachineOrder, line_20_goes_on_with_what_is_in_hand_and_then_begins_a_round_in_the_same_step) {
-    Play m{R"(
+    Started m{R"(
         state a initial
         state b entry +b. run !b
-        state safe final
         from a to b if g then *g.
         from b to safe on end)"};
-    m.start();
     m.yes = {"g"};
     EXPECT_EQ(m.step(), "?g *g:");
     EXPECT_EQ(m.step(), ":*g +b:");
@@ -211,12 +189,10 @@ TEST(StateMachineOrder, line_20_goes_on_with_what_is_in_hand_and_then_begins_a_r
 }
 
 TEST(StateMachineOrder, line_21_runs_from_the_outside_and_no_waiting_run_program_holds_up_another) {
-    Play m{R"(
+    Started m{R"(
         state o initial run !o..
         state a in o initial run !a
-        state safe final
         from o to safe on end)"};
-    m.start();
     EXPECT_EQ(m.step(), "!o: !a");
     EXPECT_EQ(m.step(), "!a");
     EXPECT_EQ(m.step(), ":!o !a");
@@ -224,27 +200,23 @@ TEST(StateMachineOrder, line_21_runs_from_the_outside_and_no_waiting_run_program
 }
 
 TEST(StateMachineOrder, line_22_asks_conditions_of_a_state_only_when_its_run_program_has_ended) {
-    Play m{R"(
+    Started m{R"(
         state o initial run !o handle ~o
         state a in o initial run !a. handle ~a
         state b in o
-        state safe final
         from a to b if inner
         from o to safe if outer
         from b to a on back)"};
-    m.start();
     EXPECT_EQ(m.step(), "!o !a: ?outer ~o");
     EXPECT_EQ(m.step(), "!o :!a ?inner ?outer ~o ~a");
 }
 
 TEST(StateMachineOrder, line_22_aborts_a_run_program_that_waits_when_a_time_out_is_due) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a......... exit -a
         state b entry +b
-        state safe final
         from a to b after 3 because slow
         from b to a on back)"};
-    m.start();
     EXPECT_EQ(m.step(), "!a:");
     EXPECT_EQ(m.step(), "");
     EXPECT_EQ(m.step(), "-a +b");
@@ -252,15 +224,13 @@ TEST(StateMachineOrder, line_22_aborts_a_run_program_that_waits_when_a_time_out_
 }
 
 TEST(StateMachineOrder, line_23_runs_what_was_entered_and_asks_all_conditions_again) {
-    Play m{R"(
+    Started m{R"(
         state o initial run !o handle ~o
         state a in o initial run !a
         state b in o run !b handle ~b
-        state safe final
         from a to b if g
         from o to safe if gone
         from b to a on back)"};
-    m.start();
     m.yes = {"g"};
     EXPECT_EQ(m.step(), "!o !a ?g !b ?gone ~o ~b");
 }
@@ -282,39 +252,33 @@ TEST(StateMachineOrder, line_23_bounds_the_transitions_of_a_step) {
 }
 
 TEST(StateMachineOrder, line_24_goes_on_in_a_later_step_with_a_handle_program_that_waits) {
-    Play m{R"(
+    Started m{R"(
         state o initial run !o handle ~o.
         state a in o initial handle ~a
-        state safe final
         from o to safe on end)"};
-    m.start();
     EXPECT_EQ(m.step(), "!o ~o:");
     EXPECT_EQ(m.step(), ":~o ~a");
     EXPECT_EQ(m.step(), "!o ~o:");
 }
 
 TEST(StateMachineOrder, line_25_begins_no_run_program_twice_in_a_step) {
-    Play m{R"(
+    Started m{R"(
         state a initial entry +a run !a handle ~a
         state b run !b
-        state safe final
         from a to b if g
         from b to a if g
         from b to safe on end)"};
-    m.start();
     m.yes = {"g"};
     EXPECT_EQ(m.step(), "!a ?g !b ?g +a");
     EXPECT_EQ(m.step(), "!a ?g !b ?g +a");
 }
 
 TEST(StateMachineOrder, line_26_handles_events_that_waited_after_the_round) {
-    Play m{R"(
+    Started m{R"(
         state a initial run !a handle ~a exit -a
         state b entry +b
-        state safe final
         from a to b on go
         from b to a on back)"};
-    m.start();
     m.act = [&](std::string_view what) {
         if (what == "!a") m.outcome = m.dispatch("go");
     };

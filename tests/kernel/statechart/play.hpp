@@ -1,9 +1,9 @@
 // A state machine written as a few lines of text, whose programs write down what they do: "+a" at once;
 // "+a.." waits in two steps, "+a:" is its beginning and ":+a" its end; "+a!" fails. A condition is written
-// down as
-// "?g"; it holds while its name is in `yes`, and fails while it is in `broken`.
+// down as "?g"; it holds while its name is in `yes`, and fails while it is in `broken`. Where the text has no
+// final state, there is one by the name of "safe".
 //
-//     state a initial in x region r entry +a.. exit -a run !a handle ~a pre g       | state safe final
+//     state a initial in x region r entry +a.. exit -a run !a handle ~a pre g       | state end final
 //     from a to b on go takes if g then *go.. else *no otherwise c                  | to -: internal
 //     from a to b after 10 shallow                                                  | milliseconds; or deep
 #pragma once
@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <deque>
 #include <functional>
@@ -34,6 +35,7 @@ public:
     explicit Play(const std::string& text) {
         std::istringstream lines{text};
         for (std::string line; std::getline(lines, line);) read(line);
+        if (std::ranges::none_of(states_, &StateRow::final)) read("state safe final");
         for (std::size_t i = 0; i < programs_.size(); ++i)
             program_rows_.push_back(
                 {programs_[i], static_cast<NodeIndex>(i * 16), static_cast<NodeIndex>(i * 16 + 16), true});
@@ -245,6 +247,10 @@ private:
     std::array<StateIndex, 24> history_{};
     std::array<std::byte, 8 * sizeof(int)> deferred_{};
     std::string log_;
+};
+
+struct Started : Play {
+    explicit Started(const std::string& text) : Play{text} { start(); }
 };
 
 } // namespace tappet

@@ -2,9 +2,8 @@
 // state. The same seed gives the same machine, in a constant expression.
 #pragma once
 
-#include "kernel/program/primitives_scalar.hpp"
-#include "kernel/program/primitives_value.hpp"
 #include "kernel/statechart/native.hpp"
+#include "tests/kernel/program/random_tables.hpp"
 
 #include <array>
 
@@ -58,12 +57,7 @@ inline ActionResult hesitates(ProgramContext& context, const Instruction&, std::
     return seen.calls % 3 == 0 ? ActionResult::done : ActionResult::again;
 }
 
-inline constexpr Primitive add = &primitive::binary<ScriptInt, ScriptInt, ScriptInt,
-                                                    &primitive::add_integer<ScriptInt, ScriptInt, ScriptInt>>;
-inline constexpr Primitive remainder =
-    &primitive::binary<ScriptInt, ScriptInt, ScriptInt,
-                       &primitive::remainder_integer<ScriptInt, ScriptInt, ScriptInt>>;
-inline constexpr Primitive less = &primitive::binary<ScriptInt, ScriptInt, bool, &primitive::less<ScriptInt>>;
+using random_tables::Random, random_tables::add, random_tables::remainder, random_tables::less;
 
 inline constexpr std::size_t program_count = 10;
 inline constexpr std::size_t nodes_each = 3;
@@ -77,15 +71,6 @@ inline constexpr std::size_t constants = 3, variables = 4;
 inline constexpr DataOffset limit = place(constants + variables); ///< a Duration that a wait needs
 inline constexpr DataOffset scratch = place(constants + variables + 1);
 inline constexpr std::size_t data_bytes = place(constants + variables + 3);
-
-struct Random {
-    std::uint64_t state;
-    constexpr std::uint64_t operator()(std::uint64_t below) {
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        return (state >> 33) % below;
-    }
-    constexpr bool one_in(std::uint64_t n) { return (*this)(n) == 0; }
-};
 
 struct Rows {
     bool folded = false; ///< C++ functions only
@@ -110,7 +95,7 @@ struct Rows {
     }
 };
 
-constexpr DataOffset operand(Random& random) { return place(random(constants + variables)); }
+constexpr DataOffset some_operand(Random& random) { return place(random(constants + variables)); }
 constexpr DataOffset variable(Random& random) { return place(constants + random(variables)); }
 
 constexpr void fill_programs(Random& random, Rows& rows) {
@@ -119,9 +104,9 @@ constexpr void fill_programs(Random& random, Rows& rows) {
         row = {used, 2, static_cast<DataOffset>(scratch + data_alignment)};
         rows.instructions[used++] = {.run = random.one_in(5) ? remainder : add,
                                      .to = scratch,
-                                     .a = operand(random),
-                                     .b = operand(random)};
-        rows.instructions[used++] = {.run = less, .to = row.result, .a = scratch, .b = operand(random)};
+                                     .a = some_operand(random),
+                                     .b = some_operand(random)};
+        rows.instructions[used++] = {.run = less, .to = row.result, .a = scratch, .b = some_operand(random)};
     }
     for (std::size_t p = 0; p < program_count; ++p) {
         bool waits = false;
@@ -133,8 +118,8 @@ constexpr void fill_programs(Random& random, Rows& rows) {
             node.first = used;
             rows.instructions[used++] = {.run = random.one_in(12) ? remainder : add,
                                          .to = scratch,
-                                         .a = operand(random),
-                                         .b = operand(random)};
+                                         .a = some_operand(random),
+                                         .b = some_operand(random)};
             if (random.one_in(2))
                 rows.instructions[used++] = {
                     .run = &primitive::copy, .to = variable(random), .a = scratch, .size = 8};

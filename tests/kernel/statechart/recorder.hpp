@@ -1,5 +1,5 @@
 // A component whose state programs write down that they ran: "+a"
-// entry, "-a" exit, "!a" run, "*a" transition program.
+// entry, "-a" exit, "!a" run, "*a" transition program; and a machine of it that is executed.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -7,6 +7,10 @@
 #include "kernel/statechart/execution.hpp"
 #include "kernel/statechart/rows.hpp"
 
+#include <gtest/gtest.h>
+
+#include <array>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -43,6 +47,60 @@ struct Recorder {
         const std::string text{characters.begin(), characters.end()};
         characters.clear();
         return text;
+    }
+};
+
+/// A machine that does not run yet.
+template <const auto& machine> struct Bound {
+    Recorder component;
+    StateMachineExecution execution;
+    std::array<StateIndex, 8> history{};
+    Time now = at_ns(1000);
+    StateOutcome outcome = StateOutcome::ignored; ///< of the last send
+
+    Bound() {
+        component.machine = &execution;
+        StateMachineBinding binding;
+        binding.machine = resolved<machine>.view();
+        binding.component = &component;
+        binding.history = history;
+        EXPECT_TRUE(execution.bind(binding));
+    }
+    StateOutcome dispatch(std::string_view event) {
+        component.now = now;
+        const auto names = execution.machine().triggers;
+        for (std::size_t i = 0; i < names.size(); ++i)
+            if (names[i] == event) return execution.dispatch(i, now);
+        ADD_FAILURE() << "no trigger " << event;
+        return StateOutcome::ignored;
+    }
+    std::string send(std::string_view event) {
+        outcome = dispatch(event);
+        return component.heard();
+    }
+    std::string step(Duration later = 1ms) {
+        now += later;
+        component.now = now;
+        execution.step(now);
+        return component.heard();
+    }
+    std::string once() {
+        execution.step_once(now);
+        return component.heard();
+    }
+    std::string path() {
+        std::string text;
+        for (std::string_view name : execution.path()) text.append(text.empty() ? "" : "/").append(name);
+        return text;
+    }
+};
+
+/// One that was started, and sent the events.
+template <const auto& machine> struct Running : Bound<machine> {
+    explicit Running(std::initializer_list<std::string_view> events = {}) {
+        this->execution.start(this->now);
+        for (const std::string_view event : events) this->dispatch(event);
+        this->component.heard();
     }
 };
 

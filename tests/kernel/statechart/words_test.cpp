@@ -4,8 +4,6 @@
 
 #include "kernel/statechart/check.hpp"
 
-#include <gtest/gtest.h>
-
 namespace tappet {
 namespace {
 
@@ -37,56 +35,29 @@ constexpr auto parallel = state_machine<R>(
                 transition("l1", "l2", on("swap")), transition("r1", "r2", on("swap"))));
 static_assert(check(parallel.view()).empty());
 
-template <const auto& machine> struct Running {
-    Recorder component;
-    StateMachineExecution execution;
-    std::array<StateIndex, 8> history{};
-
-    Running() {
-        StateMachineBinding binding;
-        binding.machine = resolved<machine>.view();
-        binding.component = &component;
-        binding.history = history;
-        EXPECT_TRUE(execution.bind(binding));
-        EXPECT_EQ(execution.start(at_ns(0)), StateOutcome::taken);
-    }
-    std::string send(std::size_t trigger) {
-        execution.dispatch(trigger, at_ns(1));
-        return component.heard();
-    }
-    std::string step() {
-        execution.step(at_ns(2));
-        return component.heard();
-    }
-    std::string once() {
-        execution.step_once(at_ns(3));
-        return component.heard();
-    }
-};
-
 TEST(StateMachineWords, handles_runs_when_nothing_was_taken) {
     Running<plain> m;
     EXPECT_EQ(m.step(), "!a ~a");
-    EXPECT_EQ(m.send(0), "~a") << "its guard refused";
+    EXPECT_EQ(m.send("go"), "~a") << "its guard refused";
     m.component.yes = true;
-    EXPECT_EQ(m.send(0), "-a +b");
+    EXPECT_EQ(m.send("go"), "-a +b");
 }
 
 TEST(StateMachineWords, precondition_refuses_and_otherwise_leads_elsewhere) {
     Running<refusing> m;
-    EXPECT_EQ(m.send(0), "*no +c");
-    m.send(1);
+    EXPECT_EQ(m.send("go"), "*no +c");
+    m.send("back");
     m.component.yes = true;
-    EXPECT_EQ(m.send(0), "+b");
+    EXPECT_EQ(m.send("go"), "+b");
 }
 
 TEST(StateMachineWords, region_and_history_keep_what_was_active) {
     Running<parallel> m;
-    m.send(0);
-    EXPECT_EQ(m.send(2), "+l2 +r2");
-    m.send(1);
+    m.send("go");
+    EXPECT_EQ(m.send("swap"), "+l2 +r2");
+    m.send("back");
     EXPECT_FALSE(m.execution.is_in(find_state(parallel.view(), "x")));
-    EXPECT_EQ(m.send(0), "+l2 +r2");
+    EXPECT_EQ(m.send("go"), "+l2 +r2");
     EXPECT_TRUE(m.execution.is_in(find_state(parallel.view(), "r2")));
 }
 
@@ -102,7 +73,7 @@ TEST(StateMachineWords, single_steps_go_through_functions_one_by_one) {
     EXPECT_EQ(m.once(), "-a");
     EXPECT_EQ(m.once(), "+b");
     m.execution.start(at_ns(5));
-    EXPECT_EQ(m.send(1), "");
+    EXPECT_EQ(m.send("back"), "");
     EXPECT_EQ(m.execution.path()[0], "a");
 }
 
