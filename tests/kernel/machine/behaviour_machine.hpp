@@ -12,7 +12,7 @@
 namespace tappet::bakery {
 
 /// Turns by 10 degrees a millisecond and writes down what it is told.
-struct Oven {
+struct Oven : Clocked {
     Output<double> angle_deg;
     Output<std::int64_t> shown;
     Property<double> target{20.0};
@@ -24,12 +24,7 @@ struct Oven {
     std::uint64_t steps = 0;
     double from_deg = 0;
     bool trembles = false; ///< about where it is, and does not turn
-    os::Clock* clock = nullptr;
 
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         ++steps;
         const double goes =

@@ -3,24 +3,17 @@
 
 #include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
+#include "tests/kernel/machine/parts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
 
 namespace tappet {
 
 inline constexpr Board test_board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
-
-/// For tables that need somebody who sees the machine, whatever he does.
-struct Onlooker {
-    static constexpr bool sees_machine = true;
-    void work(const Cycle&) {}
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
 
 /// A machine that is placed.
 template <const auto& table, const Board& board = test_board> struct PlacedRig {

@@ -116,6 +116,12 @@ inline constexpr auto hung_table = table;
 inline constexpr auto strict_table = watched_machine("strict", stop_when_late);
 // clang-format on
 
+/// The name of the component that a miss blames.
+inline std::string_view culprit(const Engine& engine, const Miss& miss) {
+    return miss.function == Miss::nobody ? "nobody"
+                                         : engine.plan().parts[miss.function / functions_per_part].name;
+}
+
 inline constexpr std::size_t drivers = 0, motion = 1, logic = 2;
 inline constexpr std::array<std::string_view, 3> of_motion{"left", "middle", "right"};
 

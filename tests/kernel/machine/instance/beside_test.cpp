@@ -84,20 +84,16 @@ template <class Form> constexpr auto row() {
                                       peers("door"), events("door.moved"), trial(1)));
 }
 // clang-format off
-template <class Form>
-constexpr auto table = machine("bakery",
+template <class Form, class... Trigger>
+constexpr auto bakery(const Trigger&... trigger) { return machine("bakery",
     components(component<Oven>("oven"), component<Door>("door"), component<Onlooker>("watcher")),
-    activities(activity("fast", every(1ms), budget(50us), runs("oven", "door")),
+    activities(activity("fast", trigger..., budget(50us), runs("oven", "door")),
                activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
-    connections(), reactions(), behaviours(row<Form>()));
-/// Nothing wakes what drives the oven but its events.
-template <class Form>
-constexpr auto woken = machine("bakery",
-    components(component<Oven>("oven"), component<Door>("door"), component<Onlooker>("watcher")),
-    activities(activity("fast", on_work(), at_most(10, 1ms), deadline(1ms), budget(50us), runs("oven", "door")),
-               activity("office", every(50ms), not_real_time, stack(256 * 1024), runs("watcher"))),
-    connections(), reactions(), behaviours(row<Form>()));
+    connections(), reactions(), behaviours(row<Form>())); }
 // clang-format on
+template <class Form> constexpr auto table = bakery<Form>(every(1ms));
+/// Nothing wakes what drives the oven but its events.
+template <class Form> constexpr auto woken = bakery<Form>(on_work(), at_most(10, 1ms), deadline(1ms));
 
 template <const auto& Machine> struct Bakery : Rig<Machine> {
     void load() {

@@ -99,18 +99,15 @@ struct Weft {
     }
 };
 
-struct Watcher {
-    static constexpr bool sees_machine = true;
+struct Watcher : Onlooker {
     struct Seen {
         std::size_t event;
         double angle;
         Time when;
     };
-    MachineInstance* machine = nullptr;
     std::vector<Seen> seen;
     Sentence configure(Setup& setup) {
-        machine = setup.machine;
-        machine->observation().show_events_to({&Watcher::observe, this});
+        setup.machine->observation().show_events_to({&Watcher::observe, this});
         return {};
     }
     static void observe(void* self, std::size_t event, const std::byte* packed, Time now) noexcept
@@ -119,8 +116,6 @@ struct Watcher {
         std::memcpy(&angle, packed, sizeof angle);
         TAPPET_ESCAPE("a test's memory", static_cast<Watcher*>(self)->seen.push_back({event, angle, now}));
     }
-    void work(const Cycle&) {}
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 
 // clang-format off
@@ -164,99 +159,97 @@ struct Rig : RunningRig<table> {
     }
 };
 
-TEST(AReactionRow, that_starts_disconnected_is_run_from_when_its_handle_connects_it) {
-    Rig rig;
-    ASSERT_TRUE(rig.console.beat.valid());
-    EXPECT_FALSE(rig.console.beat.connected());
-    rig.shaft.to_emit = {1.0};
-    rig.pass(20ms);
-    rig.console.beat.connect();
-    rig.shaft.to_emit = {2.0, 3.0};
-    rig.pass(20ms);
-    EXPECT_THAT(rig.console.beats, ElementsAre(2.0, 3.0));
-    EXPECT_EQ(rig.counts("on_beat").posted, 2u);
+struct AReactionRow : testing::Test, Rig {};
+using AnEmission = AReactionRow;
+using AnEvent = AReactionRow;
+using AWait = AReactionRow;
+using TheObserver = AReactionRow;
+
+TEST_F(AReactionRow, that_starts_disconnected_is_run_from_when_its_handle_connects_it) {
+    ASSERT_TRUE(console.beat.valid());
+    EXPECT_FALSE(console.beat.connected());
+    shaft.to_emit = {1.0};
+    pass(20ms);
+    console.beat.connect();
+    shaft.to_emit = {2.0, 3.0};
+    pass(20ms);
+    EXPECT_THAT(console.beats, ElementsAre(2.0, 3.0));
+    EXPECT_EQ(counts("on_beat").posted, 2u);
 }
 
-TEST(AReactionRow, drops_what_was_caught_before_it_was_disconnected) {
-    Rig rig;
-    rig.console.beat.connect();
-    rig.shaft.to_emit = {2.0};
-    rig.pass(5ms); // the console's next cycle is later
-    rig.console.beat.disconnect();
-    rig.pass(20ms);
-    EXPECT_THAT(rig.console.beats, ElementsAre());
-    EXPECT_EQ(rig.counts("on_beat").outdated, 1u);
+TEST_F(AReactionRow, drops_what_was_caught_before_it_was_disconnected) {
+    console.beat.connect();
+    shaft.to_emit = {2.0};
+    pass(5ms); // the console's next cycle is later
+    console.beat.disconnect();
+    pass(20ms);
+    EXPECT_THAT(console.beats, ElementsAre());
+    EXPECT_EQ(counts("on_beat").outdated, 1u);
 }
 
-TEST(AReactionRow, may_be_disconnected_by_its_own_operation_with_what_waits_after_it) {
-    Rig rig;
-    rig.console.beat.connect();
-    rig.console.disconnects_itself = true;
-    rig.shaft.to_emit = {1.0, 2.0, 3.0};
-    rig.pass(30ms);
-    EXPECT_THAT(rig.console.beats, ElementsAre(1.0));
-    EXPECT_EQ(rig.counts("on_beat").outdated, 2u);
+TEST_F(AReactionRow, may_be_disconnected_by_its_own_operation_with_what_waits_after_it) {
+    console.beat.connect();
+    console.disconnects_itself = true;
+    shaft.to_emit = {1.0, 2.0, 3.0};
+    pass(30ms);
+    EXPECT_THAT(console.beats, ElementsAre(1.0));
+    EXPECT_EQ(counts("on_beat").outdated, 2u);
 }
 
-TEST(AReactionRow, counts_what_its_queue_cannot_hold) {
-    Rig rig;
-    rig.console.beat.connect();
-    rig.shaft.to_emit = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
-    rig.pass(20ms);
-    EXPECT_THAT(rig.console.beats, ElementsAre(1.0, 2.0, 3.0, 4.0));
-    EXPECT_EQ(rig.counts("on_beat").lost, 2u);
-    EXPECT_EQ(rig.counts("on_beat").high_water, 4u);
+TEST_F(AReactionRow, counts_what_its_queue_cannot_hold) {
+    console.beat.connect();
+    shaft.to_emit = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+    pass(20ms);
+    EXPECT_THAT(console.beats, ElementsAre(1.0, 2.0, 3.0, 4.0));
+    EXPECT_EQ(counts("on_beat").lost, 2u);
+    EXPECT_EQ(counts("on_beat").high_water, 4u);
 }
 
-TEST(AReactionRow, that_keeps_the_latest_delivers_one_emission_of_many) {
-    Rig rig;
-    rig.shaft.to_emit = {1.0, 2.0, 3.0};
-    rig.pass(2ms);
-    EXPECT_THAT(rig.weft.latest, ElementsAre(3.0));
-    EXPECT_EQ(rig.counts("show").lost, 2u);
+TEST_F(AReactionRow, that_keeps_the_latest_delivers_one_emission_of_many) {
+    shaft.to_emit = {1.0, 2.0, 3.0};
+    pass(2ms);
+    EXPECT_THAT(weft.latest, ElementsAre(3.0));
+    EXPECT_EQ(counts("show").lost, 2u);
 }
 
-TEST(AReactionRow, carries_arguments_that_a_message_has_no_room_for_in_order_and_whole) {
-    Rig rig;
+TEST_F(AReactionRow, carries_arguments_that_a_message_has_no_room_for_in_order_and_whole) {
     for (std::int64_t turn = 0; turn < 40; turn += 2) { // around the places where they wait
-        rig.shaft.profiles = {turn, turn + 1};
-        rig.pass(20ms);
+        shaft.profiles = {turn, turn + 1};
+        pass(20ms);
     }
-    ASSERT_EQ(rig.console.profiles.size(), 40u);
+    ASSERT_EQ(console.profiles.size(), 40u);
     for (std::int64_t turn = 0; turn < 40; ++turn)
-        EXPECT_EQ(rig.console.profiles[static_cast<std::size_t>(turn)], turn);
-    EXPECT_EQ(rig.counts("on_profile").lost, 0u);
+        EXPECT_EQ(console.profiles[static_cast<std::size_t>(turn)], turn);
+    EXPECT_EQ(counts("on_profile").lost, 0u);
 }
 
-TEST(AReactionRow, of_large_arguments_counts_what_its_queue_cannot_hold_and_drops_what_is_outdated) {
-    Rig rig;
-    rig.shaft.profiles = {1, 2, 3, 4, 5};
-    rig.pass(20ms);
-    EXPECT_THAT(rig.console.profiles, ElementsAre(1, 2, 3));
-    EXPECT_EQ(rig.counts("on_profile").lost, 2u);
-    rig.shaft.profiles = {6, 7};
-    rig.pass(5ms); // the console's next cycle is later
-    rig.console.profile.disconnect();
-    rig.console.profile.connect();
-    rig.shaft.profiles = {8};
-    rig.pass(20ms);
-    EXPECT_THAT(rig.console.profiles, ElementsAre(1, 2, 3, 8));
-    EXPECT_EQ(rig.counts("on_profile").outdated, 2u);
+TEST_F(AReactionRow, of_large_arguments_counts_what_its_queue_cannot_hold_and_drops_what_is_outdated) {
+    shaft.profiles = {1, 2, 3, 4, 5};
+    pass(20ms);
+    EXPECT_THAT(console.profiles, ElementsAre(1, 2, 3));
+    EXPECT_EQ(counts("on_profile").lost, 2u);
+    shaft.profiles = {6, 7};
+    pass(5ms); // the console's next cycle is later
+    console.profile.disconnect();
+    console.profile.connect();
+    shaft.profiles = {8};
+    pass(20ms);
+    EXPECT_THAT(console.profiles, ElementsAre(1, 2, 3, 8));
+    EXPECT_EQ(counts("on_profile").outdated, 2u);
 }
 
-TEST(AReactionRow, of_large_arguments_delivers_the_latest_or_lets_it_be_waited_for) {
-    Rig rig;
-    rig.shaft.profiles = {1, 2, 3};
-    rig.pass(2ms);
-    EXPECT_THAT(rig.weft.profiles, ElementsAre(3));
+TEST_F(AReactionRow, of_large_arguments_delivers_the_latest_or_lets_it_be_waited_for) {
+    shaft.profiles = {1, 2, 3};
+    pass(2ms);
+    EXPECT_THAT(weft.profiles, ElementsAre(3));
     Profile made;
     std::int64_t turn = 0;
     for (const std::int64_t expected : {1, 2}) {
-        EXPECT_TRUE(rig.console.next_profile.take(made, turn));
+        EXPECT_TRUE(console.next_profile.take(made, turn));
         EXPECT_EQ(turn, expected);
         EXPECT_EQ(made, profile_of(turn));
     }
-    EXPECT_FALSE(rig.console.next_profile.take(made, turn)) << "its queue holds two";
+    EXPECT_FALSE(console.next_profile.take(made, turn)) << "its queue holds two";
 }
 
 TEST(TheDigest, of_a_machine_sees_every_word_of_large_arguments) {
@@ -270,9 +263,8 @@ TEST(TheDigest, of_a_machine_sees_every_word_of_large_arguments) {
     EXPECT_NE(digest_after(5), digest_after(6));
 }
 
-TEST(AnEmission, runs_synchronous_reactions_first_and_then_the_most_urgent_receivers) {
-    Rig rig;
-    const auto& machine = rig.instance.machine();
+TEST_F(AnEmission, runs_synchronous_reactions_first_and_then_the_most_urgent_receivers) {
+    const auto& machine = instance.machine();
     std::vector<std::string_view> order;
     for (const Subscription& each : machine.plan.subscriptions)
         if (facet_at(machine.table, each.event).name == "beat_up")
@@ -284,96 +276,90 @@ TEST(AnEmission, runs_synchronous_reactions_first_and_then_the_most_urgent_recei
     EXPECT_THAT(order, ElementsAre("hold", "show", "on_beat", "next_beat", "watcher"));
 }
 
-TEST(AnEvent, may_be_emitted_by_each_activity_that_calls_an_operation_of_its_component) {
-    Rig rig;
-    rig.panel.press = true; // runs shaft.announce in the panel's activity
-    rig.shaft.to_emit = {1.0};
-    rig.console.beat.connect();
-    rig.pass(20ms);
-    EXPECT_THAT(rig.console.beats, testing::UnorderedElementsAre(1.0, -1.0));
-    EXPECT_EQ(rig.counts("on_beat").stray, 0u);
-    EXPECT_EQ(rig.counts("on_beat").posted, 2u);
+TEST_F(AnEvent, may_be_emitted_by_each_activity_that_calls_an_operation_of_its_component) {
+    panel.press = true; // runs shaft.announce in the panel's activity
+    shaft.to_emit = {1.0};
+    console.beat.connect();
+    pass(20ms);
+    EXPECT_THAT(console.beats, testing::UnorderedElementsAre(1.0, -1.0));
+    EXPECT_EQ(counts("on_beat").stray, 0u);
+    EXPECT_EQ(counts("on_beat").posted, 2u);
 }
 
-TEST(AnEvent, gives_each_emitting_activity_the_whole_queue_of_a_row) {
-    Rig rig;
-    rig.console.beat.connect();
-    rig.panel.press = true;
-    rig.shaft.to_emit = {1.0, 2.0, 3.0, 4.0};
-    rig.pass(20ms);
-    EXPECT_EQ(rig.console.beats.size(), 5u);
-    EXPECT_EQ(rig.counts("on_beat").lost, 0u);
+TEST_F(AnEvent, gives_each_emitting_activity_the_whole_queue_of_a_row) {
+    console.beat.connect();
+    panel.press = true;
+    shaft.to_emit = {1.0, 2.0, 3.0, 4.0};
+    pass(20ms);
+    EXPECT_EQ(console.beats.size(), 5u);
+    EXPECT_EQ(counts("on_beat").lost, 0u);
 }
 
-TEST(AWait, finds_what_was_emitted_in_order_and_answers_at_once_in_virtual_time) {
-    Rig rig;
+TEST_F(AWait, finds_what_was_emitted_in_order_and_answers_at_once_in_virtual_time) {
     double angle = 0;
-    EXPECT_FALSE(rig.console.next_beat.wait(10s, angle));
-    EXPECT_FALSE(rig.console.next_beat.take(angle));
-    rig.shaft.to_emit = {1.0, 2.0};
-    rig.pass(2ms);
-    EXPECT_TRUE(rig.console.next_beat.wait(10s, angle));
+    EXPECT_FALSE(console.next_beat.wait(10s, angle));
+    EXPECT_FALSE(console.next_beat.take(angle));
+    shaft.to_emit = {1.0, 2.0};
+    pass(2ms);
+    EXPECT_TRUE(console.next_beat.wait(10s, angle));
     EXPECT_EQ(angle, 1.0);
-    EXPECT_TRUE(rig.console.next_beat.take(angle));
+    EXPECT_TRUE(console.next_beat.take(angle));
     EXPECT_EQ(angle, 2.0);
-    EXPECT_FALSE(rig.console.next_beat.take(angle));
+    EXPECT_FALSE(console.next_beat.take(angle));
 }
 
-TEST(TheObserver, sees_an_event_from_when_it_is_connected_to_it) {
-    Rig rig;
-    const auto& table_of = rig.instance.machine().table;
-    const std::size_t shaft = find_component(table_of, "shaft");
-    const std::size_t beat_up = find_facet(table_of.components[shaft], "beat_up");
-    const EventHandle handle = rig.instance.observation().observe_event(shaft, beat_up);
+TEST_F(TheObserver, sees_an_event_from_when_it_is_connected_to_it) {
+    const auto& table_of = instance.machine().table;
+    const std::size_t index = find_component(table_of, "shaft");
+    const std::size_t beat_up = find_facet(table_of.components[index], "beat_up");
+    const EventHandle handle = instance.observation().observe_event(index, beat_up);
     ASSERT_TRUE(handle.valid());
     EXPECT_FALSE(handle.connected());
-    rig.shaft.to_emit = {1.0};
-    rig.pass(20ms);
-    EXPECT_TRUE(rig.watcher.seen.empty());
+    shaft.to_emit = {1.0};
+    pass(20ms);
+    EXPECT_TRUE(watcher.seen.empty());
     handle.connect();
-    rig.shaft.to_emit = {2.0};
-    rig.pass(20ms);
-    ASSERT_EQ(rig.watcher.seen.size(), 1u);
-    EXPECT_EQ(rig.watcher.seen[0].event, rig.instance.observation().observed_index({shaft, beat_up}));
-    EXPECT_EQ(rig.watcher.seen[0].angle, 2.0);
-    EXPECT_GT(rig.watcher.seen[0].when, Time{} + 20ms);
+    shaft.to_emit = {2.0};
+    pass(20ms);
+    ASSERT_EQ(watcher.seen.size(), 1u);
+    EXPECT_EQ(watcher.seen[0].event, instance.observation().observed_index({index, beat_up}));
+    EXPECT_EQ(watcher.seen[0].angle, 2.0);
+    EXPECT_GT(watcher.seen[0].when, Time{} + 20ms);
     handle.disconnect();
-    rig.shaft.to_emit = {3.0};
-    rig.pass(20ms);
-    EXPECT_EQ(rig.watcher.seen.size(), 1u);
+    shaft.to_emit = {3.0};
+    pass(20ms);
+    EXPECT_EQ(watcher.seen.size(), 1u);
 }
 
-TEST(TheObserver, may_lose_emissions_which_are_counted_and_cost_nobody_else_any) {
-    Rig rig;
-    rig.console.beat.connect();
-    const End beat_up{find_component(rig.instance.machine().table, "shaft"), 0};
-    rig.instance.observation().observe_event(beat_up.component, beat_up.facet).connect();
-    rig.shaft.to_emit.assign(3 * observer_quota, 1.0);
-    rig.pass(1ms);
-    EXPECT_EQ(rig.instance.observation().counts_of(rig.instance.observation().observed_index(beat_up)).lost,
+TEST_F(TheObserver, may_lose_emissions_which_are_counted_and_cost_nobody_else_any) {
+    console.beat.connect();
+    const End beat_up{find_component(instance.machine().table, "shaft"), 0};
+    instance.observation().observe_event(beat_up.component, beat_up.facet).connect();
+    shaft.to_emit.assign(3 * observer_quota, 1.0);
+    pass(1ms);
+    EXPECT_EQ(instance.observation().counts_of(instance.observation().observed_index(beat_up)).lost,
               2 * observer_quota);
-    rig.pass(20ms);
-    EXPECT_EQ(rig.console.beats.size(), 4u) << "its own queue";
+    pass(20ms);
+    EXPECT_EQ(console.beats.size(), 4u) << "its own queue";
 }
 
-TEST(TheObserver, cannot_be_connected_to_what_is_too_large_for_it_or_is_no_event) {
-    Rig rig;
-    const auto& table_of = rig.instance.machine().table;
-    const std::size_t shaft = find_component(table_of, "shaft");
+TEST_F(TheObserver, cannot_be_connected_to_what_is_too_large_for_it_or_is_no_event) {
+    const auto& table_of = instance.machine().table;
+    const std::size_t index = find_component(table_of, "shaft");
     for (const std::string_view facet : {"picture", "announce"})
-        EXPECT_FALSE(rig.instance.observation()
-                         .observe_event(shaft, find_facet(table_of.components[shaft], facet))
+        EXPECT_FALSE(instance.observation()
+                         .observe_event(index, find_facet(table_of.components[index], facet))
                          .valid());
-    EXPECT_TRUE(rig.instance.observation()
-                    .observe_event(shaft, find_facet(table_of.components[shaft], "profile"))
+    EXPECT_TRUE(instance.observation()
+                    .observe_event(index, find_facet(table_of.components[index], "profile"))
                     .valid());
     const EventHandle standing =
-        rig.instance.observation().observe_event(shaft, find_facet(table_of.components[shaft], "standing"));
+        instance.observation().observe_event(index, find_facet(table_of.components[index], "standing"));
     EXPECT_TRUE(standing.valid()) << "although no row names it";
     standing.connect();
-    rig.shaft.standing();
-    rig.pass(20ms);
-    EXPECT_EQ(rig.watcher.seen.size(), 1u);
+    shaft.standing();
+    pass(20ms);
+    EXPECT_EQ(watcher.seen.size(), 1u);
 }
 
 } // namespace

@@ -92,17 +92,11 @@ struct Careful {
 };
 
 /// Presses when it is told to, and may ask for changes in the machine from its own activity.
-struct Panel {
-    static constexpr bool sees_machine = true;
-    MachineInstance* machine = nullptr;
+struct Panel : Onlooker {
     Event<> pressed;
     std::uint64_t presses_left = 0;
     std::size_t restart_activity = nowhere;
     LifeTicket ticket{};
-    Sentence configure(Setup& setup) {
-        machine = setup.machine;
-        return {};
-    }
     void work(const Cycle&) {
         for (; presses_left != 0; --presses_left) pressed();
         if (restart_activity == nowhere) return;
@@ -149,7 +143,11 @@ constexpr std::size_t field = 0, motion = 1, slow = 2, office = 3;
 
 struct Machine : testing::Test, ConfiguredRig<table> {
     Machine() { notes().clear(); }
-    void start() { ASSERT_EQ(world.start().view(), ""); }
+    /// And lets it run so long.
+    void start(Duration then = {}) {
+        ASSERT_EQ(world.start().view(), "");
+        pass(then);
+    }
     ComponentState state(std::size_t component) { return instance.life().state_of(component); }
     /// Asks and lets the engine serve it.
     LifeAnswer change(std::size_t component, LifeChange change) {
@@ -177,8 +175,7 @@ TEST_F(LifeOfAComponent, is_inactive_until_its_activity_starts_and_stopped_when_
 }
 
 TEST_F(LifeOfAComponent, stops_alone_leaves_safe_values_and_the_others_go_on) {
-    start();
-    pass(10ms);
+    start(10ms);
     EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
     EXPECT_EQ(change(axis, LifeChange::stop).outcome, LifeOutcome::done);
     EXPECT_EQ(state(axis), ComponentState::stopped);
@@ -192,8 +189,7 @@ TEST_F(LifeOfAComponent, stops_alone_leaves_safe_values_and_the_others_go_on) {
 }
 
 TEST_F(LifeOfAComponent, is_stopped_once_although_the_machine_stops_later) {
-    start();
-    pass(5ms);
+    start(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     static_cast<void>(change(axis, LifeChange::stop));
     world.stop();
@@ -201,8 +197,7 @@ TEST_F(LifeOfAComponent, is_stopped_once_although_the_machine_stops_later) {
 }
 
 TEST_F(LifeOfAComponent, starts_again_where_it_was_stopped) {
-    start();
-    pass(5ms);
+    start(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
     EXPECT_EQ(the<Axis>("axis").starts, 2u);
@@ -231,8 +226,7 @@ TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_was_written_an
 }
 
 TEST_F(LifeOfAComponent, does_not_start_with_a_stale_input_and_a_restart_leaves_it_stopped_and_safe) {
-    start();
-    pass(10ms);
+    start(10ms);
     the<Sensor>("sensor").silent = true;
     pass(30ms);
     const LifeAnswer answer = change(axis, LifeChange::restart);
@@ -246,8 +240,7 @@ TEST_F(LifeOfAComponent, does_not_start_with_a_stale_input_and_a_restart_leaves_
 
 TEST_F(LifeOfAComponent, waits_with_the_whole_machine_for_an_input_that_it_needs_from_its_first_moment) {
     the<Sensor>("sensor").silent = true;
-    start();
-    pass(50ms);
+    start(50ms);
     EXPECT_EQ(state(careful), ComponentState::waiting);
     EXPECT_EQ(the<Careful>("careful").first_angle, -1.0);
     EXPECT_EQ(state(axis), ComponentState::running); // which did not say so
@@ -258,8 +251,7 @@ TEST_F(LifeOfAComponent, waits_with_the_whole_machine_for_an_input_that_it_needs
 }
 
 TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_not_run) {
-    start();
-    pass(5ms);
+    start(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     the<Panel>("panel").presses_left = 3;
     pass(20ms);
@@ -274,8 +266,7 @@ TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_n
 }
 
 TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_and_that_is_counted_too) {
-    start();
-    pass(5ms);
+    start(5ms);
     Axis& the_axis = the<Axis>("axis");
     the_axis.turned();
     EXPECT_EQ(the<Gate>("gate").turns, 1);
@@ -291,8 +282,7 @@ TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_
 
 TEST_F(LifeOfAComponent, forgets_its_timers_when_it_stops) {
     the<Axis>("axis").alarm_after = 50ms;
-    start();
-    pass(10ms);
+    start(10ms);
     static_cast<void>(change(axis, LifeChange::stop));
     pass(100ms);
     EXPECT_EQ(the<Axis>("axis").alarms, 0u);
@@ -302,8 +292,7 @@ TEST_F(LifeOfAComponent, forgets_its_timers_when_it_stops) {
 }
 
 TEST_F(LifeOfAComponent, brings_its_state_machine_to_the_final_state_and_back_to_the_initial_one) {
-    start();
-    pass(5ms);
+    start(5ms);
     EXPECT_EQ(the<Gate>("gate").opened, 1);
     static_cast<void>(change(gate, LifeChange::stop));
     EXPECT_EQ(the<Gate>("gate").closed, 1);
@@ -313,8 +302,7 @@ TEST_F(LifeOfAComponent, brings_its_state_machine_to_the_final_state_and_back_to
 }
 
 TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_others) {
-    start();
-    pass(5ms);
+    start(5ms);
     const LifeTicket first = instance.life().ask_component(axis, LifeChange::restart);
     const LifeTicket second = instance.life().ask_component(axis, LifeChange::stop);
     pass(5ms);
@@ -381,8 +369,7 @@ TEST_F(LifeOfAnActivity, is_initialised_before_and_finalised_after_by_whoever_st
 }
 
 TEST_F(LifeOfAnActivity, a_component_that_cannot_be_initialised_keeps_its_activity_stopped_until_it_can) {
-    start();
-    pass(10ms);
+    start(10ms);
     the<Sensor>("sensor").refuses = "the probe is not plugged in; plug it in";
     EXPECT_EQ(world.change_activity(field, LifeChange::restart).view(),
               "component \"sensor\" could not be initialised: the probe is not plugged in; plug it in");
@@ -407,8 +394,7 @@ TEST_F(LifeOfAnActivity,
 }
 
 TEST_F(LifeOfAnActivity, does_not_start_while_another_ones_value_that_it_needs_is_stale) {
-    start();
-    pass(10ms);
+    start(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     EXPECT_EQ(world.change_activity(field, LifeChange::stop).view(), "");
     pass(30ms);
@@ -423,8 +409,7 @@ TEST_F(LifeOfAnActivity, does_not_start_while_another_ones_value_that_it_needs_i
 }
 
 TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stopped) {
-    start();
-    pass(10ms);
+    start(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     the<Panel>("panel").presses_left = 5;
     pass(10ms);
@@ -436,8 +421,7 @@ TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stoppe
 }
 
 TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stopped) {
-    start();
-    pass(10ms);
+    start(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     const LifeAnswer answer = change(axis, LifeChange::start);
     EXPECT_EQ(answer.refusal, LifeRefusal::activity_stopped);
@@ -446,8 +430,7 @@ TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stoppe
 }
 
 TEST_F(LifeOfAnActivity, is_restarted_by_the_supervisor_when_a_component_of_another_one_asks) {
-    start();
-    pass(10ms);
+    start(10ms);
     the<Panel>("panel").restart_activity = motion;
     pass(10ms);
     EXPECT_EQ(instance.life().answer_of_activity(motion, the<Panel>("panel").ticket).outcome,

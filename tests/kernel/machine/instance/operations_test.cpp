@@ -154,40 +154,40 @@ constexpr auto table = machine("track",
 // clang-format on
 constexpr std::size_t motion = 0;
 
-struct Rig : RunningRig<table> {
+struct Rig : testing::Test, RunningRig<table> {
     Axis& axis = the<Axis>("axis");
     Panel& panel = the<Panel>("panel");
     Panel& urgent = the<Panel>("urgent");
-    ~Rig() { axis.~Axis(); } // the test's vectors; a machine's components are never destroyed
+    ~Rig() override { axis.~Axis(); } // the test's vectors; a machine's components are never destroyed
 };
+
+using Methods = Rig;
+using Commands = Rig;
+using CommandsDeathTest = Rig;
 
 // ---- methods
 
-TEST(Methods, a_method_runs_in_the_caller_and_returns_its_result) {
-    Rig rig;
-    rig.axis.position = 40.0;
-    EXPECT_EQ(rig.panel.distance(30.0, false).value_or(0.0), -10.0); // no time passed: nobody else ran
-    EXPECT_EQ(rig.panel.distance(30.0, true).value_or(0.0), 10.0);
+TEST_F(Methods, a_method_runs_in_the_caller_and_returns_its_result) {
+    axis.position = 40.0;
+    EXPECT_EQ(panel.distance(30.0, false).value_or(0.0), -10.0); // no time passed: nobody else ran
+    EXPECT_EQ(panel.distance(30.0, true).value_or(0.0), 10.0);
 }
 
-TEST(Methods, inside_an_activity_a_method_needs_no_promise) {
-    Rig rig;
-    rig.axis.position = 40.0;
-    EXPECT_TRUE(rig.the<Panel>("near").spare().given());
-    EXPECT_EQ(rig.axis.position, 0.0);
+TEST_F(Methods, inside_an_activity_a_method_needs_no_promise) {
+    axis.position = 40.0;
+    EXPECT_TRUE(the<Panel>("near").spare().given());
+    EXPECT_EQ(axis.position, 0.0);
 }
 
-TEST(Methods, an_optional_call_without_a_row_says_so) {
-    Rig rig;
-    EXPECT_FALSE(rig.panel.spare.connected());
-    EXPECT_TRUE(rig.panel.distance.connected());
+TEST_F(Methods, an_optional_call_without_a_row_says_so) {
+    EXPECT_FALSE(panel.spare.connected());
+    EXPECT_TRUE(panel.distance.connected());
 }
 
-TEST(Methods, one_that_knows_no_types_calls_from_packed_bytes) {
-    Rig rig;
-    rig.axis.position = 40.0;
-    const auto& facet = facet_at(rig.instance.machine().table,
-                                 {0, find_facet(rig.instance.machine().table.components[0], "distance")});
+TEST_F(Methods, one_that_knows_no_types_calls_from_packed_bytes) {
+    axis.position = 40.0;
+    const auto& facet = facet_at(instance.machine().table,
+                                 {0, find_facet(instance.machine().table.components[0], "distance")});
     ASSERT_EQ(facet.method->argument_bytes, sizeof(double) + sizeof(bool));
     ASSERT_EQ(facet.method->result, type_id<double>);
     std::array<std::byte, sizeof(double) + sizeof(bool)> arguments{};
@@ -195,196 +195,179 @@ TEST(Methods, one_that_knows_no_types_calls_from_packed_bytes) {
     detail::store_packed(arguments.data() + sizeof(double), true);
     std::array<std::byte, sizeof(double)> result{};
     ASSERT_TRUE(
-        facet.method->call_packed(*rig.instance.gate_of(0), Entry::at_once, arguments.data(), result.data()));
+        facet.method->call_packed(*instance.gate_of(0), Entry::at_once, arguments.data(), result.data()));
     EXPECT_EQ(detail::load_packed<double>(result.data()), 15.0);
 }
 
-TEST(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_machine) {
-    Rig rig;
-    rig.axis.position = 40.0;
-    const MachineView& seen = rig.instance.machine().table;
+TEST_F(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_machine) {
+    axis.position = 40.0;
+    const MachineView& seen = instance.machine().table;
     const End zero{0, find_facet(seen.components[0], "zero")};
     const End distance{0, find_facet(seen.components[0], "distance")};
     MethodRequest request;
-    ASSERT_TRUE(rig.instance.requests().request_method(zero, request, {}));
+    ASSERT_TRUE(instance.requests().request_method(zero, request, {}));
     EXPECT_FALSE(request.done());
-    EXPECT_FALSE(rig.instance.requests().request_method(zero, request, {}));
-    EXPECT_EQ(rig.axis.position, 40.0); // never in the caller
-    rig.pass(1ms);
+    EXPECT_FALSE(instance.requests().request_method(zero, request, {}));
+    EXPECT_EQ(axis.position, 40.0); // never in the caller
+    pass(1ms);
     EXPECT_TRUE(request.done());
-    EXPECT_EQ(rig.axis.position, 0.0);
+    EXPECT_EQ(axis.position, 0.0);
     std::array<std::byte, 17> values{};
     detail::store_packed(values.data(), -3.0);
     detail::store_packed(values.data() + 8, true);
-    EXPECT_FALSE(rig.instance.requests().request_method(distance, request, std::span{values}.first(16)));
-    ASSERT_TRUE(rig.instance.requests().request_method(distance, request, values));
-    rig.pass(1ms);
+    EXPECT_FALSE(instance.requests().request_method(distance, request, std::span{values}.first(16)));
+    ASSERT_TRUE(instance.requests().request_method(distance, request, values));
+    pass(1ms);
     EXPECT_EQ(detail::load_packed<double>(values.data() + 9), 3.0);
-    EXPECT_FALSE(rig.instance.requests().request_method({0, find_facet(seen.components[0], "move_to")},
-                                                        request, values));
+    EXPECT_FALSE(
+        instance.requests().request_method({0, find_facet(seen.components[0], "move_to")}, request, values));
 }
 
 // ---- the life of a command
 
-TEST(Commands, goes_through_its_states_and_brings_its_results_back) {
-    Rig rig;
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::ready);
-    ASSERT_TRUE(rig.urgent.move.send(3.0));
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::sent);
-    EXPECT_FALSE(rig.axis.moving); // not in the sender
-    rig.pass(1ms);
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::executing);
-    rig.pass(2ms);
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::executing);
-    rig.pass(1ms);
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::done);
-    EXPECT_EQ(rig.urgent.move.result(), 3);
-    EXPECT_EQ(rig.axis.position, 3.0);
-    const std::uint64_t asked = rig.axis.completions_asked;
-    rig.pass(10ms);
-    EXPECT_EQ(rig.axis.completions_asked, asked); // what has ended is not asked again
+TEST_F(Commands, goes_through_its_states_and_brings_its_results_back) {
+    EXPECT_EQ(urgent.move.state(), CommandState::ready);
+    ASSERT_TRUE(urgent.move.send(3.0));
+    EXPECT_EQ(urgent.move.state(), CommandState::sent);
+    EXPECT_FALSE(axis.moving); // not in the sender
+    pass(1ms);
+    EXPECT_EQ(urgent.move.state(), CommandState::executing);
+    pass(2ms);
+    EXPECT_EQ(urgent.move.state(), CommandState::executing);
+    pass(1ms);
+    EXPECT_EQ(urgent.move.state(), CommandState::done);
+    EXPECT_EQ(urgent.move.result(), 3);
+    EXPECT_EQ(axis.position, 3.0);
+    const std::uint64_t asked = axis.completions_asked;
+    pass(10ms);
+    EXPECT_EQ(axis.completions_asked, asked); // what has ended is not asked again
 }
 
-TEST(Commands, what_the_action_refuses_is_rejected_and_its_completion_never_asked) {
-    Rig rig;
-    ASSERT_TRUE(rig.urgent.move.send(101.0));
-    rig.pass(2ms);
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::rejected);
-    EXPECT_EQ(rig.axis.completions_asked, 0u);
+TEST_F(Commands, what_the_action_refuses_is_rejected_and_its_completion_never_asked) {
+    ASSERT_TRUE(urgent.move.send(101.0));
+    pass(2ms);
+    EXPECT_EQ(urgent.move.state(), CommandState::rejected);
+    EXPECT_EQ(axis.completions_asked, 0u);
 }
 
-TEST(Commands, what_cannot_be_completed_fails) {
-    Rig rig;
-    ASSERT_TRUE(rig.urgent.move.send(50.0));
-    rig.pass(5ms);
-    rig.axis.jams = true;
-    rig.pass(1ms);
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::failed);
+TEST_F(Commands, what_cannot_be_completed_fails) {
+    ASSERT_TRUE(urgent.move.send(50.0));
+    pass(5ms);
+    axis.jams = true;
+    pass(1ms);
+    EXPECT_EQ(urgent.move.state(), CommandState::failed);
 }
 
-TEST(Commands, one_on_its_way_is_neither_sent_again_nor_reset) {
-    Rig rig;
-    ASSERT_TRUE(rig.urgent.move.send(5.0));
-    EXPECT_FALSE(rig.urgent.move.send(6.0));
-    EXPECT_FALSE(rig.urgent.move.reset());
-    rig.pass(2ms);
-    EXPECT_FALSE(rig.urgent.move.send(6.0));
-    EXPECT_FALSE(rig.urgent.move.reset());
-    rig.pass(10ms);
-    EXPECT_EQ(rig.axis.position, 5.0); // by the first arguments
-    EXPECT_TRUE(rig.urgent.move.reset());
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::ready);
-    EXPECT_TRUE(rig.urgent.move.send(6.0));
-    rig.pass(3ms);
-    EXPECT_EQ(rig.urgent.move.result(), 1);
+TEST_F(Commands, one_on_its_way_is_neither_sent_again_nor_reset) {
+    ASSERT_TRUE(urgent.move.send(5.0));
+    EXPECT_FALSE(urgent.move.send(6.0));
+    EXPECT_FALSE(urgent.move.reset());
+    pass(2ms);
+    EXPECT_FALSE(urgent.move.send(6.0));
+    EXPECT_FALSE(urgent.move.reset());
+    pass(10ms);
+    EXPECT_EQ(axis.position, 5.0); // by the first arguments
+    EXPECT_TRUE(urgent.move.reset());
+    EXPECT_EQ(urgent.move.state(), CommandState::ready);
+    EXPECT_TRUE(urgent.move.send(6.0));
+    pass(3ms);
+    EXPECT_EQ(urgent.move.result(), 1);
 }
 
-TEST(Commands, without_a_completion_it_is_done_when_its_action_has_run) {
-    Rig rig;
-    ASSERT_TRUE(rig.urgent.mark.send(7));
-    rig.pass(1ms);
-    EXPECT_EQ(rig.urgent.mark.state(), CommandState::done);
-    EXPECT_THAT(rig.axis.marks, testing::ElementsAre(7));
+TEST_F(Commands, without_a_completion_it_is_done_when_its_action_has_run) {
+    ASSERT_TRUE(urgent.mark.send(7));
+    pass(1ms);
+    EXPECT_EQ(urgent.mark.state(), CommandState::done);
+    EXPECT_THAT(axis.marks, testing::ElementsAre(7));
 }
 
-TEST(Commands, an_unconnected_one_is_not_sent) {
-    Rig rig;
-    EXPECT_FALSE(rig.urgent.second_mark.connected());
-    EXPECT_FALSE(rig.urgent.second_mark.send(1));
-    EXPECT_EQ(rig.urgent.second_mark.state(), CommandState::ready);
+TEST_F(Commands, an_unconnected_one_is_not_sent) {
+    EXPECT_FALSE(urgent.second_mark.connected());
+    EXPECT_FALSE(urgent.second_mark.send(1));
+    EXPECT_EQ(urgent.second_mark.state(), CommandState::ready);
 }
 
-TEST(Commands, under_virtual_time_a_wait_answers_at_once) {
-    Rig rig;
-    ASSERT_TRUE(rig.urgent.mark.send(7));
-    EXPECT_FALSE(rig.urgent.mark.wait(10s));
-    rig.pass(1ms);
-    EXPECT_TRUE(rig.urgent.mark.wait(10s));
+TEST_F(Commands, under_virtual_time_a_wait_answers_at_once) {
+    ASSERT_TRUE(urgent.mark.send(7));
+    EXPECT_FALSE(urgent.mark.wait(10s));
+    pass(1ms);
+    EXPECT_TRUE(urgent.mark.wait(10s));
 }
 
 // ---- the order of serving
 
-TEST(Commands, the_urgent_activity_is_served_first_and_each_senders_order_is_kept) {
-    Rig rig;
-    ASSERT_TRUE(
-        rig.panel.second_mark.send(1)); // the other object first: by time of sending, not of the table
-    ASSERT_TRUE(rig.panel.mark.send(2));
-    ASSERT_TRUE(rig.urgent.mark.send(3));
-    rig.pass(1ms);
-    EXPECT_THAT(rig.axis.marks, testing::ElementsAre(3, 1, 2));
+TEST_F(Commands, the_urgent_activity_is_served_first_and_each_senders_order_is_kept) {
+    ASSERT_TRUE(panel.second_mark.send(1)); // the other object first: by time of sending, not of the table
+    ASSERT_TRUE(panel.mark.send(2));
+    ASSERT_TRUE(urgent.mark.send(3));
+    pass(1ms);
+    EXPECT_THAT(axis.marks, testing::ElementsAre(3, 1, 2));
 }
 
-TEST(Commands, run_after_the_components_and_before_the_asynchronous_events) {
-    Rig rig;
-    rig.urgent.knock();
-    ASSERT_TRUE(rig.urgent.move.send(1.0));
-    rig.pass(1ms);
-    EXPECT_THAT(rig.axis.order, testing::ElementsAre("step", "command", "event"));
+TEST_F(Commands, run_after_the_components_and_before_the_asynchronous_events) {
+    urgent.knock();
+    ASSERT_TRUE(urgent.move.send(1.0));
+    pass(1ms);
+    EXPECT_THAT(axis.order, testing::ElementsAre("step", "command", "event"));
 }
 
 // ---- receivers that do not run
 
-TEST(Commands, are_rejected_when_the_receiver_stopped_and_fail_when_it_stops_under_them) {
-    Rig rig;
-    ASSERT_TRUE(rig.urgent.move.send(50.0));
-    rig.pass(5ms);
-    ASSERT_TRUE(rig.urgent.mark.send(1)); // still in the mailbox
-    rig.instance.engines()[motion].stop(rig.clock.now());
-    EXPECT_EQ(rig.urgent.move.state(), CommandState::failed);
-    EXPECT_EQ(rig.urgent.mark.state(), CommandState::rejected);
-    ASSERT_TRUE(rig.urgent.mark.send(2));
-    EXPECT_EQ(rig.urgent.mark.state(), CommandState::rejected); // though nobody serves its mailbox
-    EXPECT_TRUE(rig.axis.marks.empty());
+TEST_F(Commands, are_rejected_when_the_receiver_stopped_and_fail_when_it_stops_under_them) {
+    ASSERT_TRUE(urgent.move.send(50.0));
+    pass(5ms);
+    ASSERT_TRUE(urgent.mark.send(1)); // still in the mailbox
+    instance.engines()[motion].stop(clock.now());
+    EXPECT_EQ(urgent.move.state(), CommandState::failed);
+    EXPECT_EQ(urgent.mark.state(), CommandState::rejected);
+    ASSERT_TRUE(urgent.mark.send(2));
+    EXPECT_EQ(urgent.mark.state(), CommandState::rejected); // though nobody serves its mailbox
+    EXPECT_TRUE(axis.marks.empty());
 }
 
 // ---- commands as objects
 
-TEST(Commands, one_that_wraps_another_is_done_when_that_one_is) {
-    Rig rig;
-    ASSERT_TRUE(rig.panel.move.send(0.4)); // metres
-    rig.pass(3ms);
-    EXPECT_EQ(rig.panel.move.state(), CommandState::executing);
-    rig.pass(5ms);
-    EXPECT_EQ(rig.axis.position, 4.0);
-    EXPECT_EQ(rig.panel.move.state(), CommandState::done); // its engine sleeps but for the inner one's end
-    EXPECT_EQ(rig.panel.move.result(), 4);
+TEST_F(Commands, one_that_wraps_another_is_done_when_that_one_is) {
+    ASSERT_TRUE(panel.move.send(0.4)); // metres
+    pass(3ms);
+    EXPECT_EQ(panel.move.state(), CommandState::executing);
+    pass(5ms);
+    EXPECT_EQ(axis.position, 4.0);
+    EXPECT_EQ(panel.move.state(), CommandState::done); // its engine sleeps but for the inner one's end
+    EXPECT_EQ(panel.move.result(), 4);
 }
 
-TEST(Commands, one_that_forwards_another_as_it_is_needs_no_code) {
-    Rig rig;
-    Panel& near = rig.the<Panel>("near");
+TEST_F(Commands, one_that_forwards_another_as_it_is_needs_no_code) {
+    Panel& near = the<Panel>("near");
     ASSERT_TRUE(near.move.send(3.0));
-    rig.pass(3ms);
+    pass(3ms);
     EXPECT_EQ(near.move.state(), CommandState::executing);
-    rig.pass(10ms);
+    pass(10ms);
     EXPECT_EQ(near.move.state(), CommandState::done);
     EXPECT_EQ(near.move.result(), 3);
     ASSERT_TRUE(near.move.send(-3.0));
-    rig.pass(3ms);
+    pass(3ms);
     EXPECT_EQ(near.move.state(), CommandState::failed);
 }
 
-TEST(Commands, one_that_wraps_a_rejected_one_fails) {
-    Rig rig;
-    ASSERT_TRUE(rig.panel.move.send(-1.0));
-    rig.pass(3ms);
-    EXPECT_EQ(rig.panel.move.state(), CommandState::failed);
+TEST_F(Commands, one_that_wraps_a_rejected_one_fails) {
+    ASSERT_TRUE(panel.move.send(-1.0));
+    pass(3ms);
+    EXPECT_EQ(panel.move.state(), CommandState::failed);
 }
 
-TEST(Commands, one_that_is_handed_on_is_sent_by_whoever_got_it_and_seen_by_whoever_planned_it) {
-    Rig rig;
-    auto& planner = rig.the<Planner>("planner");
+TEST_F(Commands, one_that_is_handed_on_is_sent_by_whoever_got_it_and_seen_by_whoever_planned_it) {
+    auto& planner = the<Planner>("planner");
     planner.plan(2.0);
     EXPECT_EQ(planner.move.state(), CommandState::ready);
-    rig.pass(5ms);
-    EXPECT_EQ(rig.the<Runner>("runner").sent, 1u);
+    pass(5ms);
+    EXPECT_EQ(the<Runner>("runner").sent, 1u);
     EXPECT_EQ(planner.move.state(), CommandState::done);
     EXPECT_EQ(planner.move.result(), 2);
 }
 
-TEST(CommandsDeathTest, one_that_is_sent_in_an_activity_that_the_row_does_not_name_breaks_a_contract) {
-    Rig rig;
-    auto& planner = rig.the<Planner>("planner");
+TEST_F(CommandsDeathTest, one_that_is_sent_in_an_activity_that_the_row_does_not_name_breaks_a_contract) {
+    auto& planner = the<Planner>("planner");
     const RunsActivity in_its_own{2}; // the row says sent_by("runner")
     EXPECT_DEATH(static_cast<void>(planner.move.send(1.0)),
                  "command-sender: A command that activity 3 sends was sent in activity 2");
@@ -397,51 +380,48 @@ struct AnySlot {
     std::array<std::byte, 64> values{};
 };
 
-TEST(Commands, one_that_knows_no_types_sends_from_packed_bytes_and_follows_to_the_end) {
-    Rig rig;
-    const MachineView& seen = rig.instance.machine().table;
+TEST_F(Commands, one_that_knows_no_types_sends_from_packed_bytes_and_follows_to_the_end) {
+    const MachineView& seen = instance.machine().table;
     const End move_to{0, find_facet(seen.components[0], "move_to")};
     const CommandOperations& operations = *facet_at(seen, move_to).command;
     ASSERT_EQ(operations.arguments, type_id<Arguments<double>>);
     ASSERT_EQ(operations.results, type_id<Arguments<int>>);
     AnySlot any;
-    ASSERT_TRUE(rig.instance.requests().bind_command(move_to, any.slot, any.values));
+    ASSERT_TRUE(instance.requests().bind_command(move_to, any.slot, any.values));
     detail::store_packed(any.values.data(), 2.0);
     ASSERT_TRUE(any.slot.send());
-    EXPECT_FALSE(rig.instance.requests().bind_command(move_to, any.slot, any.values)); // it is on its way
-    rig.pass(3ms);
+    EXPECT_FALSE(instance.requests().bind_command(move_to, any.slot, any.values)); // it is on its way
+    pass(3ms);
     ASSERT_EQ(any.slot.state(), CommandState::done);
     EXPECT_EQ(detail::load_packed<int>(any.values.data() + operations.argument_bytes), 2);
 }
 
-TEST(Commands, what_is_no_command_or_has_no_room_is_not_bound) {
-    Rig rig;
-    const MachineView& seen = rig.instance.machine().table;
+TEST_F(Commands, what_is_no_command_or_has_no_room_is_not_bound) {
+    const MachineView& seen = instance.machine().table;
     AnySlot any;
-    EXPECT_FALSE(rig.instance.requests().bind_command({0, find_facet(seen.components[0], "distance")},
-                                                      any.slot, any.values));
-    EXPECT_FALSE(rig.instance.requests().bind_command({0, find_facet(seen.components[0], "move_to")},
-                                                      any.slot, std::span{any.values}.first(11)));
+    EXPECT_FALSE(instance.requests().bind_command({0, find_facet(seen.components[0], "distance")}, any.slot,
+                                                  any.values));
+    EXPECT_FALSE(instance.requests().bind_command({0, find_facet(seen.components[0], "move_to")}, any.slot,
+                                                  std::span{any.values}.first(11)));
 }
 
-TEST(Commands, a_flood_of_requested_ones_takes_no_place_from_those_of_the_table) {
-    Rig rig;
-    const MachineView& seen = rig.instance.machine().table;
+TEST_F(Commands, a_flood_of_requested_ones_takes_no_place_from_those_of_the_table) {
+    const MachineView& seen = instance.machine().table;
     const End mark{0, find_facet(seen.components[0], "mark")};
     std::vector<AnySlot> many(64);
     std::size_t rejected = 0;
     for (AnySlot& any : many) {
-        ASSERT_TRUE(rig.instance.requests().bind_command(mark, any.slot, any.values));
+        ASSERT_TRUE(instance.requests().bind_command(mark, any.slot, any.values));
         ASSERT_TRUE(any.slot.send());
         rejected += any.slot.state() == CommandState::rejected ? 1u : 0u;
     }
     EXPECT_EQ(rejected, many.size() - requests_waiting);
-    ASSERT_TRUE(rig.panel.mark.send(1));
-    ASSERT_TRUE(rig.panel.second_mark.send(2));
-    rig.pass(1ms);
-    EXPECT_EQ(rig.panel.mark.state(), CommandState::done);
-    EXPECT_EQ(rig.panel.second_mark.state(), CommandState::done);
-    EXPECT_EQ(rig.axis.marks.size(), 2u + requests_waiting);
+    ASSERT_TRUE(panel.mark.send(1));
+    ASSERT_TRUE(panel.second_mark.send(2));
+    pass(1ms);
+    EXPECT_EQ(panel.mark.state(), CommandState::done);
+    EXPECT_EQ(panel.second_mark.state(), CommandState::done);
+    EXPECT_EQ(axis.marks.size(), 2u + requests_waiting);
 }
 
 } // namespace

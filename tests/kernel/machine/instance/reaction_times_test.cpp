@@ -27,16 +27,11 @@ struct Lines {
 };
 
 /// Takes some time, then tells another.
-struct Logic {
+struct Logic : Clocked {
     Event<> halts;
     Input<bool> level;
-    os::Clock* clock = nullptr;
     Duration load{};
     int woken = 0;
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void on_rise(Time) noexcept TAPPET_REALTIME {
         clock->consume(load);
         halts.emit();
@@ -52,14 +47,9 @@ struct Logic {
     }
 };
 
-struct Brake {
-    os::Clock* clock = nullptr;
+struct Brake : Clocked {
     Duration load{};
     int set_times = 0;
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void set() noexcept TAPPET_REALTIME {
         ++set_times;
         clock->consume(load);

@@ -36,17 +36,6 @@ struct Machinist {
     }
 };
 
-struct Watcher {
-    static constexpr bool sees_machine = true;
-    MachineInstance* machine = nullptr;
-    Sentence configure(Setup& setup) {
-        machine = setup.machine;
-        return {};
-    }
-    void work(const Cycle&) {}
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
-};
-
 struct Blind {
     bool saw = false;
     Sentence configure(Setup& setup) {
@@ -58,7 +47,7 @@ struct Blind {
 
 // clang-format off
 constexpr auto table = machine("watched-by-one",
-    components(component<Machinist>("left"), component<Machinist>("right"), component<Watcher>("watcher"), component<Blind>("blind")),
+    components(component<Machinist>("left"), component<Machinist>("right"), component<Onlooker>("watcher"), component<Blind>("blind")),
     activities(
         activity("motion", every(1ms), budget(50us), runs("left")),
         activity("logic",  on_work(), at_most(4, 1ms), deadline(1ms), budget(50us), runs("right")),
@@ -66,7 +55,7 @@ constexpr auto table = machine("watched-by-one",
     connections(), reactions(when("left.done", tell("right.on_done"))), behaviours());
 // clang-format on
 
-struct Rig : RunningRig<table> {
+struct Requests : testing::Test, RunningRig<table> {
     Machinist& machinist(std::string_view name) { return the<Machinist>(name); }
     bool ask(std::size_t activity, std::string_view name, std::int64_t value) {
         Message message;
@@ -77,40 +66,36 @@ struct Rig : RunningRig<table> {
     }
 };
 
-TEST(Requests, the_machine_is_given_to_the_component_that_says_it_sees_it_and_to_no_other) {
-    Rig rig;
-    EXPECT_EQ(rig.the<Watcher>("watcher").machine, &rig.instance);
-    EXPECT_FALSE(rig.the<Blind>("blind").saw);
+TEST_F(Requests, the_machine_is_given_to_the_component_that_says_it_sees_it_and_to_no_other) {
+    EXPECT_EQ(the<Onlooker>("watcher").machine, &instance);
+    EXPECT_FALSE(the<Blind>("blind").saw);
 }
 
-TEST(Requests, a_request_runs_in_the_engine_it_was_posted_to_between_two_steps) {
-    Rig rig;
-    ASSERT_TRUE(rig.ask(0, "left", 5));
-    ASSERT_TRUE(rig.ask(0, "left", 7));
-    EXPECT_EQ(rig.machinist("left").asked, 0u); // never in the caller
-    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 3ms));
-    EXPECT_EQ(rig.machinist("left").asked, 2u);
-    EXPECT_EQ(rig.machinist("left").sum, 12);
-    EXPECT_EQ(rig.machinist("left").asked_inside_a_step, 0u);
-    EXPECT_EQ(rig.machinist("right").asked, 0u);
+TEST_F(Requests, a_request_runs_in_the_engine_it_was_posted_to_between_two_steps) {
+    ASSERT_TRUE(ask(0, "left", 5));
+    ASSERT_TRUE(ask(0, "left", 7));
+    EXPECT_EQ(machinist("left").asked, 0u); // never in the caller
+    EXPECT_TRUE(world.run_until(at_ns(0) + 3ms));
+    EXPECT_EQ(machinist("left").asked, 2u);
+    EXPECT_EQ(machinist("left").sum, 12);
+    EXPECT_EQ(machinist("left").asked_inside_a_step, 0u);
+    EXPECT_EQ(machinist("right").asked, 0u);
 }
 
-TEST(Requests, a_sleeping_activity_is_woken_for_it) {
-    Rig rig;
-    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10ms));
-    ASSERT_TRUE(rig.ask(1, "right", 1));
-    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10ms));
-    EXPECT_EQ(rig.machinist("right").asked, 1u);
+TEST_F(Requests, a_sleeping_activity_is_woken_for_it) {
+    EXPECT_TRUE(world.run_until(at_ns(0) + 10ms));
+    ASSERT_TRUE(ask(1, "right", 1));
+    EXPECT_TRUE(world.run_until(at_ns(0) + 10ms));
+    EXPECT_EQ(machinist("right").asked, 1u);
 }
 
-TEST(Requests, more_than_sixteen_waiting_are_refused_and_said_so) {
-    Rig rig;
+TEST_F(Requests, more_than_sixteen_waiting_are_refused_and_said_so) {
     std::size_t taken = 0;
-    for (std::int64_t i = 0; i < 100; ++i) taken += rig.ask(0, "left", i) ? 1u : 0u;
+    for (std::int64_t i = 0; i < 100; ++i) taken += ask(0, "left", i) ? 1u : 0u;
     EXPECT_EQ(taken, std::size_t{requests_waiting});
-    EXPECT_TRUE(rig.world.run_until(at_ns(0) + 2ms));
-    EXPECT_EQ(rig.machinist("left").asked, taken);
-    EXPECT_TRUE(rig.ask(0, "left", 1)); // there is room again
+    EXPECT_TRUE(world.run_until(at_ns(0) + 2ms));
+    EXPECT_EQ(machinist("left").asked, taken);
+    EXPECT_TRUE(ask(0, "left", 1)); // there is room again
 }
 
 } // namespace

@@ -59,8 +59,7 @@ TEST_F(InRealTime, blames_an_overrun_on_the_component_that_took_the_time) {
     for (const Miss& miss : engine.statistics().recent_misses) {
         if (miss.took <= most) continue;
         most = miss.took;
-        blamed = miss.function == Miss::nobody ? "nobody"
-                                               : engine.plan().parts[miss.function / functions_per_part].name;
+        blamed = watched::culprit(engine, miss);
     }
     EXPECT_EQ(blamed, victim);
     EXPECT_GE(most, 50ms);

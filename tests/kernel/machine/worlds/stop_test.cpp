@@ -2,6 +2,7 @@
 // Whatever a maker's function does for seconds, a stop that is asked for meanwhile leaves the outputs safe
 // within the board's bound: for each cause of a stop, in each such situation.
 #include "kernel/component/loop.hpp"
+#include "tests/kernel/machine/parts.hpp"
 #include "tests/kernel/machine/real_rig.hpp"
 
 #include <gmock/gmock.h>
@@ -32,15 +33,10 @@ Log& history() {
 }
 
 /// Its output stands for a wire: 1 while it runs, 0 is safe.
-struct Valve {
+struct Valve : Clocked {
     Input<std::int64_t> beat;
     std::atomic<std::int64_t> at_wire{0}, safe_since{0};
     std::atomic<bool> hears{false}, breaks_contract{false}, takes_long{false};
-    os::Clock* clock = nullptr;
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void start(const Cycle&) noexcept TAPPET_REALTIME { at_wire = 1; }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         TAPPET_CONTRACT(!breaks_contract.load(), Contract::precondition, 7);

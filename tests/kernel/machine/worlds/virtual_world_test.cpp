@@ -11,14 +11,9 @@
 namespace tappet {
 namespace {
 
+using watched::culprit;
 using watched::Order;
 using watched::Worker;
-
-/// The name of the component that a miss blames.
-std::string_view culprit(const Engine& engine, const Miss& miss) {
-    return miss.function == Miss::nobody ? "nobody"
-                                         : engine.plan().parts[miss.function / functions_per_part].name;
-}
 
 template <const auto& table>
 struct Rig : ConfiguredRig<table> {

@@ -6,7 +6,6 @@
 #include "tests/kernel/services/configuration/every_property.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <array>
 #include <bit>
@@ -36,14 +35,17 @@ struct Cpf : testing::Test {
         transaction.commit();
         ASSERT_EQ(transaction.state(), PropertyTransaction::State::done);
     }
-    static std::string write(Arm& of) {
+    static std::size_t write(Arm& of, std::span<char> text, Sentence& fault) {
         PropertyTransaction all;
         all.begin("arm", component_type<Arm>, &of);
         all.change_all();
         all.capture();
+        return write_cpf(all, text, fault);
+    }
+    static std::string write(Arm& of) {
         std::array<char, max_cpf_bytes> text{};
         Sentence fault;
-        const std::size_t length = write_cpf(all, text, fault);
+        const std::size_t length = write(of, text, fault);
         EXPECT_TRUE(fault.empty()) << fault.view();
         return {text.data(), length};
     }
@@ -167,13 +169,9 @@ TEST_F(Cpf, what_is_written_is_read_to_the_same_values) {
 }
 
 TEST_F(Cpf, what_does_not_fit_its_buffer_is_not_written_in_part) {
-    PropertyTransaction all;
-    all.begin("arm", component_type<Arm>, &arm);
-    all.change_all();
-    all.capture();
     std::array<char, 1000> small{};
     Sentence fault;
-    EXPECT_EQ(write_cpf(all, small, fault), 0u);
+    EXPECT_EQ(write(arm, small, fault), 0u);
     EXPECT_THAT(std::string{fault.view()}, HasSubstr("more than 1000 bytes"));
 }
 
@@ -181,13 +179,9 @@ TEST_F(Cpf, text_that_no_file_keeps_is_not_written) {
     Text<12> zero{"ab"};
     zero.characters[1] = '\0';
     arm.label.set(zero);
-    PropertyTransaction all;
-    all.begin("arm", component_type<Arm>, &arm);
-    all.change_all();
-    all.capture();
     std::array<char, max_cpf_bytes> text{};
     Sentence fault;
-    EXPECT_EQ(write_cpf(all, text, fault), 0u);
+    EXPECT_EQ(write(arm, text, fault), 0u);
     EXPECT_THAT(std::string{fault.view()}, HasSubstr("\"label\" holds a zero character"));
 }
 

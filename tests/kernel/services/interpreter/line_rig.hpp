@@ -23,6 +23,12 @@ protected:
         return words + "\"";
     }
     Ram& ram() { return the<Ram>("ram"); }
+    void look(Talker& who) { static_cast<void>(who.send(request("1 + 1"))); }
+    /// Beside one who looks at values all the time, and answers each answer with the next question.
+    void run_beside(Talker& observer, Duration time) {
+        run(time);
+        while (!observer.receive().empty()) look(observer);
+    }
     Gauge& gauge() { return the<Gauge>("gauge"); }
     Panel& panel(std::string_view name = "panel") { return the<Panel>(name); }
     CommandInterpreter& interpreter() { return the<CommandInterpreter>("interpreter"); }

@@ -264,18 +264,13 @@ TEST_F(Lines, a_peer_sends_one_as_a_command) {
     EXPECT_EQ(interpreter().refused.last(), 1);
 }
 
-/// Who looks at values all the time, and answers each answer with the next question.
 TEST_F(Lines, of_a_peer_are_executed_whatever_observers_ask) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
-    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
-    look();
+    look(observer);
     for (int n = 0; n < 20; ++n) {
         panel().wanted = panel().line.assign("do gauge.zero()");
-        for (int k = 0; k < 30; ++k) {
-            run(10ms);
-            while (!observer.receive().empty()) look();
-        }
+        for (int k = 0; k < 30; ++k) run_beside(observer, 10ms);
         EXPECT_EQ(panel().execute.state(), CommandState::done)
             << n << ": " << interpreter().said.last().view();
         panel().execute.reset();
@@ -287,18 +282,14 @@ TEST_F(Lines, of_a_peer_are_executed_whatever_observers_ask) {
 TEST_F(Lines, of_two_peers_are_told_each_of_its_own) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
-    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
-    look();
+    look(observer);
     Panel &a = panel(), &b = panel("panel_b");
     for (int n = 0; n < 20; ++n) {
         const std::int64_t zeroed = gauge().zeroed;
         gauge().target.set(10);
         a.wanted = a.line.assign("do gauge.zero()");
         b.wanted = b.line.assign("set gauge.target = 20.25");
-        for (int k = 0; k < 30; ++k) {
-            run(10ms);
-            while (!observer.receive().empty()) look();
-        }
+        for (int k = 0; k < 30; ++k) run_beside(observer, 10ms);
         EXPECT_EQ(a.execute.state() == CommandState::done, gauge().zeroed == zeroed + 1) << n;
         EXPECT_EQ(b.execute.state() == CommandState::done, gauge().target.get() == 20.25) << n;
         EXPECT_TRUE(a.execute.state() == CommandState::done || b.execute.state() == CommandState::done) << n;
@@ -311,16 +302,14 @@ TEST_F(Lines, of_two_peers_are_told_each_of_its_own) {
 TEST_F(Lines, of_a_peer_that_wait_are_broken_off) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
-    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
-    look();
+    look(observer);
     int waited = 0;
     for (int n = 0; n < 40; ++n) {
         const std::int64_t zeroed = gauge().zeroed;
         panel().wanted = panel().line.assign("do gauge.zero()");
         bool is_broken_off = false;
         for (int k = 0; k < 60; ++k) {
-            run(5ms);
-            while (!observer.receive().empty()) look();
+            run_beside(observer, 5ms);
             if (!is_broken_off && panel().execute.state() == CommandState::executing &&
                 gauge().zeroed == zeroed) {
                 interpreter().break_off();
@@ -338,8 +327,7 @@ TEST_F(Lines, of_a_peer_that_wait_are_broken_off) {
 TEST_F(Lines, of_peers_that_say_the_same_are_told_apart) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
-    const auto look = [&] { static_cast<void>(observer.send(request("1 + 1"))); };
-    look();
+    look(observer);
     Panel &a = panel(), &b = panel("panel_b");
     int broken_off = 0;
     for (int n = 0; n < 40; ++n) {
@@ -347,8 +335,7 @@ TEST_F(Lines, of_peers_that_say_the_same_are_told_apart) {
         a.wanted = a.line.assign("do gauge.zero()");
         bool is_broken_off = false;
         for (int k = 0; k < 60; ++k) {
-            run(5ms);
-            while (!observer.receive().empty()) look();
+            run_beside(observer, 5ms);
             if (!is_broken_off && a.execute.state() == CommandState::executing && gauge().zeroed == zeroed) {
                 interpreter().break_off();
                 is_broken_off = true;

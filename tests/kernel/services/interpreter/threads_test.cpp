@@ -1,5 +1,6 @@
 // Lines in a machine of threads: they run in one activity after the other, all of which send to the same
 // engine through the same mailbox; some are broken off on their way.
+#include "tests/kernel/machine/parts.hpp"
 #include "tests/kernel/machine/real_rig.hpp"
 #include "tests/kernel/services/interpreter/line_machine.hpp"
 
@@ -7,8 +8,7 @@ namespace tappet::press {
 namespace {
 
 /// Types one line after the other, and breaks every third off after so many looks.
-struct Typist {
-    static constexpr bool sees_machine = true;
+struct Typist : Onlooker {
     static constexpr std::size_t wanted = 200;
     static constexpr std::string_view lines[] = {
         "gauge.force + gauge.target", "var int n; do ram.move_to(gauge.target + 1, n) timeout 100ms",
@@ -16,12 +16,8 @@ struct Typist {
         "set gauge.target = 20; do gauge.zero(); yield", "table.height * 2"};
     std::atomic<std::size_t> ended{0}, done{0};
 
-    Sentence configure(Setup& setup) {
-        machine_ = setup.machine;
-        return {};
-    }
     void work(const Cycle&) {
-        auto& interpreter = *machine_->find<CommandInterpreter>("interpreter");
+        auto& interpreter = *machine->find<CommandInterpreter>("interpreter");
         const LineFunctions& functions = CommandInterpreter::line_functions;
         if (is_at_work_) {
             const LineEnd* const end = functions.end(&interpreter);
@@ -36,10 +32,8 @@ struct Typist {
         if (is_at_work_) ++typed_;
         looks_ = 0;
     }
-    static constexpr auto interface() { return std::array<Facet, 0>{}; }
 
 private:
-    MachineInstance* machine_ = nullptr;
     bool is_at_work_ = false;
     std::size_t typed_ = 0, looks_ = 0;
 };

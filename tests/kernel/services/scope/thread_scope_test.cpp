@@ -10,15 +10,10 @@
 namespace tappet {
 namespace {
 
-struct Worker {
+struct Worker : Clocked {
     Event<> done;
     Duration load = 10us;
     std::int64_t steps = 0;
-    os::Clock* clock = nullptr;
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         ++steps;
         clock->consume(load);
@@ -27,12 +22,7 @@ struct Worker {
     static constexpr auto interface() { return facets(event<&Worker::done>("done", "a step was made")); }
 };
 
-struct Clerk {
-    os::Clock* clock = nullptr;
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
+struct Clerk : Clocked {
     void on_done() noexcept TAPPET_REALTIME { clock->consume(3us); }
     static constexpr auto interface() { return facets(operation<&Clerk::on_done>("on_done", "notes it")); }
 };

@@ -152,6 +152,12 @@ struct Bakery : PlacedRig<table> {
             run(2ms);
         }
     }
+    /// What has become of so many loaves.
+    CommandState bake(ScriptInt number, double weight) {
+        EXPECT_TRUE(panel().bake.send(number, weight));
+        run(20ms);
+        return panel().bake.state();
+    }
     /// By the transaction of a browser.
     void set_count(ScriptInt value) {
         const MachineView& of = instance.machine().table;
@@ -176,24 +182,16 @@ struct Loaded : testing::Test, Directory, Bakery {
 TEST_F(Loaded, nothing_yet_rejects_commands_and_keeps_what_is_set) {
     EXPECT_EQ(property<double>("baking", "heat"), 80.0) << "of the row";
     EXPECT_EQ(count(), 7) << "of the shape";
-    ASSERT_TRUE(panel().bake.send(2, 0.25));
-    run(20ms);
-    EXPECT_EQ(panel().bake.state(), CommandState::rejected);
+    EXPECT_EQ(bake(2, 0.25), CommandState::rejected);
 }
 
 TEST_F(Loaded, a_program_is_a_command_with_its_parameters_and_its_result) {
     load(counting(10));
-    ASSERT_TRUE(panel().bake.send(2, 0.25));
-    run(20ms);
-    EXPECT_EQ(panel().bake.state(), CommandState::done);
+    EXPECT_EQ(bake(2, 0.25), CommandState::done);
     EXPECT_EQ(panel().bake.result(), 20);
     EXPECT_THAT(oven().told, ElementsAre(25, 26));
-    ASSERT_TRUE(panel().bake.send(3, 0.0));
-    run(20ms);
-    EXPECT_EQ(panel().bake.state(), CommandState::failed);
-    ASSERT_TRUE(panel().bake.send(1, 0.0));
-    run(20ms);
-    EXPECT_EQ(panel().bake.state(), CommandState::done) << "after an error too";
+    EXPECT_EQ(bake(3, 0.0), CommandState::failed);
+    EXPECT_EQ(bake(1, 0.0), CommandState::done) << "after an error too";
     EXPECT_EQ(panel().bake.result(), 10);
 }
 
@@ -206,9 +204,7 @@ TEST_F(Loaded, a_command_under_way_has_failed_when_another_one_takes_over) {
     load(counting(2));
     run(10ms);
     EXPECT_EQ(panel().bake.state(), CommandState::failed);
-    ASSERT_TRUE(panel().bake.send(1, 0.0));
-    run(20ms);
-    EXPECT_EQ(panel().bake.state(), CommandState::done);
+    EXPECT_EQ(bake(1, 0.0), CommandState::done);
     EXPECT_EQ(panel().bake.result(), 2);
 }
 

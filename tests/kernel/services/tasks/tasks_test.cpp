@@ -115,63 +115,65 @@ constexpr auto table = machine("bakery",
 
 struct Tasks : Rig<table> {
     Panel& panel() { return the<Panel>("panel"); }
+    /// What has become of so many loaves.
+    CommandState bake(ScriptInt number, double weight) {
+        EXPECT_TRUE(panel().bake.send(number, weight));
+        run(20ms);
+        return panel().bake.state();
+    }
     const BehaviourUnit& unit() { return *instance.behaviour_of("oven"); }
 };
 
-TEST(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_with_its_result_at_its_end) {
-    Tasks rig;
-    rig.run(10ms);
-    EXPECT_TRUE(rig.oven().told.empty()) << "it does not start by itself";
-    ASSERT_TRUE(rig.panel().bake.send(2, 0.25));
-    rig.run(1ms);
-    EXPECT_EQ(rig.panel().bake.state(), CommandState::executing);
-    EXPECT_FALSE(rig.panel().bake.send(1, 1.0)) << "it is on its way";
-    rig.run(20ms);
-    EXPECT_EQ(rig.panel().bake.state(), CommandState::done);
-    EXPECT_THAT(rig.oven().told, ElementsAre(25, 26));
-    EXPECT_EQ(rig.panel().bake.result(), 20);
-    ASSERT_TRUE(rig.panel().bake.send(1, 7.0)); // from its beginning again
-    rig.run(20ms);
-    EXPECT_THAT(rig.oven().told, ElementsAre(25, 26, 700));
+struct A_task_of_a_program : testing::Test, Tasks {};
+using A_behaviour = A_task_of_a_program;
+using The_life_of_a_component = A_task_of_a_program;
+
+TEST_F(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_with_its_result_at_its_end) {
+    run(10ms);
+    EXPECT_TRUE(oven().told.empty()) << "it does not start by itself";
+    ASSERT_TRUE(panel().bake.send(2, 0.25));
+    run(1ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::executing);
+    EXPECT_FALSE(panel().bake.send(1, 1.0)) << "it is on its way";
+    run(20ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::done);
+    EXPECT_THAT(oven().told, ElementsAre(25, 26));
+    EXPECT_EQ(panel().bake.result(), 20);
+    ASSERT_TRUE(panel().bake.send(1, 7.0)); // from its beginning again
+    run(20ms);
+    EXPECT_THAT(oven().told, ElementsAre(25, 26, 700));
 }
 
-TEST(A_task_of_a_program, without_parameters_is_a_command_too) {
-    Tasks rig;
-    ASSERT_TRUE(rig.panel().clean.send());
-    rig.run(10ms);
-    EXPECT_EQ(rig.panel().clean.state(), CommandState::done);
-    EXPECT_THAT(rig.oven().told, ElementsAre(500));
+TEST_F(A_task_of_a_program, without_parameters_is_a_command_too) {
+    ASSERT_TRUE(panel().clean.send());
+    run(10ms);
+    EXPECT_EQ(panel().clean.state(), CommandState::done);
+    EXPECT_THAT(oven().told, ElementsAre(500));
 }
 
-TEST(A_task_of_a_program, fails_when_the_program_does_and_runs_again_after_that) {
-    Tasks rig;
-    ASSERT_TRUE(rig.panel().bake.send(3, 0.0));
-    rig.run(20ms);
-    ASSERT_EQ(rig.panel().bake.state(), CommandState::failed);
-    rig.oven().told.clear();
-    ASSERT_TRUE(rig.panel().bake.send(1, 0.5));
-    rig.run(20ms);
-    EXPECT_EQ(rig.panel().bake.state(), CommandState::done);
-    EXPECT_THAT(rig.oven().told, ElementsAre(50));
+TEST_F(A_task_of_a_program, fails_when_the_program_does_and_runs_again_after_that) {
+    ASSERT_EQ(bake(3, 0.0), CommandState::failed);
+    oven().told.clear();
+    EXPECT_EQ(bake(1, 0.5), CommandState::done);
+    EXPECT_THAT(oven().told, ElementsAre(50));
 }
 
-TEST(A_task_of_a_program, that_is_broken_off_has_failed_and_nothing_begins_while_its_component_stands) {
-    Tasks rig;
-    ASSERT_TRUE(rig.panel().bake.send(1000, 0.0));
-    rig.run(10ms);
-    ASSERT_EQ(rig.panel().bake.state(), CommandState::executing);
-    static_cast<void>(rig.instance.life().ask_component(0, LifeChange::stop));
-    rig.run(40ms);
-    EXPECT_EQ(rig.panel().bake.state(), CommandState::failed);
-    rig.oven().told.clear();
-    ASSERT_TRUE(rig.panel().bake.send(2, 0.0));
-    ASSERT_TRUE(rig.panel().clean.send());
-    rig.run(20ms);
-    EXPECT_EQ(rig.panel().bake.state(), CommandState::rejected);
-    EXPECT_EQ(rig.panel().clean.state(), CommandState::rejected);
-    static_cast<void>(rig.instance.life().ask_component(0, LifeChange::start));
-    rig.run(20ms);
-    EXPECT_TRUE(rig.oven().told.empty()) << "it does not begin later";
+TEST_F(A_task_of_a_program, that_is_broken_off_has_failed_and_nothing_begins_while_its_component_stands) {
+    ASSERT_TRUE(panel().bake.send(1000, 0.0));
+    run(10ms);
+    ASSERT_EQ(panel().bake.state(), CommandState::executing);
+    static_cast<void>(instance.life().ask_component(0, LifeChange::stop));
+    run(40ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::failed);
+    oven().told.clear();
+    ASSERT_TRUE(panel().bake.send(2, 0.0));
+    ASSERT_TRUE(panel().clean.send());
+    run(20ms);
+    EXPECT_EQ(panel().bake.state(), CommandState::rejected);
+    EXPECT_EQ(panel().clean.state(), CommandState::rejected);
+    static_cast<void>(instance.life().ask_component(0, LifeChange::start));
+    run(20ms);
+    EXPECT_TRUE(oven().told.empty()) << "it does not begin later";
 }
 
 // clang-format off
@@ -282,27 +284,25 @@ TEST(A_task_of_a_machine, rejects_a_state_that_it_does_not_have_or_cannot_reach)
     }
 }
 
-TEST(A_behaviour, commands_the_one_beside_it_and_the_life_of_components_and_sets_its_variables) {
-    Tasks rig;
-    rig.run(10ms);
-    rig.door().moved.emit();
-    rig.run(4ms);
-    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11, 20)) << "and its result";
-    rig.run(40ms);
-    EXPECT_THAT(rig.oven().told, ElementsAre(10, 11, 20, 3000)) << "once the feeder said that it had stopped";
-    EXPECT_EQ(rig.instance.life().state_of(2), ComponentState::stopped);
-    rig.tick();
-    EXPECT_EQ(rig.state(rig.unit()), "Hot") << "its guard asks for the variable";
-    EXPECT_EQ(rig.oven().target.get(), 80.0);
+TEST_F(A_behaviour, commands_the_one_beside_it_and_the_life_of_components_and_sets_its_variables) {
+    run(10ms);
+    door().moved.emit();
+    run(4ms);
+    EXPECT_THAT(oven().told, ElementsAre(10, 11, 20)) << "and its result";
+    run(40ms);
+    EXPECT_THAT(oven().told, ElementsAre(10, 11, 20, 3000)) << "once the feeder said that it had stopped";
+    EXPECT_EQ(instance.life().state_of(2), ComponentState::stopped);
+    tick();
+    EXPECT_EQ(state(unit()), "Hot") << "its guard asks for the variable";
+    EXPECT_EQ(oven().target.get(), 80.0);
 }
 
-TEST(The_life_of_a_component, is_commanded_by_a_row) {
-    Tasks rig;
-    rig.run(10ms);
-    ASSERT_TRUE(rig.panel().stop_feeder.send());
-    rig.run(20ms);
-    EXPECT_EQ(rig.panel().stop_feeder.state(), CommandState::done);
-    EXPECT_EQ(rig.instance.life().state_of(2), ComponentState::stopped);
+TEST_F(The_life_of_a_component, is_commanded_by_a_row) {
+    run(10ms);
+    ASSERT_TRUE(panel().stop_feeder.send());
+    run(20ms);
+    EXPECT_EQ(panel().stop_feeder.state(), CommandState::done);
+    EXPECT_EQ(instance.life().state_of(2), ComponentState::stopped);
 }
 
 } // namespace

@@ -17,16 +17,11 @@ namespace tappet {
 namespace {
 
 /// Writes its level unless it is told to be silent, and takes the time that it is told to.
-struct Worker {
+struct Worker : Clocked {
     Output<std::int64_t> level;
     bool silent = false;
     Duration load{};
     std::atomic<Duration> hang_for{Duration::zero()}; ///< from another thread
-    os::Clock* clock = nullptr;
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         if (!silent) level.write(level.last() + 1);
         if (load > Duration::zero()) clock->consume(load);
@@ -38,7 +33,7 @@ struct Worker {
 };
 
 /// Hears everything, and says when timed events shall come.
-struct Office {
+struct Office : Clocked {
     Input<std::int64_t> level;
     Event<Time> at;
     Event<Duration> after;
@@ -48,11 +43,6 @@ struct Office {
     std::vector<Time> dues, dues_heard_at;
     std::vector<Duration> silences, revivals;
     std::vector<Duration> level_silences;
-    os::Clock* clock = nullptr;
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void on_due(Time when) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("a test remembers", dues.push_back(when); dues_heard_at.push_back(clock->now()));
         if (rearms) at(when + 7ms);
@@ -256,15 +246,10 @@ TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
 }
 
 /// Runs when it is told to, and hangs when it is told to.
-struct Sleeper {
+struct Sleeper : Clocked {
     std::atomic<bool> hangs{false};
-    os::Clock* clock = nullptr;
     Timer alarm;
     Duration alarm_after{}; ///< it was roused; none: no alarm
-    Sentence configure(Setup& setup) {
-        clock = setup.clock;
-        return {};
-    }
     void rouse() noexcept TAPPET_REALTIME {
         if (hangs.exchange(false)) clock->consume(200ms);
         if (alarm_after > Duration::zero()) alarm.arm(clock->now() + alarm_after);
