@@ -20,7 +20,7 @@ struct Oven : Clocked {
     Event<> tick;
     Event<double, double, double, double, double, double, std::int64_t>
         recipe; ///< a message has no room for it
-    std::vector<std::int64_t> told{};
+    Notes<std::int64_t> told{};
     std::uint64_t steps = 0;
     double from_deg = 0;
     bool trembles = false; ///< about where it is, and does not turn
@@ -34,7 +34,7 @@ struct Oven : Clocked {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { angle_deg.write(0); }
     /// False for what no oven does.
     bool note(std::int64_t what) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's notes are kept on its heap", told.push_back(what));
+        told.add(what);
         return what >= 0;
     }
     /// Takes so many microseconds.

@@ -4,6 +4,7 @@
 #include "kernel/machine/instance/instance.hpp"
 
 #include <array>
+#include <vector>
 
 namespace tappet {
 
@@ -14,6 +15,11 @@ struct Clocked {
         clock = setup.clock;
         return {};
     }
+};
+
+/// What a component remembers for its test.
+template <class T> struct Notes : std::vector<T> {
+    void add(T each) noexcept TAPPET_REALTIME { TAPPET_ESCAPE("a test's memory", this->push_back(each)); }
 };
 
 /// Sees the machine, whatever it does with it.

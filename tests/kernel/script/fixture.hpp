@@ -61,20 +61,20 @@ struct Cell {
     int calibrations = 0;
     bool located = true;
 
-    void say(std::string_view what) { trace += trace.empty() ? std::string{what} : " " + std::string{what}; }
-
     // Tests alone call these, and they may allocate.
+    void say(const auto&... parts) noexcept TAPPET_REALTIME {
+        TAPPET_ESCAPE("a trace of the test", trace += trace.empty() ? "" : " "; (add(parts), ...));
+    }
+    void add(std::string_view word) { trace += word; }
+    void add(std::int64_t number) { trace += std::to_string(number); }
     bool setParameter(const Name& name, double value) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a trace of the test",
-                      say(std::string{name.view()} + "=" + std::to_string(static_cast<int>(value))));
+        say(name.view(), "=", static_cast<std::int64_t>(value));
         return true;
     }
-    void note(std::int64_t value) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a trace of the test", say(std::to_string(value)));
-    }
+    void note(std::int64_t value) noexcept TAPPET_REALTIME { say(value); }
     std::int32_t totalAxes() noexcept TAPPET_REALTIME { return static_cast<std::int32_t>(axes); }
     bool isTrue(bool value) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a trace of the test", say(value ? "yes" : "no"));
+        say(value ? "yes" : "no");
         return value;
     }
     bool refuse() noexcept TAPPET_REALTIME { return false; }
@@ -83,33 +83,28 @@ struct Cell {
     double carLocation() noexcept TAPPET_REALTIME { return 0.5; }
     double getPosition() noexcept TAPPET_REALTIME { return 10; }
     Position whereabouts() noexcept TAPPET_REALTIME { return {1, 2, 3}; }
-    void disableAxis(std::int32_t axis) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a trace of the test", say("disable" + std::to_string(axis)));
-    }
-    void beep(std::int32_t times) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a trace of the test", say("beep" + std::to_string(times)));
-    }
+    void disableAxis(std::int32_t axis) noexcept TAPPET_REALTIME { say("disable", axis); }
+    void beep(std::int32_t times) noexcept TAPPET_REALTIME { say("beep", times); }
 
     bool begin_move(double axis, double velocity, double position) noexcept TAPPET_REALTIME {
         if (rejects) return false;
-        TAPPET_ESCAPE("a trace of the test",
-                      say("move" + std::to_string(static_cast<int>(axis * 100 + velocity * 10 + position))));
+        say("move", static_cast<std::int64_t>(axis * 100 + velocity * 10 + position));
         return true;
     }
     bool begin_simple() noexcept TAPPET_REALTIME {
         if (rejects) return false;
-        TAPPET_ESCAPE("a trace of the test", say("begin"));
+        say("begin");
         return true;
     }
     bool begin_to(double to) noexcept TAPPET_REALTIME {
         if (rejects) return false;
-        TAPPET_ESCAPE("a trace of the test", say("to" + std::to_string(static_cast<int>(to * 10))));
+        say("to", static_cast<std::int64_t>(to * 10));
         return true;
     }
     CommandProgress progress() noexcept TAPPET_REALTIME {
         if (fails) return CommandProgress::failed;
         if (steps_to_go == 0) {
-            TAPPET_ESCAPE("a trace of the test", say("end"));
+            say("end");
             return CommandProgress::done;
         }
         --steps_to_go;

@@ -43,10 +43,11 @@ constexpr auto threads = activities(
     activity("fast", every(1ms), budget(50us), runs("oven", "door")),
     activity("slow", every(5ms), budget(50us), runs("feeder")),
     activity("office", every(50ms), not_real_time, runs("watcher")));
-constexpr auto table = machine("bakery", parts, threads, connections(), reactions(),
-    behaviours(behaviour("oven", compiled_script<baking, reach>, {})));
 // clang-format on
-using Bakery = Rig<table>;
+template <const ScriptSource& source>
+constexpr auto table = machine("bakery", parts, threads, connections(), reactions(),
+                               behaviours(behaviour("oven", compiled_script<source, reach>, {})));
+using Bakery = Rig<table<baking>>;
 
 constexpr ScriptSource cooking{"cooking.osd", R"(
 StateMachine Cooking {
@@ -64,11 +65,8 @@ StateMachine Cooking {
 }
 RootStateMachine Cooking cooking
 )"};
-constexpr auto cooking_table = machine("bakery", parts, threads, connections(), reactions(),
-                                       behaviours(behaviour("oven", compiled_script<cooking, reach>, {})));
-
 TEST(Behaviour, hears_events_whose_arguments_a_message_has_no_room_for) {
-    Rig<cooking_table> rig;
+    Rig<table<cooking>> rig;
     rig.run(10ms);
     rig.oven().told.clear();
     for (std::int64_t n = 1; n <= 4; ++n) // they wait together
@@ -128,14 +126,9 @@ StateMachine Cooling {
 }
 RootStateMachine Cooling cooling
 )"};
-// clang-format off
-constexpr auto cooled = machine("cooled", parts, threads, connections(), reactions(),
-    behaviours(behaviour("oven", compiled_script<cooling, reach>, {})));
-// clang-format on
-
 TEST(Behaviour, that_takes_its_time_to_end_comes_to_its_end_before_its_component_begins_anew) {
     for (const Duration stopped_for : {0ms, 1ms, 50ms}) {
-        Rig<cooled> rig;
+        Rig<table<cooling>> rig;
         rig.run(10ms);
         const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
         EXPECT_EQ(rig.state(unit), "Cold");

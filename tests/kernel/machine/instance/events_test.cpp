@@ -62,15 +62,15 @@ struct Console {
     EventWait<double> next_beat;
     EventHandle profile;
     EventWait<Profile, std::int64_t> next_profile;
-    std::vector<double> beats;
-    std::vector<std::int64_t> profiles; ///< turns of whole ones
+    Notes<double> beats;
+    Notes<std::int64_t> profiles; ///< turns of whole ones
     bool disconnects_itself = false;
     void on_beat(double angle) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's memory", beats.push_back(angle));
+        beats.add(angle);
         if (disconnects_itself) beat.disconnect();
     }
     void on_profile(Profile made, std::int64_t turn) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's memory", profiles.push_back(made == profile_of(turn) ? turn : -1));
+        profiles.add(made == profile_of(turn) ? turn : -1);
     }
     static constexpr auto interface() {
         return facets(handle<&Console::beat>("beat", "of its beats"),
@@ -83,15 +83,13 @@ struct Console {
 };
 
 struct Weft {
-    std::vector<double> latest;
-    std::vector<std::int64_t> profiles;
+    Notes<double> latest;
+    Notes<std::int64_t> profiles;
     void keep_profile(Profile made, std::int64_t turn) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's memory", profiles.push_back(made == profile_of(turn) ? turn : -1));
+        profiles.add(made == profile_of(turn) ? turn : -1);
     }
     void hold(double) noexcept TAPPET_REALTIME {}
-    void show(double angle) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's memory", latest.push_back(angle));
-    }
+    void show(double angle) noexcept TAPPET_REALTIME { latest.add(angle); }
     static constexpr auto interface() {
         return facets(operation<&Weft::hold>("hold", "holds", any_thread),
                       operation<&Weft::show>("show", "shows"),

@@ -18,18 +18,18 @@ struct Axis {
     bool moving = false;
     bool jams = false;
     int steps = 0;
-    std::vector<int> marks;              ///< of mark(), in the order in which they were taken up
-    std::vector<std::string_view> order; ///< of one cycle
+    Notes<int> marks;              ///< of mark(), in the order in which they were taken up
+    Notes<std::string_view> order; ///< of one cycle
     std::uint64_t completions_asked = 0;
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's note", order.push_back("step"));
+        order.add("step");
         if (!moving || jams) return;
         position += goal > position ? 1.0 : -1.0;
         ++steps;
     }
     bool move_to(double to, int& taken) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's note", order.push_back("command"));
+        order.add("command");
         if (moving || to < 0.0 || to > 100.0) return false;
         goal = to, moving = true, steps = 0;
         taken = -1;
@@ -47,10 +47,10 @@ struct Axis {
         return CommandProgress::done;
     }
     bool mark(int which) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test's note", marks.push_back(which));
+        marks.add(which);
         return true;
     }
-    void knock() noexcept TAPPET_REALTIME { TAPPET_ESCAPE("a test's note", order.push_back("event")); }
+    void knock() noexcept TAPPET_REALTIME { order.add("event"); }
     double distance(double to, bool absolute) const noexcept TAPPET_REALTIME {
         const double d = to - position;
         return absolute && d < 0.0 ? -d : d;

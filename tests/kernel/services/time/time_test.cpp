@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <vector>
 
 namespace tappet {
 namespace {
@@ -40,23 +39,17 @@ struct Office : Clocked {
     Event<Duration> again;
     Event<> never_mind;
     bool rearms = false;
-    std::vector<Time> dues, dues_heard_at;
-    std::vector<Duration> silences, revivals;
-    std::vector<Duration> level_silences;
+    Notes<Time> dues, dues_heard_at;
+    Notes<Duration> silences, revivals;
+    Notes<Duration> level_silences;
     void on_due(Time when) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test remembers", dues.push_back(when); dues_heard_at.push_back(clock->now()));
+        dues.add(when);
+        dues_heard_at.add(clock->now());
         if (rearms) at(when + 7ms);
     }
-    void on_silent(Duration time) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test remembers", silences.push_back(time));
-    }
-    void on_revived(Duration time) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test remembers", revivals.push_back(time));
-    }
-    void on_level_silent(Duration time) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test remembers", level_silences.push_back(time));
-    }
-    void wake_up() noexcept TAPPET_REALTIME {}
+    void on_silent(Duration time) noexcept TAPPET_REALTIME { silences.add(time); }
+    void on_revived(Duration time) noexcept TAPPET_REALTIME { revivals.add(time); }
+    void on_level_silent(Duration time) noexcept TAPPET_REALTIME { level_silences.add(time); }
     static constexpr auto interface() {
         return facets(input<&Office::level>("level", "", "of the worker"),
                       event<&Office::at>("at", "wants the event at"),
@@ -264,16 +257,12 @@ struct Sleeper : Clocked {
 struct Rouser {
     Event<> now;
     std::atomic<bool> rouses{false};
-    std::vector<Duration> silences, revivals;
+    Notes<Duration> silences, revivals;
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         if (rouses.exchange(false)) now.emit();
     }
-    void on_silent(Duration time) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test remembers", silences.push_back(time));
-    }
-    void on_revived(Duration time) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("a test remembers", revivals.push_back(time));
-    }
+    void on_silent(Duration time) noexcept TAPPET_REALTIME { silences.add(time); }
+    void on_revived(Duration time) noexcept TAPPET_REALTIME { revivals.add(time); }
     static constexpr auto interface() {
         return facets(event<&Rouser::now>("now", "run"), operation<&Rouser::on_silent>("on_silent", "hears"),
                       operation<&Rouser::on_revived>("on_revived", "hears"));
