@@ -60,30 +60,27 @@ void expect_same(const ProgramCode& compiled, const ProgramCode& loaded, std::ui
     one.context.position.node = other.context.position.node =
         loaded.tables->programs[random(loaded.tables->programs.size())].first;
     for (int step = 0; step < 60; ++step) {
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", step " + std::to_string(step));
         now += static_cast<std::int64_t>(random(20));
         const auto allowed = static_cast<std::uint32_t>(random(3) == 0 ? random(3) : random(60));
         one.step(compiled, at_ns(now), allowed);
         other.step(loaded, at_ns(now), allowed);
-        ASSERT_EQ(one.said, other.said) << "seed " << seed << ", step " << step;
-        ASSERT_EQ(one.statements, other.statements) << "seed " << seed << ", step " << step;
-        ASSERT_EQ(one.witness.done, other.witness.done) << "seed " << seed << ", step " << step;
-        ASSERT_EQ(one.witness.calls, other.witness.calls) << "seed " << seed << ", step " << step;
-        ASSERT_EQ(one.context.position.node, other.context.position.node)
-            << "seed " << seed << ", step " << step;
-        ASSERT_EQ(one.kept_data(), other.kept_data()) << "seed " << seed << ", step " << step;
+        ASSERT_EQ(one.said, other.said);
+        ASSERT_EQ(one.statements, other.statements);
+        ASSERT_EQ(one.witness.done, other.witness.done);
+        ASSERT_EQ(one.witness.calls, other.witness.calls);
+        ASSERT_EQ(one.context.position.node, other.context.position.node);
+        ASSERT_EQ(one.kept_data(), other.kept_data());
         if (one.said == ProgramReturn::waits) {
-            ASSERT_EQ(one.context.position.acted, other.context.position.acted)
-                << "seed " << seed << ", step " << step;
-            ASSERT_EQ(one.context.position.entered_at, other.context.position.entered_at)
-                << "seed " << seed << ", step " << step;
+            ASSERT_EQ(one.context.position.acted, other.context.position.acted);
+            ASSERT_EQ(one.context.position.entered_at, other.context.position.entered_at);
             ASSERT_EQ(compiled.wakes(*compiled.tables, one.context),
-                      loaded.wakes(*loaded.tables, other.context))
-                << "seed " << seed << ", step " << step;
+                      loaded.wakes(*loaded.tables, other.context));
         }
         for (ConditionIndex i = 0; i < condition_count; ++i)
             ASSERT_EQ(compiled.test(*compiled.tables, one.context, i),
                       loaded.test(*loaded.tables, other.context, i))
-                << "seed " << seed << ", condition " << i;
+                << "condition " << i;
         coverage.returns.insert(static_cast<int>(one.said));
         coverage.nodes.insert(one.context.position.node);
         ++coverage.steps;

@@ -98,10 +98,8 @@ TEST(StateMachine, leaves_all_below_the_innermost_state_around_source_and_target
 }
 
 TEST(StateMachine, runs_only_the_program_of_an_internal_transition) {
-    Running<tree> m;
-    m.send("go");
+    Running<tree> m{"go"};
     const Time entered = m.execution.entered_at();
-    m.component.heard();
     m.now += 5ms;
     EXPECT_EQ(m.send("stay"), "*stay");
     EXPECT_EQ(m.outcome, Outcome::taken);
@@ -357,9 +355,7 @@ TEST(StateMachine, handles_an_event_that_a_run_program_raises_after_all_run_prog
 }
 
 TEST(StateMachine, bounds_a_ring_of_raised_events_and_goes_on_in_the_next_call) {
-    Running<raising> m;
-    m.send("one");
-    m.send("ring");
+    Running<raising> m{"one", "ring"};
     EXPECT_TRUE(m.execution.left_over());
     const std::uint64_t taken = m.execution.status().transitions;
     EXPECT_EQ(taken, 1 + 2 + 1 + StateMachineExecution::max_raised_events);
@@ -370,9 +366,7 @@ TEST(StateMachine, bounds_a_ring_of_raised_events_and_goes_on_in_the_next_call) 
 }
 
 TEST(StateMachine, counts_events_that_have_no_room_to_wait) {
-    Running<raising> m;
-    m.send("one");
-    m.send("ring"); // from here one event always waits
+    Running<raising> m{"one", "ring"}; // from here one event always waits
     Outcome outcome = Outcome::queued;
     std::uint64_t lost = 0;
     for (int i = 0; i < 100; ++i) {
@@ -396,9 +390,7 @@ TEST(StateMachine, serves_a_request_for_the_final_state_out_of_a_program_before_
 }
 
 TEST(StateMachine, drops_what_waits_when_it_is_deactivated) {
-    Running<raising> m;
-    m.send("one");
-    m.send("ring");
+    Running<raising> m{"one", "ring"};
     ASSERT_TRUE(m.execution.left_over());
     EXPECT_EQ(m.execution.deactivate(m.now), Outcome::taken);
     EXPECT_FALSE(m.execution.left_over());

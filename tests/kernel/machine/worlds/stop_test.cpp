@@ -143,6 +143,20 @@ enum class Situation {
     breaks_loop,
     machine_starts ///< and initialises the camera
 };
+/// In the order of the situations.
+constexpr struct {
+    Situation situation;
+    Function slow;
+    std::string_view name;
+} situations[] = {{Situation::initialises, Function::initialise, "the_camera_initialises"},
+                  {Situation::finalises, Function::finalise, "the_camera_finalises"},
+                  {Situation::starts, Function::start, "the_camera_starts"},
+                  {Situation::works, Function::work, "the_camera_works"},
+                  {Situation::stops, Function::stop, "the_camera_stops"},
+                  {Situation::loops, Function::loop, "the_receiver_loops"},
+                  {Situation::breaks_loop, Function::break_loop, "its_loop_is_broken_off"},
+                  {Situation::machine_starts, Function::initialise, "the_machine_starts"}};
+constexpr auto& row_of(Situation situation) { return situations[static_cast<std::size_t>(situation)]; }
 constexpr std::array causes{Cause::stale_row, Cause::missed_deadline, Cause::termination,
                             Cause::one_that_asks};
 
@@ -180,16 +194,8 @@ template <const auto& of_table> struct Rig : RealRig<of_table> {
     }
     /// One function of the camera, or of the receiver, is to take seconds, at once or when it comes to it.
     void prepare(Situation situation) {
-        switch (situation) {
-        case Situation::initialises:
-        case Situation::machine_starts: camera->slow = Function::initialise; break;
-        case Situation::finalises: camera->slow = Function::finalise; break;
-        case Situation::starts: camera->slow = Function::start; break;
-        case Situation::works: camera->slow = Function::work; break;
-        case Situation::stops: camera->slow = Function::stop; break;
-        case Situation::loops: receiver->slow = Function::loop; break;
-        case Situation::breaks_loop: receiver->slow = Function::break_loop; break;
-        }
+        const bool of_receiver = situation == Situation::loops || situation == Situation::breaks_loop;
+        (of_receiver ? static_cast<Slow&>(*receiver) : *camera).slow = row_of(situation).slow;
     }
     void await_slow() const {
         while (camera->at == Function::none && receiver->at == Function::none) os::sleep_for(1ms);
@@ -203,7 +209,7 @@ template <const auto& of_table> struct Rig : RealRig<of_table> {
     [[nodiscard]] Duration until_safe() const { return at_ns(valve->safe_since) - instance.stop_asked_at(); }
 };
 
-struct AStop : InRealTime, testing::WithParamInterface<Situation> {};
+struct AStop : InRealTime, testing::WithParamInterface<std::size_t> {};
 
 std::ptrdiff_t threads() { return std::distance(std::filesystem::directory_iterator{"/proc/self/task"}, {}); }
 
@@ -238,7 +244,7 @@ TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_
         SCOPED_TRACE(static_cast<int>(by));
         const LastingRig<table> rig;
         ASSERT_TRUE(rig->armed);
-        const Situation situation = GetParam();
+        const Situation situation = situations[GetParam()].situation;
         const bool from_the_start = situation == Situation::machine_starts || situation == Situation::loops;
         if (from_the_start) rig->prepare(situation);
         if (situation != Situation::machine_starts) {
@@ -271,17 +277,8 @@ TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_
     }
 }
 
-std::string name_of(const testing::TestParamInfo<Situation>& situation) {
-    constexpr std::array names{"the_camera_initialises", "the_camera_finalises", "the_camera_starts",
-                               "the_camera_works",       "the_camera_stops",     "the_receiver_loops",
-                               "its_loop_is_broken_off", "the_machine_starts"};
-    return names[static_cast<std::size_t>(situation.param)];
-}
-INSTANTIATE_TEST_SUITE_P(While, AStop,
-                         testing::Values(Situation::initialises, Situation::finalises, Situation::starts,
-                                         Situation::works, Situation::stops, Situation::loops,
-                                         Situation::breaks_loop, Situation::machine_starts),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(While, AStop, testing::Range(std::size_t{0}, std::size(situations)),
+                         [](const auto& at) { return std::string{situations[at.param].name}; });
 
 using TheMachine = InRealTime;
 

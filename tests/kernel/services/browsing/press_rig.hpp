@@ -107,8 +107,9 @@ protected:
         engine.plan().parts[0].state.store(ComponentState::running);
         return engine;
     }
-    static bool has(const std::string& text, std::string_view part) {
-        return text.find(part) != std::string::npos;
+    static testing::AssertionResult has(const std::string& text, std::string_view part) {
+        if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
+        return testing::AssertionFailure() << part << " is not in: " << text;
     }
 
 private:

@@ -124,13 +124,8 @@ struct PropertyFilesOfAMachine : testing::Test, PlacedRig<table> {
         return configured ? "" : std::string{configured.error().view()};
     }
     Tension& tension(std::string_view name) { return the<Tension>(name); }
-    std::size_t index_of(std::string_view name) {
-        std::size_t f = 0;
-        while (component_type<Tension>.facets[f].name != name) ++f;
-        return f;
-    }
     void change(PropertyTransaction& in, std::string_view name, double value) {
-        std::memcpy(in.change(index_of(name)), &value, sizeof value);
+        std::memcpy(in.change(find_facet(table.view().components[0], name)), &value, sizeof value);
     }
 };
 
@@ -310,6 +305,12 @@ TEST_F(PropertyFilesOfAMachineDeathTest, are_not_given_to_a_machine_that_is_conf
 }
 
 struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
+    PropertySaving& saved() {
+        static PropertySaving saving;
+        saving.begin(instance, office);
+        for (int steps = 0; saving.step() && steps < 100; ++steps) EXPECT_TRUE(run(1ms));
+        return saving;
+    }
     PropertiesOfARunningMachine() {
         put("warp.cpf", cpf(""));
         EXPECT_EQ(configure(), "");
@@ -354,11 +355,8 @@ TEST_F(PropertiesOfARunningMachine, stay_as_they_are_when_the_component_refuses)
 }
 
 TEST_F(PropertiesOfARunningMachine, are_not_saved_while_one_is_out_of_its_range) {
-    static PropertySaving saving;
     tension("warp").gain.set(-1.0);
-    saving.begin(instance, office);
-    int steps = 0;
-    for (; saving.step() && steps < 100; ++steps) EXPECT_TRUE(run(1ms));
+    PropertySaving& saving = saved();
     EXPECT_EQ(saving.saved(), 1u);
     EXPECT_THAT(std::string{saving.fault().view()},
                 AllOf(HasSubstr("property \"gain\""), HasSubstr("under its least value 0")));
@@ -366,11 +364,8 @@ TEST_F(PropertiesOfARunningMachine, are_not_saved_while_one_is_out_of_its_range)
 }
 
 TEST_F(PropertiesOfARunningMachine, are_saved_while_it_runs) {
-    static PropertySaving saving;
     tension("warp").gain.set(6.25);
-    saving.begin(instance, office);
-    int steps = 0;
-    for (; saving.step() && steps < 100; ++steps) EXPECT_TRUE(run(1ms));
+    PropertySaving& saving = saved();
     EXPECT_FALSE(saving.busy());
     EXPECT_EQ(saving.saved(), 2u);
     EXPECT_TRUE(saving.fault().empty()) << saving.fault().view();
