@@ -37,6 +37,12 @@ template <const auto& table, const Board& board = test_board> struct PlacedRig {
         std::ranges::copy(text, slot.text().begin());
         return std::string{slot.compile(text.size(), name).view()};
     }
+    /// How it was answered within the time.
+    LifeAnswer change(std::size_t component, LifeChange change, Duration within) {
+        const LifeTicket ticket = instance.life().ask_component(component, change);
+        EXPECT_TRUE(run(within));
+        return instance.life().answer_of_component(component, ticket);
+    }
     void change(BehaviourSlot& slot, BehaviourSlot::Change what, const SlotMoment& at = {}) {
         EXPECT_EQ(slot.may(what).view(), "");
         EXPECT_TRUE(slot.ask(what, at));

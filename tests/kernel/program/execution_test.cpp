@@ -6,8 +6,6 @@
 
 namespace program_test {
 
-constexpr Time at_ms(std::int64_t ms) { return at_ns(ms * 1'000'000); }
-
 /// One that counts something.
 struct Counting : TableBuilder {
     DataOffset one = value(ScriptInt{1});

@@ -10,8 +10,6 @@
 
 namespace program_test {
 
-constexpr Time at_ms(std::int64_t ms) { return at_ns(ms * 1'000'000); }
-
 /// A facet of each kind, and what was done with it.
 struct Arm {
     Input<double> measured;

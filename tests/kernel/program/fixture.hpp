@@ -14,6 +14,8 @@ namespace program_test {
 
 using namespace tappet;
 
+constexpr Time at_ms(std::int64_t ms) { return at_ns(ms * 1'000'000); }
+
 /// A program written down as it is built; offsets are multiples of 16.
 class TableBuilder {
 public:

@@ -49,7 +49,6 @@ struct Instance {
 struct Coverage {
     std::set<int> returns;
     std::set<int> nodes;
-    std::uint64_t steps = 0, failures_led_on = 0;
 };
 
 void expect_same(const ProgramCode& compiled, const ProgramCode& loaded, std::uint64_t seed,
@@ -83,7 +82,6 @@ void expect_same(const ProgramCode& compiled, const ProgramCode& loaded, std::ui
                 << "condition " << i;
         coverage.returns.insert(static_cast<int>(one.said));
         coverage.nodes.insert(one.context.position.node);
-        ++coverage.steps;
         if (one.said == ProgramReturn::ended || one.said == ProgramReturn::failed) {
             const auto start = static_cast<NodeIndex>(random(node_count));
             one.context.position = other.context.position = {.node = start};

@@ -17,7 +17,6 @@ struct Witness {
     std::uint32_t calls = 0;
     StateMachineExecution* machine = nullptr;
     Time now{};
-    bool in_call = false;
 
     void note(std::uint64_t what) noexcept TAPPET_REALTIME {
         ++calls;

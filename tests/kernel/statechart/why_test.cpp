@@ -8,8 +8,6 @@
 namespace tappet {
 namespace {
 
-constexpr Time at_ns(std::int64_t ns) { return Time{Duration{ns}}; }
-
 // It starts when it is warm and closed.
 struct Oven {
     bool is_warm = false, is_closed = false;
@@ -75,11 +73,7 @@ static_assert(check(hall.view()).empty());
 
 TEST(Ways, lead_from_leaf_to_leaf_also_out_of_and_into_composites) {
     constexpr ResolvedView machine = resolved<hall>.view();
-    const auto number = [&](std::string_view name) {
-        for (std::size_t s = 0; s < machine.table.states.size(); ++s)
-            if (machine.table.states[s].name == name) return static_cast<StateIndex>(s);
-        return no_state;
-    };
+    const auto number = [&](std::string_view name) { return find_state(machine.table, name); };
     const Ways ways{machine, number("stage")};
     EXPECT_EQ(ways.away(number("stage")), 0);
     EXPECT_EQ(ways.away(number("open")), 1);

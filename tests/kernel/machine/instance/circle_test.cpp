@@ -41,9 +41,7 @@ constexpr std::size_t wires = 0, motion = 1;
 struct Circle : testing::Test, RunningRig<table> {
     Circle() { pass(50ms); }
     LifeAnswer change(std::size_t component, LifeChange change) {
-        const LifeTicket ticket = instance.life().ask_component(component, change);
-        EXPECT_TRUE(run(50ms));
-        return instance.life().answer_of_component(component, ticket);
+        return RunningRig::change(component, change, 50ms);
     }
     LifeOutcome start(std::size_t component) { return change(component, LifeChange::start).outcome; }
 };

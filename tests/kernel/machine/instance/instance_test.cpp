@@ -149,11 +149,8 @@ struct Machine : testing::Test, ConfiguredRig<table> {
         pass(then);
     }
     ComponentState state(std::size_t component) { return instance.life().state_of(component); }
-    /// Asks and lets the engine serve it.
     LifeAnswer change(std::size_t component, LifeChange change) {
-        const LifeTicket ticket = instance.life().ask_component(component, change);
-        EXPECT_TRUE(run(20ms));
-        return instance.life().answer_of_component(component, ticket);
+        return ConfiguredRig::change(component, change, 20ms);
     }
     std::string words(std::size_t component, LifeAnswer answer) {
         return std::string{

@@ -149,7 +149,6 @@ protected:
         EXPECT_TRUE(view.copy(at, std::as_writable_bytes(std::span{&value, 1})));
         return value;
     }
-    std::string_view shape_name(const map::Facet& of) const { return view.text(view.types()[of.type].name); }
 };
 
 TEST_F(Map, names_every_component_with_its_activity_and_its_facets) {

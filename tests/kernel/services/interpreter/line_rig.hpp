@@ -29,6 +29,21 @@ protected:
         run(time);
         while (!observer.receive().empty()) look(observer);
     }
+    /// A peer has the gauge zeroed; its line is broken off when it waits, which is told.
+    template <class Then> bool breaks_off(Panel& peer, Talker& observer, const Then& then) {
+        const std::int64_t zeroed = gauge().zeroed;
+        peer.wanted = peer.line.assign("do gauge.zero()");
+        bool is_broken_off = false;
+        for (int k = 0; k < 60; ++k) {
+            run_beside(observer, 5ms);
+            if (is_broken_off || peer.execute.state() != CommandState::executing || gauge().zeroed != zeroed)
+                continue;
+            interpreter().break_off();
+            is_broken_off = true;
+            then();
+        }
+        return is_broken_off;
+    }
     Gauge& gauge() { return the<Gauge>("gauge"); }
     Panel& panel(std::string_view name = "panel") { return the<Panel>(name); }
     CommandInterpreter& interpreter() { return the<CommandInterpreter>("interpreter"); }

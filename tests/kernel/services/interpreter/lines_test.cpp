@@ -305,17 +305,7 @@ TEST_F(Lines, of_a_peer_that_wait_are_broken_off) {
     look(observer);
     int waited = 0;
     for (int n = 0; n < 40; ++n) {
-        const std::int64_t zeroed = gauge().zeroed;
-        panel().wanted = panel().line.assign("do gauge.zero()");
-        bool is_broken_off = false;
-        for (int k = 0; k < 60; ++k) {
-            run_beside(observer, 5ms);
-            if (!is_broken_off && panel().execute.state() == CommandState::executing &&
-                gauge().zeroed == zeroed) {
-                interpreter().break_off();
-                is_broken_off = true;
-            }
-        }
+        const bool is_broken_off = breaks_off(panel(), observer, [] {});
         waited += is_broken_off ? 1 : 0;
         EXPECT_EQ(is_broken_off, panel().execute.state() != CommandState::done) << n;
         panel().execute.reset();
@@ -332,16 +322,8 @@ TEST_F(Lines, of_peers_that_say_the_same_are_told_apart) {
     int broken_off = 0;
     for (int n = 0; n < 40; ++n) {
         const std::int64_t zeroed = gauge().zeroed;
-        a.wanted = a.line.assign("do gauge.zero()");
-        bool is_broken_off = false;
-        for (int k = 0; k < 60; ++k) {
-            run_beside(observer, 5ms);
-            if (!is_broken_off && a.execute.state() == CommandState::executing && gauge().zeroed == zeroed) {
-                interpreter().break_off();
-                is_broken_off = true;
-                b.wanted = b.line.assign("do gauge.zero()");
-            }
-        }
+        const bool is_broken_off =
+            breaks_off(a, observer, [&b] { b.wanted = b.line.assign("do gauge.zero()"); });
         broken_off += is_broken_off ? 1 : 0;
         if (is_broken_off) {
             EXPECT_EQ(a.execute.state(), CommandState::failed) << n;
