@@ -1,5 +1,6 @@
 // An axis whose set point is forced: what it does then, and when the force ends.
 #include "tests/drivers/canopen/servo_axis.hpp"
+#include "tests/drivers/components/forced_port.hpp"
 
 namespace tappet::test {
 namespace {
@@ -7,20 +8,18 @@ namespace {
 /// Its set point is forced meanwhile, for less than what stands behind it takes to grow stale.
 struct ForcedAxis : ServoAxis {
     void force(double value) {
-        ASSERT_TRUE(resolve(instance.machine().table, "axis.set_point", FacetKind::input, end).empty());
-        EXPECT_TRUE(port().force(instance.place_of(end), true, reinterpret_cast<const std::byte*>(&value)));
+        set_point.to(value);
         run(4ms);
     }
     void release() {
-        port().release(instance.place_of(end), true);
+        set_point.release();
         run(3ms);
     }
     void write(double value) {
         client->once = value;
         run(3ms);
     }
-    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
-    End end;
+    ForcedPort set_point{instance, "axis.set_point", FacetKind::input};
 };
 
 TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {

@@ -1,6 +1,8 @@
 // Frames on demand when what they carry is forced, when a force ends, and when a time cannot be.
 #include "tests/drivers/components/can_machine.hpp"
+#include "tests/drivers/components/forced_port.hpp"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,17 +16,14 @@ TEST_F(OnDemand, repeats_no_demand_when_a_force_ends_or_the_machine_stops_meanwh
     run_until(20ms);
     ASSERT_EQ(heard_of(0x000).size(), 1u);
     heard.clear();
-    End node;
-    ASSERT_TRUE(resolve(instance.machine().table, "can.nmt.node", FacetKind::input, node).empty());
-    const PortOperations& port = *facet_at(instance.machine().table, node).port;
-    const std::int64_t three = 3;
+    ForcedPort node{instance, "can.nmt.node", FacetKind::input};
     const auto force = [&] {
-        port.force(instance.place_of(node), true, reinterpret_cast<const std::byte*>(&three));
+        node.to(std::int64_t{3});
         instance.engines()[0].waiter().wake();
     };
     force();
     run_until(40ms);
-    port.release(instance.place_of(node), true);
+    node.release();
     instance.engines()[0].waiter().wake();
     run_until(60ms);
     EXPECT_TRUE(heard_of(0x000).empty());
@@ -38,14 +37,11 @@ TEST_F(OnDemand, repeats_no_demand_when_a_force_ends_or_the_machine_stops_meanwh
 /// Frames on demand while what they carry is forced.
 struct ForcedDemand : OnDemand {
     void force(std::string_view name, FacetKind kind, std::int64_t value) {
-        ASSERT_TRUE(resolve(instance.machine().table, name, kind, end).empty());
-        ASSERT_TRUE(port().force(instance.place_of(end), kind == FacetKind::input,
-                                 reinterpret_cast<const std::byte*>(&value)));
+        forced.emplace(instance, name, kind).to(value);
         wait();
     }
     void release() {
-        port().release(instance.place_of(end),
-                       facet_at(instance.machine().table, end).kind == FacetKind::input);
+        forced->release();
         wait();
     }
     void write(std::int64_t value) {
@@ -56,13 +52,12 @@ struct ForcedDemand : OnDemand {
         instance.engines()[0].waiter().wake();
         run_until(clock.now().time_since_epoch() + 20ms);
     }
-    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
     [[nodiscard]] std::vector<int> sent() {
         std::vector<int> values;
         for (const can::Frame& each : heard_of(0x080)) values.push_back(each.data[0]);
         return values;
     }
-    End end;
+    std::optional<ForcedPort> forced;
 };
 
 TEST_F(ForcedDemand, goes_back_to_what_its_component_wrote_when_the_force_of_its_output_ends) {

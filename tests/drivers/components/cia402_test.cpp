@@ -1,32 +1,10 @@
 // The controller's side of CiA 402 against a model of the drive's automaton.
-#include "drivers/canopen/cia402.hpp"
+#include "tests/drivers/components/drive_states.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 namespace tappet::canopen {
 namespace {
-
-constexpr std::array every_state{DriveState::not_ready,
-                                 DriveState::switch_on_disabled,
-                                 DriveState::ready_to_switch_on,
-                                 DriveState::switched_on,
-                                 DriveState::operation_enabled,
-                                 DriveState::quick_stop_active,
-                                 DriveState::fault_reaction_active,
-                                 DriveState::fault};
-
-/// The statusword of a state; bits that do not belong to the state are set by `noise`.
-constexpr std::uint16_t statusword(DriveState state, std::uint16_t noise = 0) {
-    constexpr std::array<std::uint16_t, 8> patterns{0x00, 0x40, 0x21, 0x23, 0x27, 0x07, 0x0F, 0x08};
-    const std::uint16_t mask = state == DriveState::ready_to_switch_on || state == DriveState::switched_on ||
-                                       state == DriveState::operation_enabled ||
-                                       state == DriveState::quick_stop_active
-                                   ? 0x6F
-                                   : 0x4F;
-    return static_cast<std::uint16_t>(patterns[static_cast<std::size_t>(state)] | (noise & ~mask));
-}
 
 /// The drive's automaton, CiA 402-2 figure 8; a quick stop ends in "switch on disabled" after a while.
 struct Drive {
@@ -72,38 +50,29 @@ TEST(Cia402, tells_every_state_from_the_statusword_whatever_its_other_bits_are) 
             EXPECT_EQ(drive_state(statusword(state, noise)), state);
 }
 
-TEST(Cia402, leads_every_state_to_enabled) {
+TEST(Cia402, leads_every_state_to_what_is_wanted) {
     for (const DriveState state : every_state) {
-        DriveControl control;
-        Drive drive{state};
-        control.want(DriveGoal::enabled);
-        control.acknowledge();
-        run(control, drive, 6);
-        EXPECT_EQ(drive.state, DriveState::operation_enabled) << static_cast<int>(state);
-    }
-}
-
-TEST(Cia402, leads_every_state_to_off) {
-    for (const DriveState state : every_state) {
-        DriveControl control;
-        Drive drive{state};
-        control.acknowledge();
-        run(control, drive, 6);
-        EXPECT_EQ(drive.state, DriveState::switch_on_disabled) << static_cast<int>(state);
-    }
-}
-
-TEST(Cia402, stops_a_running_drive_quickly_and_powers_no_other_one) {
-    for (const DriveState state : every_state) {
-        DriveControl control;
-        Drive drive{state};
-        control.want(DriveGoal::quick_stop);
-        run(control, drive, 6);
         const bool moved = state == DriveState::operation_enabled || state == DriveState::quick_stop_active;
         const bool broken = state == DriveState::fault || state == DriveState::fault_reaction_active;
-        EXPECT_EQ(drive.state, moved    ? DriveState::quick_stop_active
-                               : broken ? DriveState::fault
-                                        : DriveState::switch_on_disabled);
+        const struct {
+            const char* what;
+            DriveGoal goal;
+            bool acknowledges;
+            DriveState ends_in;
+        } cases[] = {{"enabled", DriveGoal::enabled, true, DriveState::operation_enabled},
+                     {"off", DriveGoal::off, true, DriveState::switch_on_disabled},
+                     {"stops a running drive quickly and powers no other one", DriveGoal::quick_stop, false,
+                      moved    ? DriveState::quick_stop_active
+                      : broken ? DriveState::fault
+                               : DriveState::switch_on_disabled}};
+        for (const auto& each : cases) {
+            DriveControl control;
+            Drive drive{state};
+            control.want(each.goal);
+            if (each.acknowledges) control.acknowledge();
+            run(control, drive, 6);
+            EXPECT_EQ(drive.state, each.ends_in) << each.what << ", from " << static_cast<int>(state);
+        }
     }
 }
 

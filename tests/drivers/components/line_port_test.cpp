@@ -4,6 +4,7 @@
 #include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/components/board.hpp"
+#include "tests/drivers/components/forced_port.hpp"
 #include "tests/drivers/components/unheard.hpp"
 
 #include <gtest/gtest.h>
@@ -449,11 +450,8 @@ TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
     listener->lamp_ahead = 40ms;
     listener->lamp_next = 1;
     run_until(5ms);
-    End wanted;
-    ASSERT_TRUE(resolve(instance.machine().table, "io.lamp", FacetKind::input, wanted).empty());
-    const bool dark = false;
-    facet_at(instance.machine().table, wanted)
-        .port->force(instance.place_of(wanted), true, reinterpret_cast<const std::byte*>(&dark));
+    ForcedPort wanted{instance, "io.lamp", FacetKind::input};
+    wanted.to(false);
     run_until(10ms);
     const Sentence refusal = world.change_activity(1, LifeChange::stop);
     EXPECT_TRUE(refusal.empty()) << refusal.view();
@@ -461,9 +459,8 @@ TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
     EXPECT_FALSE(driven(lamp));
     run_until(100ms);
     EXPECT_FALSE(driven(lamp));
-    const PortOperations& port = *facet_at(instance.machine().table, wanted).port;
-    port.force(instance.place_of(wanted), true, reinterpret_cast<const std::byte*>(&dark));
-    port.release(instance.place_of(wanted), true);
+    wanted.to(false);
+    wanted.release();
     instance.engines()[0].waiter().wake();
     run_until(120ms);
     EXPECT_FALSE(driven(lamp)) << "its writer still stands";

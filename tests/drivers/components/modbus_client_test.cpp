@@ -1,4 +1,5 @@
 // A Modbus server as a component: values with their age, outages, back-off, and who is held up by it.
+#include "tests/drivers/components/forced_port.hpp"
 #include "tests/drivers/components/utility_machine.hpp"
 
 namespace tappet::test {
@@ -108,10 +109,7 @@ TEST_F(Utility, writes_nothing_that_grew_stale_during_an_outage) {
 }
 
 TEST_F(Utility, is_safe_when_its_writer_stopped_while_the_server_was_away_for_long) {
-    run_until(1s);
-    reader->pump_next = 1;
-    run_until(2s);
-    ASSERT_TRUE(pump_runs());
+    start_the_pump();
     twin.inject(modbus::Fault::down);
     EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
     run_until(20s);
@@ -158,13 +156,13 @@ TEST_F(Utility, says_why_the_server_is_lost_and_no_more_when_it_is_back) {
          "row \"unit\": what came is no answer to it; look at the line's setting, its cable and its ends"},
         {modbus::Fault::down, "row \"unit\": no connection; look at the server's address, supply and cable"}};
     for (const auto& [fault, reason] : reasons) {
-        run_until(clock.now() - Time{} + 2s);
+        run(2s);
         EXPECT_EQ(server->reason.last().view(), "");
         twin.inject(fault);
-        run_until(clock.now() - Time{} + 2s);
+        run(2s);
         EXPECT_EQ(server->reason.last().view(), reason);
         twin.inject(modbus::Fault::none);
-        run_until(clock.now() - Time{} + 5s);
+        run(5s);
         EXPECT_EQ(server->reason.last().view(), "");
     }
 }
@@ -187,20 +185,14 @@ TEST_F(Utility, keeps_its_back_off_however_long_its_period_is) {
 }
 
 TEST_F(Utility, brings_what_was_written_last_to_the_server_at_stop) {
-    run_until(1s);
-    reader->pump_next = 1;
-    run_until(2s);
-    EXPECT_TRUE(pump_runs());
+    start_the_pump();
     world.stop();
     EXPECT_FALSE(pump_runs());
 }
 
 TEST_F(Utility, leaves_the_safe_values_of_its_map_at_stop_whatever_their_writer_left) {
-    run_until(1s);
-    reader->pump_next = 1;
     reader->leaves_safe = false;
-    run_until(2s);
-    ASSERT_TRUE(pump_runs());
+    start_the_pump();
     change_server(LifeChange::stop);
     EXPECT_FALSE(pump_runs());
     EXPECT_FALSE(reader->connected.get()) << "nobody asks it any longer";
@@ -214,11 +206,8 @@ TEST_F(Utility, leaves_the_safe_values_of_its_map_at_stop_whatever_their_writer_
 
 TEST_F(Utility, writes_its_safe_values_once_more_when_a_request_is_lost_or_refused_at_the_stop) {
     for (const modbus::Fault fault : {modbus::Fault::silent, modbus::Fault::exception}) {
-        run_until(clock.now().time_since_epoch() + 1s);
-        reader->pump_next = 1;
         reader->leaves_safe = false;
-        run_until(clock.now().time_since_epoch() + 1s);
-        ASSERT_TRUE(pump_runs());
+        start_the_pump();
         twin.set_exception(6);
         twin.inject(fault, 1);
         change_server(LifeChange::stop);
@@ -228,11 +217,9 @@ TEST_F(Utility, writes_its_safe_values_once_more_when_a_request_is_lost_or_refus
 }
 
 TEST_F(Utility, leaves_its_safe_values_though_an_answer_was_lost_just_before_the_stop) {
-    run_until(1s);
-    reader->pump_next = 1;
-    run_until(2s);
+    start_the_pump();
     twin.inject(modbus::Fault::silent, 1);
-    while (server->counters().timeouts == 0) run_until(clock.now().time_since_epoch() + 10ms);
+    while (server->counters().timeouts == 0) run(10ms);
     change_server(LifeChange::stop);
     EXPECT_FALSE(pump_runs());
 }
@@ -281,9 +268,7 @@ TEST_F(Utility, writes_after_a_start_nothing_that_grew_stale_before_it) {
 }
 
 TEST_F(Utility, tells_an_outage_anew_when_it_is_started_beside_a_server_that_is_down) {
-    run_until(1s);
-    reader->pump_next = 1; // it starts alone only when each of its inputs was written
-    run_until(2s);
+    start_the_pump(); // it starts alone only when each of its inputs was written
     twin.inject(modbus::Fault::down);
     run_until(3s);
     ASSERT_EQ(reader->lost, 1);
@@ -296,9 +281,7 @@ TEST_F(Utility, tells_an_outage_anew_when_it_is_started_beside_a_server_that_is_
 }
 
 TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
-    run_until(1s);
-    reader->pump_next = 1;
-    run_until(2s);
+    start_the_pump();
     twin.inject(modbus::Fault::silent);
     run_until(4s);
     clock.advance_to(clock.now() + 20s); // it would be asked again now
@@ -312,22 +295,17 @@ TEST_F(Utility, writes_nothing_old_when_a_force_ends) {
     run_until(1s);
     reader->pump_next = 1; // once; its row says for how long that holds
     run_until(20s);
-    End on;
-    ASSERT_TRUE(resolve(instance.machine().table, "server.pump.on", FacetKind::input, on).empty());
-    const PortOperations& port = *facet_at(instance.machine().table, on).port;
-    const double off = 0;
-    port.force(instance.place_of(on), true, reinterpret_cast<const std::byte*>(&off));
+    ForcedPort on{instance, "server.pump.on", FacetKind::input};
+    on.to(0.0);
     run_until(30s);
     ASSERT_FALSE(pump_runs());
-    port.release(instance.place_of(on), true);
+    on.release();
     run_until(31s);
     EXPECT_FALSE(pump_runs());
 }
 
 TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reaches_it) {
-    run_until(1s);
-    reader->pump_next = 1;
-    run_until(2s);
+    start_the_pump();
     for (const modbus::Fault fault : {modbus::Fault::down, modbus::Fault::silent, modbus::Fault::exception}) {
         twin.set_exception(6);
         SCOPED_TRACE(static_cast<int>(fault));
@@ -336,11 +314,11 @@ TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reache
         stop_unheard(); // and is told so again
         twin.inject(modbus::Fault::none);
         change_server(LifeChange::restart);
-        run_until(clock.now().time_since_epoch() + 3s);
+        run(3s);
         change_server(LifeChange::stop);
         EXPECT_EQ(instance.life().left_unsafe(), "");
         change_server(LifeChange::start);
-        run_until(clock.now().time_since_epoch() + 3s);
+        run(3s);
     }
 }
 

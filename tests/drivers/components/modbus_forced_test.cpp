@@ -1,4 +1,5 @@
 // What a Modbus server is told while a port on the way to it is forced, and afterwards.
+#include "tests/drivers/components/forced_port.hpp"
 #include "tests/drivers/components/utility_machine.hpp"
 
 namespace tappet::test {
@@ -10,23 +11,18 @@ TEST_F(HeldPump, is_told_what_stands_behind_a_force_though_that_is_stale) {
     run_until(1s);
     reader->pump_next = 0; // once
     run_until(2s);
-    const double on = 1;
-    Duration now = 2s;
     for (const auto& [name, kind] :
          {std::pair{"server.pump.on", FacetKind::input}, std::pair{"reader.pump", FacetKind::output}})
         for (const bool stops : {false, true}) {
-            End end;
-            ASSERT_TRUE(resolve(instance.machine().table, name, kind, end).empty());
-            const PortOperations& port = *facet_at(instance.machine().table, end).port;
-            const bool is_input = kind == FacetKind::input;
-            port.force(instance.place_of(end), is_input, reinterpret_cast<const std::byte*>(&on));
-            run_until(now += 2s);
+            ForcedPort pump{instance, name, kind};
+            pump.to(1.0);
+            run(2s);
             EXPECT_TRUE(pump_runs());
             if (stops)
                 EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
             else
-                port.release(instance.place_of(end), is_input);
-            run_until(now += 2s);
+                pump.release();
+            run(2s);
             EXPECT_FALSE(pump_runs()) << name << (stops ? ", stopped" : ", released");
             if (stops) static_cast<void>(world.change_activity(1, LifeChange::start));
         }
@@ -38,21 +34,16 @@ struct ForcedPump : Utility {
         run_until(1s);
         reader->pump_next = 0; // off, and that is all that its component says
         run_until(20s);
-        ASSERT_TRUE(resolve(instance.machine().table, name, kind, end).empty());
-        is_input = kind == FacetKind::input;
-        const double yes = 1;
-        ASSERT_TRUE(port().force(instance.place_of(end), is_input, reinterpret_cast<const std::byte*>(&yes)));
+        pump.emplace(instance, name, kind).to(1.0);
         run_until(22s);
         ASSERT_TRUE(pump_runs());
     }
-    [[nodiscard]] const PortOperations& port() { return *facet_at(instance.machine().table, end).port; }
-    End end;
-    bool is_input = false;
+    std::optional<ForcedPort> pump;
 };
 
 TEST_F(ForcedPump, is_told_what_stood_behind_the_force_however_old_that_is) {
     begin("server.pump.on", FacetKind::input);
-    port().release(instance.place_of(end), is_input);
+    pump->release();
     run_until(24s);
     EXPECT_FALSE(pump_runs());
 }
@@ -97,11 +88,7 @@ TEST_F(SilentPump, is_not_told_at_the_stop_what_a_force_kept_from_it) {
     reader->leaves_safe = false;
     reader->pump_next = 0;
     run_until(2s);
-    End end;
-    ASSERT_TRUE(resolve(instance.machine().table, "server.pump.on", FacetKind::input, end).empty());
-    const double off = 0;
-    facet_at(instance.machine().table, end)
-        .port->force(instance.place_of(end), true, reinterpret_cast<const std::byte*>(&off));
+    ForcedPort{instance, "server.pump.on", FacetKind::input}.to(0.0);
     run_until(4s);
     reader->pump_next = 1; // behind the force
     run_until(6s);
@@ -121,12 +108,7 @@ struct ForcedTo : Rig {
         this->run_until(4s);
         ASSERT_EQ(this->pump_runs(), to != 0);
     }
-    void force(double to) {
-        End end;
-        ASSERT_TRUE(resolve(this->instance.machine().table, "server.pump.on", FacetKind::input, end).empty());
-        facet_at(this->instance.machine().table, end)
-            .port->force(this->instance.place_of(end), true, reinterpret_cast<const std::byte*>(&to));
-    }
+    void force(double to) { ForcedPort{this->instance, "server.pump.on", FacetKind::input}.to(to); }
 };
 using Forced = ForcedTo<Utility>;
 using ForcedSilent = ForcedTo<SilentPump>;

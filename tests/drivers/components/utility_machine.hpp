@@ -96,6 +96,13 @@ struct UtilityOf : testing::Test {
         world.start();
     }
     void run_until(Duration end) { EXPECT_TRUE(world.run_until(Time{end})); }
+    void run(Duration time) { run_until(clock.now().time_since_epoch() + time); }
+    void start_the_pump() {
+        run(1s);
+        reader->pump_next = 1;
+        run(1s);
+        ASSERT_TRUE(pump_runs());
+    }
     void change_server(LifeChange change) {
         const Sentence refusal = world.change_activity(0, change);
         EXPECT_TRUE(refusal.empty()) << refusal.view();
