@@ -4,13 +4,11 @@
 // goes off it.
 #include "board/init/devices.hpp"
 #include "drivers/can/safe_sender.hpp"
-#include "drivers/can/signal_map.hpp"
-#include "drivers/can/socket_can.hpp"
+#include "tests/drivers/can/bench_frames.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <sched.h>
 #include <string>
@@ -20,18 +18,8 @@
 namespace tappet::can {
 namespace {
 
-constexpr std::array machine_sends = [] {
-    std::array<Identifier, 64> all{};
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = standard(0x200 + i);
-    return all;
-}();
+constexpr auto& machine_sends = from_200<64>;
 constexpr std::array node_sends{standard(0x181), extended(0x18FF0102)};
-
-Time now() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-}
 
 /// In the order of their names.
 std::vector<std::string> interfaces_of(std::string_view driver) {
@@ -46,14 +34,7 @@ std::vector<std::string> interfaces_of(std::string_view driver) {
 }
 
 Frame frame(Identifier id, std::uint8_t length = 8, Format format = Format::classical) {
-    Frame f;
-    f.id = id.id;
-    f.extended = id.extended;
-    f.length = length;
-    f.stamp = now();
-    set_format(f, format);
-    for (std::size_t i = 0; i < length; ++i) f.data[i] = static_cast<std::uint8_t>(id.id + i);
-    return f;
+    return numbered(id, format, length);
 }
 
 struct Controllers : testing::Test {
@@ -89,17 +70,6 @@ struct Controllers : testing::Test {
         const auto opened = open(machine, settings);
         EXPECT_FALSE(opened);
         return opened ? "" : std::string{opened.error().view()};
-    }
-    static std::vector<Frame> run_for(SocketCan& end, Duration how_long) {
-        std::vector<Frame> all;
-        for (const Time until = now() + how_long; now() < until;) {
-            Frame f;
-            const Receive got = end.receive(f);
-            if (got.what == Received::frame) all.push_back(f);
-            end.service(now());
-            if (got.what == Received::none) std::this_thread::sleep_for(1ms);
-        }
-        return all;
     }
     /// Without its stamp, and without what a receiver learns of it.
     static void expect_same(const Frame& got, const Frame& sent) {
@@ -158,11 +128,11 @@ TEST_F(Sja1000, carries_frames_both_ways_and_confirms_them) {
         all.insert(all.end(), more.begin(), more.end());
     };
     for (int i = 0; i < 50 && machine.counters().sent < sent.size(); ++i) {
-        add(at_machine_end, run_for(machine, 2ms));
-        add(at_node_end, run_for(node, 2ms));
+        add(at_machine_end, heard_by(machine, 2ms));
+        add(at_node_end, heard_by(node, 2ms));
     }
-    add(at_machine_end, run_for(machine, 5ms));
-    add(at_node_end, run_for(node, 5ms));
+    add(at_machine_end, heard_by(machine, 5ms));
+    add(at_node_end, heard_by(node, 5ms));
     EXPECT_EQ(machine.counters().sent, sent.size());
     EXPECT_EQ(node.counters().sent, node_sends.size());
     std::ranges::reverse(sent); // the most urgent one first
@@ -176,16 +146,16 @@ TEST_F(Sja1000, carries_frames_both_ways_and_confirms_them) {
 TEST_F(Sja1000, is_restarted_by_down_and_up_with_its_bit_rate) {
     open();
     EXPECT_TRUE(init::set_link(at_machine, false));
-    run_for(machine, 5ms);
+    heard_by(machine, 5ms);
     EXPECT_EQ(machine.state(), State::down);
     EXPECT_EQ(machine.send(frame(machine_sends[0])), Send::refused_fault);
     EXPECT_EQ(machine.restart(), Restart::done);
-    run_for(machine, 5ms);
+    heard_by(machine, 5ms);
     EXPECT_EQ(machine.state(), State::active);
     EXPECT_EQ(machine.send(frame(machine_sends[1])), Send::queued);
-    run_for(machine, 10ms);
+    heard_by(machine, 10ms);
     EXPECT_EQ(machine.counters().sent, 1u);
-    EXPECT_EQ(run_for(node, 5ms).size(), 1u);
+    EXPECT_EQ(heard_by(node, 5ms).size(), 1u);
     const auto link = find_link(at_machine);
     ASSERT_TRUE(link);
     EXPECT_EQ(link->bit_rate, 500'000u);
@@ -250,8 +220,8 @@ TEST_F(Sja1000, tells_by_an_error_frame_that_frames_were_lost_in_the_controller)
     EXPECT_EQ(machine.counters().error_frames, overruns);
     EXPECT_EQ(machine.state(), State::active) << "the bus is well";
     EXPECT_EQ(node.send(frame(node_sends[0])), Send::queued);
-    run_for(node, 5ms);
-    EXPECT_EQ(run_for(machine, 5ms).size(), 1u);
+    heard_by(node, 5ms);
+    EXPECT_EQ(heard_by(machine, 5ms).size(), 1u);
 }
 
 TEST_F(Sja1000, is_refused_for_a_map_with_can_fd_frames) {
@@ -302,16 +272,16 @@ TEST_F(CtuCanFd, carries_frames_of_every_format_both_ways_and_confirms_them) {
         Frame fresh = each;
         fresh.stamp = now();
         ASSERT_EQ(machine.send(fresh), Send::queued);
-        run_for(machine, 2ms);
-        for (const Frame& one : run_for(node, 2ms)) got.push_back(one);
+        heard_by(machine, 2ms);
+        for (const Frame& one : heard_by(node, 2ms)) got.push_back(one);
     }
     EXPECT_EQ(machine.counters().sent, sent.size());
     ASSERT_EQ(got.size(), sent.size());
     for (std::size_t n = 0; n < sent.size(); ++n) expect_same(got[n], sent[n]);
     const Frame answer = frame(node_sends[1], 64, Format::flexible_faster);
     ASSERT_EQ(node.send(answer), Send::queued);
-    run_for(node, 5ms);
-    const auto back = run_for(machine, 5ms);
+    heard_by(node, 5ms);
+    const auto back = heard_by(machine, 5ms);
     ASSERT_EQ(back.size(), 1u);
     expect_same(back[0], answer);
     EXPECT_EQ(node.counters().sent, 1u);
@@ -324,7 +294,7 @@ TEST_F(CtuCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_m
     const auto opened = sender.open(at_machine, safe);
     ASSERT_TRUE(opened) << opened.error().view();
     sender.send(SafeSender::Purpose::earnest);
-    const auto got = run_for(node, 10ms);
+    const auto got = heard_by(node, 10ms);
     ASSERT_EQ(got.size(), 2u);
     expect_same(got[0], safe[0]);
     expect_same(got[1], safe[1]);

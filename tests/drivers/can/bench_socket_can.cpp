@@ -1,14 +1,13 @@
 // The real SocketCAN device on a real kernel's virtual bus, with can-utils as peers. Runs on the bench:
 // interface can0.
+#include "board/init/devices.hpp"
 #include "drivers/can/safe_sender.hpp"
-#include "drivers/can/signal_map.hpp"
-#include "drivers/can/socket_can.hpp"
+#include "tests/drivers/can/bench_frames.hpp"
 #include "tests/drivers/foreign.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <ctime>
 #include <malloc.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
@@ -18,25 +17,10 @@ namespace tappet::can {
 namespace {
 
 constexpr std::array receives{standard(0x123), extended(0x18FF0102)};
-constexpr std::array sends = [] {
-    std::array<Identifier, 65> all{};
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = standard(0x200 + i);
-    return all;
-}();
-
-Time now() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-}
+constexpr auto& sends = from_200<65>;
 
 Frame frame(std::uint32_t id, Time made = now()) {
-    Frame f;
-    f.id = id;
-    f.length = 2;
-    f.data = {0xAB, 0xCD};
-    f.stamp = made;
-    return f;
+    return {.id = id, .length = 2, .data = {0xAB, 0xCD}, .stamp = made};
 }
 
 struct RealCan : testing::Test {
@@ -46,19 +30,7 @@ struct RealCan : testing::Test {
         const auto opened = can.open(settings);
         ASSERT_TRUE(opened) << opened.error().view();
     }
-    /// Reads and serves for a while; the frames that came.
-    std::vector<Frame> run_for(Duration how_long) {
-        std::vector<Frame> all;
-        const Time end = now() + how_long;
-        while (now() < end) {
-            Frame f;
-            const Receive got = can.receive(f);
-            if (got.what == Received::frame) all.push_back(f);
-            can.service(now());
-            if (got.what == Received::none) std::this_thread::sleep_for(1ms);
-        }
-        return all;
-    }
+    std::vector<Frame> run_for(Duration how_long) { return heard_by(can, how_long); }
 };
 
 TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
@@ -159,15 +131,7 @@ TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_c
         EXPECT_EQ(dump.output().find(never_sent), std::string::npos) << never_sent;
 }
 
-void set_up(bool up) {
-    const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
-    ifreq request{};
-    std::strcpy(request.ifr_name, "can0");
-    ASSERT_EQ(::ioctl(fd, SIOCGIFFLAGS, &request), 0);
-    request.ifr_flags = static_cast<short>(up ? request.ifr_flags | IFF_UP : request.ifr_flags & ~IFF_UP);
-    ASSERT_EQ(::ioctl(fd, SIOCSIFFLAGS, &request), 0);
-    ::close(fd);
-}
+void set_up(bool up) { ASSERT_TRUE(init::set_link("can0", up)); }
 
 TEST_F(RealCan, notices_an_interface_that_goes_down_and_costs_nothing_meanwhile) {
     open();
@@ -251,15 +215,6 @@ struct RealCanFd : RealCan {
         settings.takes_fd = true;
         settings.data_bit_rate = 2'000'000;
     }
-    static Frame whole(std::uint32_t id, Format format, std::uint8_t length = 64) {
-        Frame f;
-        f.id = id;
-        f.length = length;
-        f.stamp = now();
-        set_format(f, format);
-        for (std::size_t i = 0; i < length; ++i) f.data[i] = static_cast<std::uint8_t>(i);
-        return f;
-    }
     /// The flags that it shows of that frame; newer kernels add one that says CAN FD (4). -1: it shows none.
     static int flags_of(const Foreign& dump, const Frame& f) {
         char head[16];
@@ -284,7 +239,9 @@ struct RealCanFd : RealCan {
 
 TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format) {
     open();
-    const auto sent = [](Format format, std::uint8_t length) { return whole(0x123, format, length); };
+    const auto sent = [](Format format, std::uint8_t length) {
+        return numbered(standard(0x123), format, length);
+    };
     const std::array all{sent(Format::flexible_faster, 64), sent(Format::flexible, 48),
                          sent(Format::flexible_faster, 12), sent(Format::flexible_faster, 0),
                          sent(Format::classical, 8)};
@@ -309,7 +266,8 @@ TEST_F(RealCanFd, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
     open();
     Foreign dump{"candump -L can0"};
     std::this_thread::sleep_for(200ms);
-    const Frame fast = whole(0x201, Format::flexible_faster), slow = whole(0x202, Format::flexible, 32);
+    const Frame fast = numbered(standard(0x201), Format::flexible_faster),
+                slow = numbered(standard(0x202), Format::flexible, 32);
     EXPECT_EQ(can.send(fast), Send::queued);
     EXPECT_EQ(can.send(slow), Send::queued);
     EXPECT_EQ(can.send(frame(0x203)), Send::queued);
@@ -318,11 +276,11 @@ TEST_F(RealCanFd, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
     EXPECT_EQ(flags_of(dump, slow), 0);
     EXPECT_TRUE(dump.says("can0 203#ABCD"));
     EXPECT_EQ(can.counters().sent, 3u);
-    EXPECT_EQ(can.send(whole(0x201, Format::flexible, 13)), Send::refused_invalid);
+    EXPECT_EQ(can.send(numbered(standard(0x201), Format::flexible, 13)), Send::refused_invalid);
 }
 
 TEST_F(RealCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_more) {
-    const std::array safe{whole(0x201, Format::flexible_faster), frame(0x202)};
+    const std::array safe{numbered(standard(0x201), Format::flexible_faster), frame(0x202)};
     SafeSender sender;
     const auto opened = sender.open("can0", safe);
     ASSERT_TRUE(opened) << opened.error().view();
@@ -358,7 +316,7 @@ TEST_F(RealCanFd, refuses_an_interface_for_classical_frames_and_says_the_cure) {
     const auto opened = can.open(settings);
     ASSERT_FALSE(opened);
     EXPECT_EQ(opened.error().view(), cure);
-    const std::array safe{whole(0x201, Format::flexible_faster)};
+    const std::array safe{numbered(standard(0x201), Format::flexible_faster)};
     SafeSender sender;
     const auto rehearsed = sender.open("can0", safe);
     ASSERT_FALSE(rehearsed);

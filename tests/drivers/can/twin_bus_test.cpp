@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <vector>
 
 namespace tappet::can {
@@ -14,20 +15,25 @@ constexpr std::array machine_sends{standard(0x201), standard(0x202), standard(0x
 constexpr std::array plant_sends{standard(0x181), standard(0x182)};
 
 struct TwinBusTest : testing::Test {
-    TwinBusTest() {
-        Settings settings{.interface = "machine", .receive = plant_sends, .transmit = machine_sends};
-        settings.in_flight = 2;
-        settings.restarts_allowed = 2;
-        EXPECT_TRUE(machine.open(settings));
-        EXPECT_TRUE(plant.open({.interface = "plant", .receive = machine_sends, .transmit = plant_sends}));
+    explicit TwinBusTest(BitRates rates = {}, Format format = Format::classical)
+        : bus{1, rates}, format_{format} {
+        const bool takes_fd = format != Format::classical;
+        EXPECT_TRUE(machine.open({.interface = "machine",
+                                  .receive = plant_sends,
+                                  .transmit = machine_sends,
+                                  .in_flight = 2,
+                                  .restarts_allowed = 2,
+                                  .takes_fd = takes_fd}));
+        EXPECT_TRUE(plant.open(
+            {.interface = "plant", .receive = machine_sends, .transmit = plant_sends, .takes_fd = takes_fd}));
         EXPECT_TRUE(bus.attach(machine));
         EXPECT_TRUE(bus.attach(plant));
     }
-    static Frame frame(std::uint32_t id, Time made, std::uint8_t length = 8) {
-        Frame f;
-        f.id = id;
-        f.length = length;
-        f.stamp = made;
+    /// As long as its bus takes it, if the test says no length.
+    [[nodiscard]] Frame frame(std::uint32_t id, Time made, std::optional<std::uint8_t> length = {}) const {
+        Frame f{.id = id, .length = length.value_or(format_ == Format::classical ? 8 : 64), .stamp = made};
+        set_format(f, format_);
+        for (std::size_t i = 0; i < f.length; ++i) f.data[i] = static_cast<std::uint8_t>(i + 1);
         return f;
     }
     /// One period: the machine serves, the bus carries, both ends read.
@@ -36,6 +42,10 @@ struct TwinBusTest : testing::Test {
         plant.service(now);
         bus.deliver_until(now);
     }
+    void carry(Device& from, std::uint32_t id, Time now) {
+        EXPECT_EQ(from.send(frame(id, now), Keep::latest), Send::queued) << id;
+        step(now);
+    }
     static std::vector<Frame> drain(Device& end) {
         std::vector<Frame> all;
         Frame f;
@@ -43,9 +53,12 @@ struct TwinBusTest : testing::Test {
             if (end.receive(f).what == Received::frame) all.push_back(f);
         return all;
     }
-    TwinBus bus{1};
+    TwinBus bus;
     Twin machine;
     Twin plant;
+
+private:
+    Format format_;
 };
 
 TEST_F(TwinBusTest, carries_a_frame_and_confirms_it) {
@@ -118,22 +131,19 @@ TEST_F(TwinBusTest, takes_bit_times_and_serves_the_lower_identifier_first) {
 
 TEST_F(TwinBusTest, loses_duplicates_and_delays_frames_on_demand) {
     bus.faults.lose.next = 1;
-    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
-    step(Time{1ms});
+    carry(machine, 0x201, Time{1ms});
     EXPECT_TRUE(drain(plant).empty());
     EXPECT_EQ(bus.frames_lost(), 1u);
     drain(machine);
     EXPECT_EQ(machine.counters().sent, 1u) << "another node acknowledged it";
 
     bus.faults.duplicate.next = 1;
-    EXPECT_EQ(machine.send(frame(0x201, Time{2ms})), Send::queued);
-    step(Time{2ms});
+    carry(machine, 0x201, Time{2ms});
     EXPECT_EQ(drain(plant).size(), 2u);
 
     bus.faults.delay.next = 1;
     bus.faults.delay_by = 3ms;
-    EXPECT_EQ(machine.send(frame(0x201, Time{3ms})), Send::queued);
-    step(Time{3ms});
+    carry(machine, 0x201, Time{3ms});
     EXPECT_TRUE(drain(plant).empty());
     step(Time{6ms});
     const auto late = drain(plant);
@@ -145,8 +155,7 @@ TEST_F(TwinBusTest, corrupts_the_length_of_one_identifier_only) {
     bus.faults.only = standard(0x202);
     bus.faults.corrupt_length.next = 1;
     EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
-    EXPECT_EQ(machine.send(frame(0x202, Time{1ms})), Send::queued);
-    step(Time{1ms});
+    carry(machine, 0x202, Time{1ms});
     const auto arrived = drain(plant);
     ASSERT_EQ(arrived.size(), 2u);
     EXPECT_EQ(arrived[0].length, 8);
@@ -155,8 +164,7 @@ TEST_F(TwinBusTest, corrupts_the_length_of_one_identifier_only) {
 
 TEST_F(TwinBusTest, says_how_many_frames_were_lost_before_the_next_one) {
     bus.overflow(machine, 7);
-    EXPECT_EQ(plant.send(frame(0x181, Time{1ms})), Send::queued);
-    step(Time{1ms});
+    carry(plant, 0x181, Time{1ms});
     Frame f;
     const Receive answer = machine.receive(f);
     EXPECT_EQ(answer.what, Received::frame);
@@ -167,13 +175,11 @@ TEST_F(TwinBusTest, says_how_many_frames_were_lost_before_the_next_one) {
 TEST_F(TwinBusTest, overflows_an_inbox_that_nobody_reads) {
     std::uint64_t sent = 0;
     for (Time now{1ms}; sent < 300; now += 1ms, ++sent) {
-        ASSERT_EQ(plant.send(frame(0x181, now)), Send::queued);
-        step(now);
+        carry(plant, 0x181, now);
         drain(plant);
     }
     EXPECT_EQ(drain(machine).size(), Twin::inbox);
-    ASSERT_EQ(plant.send(frame(0x181, Time{1s})), Send::queued);
-    step(Time{1s});
+    carry(plant, 0x181, Time{1s});
     Frame f;
     EXPECT_EQ(machine.receive(f).lost, 300u - Twin::inbox);
 }
@@ -199,8 +205,7 @@ TEST_F(TwinBusTest, goes_silent_at_bus_off_and_comes_back_only_when_restarted) {
     step(Time{501ms});
     EXPECT_EQ(machine.state(), State::active);
     EXPECT_EQ(machine.send(frame(0x204, Time{500ms})), Send::refused_stale) << "made before the restart";
-    EXPECT_EQ(machine.send(frame(0x205, Time{502ms})), Send::queued);
-    step(Time{502ms});
+    carry(machine, 0x205, Time{502ms});
     const auto arrived = drain(plant);
     ASSERT_EQ(arrived.size(), 1u) << "nothing from before the restart is ever sent";
     EXPECT_EQ(arrived[0].id, 0x205u);
@@ -225,8 +230,7 @@ TEST_F(TwinBusTest, begins_anew_when_it_is_opened_again) {
     EXPECT_EQ(machine.state(), State::bus_off);
     ASSERT_TRUE(machine.open({.interface = "machine", .receive = plant_sends, .transmit = machine_sends}));
     EXPECT_EQ(machine.state(), State::active);
-    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
-    step(Time{1ms});
+    carry(machine, 0x201, Time{1ms});
     EXPECT_EQ(drain(plant).size(), 1u);
 }
 
@@ -274,8 +278,7 @@ TEST_F(TwinBusTest, takes_missing_acknowledgements_for_a_fault_and_sends_nothing
     bus.set_acknowledged(true);
     step(Time{100ms});
     EXPECT_TRUE(drain(plant).empty());
-    EXPECT_EQ(machine.send(frame(0x201, Time{101ms})), Send::queued);
-    step(Time{101ms});
+    carry(machine, 0x201, Time{101ms});
     EXPECT_EQ(drain(plant).size(), 1u);
 }
 
@@ -309,32 +312,8 @@ TEST_F(TwinBusTest, starves_lower_priorities_when_a_node_babbles) {
 }
 
 /// The same bus between two ends that take CAN FD.
-struct TwinBusFd : testing::Test {
-    TwinBusFd() {
-        EXPECT_TRUE(machine.open(
-            {.interface = "machine", .receive = plant_sends, .transmit = machine_sends, .takes_fd = true}));
-        EXPECT_TRUE(plant.open(
-            {.interface = "plant", .receive = machine_sends, .transmit = plant_sends, .takes_fd = true}));
-        EXPECT_TRUE(bus.attach(machine));
-        EXPECT_TRUE(bus.attach(plant));
-    }
-    static Frame frame(std::uint32_t id, Time made, std::uint8_t length = 64) {
-        Frame f;
-        f.id = id;
-        f.length = length;
-        f.stamp = made;
-        set_format(f, Format::flexible_faster);
-        for (std::size_t i = 0; i < length; ++i) f.data[i] = static_cast<std::uint8_t>(i + 1);
-        return f;
-    }
-    void step(Time now) {
-        machine.service(now);
-        plant.service(now);
-        bus.deliver_until(now);
-    }
-    TwinBus bus{1, {500'000, 2'000'000}};
-    Twin machine;
-    Twin plant;
+struct TwinBusFd : TwinBusTest {
+    TwinBusFd() : TwinBusTest{{500'000, 2'000'000}, Format::flexible_faster} {}
 };
 
 TEST_F(TwinBusFd, carries_64_bytes_in_the_times_of_two_rates) {
@@ -343,13 +322,13 @@ TEST_F(TwinBusFd, carries_64_bytes_in_the_times_of_two_rates) {
     machine.service(Time{1ms});
     EXPECT_EQ(bus.next(), Time{1ms + 403us});
     bus.deliver_until(Time{1ms + 402us});
-    EXPECT_TRUE(TwinBusTest::drain(plant).empty());
+    EXPECT_TRUE(drain(plant).empty());
     bus.deliver_until(Time{1ms + 403us});
-    const auto arrived = TwinBusTest::drain(plant);
+    const auto arrived = drain(plant);
     ASSERT_EQ(arrived.size(), 1u);
     EXPECT_EQ(arrived[0].data, sent.data);
     EXPECT_EQ(format_of(arrived[0]), Format::flexible_faster);
-    TwinBusTest::drain(machine);
+    drain(machine);
     EXPECT_EQ(machine.counters().sent, 1u);
 }
 
@@ -362,7 +341,7 @@ TEST_F(TwinBusFd, takes_longer_without_the_switch_and_with_classical_frames_betw
     EXPECT_EQ(machine.send(classical), Send::queued);
     step(Time{1ms});
     bus.deliver_until(Time{4ms});
-    const auto arrived = TwinBusTest::drain(plant);
+    const auto arrived = drain(plant);
     ASSERT_EQ(arrived.size(), 2u);
     EXPECT_EQ(arrived[0].stamp, Time{1ms + 1420us});
     EXPECT_EQ(arrived[1].stamp, Time{1ms + 1420us + 270us});
@@ -370,30 +349,27 @@ TEST_F(TwinBusFd, takes_longer_without_the_switch_and_with_classical_frames_betw
 
 TEST_F(TwinBusFd, has_every_fault_of_a_classical_bus) {
     bus.faults.spoil.next = 1;
-    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
-    step(Time{1ms});
+    carry(machine, 0x201, Time{1ms});
     bus.deliver_until(Time{2ms});
-    auto arrived = TwinBusTest::drain(plant);
+    auto arrived = drain(plant);
     ASSERT_EQ(arrived.size(), 1u);
     EXPECT_EQ(arrived[0].stamp, Time{1ms + 403us + 62us + 403us}) << "an error frame is of the slow rate";
-    TwinBusTest::drain(machine);
+    drain(machine);
 
     bus.faults.lose.next = 1;
-    EXPECT_EQ(machine.send(frame(0x201, Time{3ms})), Send::queued);
-    step(Time{3ms});
+    carry(machine, 0x201, Time{3ms});
     bus.deliver_until(Time{4ms});
-    EXPECT_TRUE(TwinBusTest::drain(plant).empty());
-    TwinBusTest::drain(machine);
+    EXPECT_TRUE(drain(plant).empty());
+    drain(machine);
     EXPECT_EQ(machine.counters().sent, 2u) << "somebody else acknowledged";
 
     bus.faults.duplicate.next = 1;
     bus.faults.delay.next = 1;
-    EXPECT_EQ(machine.send(frame(0x201, Time{5ms})), Send::queued);
-    step(Time{5ms});
+    carry(machine, 0x201, Time{5ms});
     bus.deliver_until(Time{6ms});
-    EXPECT_EQ(TwinBusTest::drain(plant).size(), 1u);
+    EXPECT_EQ(drain(plant).size(), 1u);
     bus.deliver_until(Time{11ms});
-    EXPECT_EQ(TwinBusTest::drain(plant).size(), 1u) << "the other one is late";
+    EXPECT_EQ(drain(plant).size(), 1u) << "the other one is late";
 }
 
 TEST_F(TwinBusFd, corrupts_a_length_into_another_one_that_there_is) {
@@ -404,10 +380,10 @@ TEST_F(TwinBusFd, corrupts_a_length_into_another_one_that_there_is) {
         EXPECT_EQ(machine.send(frame(0x201, now, static_cast<std::uint8_t>(sent))), Send::queued);
         step(now);
         bus.deliver_until(now + 1ms);
-        const auto arrived = TwinBusTest::drain(plant);
+        const auto arrived = drain(plant);
         ASSERT_EQ(arrived.size(), 1u) << sent;
         EXPECT_EQ(arrived[0].length, corrupted);
-        TwinBusTest::drain(machine);
+        drain(machine);
     }
     EXPECT_EQ(plant.counters().malformed, 0u);
 }
@@ -418,11 +394,10 @@ TEST_F(TwinBusFd, is_not_for_an_end_that_has_classical_can_only) {
     ASSERT_TRUE(classical.open({.interface = "old", .receive = machine_sends, .transmit = own}));
     ASSERT_TRUE(bus.attach(classical));
     EXPECT_EQ(classical.send(frame(0x300, Time{1ms})), Send::refused_invalid);
-    EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
-    step(Time{1ms});
+    carry(machine, 0x201, Time{1ms});
     bus.deliver_until(Time{2ms});
-    EXPECT_TRUE(TwinBusTest::drain(classical).empty());
-    EXPECT_EQ(TwinBusTest::drain(plant).size(), 1u);
+    EXPECT_TRUE(drain(classical).empty());
+    EXPECT_EQ(drain(plant).size(), 1u);
 }
 
 TEST_F(TwinBusFd, refuses_what_is_no_frame) {
@@ -439,8 +414,7 @@ TEST_F(TwinBusTest, calls_the_listener_once_per_delivery) {
     step(Time{1ms});
     EXPECT_EQ(calls, 0);
     EXPECT_EQ(plant.send(frame(0x181, Time{2ms})), Send::queued);
-    EXPECT_EQ(plant.send(frame(0x182, Time{2ms})), Send::queued);
-    step(Time{2ms});
+    carry(plant, 0x182, Time{2ms});
     EXPECT_EQ(calls, 1);
     EXPECT_EQ(machine.wait_handle(), -1);
 }

@@ -1,13 +1,13 @@
 // The real GPIO device on a real kernel's simulated chip, with libgpiod's tools as peers. Runs on the bench:
 // /dev/panel with 16 lines, its outside below /sim/panel.
 #include "drivers/gpio/lines.hpp"
+#include "kernel/os/clock.hpp"
 #include "kernel/os/waiter.hpp"
 #include "tests/drivers/foreign.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <ctime>
 #include <gpiod.h>
 #include <malloc.h>
 
@@ -25,11 +25,7 @@ constexpr std::array panel{
 constexpr std::size_t drop_wire = 0, detector = 1, button = 2, lamp = 3, brake = 4, valve = 5;
 constexpr Mask bit(std::size_t line) { return Mask{1} << line; }
 
-Time now() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-}
+Time now() { return os::Clock::monotonic(); }
 
 std::string outside(unsigned offset, const char* what) {
     return "/sim/panel/sim_gpio" + std::to_string(offset) + "/" + what;

@@ -2,14 +2,13 @@
 // a pair of terminals (socat): reading, writing, exceptions, and an outage of the whole process.
 #include "drivers/modbus/libmodbus_transport.hpp"
 #include "drivers/modbus/session.hpp"
+#include "kernel/os/clock.hpp"
 #include "tests/drivers/foreign.hpp"
+#include "tests/drivers/loopback.hpp"
 
 #include <gtest/gtest.h>
 
-#include <ctime>
 #include <memory>
-#include <netinet/in.h>
-#include <sys/socket.h>
 
 namespace tappet::modbus {
 namespace {
@@ -29,30 +28,14 @@ constexpr auto map = register_map(
     read("nowhere", holding_registers(5000, 1), every(100ms), word("w", 0)));
 static_assert(map.fault.empty());
 
-Time now() {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-}
-
-std::string free_port() {
-    const int fd = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    EXPECT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&address), size), 0);
-    EXPECT_EQ(::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size), 0);
-    ::close(fd);
-    return std::to_string(ntohs(address.sin_port));
-}
+Time now() { return os::Clock::monotonic(); }
 
 class ForeignDevice : public testing::TestWithParam<const char*> {
 protected:
     ForeignDevice() {
         TransportSettings settings{.unit = 1, .answer_within = 400ms};
         if (std::string{GetParam()} == "tcp") {
-            where = free_port();
+            where = std::to_string(free_port(SOCK_STREAM));
             settings.line = Tcp{"127.0.0.1", static_cast<std::uint16_t>(std::stoi(where))};
         } else {
             const std::string base = testing::TempDir() + "modbus_line." + std::to_string(::getpid());

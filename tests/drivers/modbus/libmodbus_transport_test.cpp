@@ -3,12 +3,12 @@
 #include "drivers/modbus/libmodbus_transport.hpp"
 
 #include "drivers/modbus/session.hpp"
+#include "kernel/os/clock.hpp"
 #include "tests/drivers/modbus/raw_server.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <ctime>
 #include <dirent.h>
 #include <linux/filter.h>
 #include <string>
@@ -20,14 +20,17 @@ namespace {
 /// Of an answer that comes: no host is so busy.
 constexpr Duration patience = 30s;
 
-class Wire : public testing::TestWithParam<RawServer::Line> {
-protected:
-    explicit Wire(Duration answer_within = patience) {
+/// A server and who asks it. Of a serial line the name is the server's.
+struct Asked {
+    explicit Asked(RawServer::Line line, Duration answer_within = patience,
+                   Serial setting = {{}, 115200, 'N', 1})
+        : server{line} {
         TransportSettings settings{.unit = 17, .answer_within = answer_within};
-        if (GetParam() == RawServer::Line::tcp)
+        setting.device = server.terminal();
+        if (line == RawServer::Line::tcp)
             settings.line = Tcp{"127.0.0.1", server.port()};
         else
-            settings.line = Serial{server.terminal(), 115200, 'N', 1};
+            settings.line = setting;
         const auto opened = transport.open(settings);
         EXPECT_TRUE(opened) << (opened ? "" : opened.error().view());
         EXPECT_EQ(transport.connect().outcome, Outcome::ok);
@@ -35,9 +38,13 @@ protected:
     Answer read(std::uint16_t address = 7) {
         return transport.read(Table::holding_registers, address, words);
     }
-    RawServer server{GetParam()};
+    RawServer server;
     LibmodbusTransport transport;
     std::array<std::uint16_t, 3> words{};
+};
+
+struct Wire : testing::TestWithParam<RawServer::Line>, Asked {
+    explicit Wire(Duration answer_within = patience) : Asked{GetParam(), answer_within} {}
 };
 
 /// For answers that never come in time.
@@ -146,58 +153,43 @@ TEST_P(Wire, refuses_an_answer_that_is_too_short) {
     EXPECT_NE(read().outcome, Outcome::ok);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modbus, Wire, testing::Values(RawServer::Line::tcp, RawServer::Line::serial),
-                         [](const auto& param) {
-                             return param.param == RawServer::Line::tcp ? "tcp" : "rtu";
-                         });
-INSTANTIATE_TEST_SUITE_P(Modbus, WireOfASilentServer,
-                         testing::Values(RawServer::Line::tcp, RawServer::Line::serial),
-                         [](const auto& param) {
-                             return param.param == RawServer::Line::tcp ? "tcp" : "rtu";
-                         });
+constexpr auto name_of = [](const auto& param) {
+    return param.param == RawServer::Line::tcp ? "tcp" : "rtu";
+};
+const auto lines = testing::Values(RawServer::Line::tcp, RawServer::Line::serial);
+INSTANTIATE_TEST_SUITE_P(Modbus, Wire, lines, name_of);
+INSTANTIATE_TEST_SUITE_P(Modbus, WireOfASilentServer, lines, name_of);
 
 TEST(ModbusTcp, refuses_the_answer_to_another_request) {
-    RawServer server{RawServer::Line::tcp};
-    LibmodbusTransport transport;
-    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = patience}));
-    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
-    server.manner = Manner::wrong_transaction;
-    std::array<std::uint16_t, 1> words{};
-    EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::garbled);
-    server.manner = Manner::close;
-    EXPECT_FALSE(transport.recover());
-    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
-    EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::disconnected);
+    Asked at{RawServer::Line::tcp};
+    at.server.manner = Manner::wrong_transaction;
+    EXPECT_EQ(at.read(0).outcome, Outcome::garbled);
+    at.server.manner = Manner::close;
+    EXPECT_FALSE(at.transport.recover());
+    ASSERT_EQ(at.transport.connect().outcome, Outcome::ok);
+    EXPECT_EQ(at.read(0).outcome, Outcome::disconnected);
 }
 
+constexpr Serial even{{}, 19200, 'E', 1};
+
 TEST(ModbusRtu, refuses_an_answer_with_a_wrong_checksum) {
-    RawServer server{RawServer::Line::serial};
-    LibmodbusTransport transport;
-    ASSERT_TRUE(transport.open({.line = Serial{server.terminal(), 19200, 'E', 1}, .answer_within = 2s}));
-    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
-    std::array<std::uint16_t, 1> words{};
+    Asked at{RawServer::Line::serial, 2s, even};
     for (const Manner wrong : {Manner::wrong_checksum, Manner::stray}) {
-        server.manner = wrong;
-        EXPECT_NE(transport.read(Table::holding_registers, 0, words).outcome, Outcome::ok);
-        server.manner = Manner::right;
-        EXPECT_TRUE(transport.recover());
-        EXPECT_EQ(transport.read(Table::holding_registers, 9, words).outcome, Outcome::ok);
-        EXPECT_EQ(words[0], 1009) << "what was garbled leaves nothing behind";
+        at.server.manner = wrong;
+        EXPECT_NE(at.read(0).outcome, Outcome::ok);
+        at.server.manner = Manner::right;
+        EXPECT_TRUE(at.transport.recover());
+        EXPECT_EQ(at.read(9).outcome, Outcome::ok);
+        EXPECT_EQ(at.words[0], 1009) << "what was garbled leaves nothing behind";
     }
 }
 
 /// The network loses what it asks, and is whole again when it has given up.
 TEST(ModbusTcp, never_sends_a_request_again_that_it_has_given_up) {
-    const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+    const auto [listener, port] = bound_to_loopback(SOCK_STREAM);
     ASSERT_EQ(::listen(listener, 1), 0);
-    ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
     LibmodbusTransport transport;
-    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", ntohs(address.sin_port)}, .answer_within = 50ms}));
+    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", port}, .answer_within = 50ms}));
     ASSERT_EQ(transport.connect().outcome, Outcome::ok);
     const int server = ::accept(listener, nullptr, nullptr);
     sock_filter drop{BPF_RET | BPF_K, 0, 0, 0};
@@ -213,18 +205,15 @@ TEST(ModbusTcp, never_sends_a_request_again_that_it_has_given_up) {
 }
 
 TEST(ModbusRtu, refuses_a_write_that_is_confirmed_for_another_place) {
-    RawServer server{RawServer::Line::serial};
-    LibmodbusTransport transport;
-    ASSERT_TRUE(transport.open({.line = Serial{server.terminal(), 19200, 'E', 1}, .answer_within = 2s}));
-    ASSERT_EQ(transport.connect().outcome, Outcome::ok);
+    Asked at{RawServer::Line::serial, 2s, even};
     const std::array<std::uint16_t, 3> to{1, 0, 1};
     for (const Table table : {Table::coils, Table::holding_registers}) {
-        server.manner = Manner::elsewhere;
-        EXPECT_EQ(transport.write(table, 7, to).outcome, Outcome::garbled);
-        server.manner = Manner::exception;
-        EXPECT_EQ(transport.write(table, 7, to).exception, 6);
-        server.manner = Manner::right;
-        EXPECT_EQ(transport.write(table, 7, to).outcome, Outcome::ok);
+        at.server.manner = Manner::elsewhere;
+        EXPECT_EQ(at.transport.write(table, 7, to).outcome, Outcome::garbled);
+        at.server.manner = Manner::exception;
+        EXPECT_EQ(at.transport.write(table, 7, to).exception, 6);
+        at.server.manner = Manner::right;
+        EXPECT_EQ(at.transport.write(table, 7, to).outcome, Outcome::ok);
     }
 }
 
@@ -256,15 +245,12 @@ std::size_t open_descriptors() {
 }
 
 TEST(ModbusTcp, leaks_no_descriptor_over_many_outages) {
-    RawServer server{RawServer::Line::tcp};
-    LibmodbusTransport transport;
-    ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = patience}));
-    std::array<std::uint16_t, 1> words{};
-    server.manner = Manner::close;
+    Asked at{RawServer::Line::tcp};
+    at.server.manner = Manner::close;
     const auto one_outage = [&] {
-        transport.connect();
-        transport.read(Table::holding_registers, 0, words);
-        transport.recover();
+        at.transport.connect();
+        at.read(0);
+        at.transport.recover();
     };
     one_outage();
     const std::size_t before = open_descriptors();
@@ -304,22 +290,17 @@ TEST(ModbusSessionOnTheWire, survives_an_outage_in_real_time) {
     LibmodbusTransport transport;
     ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = 60ms}));
     Session<1, 2> session{map, transport, {.first = 20ms, .most = 100ms}};
-    const auto clock = [] {
-        timespec t{};
-        ::clock_gettime(CLOCK_MONOTONIC, &t);
-        return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
-    };
     const auto run_until = [&](const auto& is_so) { // sooner or later it is, however busy the host
         while (!is_so()) {
-            const Duration rest = session.step(clock()) - clock();
+            const Duration rest = session.step(os::Clock::monotonic()) - os::Clock::monotonic();
             if (rest > 0ns) std::this_thread::sleep_for(std::min<Duration>(rest, 10ms));
         }
     };
     run_until([&] { return session.value(1).quality == Quality::good; });
     EXPECT_EQ(session.value(1).value, 1006);
     server.manner = Manner::silent;
-    const Time silent_from = clock();
-    run_until([&] { return session.outage() && clock() - silent_from > 200ms; });
+    const Time silent_from = os::Clock::monotonic();
+    run_until([&] { return session.outage() && os::Clock::monotonic() - silent_from > 200ms; });
     const Time last = session.value(1).stamp;
     server.manner = Manner::right;
     run_until([&] { return session.value(1).stamp > last && !session.outage(); });

@@ -2,6 +2,8 @@
 // purpose.
 #pragma once
 
+#include "tests/drivers/loopback.hpp"
+
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -10,10 +12,8 @@
 #include <fcntl.h>
 #include <functional>
 #include <mutex>
-#include <netinet/in.h>
 #include <poll.h>
 #include <string>
-#include <sys/socket.h>
 #include <termios.h>
 #include <thread>
 #include <unistd.h>
@@ -122,16 +122,9 @@ public:
 
 private:
     void listen_on_loopback() {
-        listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t size = sizeof address;
-        if (::bind(listener_, reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-            ::listen(listener_, 4) != 0 ||
-            ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) != 0)
-            std::abort();
-        port_ = ntohs(address.sin_port);
+        const auto [socket, port] = bound_to_loopback(SOCK_STREAM);
+        if (::listen(socket, 4) != 0) std::abort();
+        listener_ = socket, port_ = port;
     }
     void open_terminal() {
         peer_ = ::posix_openpt(O_RDWR | O_NOCTTY);

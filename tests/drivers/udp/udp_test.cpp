@@ -2,6 +2,7 @@
 // why.
 #include "drivers/udp/sender.hpp"
 #include "drivers/udp/socket.hpp"
+#include "tests/drivers/loopback.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,9 +10,6 @@
 #include <cstring>
 #include <string>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 namespace tappet::udp {
@@ -25,20 +23,6 @@ std::string received(Device& from, std::size_t room = most_bytes) {
     const std::size_t size = from.receive(std::span{bytes}.first(room));
     return {reinterpret_cast<const char*>(bytes.data()), std::min(size, room)};
 }
-/// A port that is nobody's at this moment.
-std::uint16_t free_port() {
-    const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    sockaddr_in at{};
-    at.sin_family = AF_INET;
-    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof at;
-    auto* const address = static_cast<sockaddr*>(static_cast<void*>(&at));
-    EXPECT_EQ(::bind(probe, address, size), 0);
-    EXPECT_EQ(::getsockname(probe, address, &size), 0);
-    ::close(probe);
-    return ntohs(at.sin_port);
-}
-
 TEST(Twin, gives_datagrams_in_their_order_and_nothing_when_none_is_there) {
     Twin twin;
     EXPECT_EQ(received(twin), "");
@@ -75,7 +59,7 @@ TEST(Twin, tells_the_whole_size_of_what_does_not_fit) {
 }
 
 TEST(Socket, receives_what_is_sent_to_its_port) {
-    const std::uint16_t port = free_port();
+    const std::uint16_t port = free_port(SOCK_DGRAM);
     Socket socket;
     ASSERT_TRUE(socket.open("127.0.0.1", port).has_value());
     EXPECT_EQ(received(socket), "") << "it does not wait";
@@ -98,7 +82,7 @@ TEST(Socket, asks_another_one_and_hears_its_answer) {
         for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(at);
         return got;
     };
-    const std::uint16_t port = free_port();
+    const std::uint16_t port = free_port(SOCK_DGRAM);
     Socket answers, asks, other;
     ASSERT_TRUE(answers.open("127.0.0.1", port).has_value());
     EXPECT_FALSE(answers.send(bytes_of("to whom?"))) << "nobody has asked";
@@ -117,7 +101,7 @@ TEST(Socket, asks_another_one_and_hears_its_answer) {
 
 TEST(Socket, says_why_it_cannot_be_opened) {
     Socket first, second, nowhere;
-    const std::uint16_t port = free_port();
+    const std::uint16_t port = free_port(SOCK_DGRAM);
     ASSERT_TRUE(first.open("127.0.0.1", port).has_value());
     const auto taken = second.open("127.0.0.1", port);
     ASSERT_FALSE(taken);
