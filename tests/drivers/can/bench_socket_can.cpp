@@ -3,6 +3,7 @@
 #include "board/init/devices.hpp"
 #include "drivers/can/safe_sender.hpp"
 #include "tests/drivers/can/bench_frames.hpp"
+#include "tests/drivers/can/hex.hpp"
 #include "tests/drivers/foreign.hpp"
 
 #include <gtest/gtest.h>
@@ -226,15 +227,7 @@ struct RealCanFd : RealCan {
         if (flags == seen.npos || seen.substr(flags + 1, 2u * f.length) != digits(f)) return -1;
         return (seen[flags] - '0') & ~4;
     }
-    static std::string digits(const Frame& f) {
-        std::string text;
-        char pair[3];
-        for (std::size_t i = 0; i < f.length; ++i) {
-            std::snprintf(pair, sizeof pair, "%02X", unsigned{f.data[i]});
-            text += pair;
-        }
-        return text;
-    }
+    static std::string digits(const Frame& f) { return hex_of(f, "0123456789ABCDEF"); }
 };
 
 TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format) {

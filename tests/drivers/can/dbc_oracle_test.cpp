@@ -4,7 +4,8 @@
 #include "drivers/can/dbc/writer.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "tests/drivers/can/dbc_generator.hpp"
-#include "tests/drivers/can/dbc_on_host.hpp"
+#include "tests/drivers/can/hex.hpp"
+#include "tests/drivers/can/same_map.hpp"
 #include "tests/drivers/foreign.hpp"
 
 #include <gtest/gtest.h>
@@ -28,26 +29,12 @@ std::vector<std::string> parts_of(const std::string& text, char between) {
     for (std::string part; std::getline(in, part, between);) parts.push_back(part);
     return parts;
 }
-std::string bits_of(double value) {
-    char text[17] = {};
-    std::snprintf(text, sizeof text, "%016llx",
-                  static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
-    return text;
-}
 double from_bits(const std::string& text) { return std::bit_cast<double>(std::stoull(text, nullptr, 16)); }
 std::string from_hex(const std::string& hex) {
     std::string text;
     for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
         text += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
     return text;
-}
-std::string hex_of(const Frame& frame) {
-    std::string hex;
-    for (std::size_t i = 0; i < frame.length; ++i) {
-        hex += "0123456789abcdef"[frame.data[i] >> 4];
-        hex += "0123456789abcdef"[frame.data[i] & 15];
-    }
-    return hex;
 }
 std::string order_of(const Frame& frame) {
     return std::to_string(frame.id) + (frame.extended ? " 1 " : " 0 ");
@@ -363,43 +350,10 @@ void expect_found(const std::function<bool(const Signal&)>& is_meant,
 }
 
 /// What was written and read back is the map that was written, so canmatrix agrees with that.
-template <std::size_t F, std::size_t S> void expect_back(const SignalMap<F, S>& map, const Taken& taken) {
-    const auto& back = taken.read->map;
-    ASSERT_EQ(back.fault.view(), "");
-    ASSERT_EQ(taken.read->sizes.frames, F);
-    ASSERT_EQ(taken.read->sizes.signals, S);
-    for (std::size_t f = 0; f < F; ++f) {
-        EXPECT_EQ(back.frames[f].identifier, map.frames[f].identifier);
-        EXPECT_EQ(back.frames[f].name, map.frames[f].name);
-        EXPECT_EQ(back.frames[f].direction, map.frames[f].direction);
-        EXPECT_EQ(back.frames[f].length, map.frames[f].length);
-        EXPECT_EQ(back.frames[f].format, map.frames[f].format);
-        EXPECT_EQ(back.frames[f].every, map.frames[f].every);
-    }
-    for (std::size_t s = 0; s < S; ++s) {
-        const Signal& ours = map.signals[s];
-        const Signal& read = back.signals[back.signal(std::string{map.frames[map.frame_of[s]].name} + "." +
-                                                      std::string{ours.name})];
-        EXPECT_EQ(read.start, ours.start);
-        EXPECT_EQ(read.bits, ours.bits);
-        EXPECT_EQ(read.order, ours.order);
-        EXPECT_EQ(read.kind, ours.kind);
-        EXPECT_EQ(read.factor, ours.factor);
-        EXPECT_EQ(read.offset, ours.offset);
-        EXPECT_EQ(read.unit, ours.unit);
-        EXPECT_EQ(read.has_range, ours.has_range);
-        EXPECT_EQ(read.least, ours.least);
-        EXPECT_EQ(read.most, ours.most);
-        EXPECT_EQ(read.multiplexor, ours.multiplexor);
-        EXPECT_EQ(read.selections.size(), ours.selections.size());
-        ASSERT_EQ(read.names.size(), ours.names.size());
-        for (std::size_t i = 0; i < ours.names.size(); ++i) EXPECT_EQ(read.names[i].name, ours.names[i].name);
-    }
-}
 TEST(DbcOracle, what_is_written_comes_back) {
-    expect_back(by_hand, *asked().taken[files]);
-    expect_back(carpet::can_signals, *asked().taken[files + 1]);
-    expect_back(of_can_fd, *asked().taken[files + 2]);
+    expect_same(by_hand, *asked().taken[files]->read, Places::any);
+    expect_same(carpet::can_signals, *asked().taken[files + 1]->read, Places::any);
+    expect_same(of_can_fd, *asked().taken[files + 2]->read, Places::any);
 }
 
 TEST(DbcOracle, finds_a_format_that_is_planted_in_ours) {

@@ -1,8 +1,8 @@
 // DBC files as signal maps: what the compiler makes of one, and what a node sends and receives of it.
 #include "drivers/can/bus.hpp"
 #include "drivers/can/from_dbc.hpp"
-#include "tests/drivers/can/dbc_on_host.hpp"
 #include "tests/drivers/can/press.dbc.hpp"
+#include "tests/drivers/can/same_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -158,16 +158,7 @@ TEST(Dbc, says_whether_the_bit_rate_switches) {
 }
 
 TEST(Dbc, at_run_time_gives_what_the_compiler_made) {
-    const DbcMap read{files::press_dbc.text, controller.view()};
-    ASSERT_EQ(read.map.fault.view(), "");
-    ASSERT_EQ(read.sizes.frames, map.frames.size());
-    ASSERT_EQ(read.sizes.signals, map.signals.size());
-    for (std::size_t s = 0; s < map.signals.size(); ++s) {
-        EXPECT_EQ(read.map.signals[s].name, map.signals[s].name);
-        EXPECT_EQ(read.map.signals[s].unit, map.signals[s].unit);
-        EXPECT_EQ(read.map.signals[s].factor, map.signals[s].factor);
-        EXPECT_EQ(read.map.multiplexor_of[s], map.multiplexor_of[s]);
-    }
+    expect_same(map, {files::press_dbc.text, controller.view()});
 }
 
 } // namespace

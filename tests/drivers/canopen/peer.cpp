@@ -1,6 +1,7 @@
 // Its socket and its process.
 #include "tests/drivers/canopen/peer.hpp"
 
+#include "tests/drivers/can/hex.hpp"
 #include "tests/drivers/foreign.hpp"
 
 #include <gtest/gtest.h>
@@ -56,14 +57,9 @@ Peer::~Peer() {
 }
 
 void Peer::give(const can::Frame& frame) {
-    constexpr std::string_view digits = "0123456789abcdef";
     pending_ += "f ";
-    for (int shift = 8; shift >= 0; shift -= 4) pending_ += digits[frame.id >> shift & 0xF];
-    pending_ += ' ';
-    for (std::size_t i = 0; i < frame.length; ++i)
-        for (int shift = 4; shift >= 0; shift -= 4)
-            pending_ += digits[static_cast<std::size_t>(frame.data[i] >> shift & 0xF)];
-    pending_ += '\n';
+    for (int shift = 8; shift >= 0; shift -= 4) pending_ += "0123456789abcdef"[frame.id >> shift & 0xF];
+    pending_ += ' ' + can::hex_of(frame) + '\n';
 }
 
 std::vector<can::Frame> Peer::move_to(std::int64_t ms) {

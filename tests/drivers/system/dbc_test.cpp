@@ -1,6 +1,7 @@
 // What crosses a system's wire, as canmatrix reads it: the exported DBC file, and frames that were heard
 // there.
 #include "drivers/can/dbc/writer.hpp"
+#include "tests/drivers/can/hex.hpp"
 #include "tests/drivers/system/pair.hpp"
 #include "tests/toolchain/program.hpp"
 #include "toolchain/machine/system_run.hpp"
@@ -15,22 +16,6 @@ namespace tappet::pair {
 namespace {
 
 using testing::HasSubstr;
-
-std::string hex_of(const can::Frame& frame) {
-    std::string text;
-    for (std::size_t i = 0; i < frame.length; ++i) {
-        std::array<char, 3> digits{};
-        std::snprintf(digits.data(), digits.size(), "%02x", unsigned{frame.data[i]});
-        text += digits.data();
-    }
-    return text;
-}
-std::string bits_of(double value) {
-    std::array<char, 17> text{};
-    std::snprintf(text.data(), text.size(), "%016llx",
-                  static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
-    return text.data();
-}
 
 TEST(SystemDbc, is_read_by_a_tool_that_is_not_ours_and_so_are_the_frames) {
     const auto& plan = systems::plan_of<pair>;
@@ -60,14 +45,14 @@ TEST(SystemDbc, is_read_by_a_tool_that_is_not_ours_and_so_are_the_frames) {
         if (frame.id == level) of_level = frame;
         if (frame.id == sent) of_event = frame;
     }
-    orders += "decode " + std::to_string(level) + " 0 " + hex_of(of_level) + "\\n";
-    orders += "decode " + std::to_string(sent) + " 0 " + hex_of(of_event) + "\\n";
+    orders += "decode " + std::to_string(level) + " 0 " + can::hex_of(of_level) + "\\n";
+    orders += "decode " + std::to_string(sent) + " 0 " + can::hex_of(of_event) + "\\n";
     run.stop();
     const Ended read = run_line("printf '" + orders + "' | /usr/bin/python3 " TAPPET_DBC_ORACLE);
     EXPECT_EQ(read.exit_code, 0) << read.text;
     EXPECT_THAT(read.text, HasSubstr("data_of_a_giver_level"));
     EXPECT_THAT(read.text, HasSubstr("end\t\n")) << "canmatrix has nothing to complain of";
-    EXPECT_THAT(read.text, HasSubstr("a_giver_level=-1234;" + bits_of(-123.4)));
+    EXPECT_THAT(read.text, HasSubstr("a_giver_level=-1234;" + can::bits_of(-123.4)));
     EXPECT_THAT(read.text, HasSubstr("value=77;"));
     std::remove(file.c_str());
 }
