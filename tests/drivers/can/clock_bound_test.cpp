@@ -50,9 +50,7 @@ public:
         run_.end(1).doubles_one_in = random_.one_in(2) ? 8 : 0;
         run_.wire().faults.spoil.one_in = random_.one_in(2) ? 10 : 0;
         if (random_.one_in(2)) {
-            can::Frame urgent;
-            urgent.id = 1;
-            urgent.length = 8;
+            can::Frame urgent{.id = 1, .length = 8};
             run_.wire().babble(urgent, Duration{random_.between(300'000, 2'000'000)}, run_.now());
         }
         for (int part = 0; part < 6; ++part) {

@@ -71,21 +71,19 @@ TEST(ClockFrames, are_read_as_they_were_written) {
 TEST(ClockFrames, of_others_are_foreign) {
     ClockFrame read;
     const Frame good = encode(row, sync);
-    Frame other = good;
+    Frame other = good, extended = good, remote = good, offset = good;
     other.id = 0x091;
-    EXPECT_EQ(decode(row, other, read), ClockRead::foreign);
-    other = good;
-    other.extended = true;
-    EXPECT_EQ(decode(row, other, read), ClockRead::foreign);
-    other = good;
-    other.remote = true;
-    EXPECT_EQ(decode(row, other, read), ClockRead::foreign);
+    extended.extended = true;
+    remote.remote = true;
+    offset.data[0] = 0x34; // an offset's
     ClockRow neighbour = row;
     neighbour.domain = 6;
-    EXPECT_EQ(decode(row, encode(neighbour, sync), read), ClockRead::foreign);
-    other = good;
-    other.data[0] = 0x34; // an offset's
-    EXPECT_EQ(decode(row, other, read), ClockRead::foreign);
+    for (const auto& [what, frame] : {std::pair{"identifier", other},
+                                      {"format", extended},
+                                      {"remote", remote},
+                                      {"kind", offset},
+                                      {"domain", encode(neighbour, sync)}})
+        EXPECT_EQ(decode(row, frame, read), ClockRead::foreign) << what;
 }
 
 TEST(ClockFrames, that_are_spoilt_cut_or_unsecured_are_wrong) {

@@ -1,8 +1,7 @@
 // What is made of the frames that tell a clock: which exchanges count, which do not, and what is told
 // meanwhile.
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
 #include "tests/drivers/can/clock_machines.hpp"
+#include "tests/drivers/components/machine_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,15 +26,13 @@ TEST(ClockRows, are_part_of_what_the_bus_is_proven_for) {
 }
 
 /// The teller's clock is 1000 s ahead, and its stamps are exact.
-struct ToldClock : testing::Test {
+struct ToldClock : MachineRig<fed_machine> {
     ToldClock() {
         EXPECT_TRUE(instance.configure({}));
         told = instance.find<Told>("clock");
         feeder = instance.find<ClockFeeder>("feeder");
-        world.start();
         run(20ms);
     }
-    void run(Duration time) { EXPECT_TRUE(world.run_until(clock.now() + time)); }
 
     void sync(unsigned sequence, Duration ago = 4ms) {
         through = clock.now() - ago;
@@ -68,9 +65,6 @@ struct ToldClock : testing::Test {
         EXPECT_LE(std::abs((told->ahead.last() - ahead).count()), told->error.last().count());
     }
 
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<fed_machine, board>::machine(), clock};
-    VirtualWorld world{instance};
     Told* told = nullptr;
     ClockFeeder* feeder = nullptr;
     Duration ahead = 1000s + 250ms;

@@ -139,10 +139,9 @@ private:
         const auto& map = one.read->map;
         for (std::size_t f = 0; f < one.read->sizes.frames; ++f)
             for (std::size_t n = 0; n < frames_of_each; ++n) {
-                Frame frame;
-                frame.id = map.frames[f].identifier.id;
-                frame.extended = map.frames[f].identifier.extended;
-                frame.length = map.frames[f].length;
+                Frame frame{.id = map.frames[f].identifier.id,
+                            .extended = map.frames[f].identifier.extended,
+                            .length = map.frames[f].length};
                 set_format(frame, map.frames[f].format);
                 for (std::size_t b = 0; b < frame.length; ++b)
                     frame.data[b] = static_cast<std::uint8_t>(random.next());

@@ -50,12 +50,7 @@ static_assert(panel_map.signal("drive.torque_of_the_shaft") == 0 && panel_map.si
 static_assert(panel_map.frames[0].length == 6, "of a frame it takes its own signals only");
 
 Frame service(Payload data) {
-    Frame frame;
-    frame.id = 2566844962 & 0x1FFF'FFFF;
-    frame.extended = true;
-    frame.length = 8;
-    frame.data = data;
-    return frame;
+    return {.id = 2566844962 & 0x1FFF'FFFF, .extended = true, .length = 8, .data = data};
 }
 
 TEST(Dbc, decodes_what_the_multiplexors_select_and_leaves_the_rest) {

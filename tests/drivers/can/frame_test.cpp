@@ -9,11 +9,7 @@ namespace tappet::can {
 namespace {
 
 Frame of_length(unsigned length, bool fd = true) {
-    Frame f;
-    f.id = 0x123;
-    f.fd = fd;
-    f.length = static_cast<std::uint8_t>(length);
-    return f;
+    return {.id = 0x123, .fd = fd, .length = static_cast<std::uint8_t>(length)};
 }
 
 TEST(Frame, has_the_lengths_of_its_format_and_no_others) {

@@ -50,17 +50,21 @@ TEST(Signals, decode_as_an_independent_decoder_does) {
     }
 }
 
+/// Of any length and order, within the first `end` bits.
+Signal any_signal(Random& random, int end) {
+    const auto bits = static_cast<std::uint8_t>(random.between(1, 64));
+    const bool motorola = random.one_in(2);
+    const auto first = static_cast<unsigned>(random.between(0, end - bits));
+    // Motorola: `first` counts from the left end of the payload to the most significant bit.
+    const unsigned start = motorola ? 8 * (first / 8) + 7 - first % 8 : first;
+    return placed(static_cast<std::uint16_t>(start), bits, motorola ? Order::motorola : Order::intel, false);
+}
+
 TEST(Signals, come_back_as_they_went_in_and_touch_no_other_bit) {
     Random random{3};
     for (int round = 0; round < 2000; ++round) {
-        const auto bits = static_cast<std::uint8_t>(random.between(1, 64));
-        const bool motorola = random.one_in(2);
-        const auto lowest = static_cast<unsigned>(random.between(0, 64 - bits));
-        // Motorola: `lowest` counts from the left end of the payload to the most significant bit.
-        const unsigned start = motorola ? 8 * (lowest / 8) + 7 - lowest % 8 : lowest;
-        const Signal s =
-            placed(static_cast<std::uint16_t>(start), bits, motorola ? Order::motorola : Order::intel, false);
-        const std::uint64_t raw = random.next() >> (64 - bits);
+        const Signal s = any_signal(random, 64);
+        const std::uint64_t raw = random.next() >> (64 - s.bits);
         Payload zeros{}, ones{};
         ones.fill(0xFF);
         insert(zeros, s, raw);
@@ -69,7 +73,7 @@ TEST(Signals, come_back_as_they_went_in_and_touch_no_other_bit) {
         EXPECT_EQ(extract(ones, s), raw);
         int set = 0;
         for (std::size_t i = 0; i < 8; ++i) set += std::popcount(static_cast<unsigned>(zeros[i] ^ ones[i]));
-        EXPECT_EQ(set, 64 - bits);
+        EXPECT_EQ(set, 64 - s.bits);
     }
 }
 
@@ -77,26 +81,21 @@ TEST(Signals, come_back_as_they_went_in_and_touch_no_other_bit) {
 TEST(Signals, lie_anywhere_in_64_bytes) {
     Random random{4};
     for (int round = 0; round < 5000; ++round) {
-        const auto bits = static_cast<std::uint8_t>(random.between(1, 64));
-        const bool motorola = random.one_in(2);
-        const auto first = static_cast<unsigned>(random.between(0, 512 - bits));
-        const unsigned start = motorola ? 8 * (first / 8) + 7 - first % 8 : first;
-        const Signal s =
-            placed(static_cast<std::uint16_t>(start), bits, motorola ? Order::motorola : Order::intel, false);
+        const Signal s = any_signal(random, 512);
         Payload before{};
         for (auto& each : before) each = static_cast<std::uint8_t>(random.next());
         Payload data = before;
         const std::uint64_t raw = random.next();
         insert(data, s, raw);
         std::uint64_t found = 0;
-        for (unsigned i = 0; i < bits; ++i) {
+        for (unsigned i = 0; i < s.bits; ++i) {
             const unsigned at = bit_place(s, i);
             found |= std::uint64_t{data[at / 8] >> at % 8 & 1u} << i;
             const auto mask = static_cast<std::uint8_t>(1u << at % 8);
             data[at / 8] = static_cast<std::uint8_t>((data[at / 8] & ~mask) | (before[at / 8] & mask));
         }
-        ASSERT_EQ(found, raw & ~std::uint64_t{0} >> (64 - bits))
-            << "start " << start << ", bits " << int{bits};
+        ASSERT_EQ(found, raw & ~std::uint64_t{0} >> (64 - s.bits))
+            << "start " << s.start << ", bits " << int{s.bits};
         ASSERT_EQ(data, before) << "no other bit was touched";
         insert(data, s, raw);
         ASSERT_EQ(extract(data, s), found);
@@ -153,26 +152,28 @@ TEST(Signals, carry_floats) {
 
 TEST(Signals, saturate_and_never_wrap) {
     const Signal f = signal("f", 0, 32).as_float().times(0.001);
-    const Signal s = signal("v", 0, 16).as_signed();
-    const Signal u = signal("v", 0, 16);
-    EXPECT_EQ(to_raw(s, 40000).bits, 0x7FFFu);
-    EXPECT_TRUE(to_raw(s, 40000).saturated);
-    EXPECT_EQ(to_raw(s, -40000).bits, 0x8000u);
-    EXPECT_TRUE(to_raw(s, -40000).saturated);
-    EXPECT_EQ(to_raw(s, -32768).bits, 0x8000u);
-    EXPECT_FALSE(to_raw(s, -32768).saturated);
-    EXPECT_EQ(to_raw(s, 32767.4).bits, 0x7FFFu);
-    EXPECT_FALSE(to_raw(s, 32767.4).saturated);
-    EXPECT_EQ(to_raw(u, -1).bits, 0u);
-    EXPECT_TRUE(to_raw(u, -1).saturated);
-    EXPECT_FALSE(to_raw(u, -0.4).saturated);
-    EXPECT_EQ(to_raw(u, 65535.6).bits, 0xFFFFu);
-    EXPECT_TRUE(to_raw(signal("w", 0, 64), 1e20).saturated);
-    EXPECT_EQ(to_raw(signal("w", 0, 64), 1e20).bits, ~std::uint64_t{0});
-    EXPECT_EQ(to_raw(signal("w", 0, 64).as_signed(), -1e20).bits, std::uint64_t{1} << 63);
-    EXPECT_EQ(to_raw(signal("b", 0, 1).as_signed(), 1).bits, 0u) << "one signed bit holds -1 and 0";
-    EXPECT_EQ(to_raw(signal("b", 0, 1).as_signed(), -1).bits, 1u);
-    EXPECT_EQ(to_raw(signal("w", 0, 53), 9007199254740991.0).bits, 9007199254740991u);
+    const Signal s = signal("v", 0, 16).as_signed(), u = signal("v", 0, 16), wide = signal("w", 0, 64);
+    const struct {
+        Signal of;
+        double value;
+        std::uint64_t bits;
+        bool saturated;
+    } cases[] = {{s, 40000, 0x7FFF, true},
+                 {s, -40000, 0x8000, true},
+                 {s, -32768, 0x8000, false},
+                 {s, 32767.4, 0x7FFF, false},
+                 {u, -1, 0, true},
+                 {u, -0.4, 0, false},
+                 {u, 65535.6, 0xFFFF, true},
+                 {wide, 1e20, ~std::uint64_t{0}, true},
+                 {wide.as_signed(), -1e20, std::uint64_t{1} << 63, true},
+                 {signal("one signed bit holds -1 and 0", 0, 1).as_signed(), 1, 0, true},
+                 {signal("b", 0, 1).as_signed(), -1, 1, false},
+                 {signal("w", 0, 53), 9007199254740991.0, 9007199254740991u, false}};
+    for (const auto& each : cases) {
+        EXPECT_EQ(to_raw(each.of, each.value).bits, each.bits) << each.of.name << " " << each.value;
+        EXPECT_EQ(to_raw(each.of, each.value).saturated, each.saturated) << each.of.name << " " << each.value;
+    }
     // A number of the field's unit that has no end in that of the wire.
     for (const double large : {1e306, -1e306}) {
         const bool up = large > 0;
@@ -183,10 +184,6 @@ TEST(Signals, saturate_and_never_wrap) {
                   up ? 3.4028234663852886e38 * 0.001 : -3.4028234663852886e38 * 0.001);
         EXPECT_TRUE(to_raw(signal("d", 0, 64).as_float().times(0.001), large).saturated);
     }
-}
-
-TEST(Signals, refuse_what_is_no_number) {
-    EXPECT_TRUE(to_raw(signal("v", 0, 16), std::numeric_limits<double>::quiet_NaN()).refused);
 }
 
 TEST(Signals, round_to_the_nearest) {
@@ -219,6 +216,14 @@ template <class... Rows> std::string_view fault(const Rows&... rows) {
     return kept.view();
 }
 
+/// Of a frame "f" with these signals.
+template <class... Signals> std::string_view fault_of(Bytes length, const Signals&... signals) {
+    return fault(receive(standard(1), "f", length, every(1ms), signals...));
+}
+template <class... Signals> std::string_view fault_of_sent(const Signals&... signals) {
+    return fault(transmit(standard(1), "f", bytes(2), every(1ms), signals...));
+}
+
 TEST(SignalMap, sends_cyclic_safe_frames_first_and_leaves_out_what_is_safe_by_silence) {
     static constexpr auto all = signal_map(
         transmit(standard(0x000), "nmt", bytes(2), on_demand(10ms), signal("command", 0, 8).safe(128),
@@ -233,24 +238,22 @@ TEST(SignalMap, sends_cyclic_safe_frames_first_and_leaves_out_what_is_safe_by_si
 
 TEST(SignalMap, refuses_what_is_sent_and_says_no_safe_value) {
     EXPECT_EQ(
-        fault(transmit(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16))),
+        fault_of_sent(signal("speed", 0, 16)),
         "signal \"f.speed\" does not say its safe value: write .safe(..) behind it, or .safe_by_silence() "
         "behind the frame");
     EXPECT_EQ(fault(transmit(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16).safe(0))
                         .safe_by_silence()),
               "signal \"f.speed\" has a safe value, but its frame is safe by silence: keep one of the two");
-    EXPECT_EQ(fault(transmit(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16).safe(70000))),
+    EXPECT_EQ(fault_of_sent(signal("speed", 0, 16).safe(70000)),
               "signal \"f.speed\" cannot hold its safe value: it is outside of the signal's range");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), every(1ms), signal("speed", 0, 16).safe(0))),
+    EXPECT_EQ(fault_of(bytes(2), signal("speed", 0, 16).safe(0)),
               "signal \"f.speed\" is received and has a safe value: only what is sent has one");
 }
 
 constexpr ValueName states[]{{0, "off"}, {1, "on"}, {2, "reserved"}, {3, "reserved"}};
 
 TEST(SignalMap, refuses_a_safe_value_whose_name_says_no_value) {
-    const auto named = [](const Signal& s) {
-        return fault(transmit(standard(1), "f", bytes(1), every(1ms), s));
-    };
+    const auto named = [](const Signal& s) { return fault_of_sent(s); };
     const Signal lamp = signal("lamp", 0, 2).named(states);
     EXPECT_EQ(named(lamp.safe("on")), "");
     EXPECT_EQ(named(lamp.safe("onn")), "signal \"f.lamp\" calls no value \"onn\"; did you mean \"on\"?");
@@ -264,12 +267,7 @@ TEST(SignalMap, refuses_a_safe_value_whose_name_says_no_value) {
 }
 
 Frame drive_frame(std::uint8_t length = 6) {
-    Frame f;
-    f.id = 0x181;
-    f.length = length;
-    f.data = {0x27, 0x06, 0x18, 0xFC, 0xFF, 0xFF};
-    f.stamp = Time{10ms};
-    return f;
+    return {.id = 0x181, .length = length, .data = {0x27, 0x06, 0x18, 0xFC, 0xFF, 0xFF}, .stamp = Time{10ms}};
 }
 
 TEST(SignalStore, decodes_a_frame_that_fits) {
@@ -283,18 +281,16 @@ TEST(SignalStore, counts_wrong_lengths_and_unknown_identifiers_and_decodes_neith
     SignalStore store{map};
     for (const std::uint8_t length : {std::uint8_t{0}, std::uint8_t{5}, std::uint8_t{7}, std::uint8_t{8}})
         EXPECT_EQ(store.decode(drive_frame(length)), Decoded::wrong_length);
-    Frame other = drive_frame();
+    Frame other = drive_frame(), extended = other, remote = other, ours = other;
     other.id = 0x182;
-    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier);
-    other = drive_frame();
-    other.extended = true;
-    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier);
-    other = drive_frame();
-    other.remote = true;
-    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier);
-    other = drive_frame();
-    other.id = 0x201;
-    EXPECT_EQ(store.decode(other), Decoded::unknown_identifier) << "ours to send, not to receive";
+    extended.extended = true;
+    remote.remote = true;
+    ours.id = 0x201;
+    for (const auto& [what, frame] : {std::pair{"identifier", other},
+                                      {"format", extended},
+                                      {"remote", remote},
+                                      {"ours to send, not to receive", ours}})
+        EXPECT_EQ(store.decode(frame), Decoded::unknown_identifier) << what;
     EXPECT_EQ(store.count.wrong_lengths, 4u);
     EXPECT_EQ(store.count.unknown_identifiers, 4u);
     EXPECT_EQ(store.count.decoded, 0u);
@@ -328,11 +324,10 @@ TEST(SignalStore, survives_random_frames) {
     SignalStore store{map};
     Random random{9};
     for (int i = 0; i < 20000; ++i) {
-        Frame f;
-        f.id = random.one_in(3) ? 0x181u : static_cast<std::uint32_t>(random.below(0x800));
-        f.extended = random.one_in(5);
-        f.remote = random.one_in(9);
-        f.length = static_cast<std::uint8_t>(random.below(16));
+        Frame f{.id = random.one_in(3) ? 0x181u : static_cast<std::uint32_t>(random.below(0x800)),
+                .extended = random.one_in(5),
+                .remote = random.one_in(9),
+                .length = static_cast<std::uint8_t>(random.below(16))};
         for (auto& byte : f.data) byte = static_cast<std::uint8_t>(random.next());
         store.decode(f);
     }
@@ -340,26 +335,23 @@ TEST(SignalStore, survives_random_frames) {
 }
 
 TEST(SignalMap, refuses_overlapping_signals) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 16), signal("b", 15, 8))),
+    EXPECT_EQ(fault_of(bytes(8), signal("a", 0, 16), signal("b", 15, 8)),
               "signal \"f.b\" overlaps \"a\" at bit 15: move one of them");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 7, 16).big_endian(),
-                            signal("b", 8, 8))),
+    EXPECT_EQ(fault_of(bytes(8), signal("a", 7, 16).big_endian(), signal("b", 8, 8)),
               "signal \"f.b\" overlaps \"a\" at bit 8: move one of them");
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 7, 16).big_endian(),
-                            signal("b", 16, 8))),
-              "");
+    EXPECT_EQ(fault_of(bytes(8), signal("a", 7, 16).big_endian(), signal("b", 16, 8)), "");
 }
 
 TEST(SignalMap, refuses_signals_outside_their_frame) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(2), every(1ms), signal("a", 8, 9))),
+    EXPECT_EQ(fault_of(bytes(2), signal("a", 8, 9)),
               "signal \"f.a\" reaches outside its frame of 2 bytes: it starts at bit 8 (its lowest) and goes "
               "up 9 bits; move it or "
               "lengthen the frame");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(2), every(1ms), signal("a", 15, 9).big_endian())), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 60000, 9))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 65))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 0))), "");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(9), every(1ms), signal("a", 0, 8))), "");
+    EXPECT_NE(fault_of(bytes(2), signal("a", 15, 9).big_endian()), "");
+    EXPECT_NE(fault_of(bytes(8), signal("a", 60000, 9)), "");
+    EXPECT_NE(fault_of(bytes(8), signal("a", 0, 65)), "");
+    EXPECT_NE(fault_of(bytes(8), signal("a", 0, 0)), "");
+    EXPECT_NE(fault_of(bytes(9), signal("a", 0, 8)), "");
 }
 
 constexpr auto fast = signal_map(
@@ -372,9 +364,7 @@ static_assert(fast.fault.empty());
 
 TEST(SignalMap, has_can_fd_rows_with_signals_anywhere_in_them) {
     SignalStore store{fast};
-    Frame f;
-    f.id = 0x321;
-    f.length = 64;
+    Frame f{.id = 0x321, .length = 64};
     set_format(f, Format::flexible_faster);
     insert(f.data, fast.signals[0], 200);
     insert(f.data, fast.signals[2], 0x8877'6655'4433'2211);
@@ -430,34 +420,25 @@ TEST(SignalMap, sends_the_pages_of_a_can_fd_row_with_zeros_between_and_both_when
 }
 
 TEST(SignalMap, refuses_lengths_that_there_are_not) {
-    const auto row = [](Bytes length) {
-        return receive(standard(1), "f", length, every(1ms), signal("a", 0, 8));
-    };
-    EXPECT_EQ(fault(row(fd_bytes(13))),
-              "frame \"f\" has 13 bytes: CAN FD has no such length; make it 16, and "
-              "what no signal covers is padding");
-    EXPECT_EQ(fault(row(fd_bytes(65))),
-              "frame \"f\" has 65 bytes: a CAN FD frame holds 64 at most; make it two");
-    EXPECT_EQ(fault(row(bytes(12))),
-              "frame \"f\" has 12 bytes: a classical frame holds 8 at most; make it CAN "
-              "FD by fd_bytes(..), in a DBC file by VFrameFormat");
+    const auto of = [](Bytes length) { return fault_of(length, signal("a", 0, 8)); };
+    EXPECT_EQ(of(fd_bytes(13)), "frame \"f\" has 13 bytes: CAN FD has no such length; make it 16, and "
+                                "what no signal covers is padding");
+    EXPECT_EQ(of(fd_bytes(65)), "frame \"f\" has 65 bytes: a CAN FD frame holds 64 at most; make it two");
+    EXPECT_EQ(of(bytes(12)), "frame \"f\" has 12 bytes: a classical frame holds 8 at most; make it CAN "
+                             "FD by fd_bytes(..), in a DBC file by VFrameFormat");
     for (const int length : {1, 8, 12, 16, 20, 24, 32, 48, 64})
-        EXPECT_EQ(fault(row(fd_bytes(static_cast<std::uint8_t>(length)))), "");
+        EXPECT_EQ(of(fd_bytes(static_cast<std::uint8_t>(length))), "");
 }
 
 TEST(SignalMap, refuses_what_overlaps_or_reaches_outside_behind_the_eighth_byte) {
+    EXPECT_EQ(fault_of(fd_bytes(64), signal("a", 300, 64), signal("b", 363, 8)),
+              "signal \"f.b\" overlaps \"a\" at bit 363: move one of them");
+    EXPECT_EQ(fault_of(fd_bytes(64), signal("a", 300, 64), signal("b", 364, 8)), "");
     EXPECT_EQ(
-        fault(receive(standard(1), "f", fd_bytes(64), every(1ms), signal("a", 300, 64), signal("b", 363, 8))),
-        "signal \"f.b\" overlaps \"a\" at bit 363: move one of them");
-    EXPECT_EQ(
-        fault(receive(standard(1), "f", fd_bytes(64), every(1ms), signal("a", 300, 64), signal("b", 364, 8))),
-        "");
-    EXPECT_EQ(
-        fault(receive(standard(1), "f", fd_bytes(48), every(1ms), signal("a", 376, 9))),
+        fault_of(fd_bytes(48), signal("a", 376, 9)),
         "signal \"f.a\" reaches outside its frame of 48 bytes: it starts at bit 376 (its lowest) and goes "
         "up 9 bits; move it or lengthen the frame");
-    EXPECT_NE(fault(receive(standard(1), "f", fd_bytes(48), every(1ms), signal("a", 383, 9).big_endian())),
-              "");
+    EXPECT_NE(fault_of(fd_bytes(48), signal("a", 383, 9).big_endian()), "");
 }
 
 TEST(SignalMap, refuses_doubled_names_and_identifiers) {
@@ -468,7 +449,7 @@ TEST(SignalMap, refuses_doubled_names_and_identifiers) {
     EXPECT_EQ(fault(row(1, "f"), row(1, "g")), "frame \"g\" has the identifier of \"f\": give it its own");
     EXPECT_EQ(fault(row(1, "f"), receive(extended(1), "g", bytes(0), every(1ms))), "")
         << "another format, another identifier";
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 8), signal("a", 8, 8))),
+    EXPECT_EQ(fault_of(bytes(8), signal("a", 0, 8), signal("a", 8, 8)),
               "frame \"f\" has two signals \"a\": rename one of them");
     EXPECT_EQ(
         fault(row(0x800, "f")),
@@ -477,9 +458,9 @@ TEST(SignalMap, refuses_doubled_names_and_identifiers) {
 }
 
 TEST(SignalMap, refuses_a_factor_of_zero_and_odd_floats) {
-    EXPECT_EQ(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 8).times(0))),
+    EXPECT_EQ(fault_of(bytes(8), signal("a", 0, 8).times(0)),
               "signal \"f.a\" has the factor 0: every value would be the offset; give it another");
-    EXPECT_NE(fault(receive(standard(1), "f", bytes(8), every(1ms), signal("a", 0, 16).as_float())), "");
+    EXPECT_NE(fault_of(bytes(8), signal("a", 0, 16).as_float()), "");
 }
 
 } // namespace

@@ -7,9 +7,7 @@ namespace tappet::can {
 namespace {
 
 Frame frame(std::uint32_t id, Time made = at_ns(0), std::uint8_t content = 0) {
-    Frame f;
-    f.id = id;
-    f.length = 1;
+    Frame f{.id = id, .length = 1};
     f.data[0] = content;
     f.stamp = made;
     return f;

@@ -433,9 +433,7 @@ std::uint64_t run_of(std::uint64_t seed) {
     std::uint64_t digest = 0;
     Random traffic{seed + 1};
     for (Time now{1ms}; now < Time{2s}; now += 1ms) {
-        Frame f;
-        f.id = machine_sends[traffic.below(machine_sends.size())].id;
-        f.stamp = now;
+        Frame f{.id = machine_sends[traffic.below(machine_sends.size())].id, .stamp = now};
         a.send(f);
         a.service(now);
         bus.deliver_until(now);

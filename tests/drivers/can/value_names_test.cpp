@@ -59,10 +59,7 @@ constexpr std::size_t command = map.frame("gear_command");
 
 TEST(ValueNames, are_what_comes_from_the_wire) {
     SignalStore store{map};
-    Frame frame;
-    frame.id = 385;
-    frame.length = 2;
-    frame.data = {0xFF, 0xFF};
+    Frame frame{.id = 385, .length = 2, .data = {0xFF, 0xFF}};
     ASSERT_EQ(store.decode(frame), Decoded::yes);
     EXPECT_EQ(Gear{store.integer(gear)}, Gear::reverse);
     EXPECT_EQ(store.physical(oil), (value_of<map, "gearbox.oil", "not available">));

@@ -37,9 +37,7 @@ Frame back_from(const Frame& f) {
     return back;
 }
 Frame numbered(std::uint8_t length) {
-    Frame f;
-    f.id = 0x123;
-    f.length = length;
+    Frame f{.id = 0x123, .length = length};
     for (std::size_t i = 0; i < length; ++i) f.data[i] = static_cast<std::uint8_t>(i + 1);
     return f;
 }

@@ -12,8 +12,7 @@ TEST_F(ServoAxis, says_done_of_no_motion_that_was_halted) {
     EXPECT_TRUE(ends(client->halt));
     EXPECT_EQ(client->move_to.state(), CommandState::failed);
     client->move_to.reset();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     ASSERT_TRUE(client->superimpose.send(50.0, 10.0, 500.0));
     run(500ms);
     client->halt.reset();
@@ -30,8 +29,7 @@ TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
     EXPECT_TRUE(ends(client->move_to));
     EXPECT_EQ(client->superimpose.state(), CommandState::failed);
     client->superimpose.reset();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     ASSERT_TRUE(client->superimpose.send(50.0, 10.0, 500.0));
     run(500ms);
     client->synchronize.reset();
@@ -75,8 +73,7 @@ TEST_F(ServoAxis, goes_home_to_places_and_at_speeds_by_commands) {
 
 TEST_F(ServoAxis, follows_set_points_at_each_sync) {
     power();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     client->oscillates = true;
     run(2s);
     EXPECT_EQ(axis->state.last(), AxisMode::synchronized_motion);
@@ -111,8 +108,7 @@ TEST_F(ServoAxis, comes_to_rest_when_its_velocity_is_no_number) {
 
 TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
     power();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     client->once = 1;
     run(500ms);
     ASSERT_NEAR(servo.position(), 1, 0.1);
@@ -126,8 +122,7 @@ TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
 
 TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_ordered) {
     power();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     client->oscillates = true;
     run(2200ms);
     client->synchronize.reset();
@@ -144,8 +139,7 @@ TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_
 TEST_F(ServoAxis, stays_where_it_was_turned_without_power) {
     servo.faults.knows_no_halt_in_cyclic = true;
     power();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     client->oscillates = true;
     run(200ms);
     client->oscillates = false;
@@ -165,8 +159,7 @@ TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
     EXPECT_TRUE(ends(client->superimpose));
     EXPECT_NEAR(servo.position(), 1, 1e-3) << "from a stand: a relative motion";
     client->superimpose.reset();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     ASSERT_TRUE(client->superimpose.send(4.0, 10.0, 500.0));
     EXPECT_TRUE(ends(client->superimpose));
     EXPECT_EQ(axis->state.last(), AxisMode::synchronized_motion);
@@ -232,8 +225,7 @@ TEST_F(ServoAxis, is_led_by_what_is_written_after_a_set_point_with_a_time_ahead)
 
 TEST_F(ServoAxis, does_not_jump_after_a_place_with_a_time_ahead) {
     power();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     client->oscillates = true;
     run(1000ms);
     client->ahead = 740ms;

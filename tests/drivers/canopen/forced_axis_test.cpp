@@ -34,8 +34,7 @@ TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {
 
 TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
     power();
-    ASSERT_TRUE(client->synchronize.send(8));
-    ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    follow_positions();
     write(1);
     force(1.5);
     ASSERT_NEAR(axis->target_position.last(), 1.5, 1e-9);

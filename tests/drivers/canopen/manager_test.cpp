@@ -270,9 +270,7 @@ TEST_F(Network, survives_frames_that_nobody_asked_for) {
     run_until(500ms);
     for (const std::uint32_t id : {0x585u, 0x705u, 0x085u})
         for (std::uint8_t length = 0; length <= 8; ++length) {
-            can::Frame frame;
-            frame.id = id;
-            frame.length = length;
+            can::Frame frame{.id = id, .length = length};
             frame.data.fill(0xFF);
             if (id == 0x705 && length == 1) continue;
             send(frame);

@@ -46,7 +46,6 @@ struct Connection : testing::Test {
     /// Carries frames until the transfer ends.
     SdoAbort carry() {
         for (int i = 0; i < 100; ++i) {
-            sdo::Payload request, answer;
             if (client.next(request, now) && server.serve(request, device, answer)) client.take(answer);
             if (client.state() == SdoClient::State::done) return SdoAbort::none;
             if (client.state() == SdoClient::State::aborted) return client.why();
@@ -61,12 +60,27 @@ struct Connection : testing::Test {
         client.write(at, {reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
         return carry();
     }
+    /// Reads, of a server that answers so.
+    void read_answered(Address at, const sdo::Payload& with) {
+        client.read(at);
+        next_answered(with);
+    }
+    void next_answered(const sdo::Payload& with) {
+        ASSERT_TRUE(client.next(request, now));
+        client.take(with);
+    }
+    /// The abort of our server.
+    SdoAbort served(const sdo::Payload& asked) {
+        EXPECT_TRUE(server.serve(asked, device, answer));
+        return sdo::abort_in(answer);
+    }
     [[nodiscard]] std::string text() const { return {client.value().begin(), client.value().end()}; }
 
     SimulatedDevice<dictionary<texts>> device{1};
     SdoClient client;
     SdoServer server;
     Time now{};
+    sdo::Payload request{}, answer{}; ///< the last ones
 };
 
 TEST_F(Connection, reads_and_writes_of_every_length) {
@@ -105,17 +119,12 @@ TEST_F(Connection, ends_with_the_code_of_the_standard) {
 TEST_F(Connection, takes_no_more_than_it_holds) {
     EXPECT_EQ(read(0x2005), SdoAbort::none) << "our server gives what fits";
     // A foreign one says a size beyond.
-    client.read(0x2005);
-    sdo::Payload request;
-    ASSERT_TRUE(client.next(request, now));
-    client.take(sdo::with_address(0x41, 0x2005, 65));
+    read_answered(0x2005, sdo::with_address(0x41, 0x2005, 65));
     EXPECT_EQ(client.why(), SdoAbort::out_of_memory);
     ASSERT_TRUE(client.next(request, now)) << "and is told so";
     EXPECT_EQ(request, sdo::abort_frame(0x2005, SdoAbort::out_of_memory));
     // One that says no size goes on and on.
-    client.read(0x2005);
-    ASSERT_TRUE(client.next(request, now));
-    client.take(sdo::with_address(0x40, 0x2005));
+    read_answered(0x2005, sdo::with_address(0x40, 0x2005));
     unsigned toggle = 0;
     for (int i = 0; i < 20 && client.state() == SdoClient::State::busy; ++i) {
         ASSERT_TRUE(client.next(request, now));
@@ -128,40 +137,27 @@ TEST_F(Connection, takes_no_more_than_it_holds) {
 }
 
 TEST_F(Connection, takes_no_more_and_no_less_than_was_announced) {
-    sdo::Payload request, answer;
-    client.read(0x2000);
-    ASSERT_TRUE(client.next(request, now));
-    client.take(sdo::with_address(0x41, 0x2000, 8));
-    ASSERT_TRUE(client.next(request, now));
-    client.take({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'});
+    read_answered(0x2000, sdo::with_address(0x41, 0x2000, 8));
+    next_answered({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'});
     EXPECT_EQ(client.state(), SdoClient::State::aborted);
     EXPECT_EQ(client.why(), SdoAbort::unknown_command);
     ASSERT_TRUE(server.serve(sdo::with_address(0x21, 0x2000, 0), device, answer));
-    ASSERT_TRUE(server.serve({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}, device, answer));
-    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::wrong_length);
+    EXPECT_EQ(served({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}), SdoAbort::wrong_length);
 }
 
 TEST_F(Connection, ends_when_segments_bring_nothing) {
-    sdo::Payload request;
-    client.read(0x2000);
-    ASSERT_TRUE(client.next(request, now));
-    client.take(sdo::with_address(0x40, 0x2000));
-    ASSERT_TRUE(client.next(request, now));
-    client.take({0x0E});
+    read_answered(0x2000, sdo::with_address(0x40, 0x2000));
+    next_answered({0x0E});
     EXPECT_EQ(client.state(), SdoClient::State::aborted);
 }
 
 TEST_F(Connection, says_why_when_the_server_does_not) {
-    sdo::Payload request;
-    client.read(0x2000);
-    ASSERT_TRUE(client.next(request, now));
-    client.take(sdo::abort_frame(0x2000, SdoAbort::none));
+    read_answered(0x2000, sdo::abort_frame(0x2000, SdoAbort::none));
     EXPECT_EQ(client.state(), SdoClient::State::aborted);
     EXPECT_EQ(client.why(), SdoAbort::general);
 }
 
 TEST_F(Connection, notices_a_missing_answer_a_wrong_toggle_and_a_strange_answer) {
-    sdo::Payload request;
     client.read(0x1000);
     ASSERT_TRUE(client.next(request, now));
     client.tick(now + 100ms);
@@ -171,23 +167,17 @@ TEST_F(Connection, notices_a_missing_answer_a_wrong_toggle_and_a_strange_answer)
     client.take(sdo::with_address(0x43, 0x1000, 1));
     EXPECT_EQ(client.state(), SdoClient::State::aborted) << "too late";
 
-    client.read(0x2000);
-    ASSERT_TRUE(client.next(request, now));
-    client.take(sdo::with_address(0x41, 0x2000, 10));
-    ASSERT_TRUE(client.next(request, now));
-    client.take({0x10});
+    read_answered(0x2000, sdo::with_address(0x41, 0x2000, 10));
+    next_answered({0x10});
     EXPECT_EQ(client.why(), SdoAbort::toggle_bit);
 
-    client.read(0x2000);
-    ASSERT_TRUE(client.next(request, now));
-    client.take(sdo::with_address(0x43, 0x1000, 1));
+    read_answered(0x2000, sdo::with_address(0x43, 0x1000, 1));
     EXPECT_EQ(client.state(), SdoClient::State::busy) << "an answer for another object is none";
     client.take(sdo::with_address(0xE0, 0x2000));
     EXPECT_EQ(client.why(), SdoAbort::unknown_command);
 }
 
 TEST_F(Connection, takes_no_confirmation_that_is_late_for_the_transfer_after_it) {
-    sdo::Payload request;
     const std::string one{"\x01"}, long_one{"more than four bytes"};
     const auto begin_write = [&](const std::string& value) {
         client.write(0x2000, std::span{reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
@@ -202,9 +192,7 @@ TEST_F(Connection, takes_no_confirmation_that_is_late_for_the_transfer_after_it)
     client.take({0x20});
     EXPECT_EQ(client.state(), SdoClient::State::busy) << "the next segment";
 
-    client.read(0x2000);
-    ASSERT_TRUE(client.next(request, now));
-    client.take(written);
+    read_answered(0x2000, written);
     EXPECT_EQ(client.state(), SdoClient::State::busy);
     client.take(read);
     EXPECT_EQ(client.state(), SdoClient::State::done);
@@ -217,7 +205,6 @@ TEST_F(Connection, takes_no_confirmation_that_is_late_for_the_transfer_after_it)
 }
 
 TEST_F(Connection, tells_the_server_of_a_time_out_before_anything_else) {
-    sdo::Payload request;
     client.read(0x2000);
     ASSERT_TRUE(client.next(request, now));
     client.tick(now + 101ms);
@@ -228,20 +215,14 @@ TEST_F(Connection, tells_the_server_of_a_time_out_before_anything_else) {
 }
 
 TEST_F(Connection, has_a_server_that_takes_no_segment_out_of_turn) {
-    sdo::Payload answer;
-    ASSERT_TRUE(server.serve({0x60}, device, answer));
-    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::unknown_command);
-    ASSERT_TRUE(server.serve({0x00}, device, answer));
-    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::unknown_command);
-    ASSERT_TRUE(server.serve(sdo::with_address(0xA0, 0x2000), device, answer)) << "block transfer";
-    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::unknown_command);
+    EXPECT_EQ(served({0x60}), SdoAbort::unknown_command);
+    EXPECT_EQ(served({0x00}), SdoAbort::unknown_command);
+    EXPECT_EQ(served(sdo::with_address(0xA0, 0x2000)), SdoAbort::unknown_command) << "block transfer";
     ASSERT_TRUE(server.serve(sdo::with_address(0x21, 0x2000, 3), device, answer));
     EXPECT_EQ(answer[0], 0x60);
-    ASSERT_TRUE(server.serve({0x10}, device, answer));
-    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::toggle_bit);
+    EXPECT_EQ(served({0x10}), SdoAbort::toggle_bit);
     ASSERT_TRUE(server.serve(sdo::with_address(0x21, 0x2000, 3), device, answer));
-    ASSERT_TRUE(server.serve({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}, device, answer));
-    EXPECT_EQ(sdo::abort_in(answer), SdoAbort::wrong_length);
+    EXPECT_EQ(served({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}), SdoAbort::wrong_length);
     EXPECT_FALSE(server.serve(sdo::abort_frame(0x2000, SdoAbort::general), device, answer));
 }
 

@@ -177,6 +177,10 @@ struct ServoAxis : testing::Test, WireRig<servo_machine, Bus> {
         client->power_on.emit();
         ASSERT_TRUE(reaches(AxisMode::standstill));
     }
+    void follow_positions() {
+        ASSERT_TRUE(client->synchronize.send(8));
+        ASSERT_TRUE(until([&] { return axis->follows.last(); }));
+    }
     template <class Call> bool ends(Call& call) {
         return until([&] { return !in_flight(call.state()); }) && call.state() == CommandState::done;
     }

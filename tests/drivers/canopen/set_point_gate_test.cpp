@@ -41,28 +41,28 @@ void follow_positions(Watched& rig, double speed, int count) {
     }
 }
 
+/// A motion in that mode, which is watched from its beginning.
+void begin(Watched& rig, OperationMode mode, double speed) {
+    if (mode == cyclic_position) return follow_positions(rig, speed, 200);
+    if (mode == profile_position)
+        ASSERT_TRUE(rig.axis.move_to(500, speed));
+    else if (mode == profile_velocity)
+        ASSERT_TRUE(rig.axis.move_at(speed));
+    else {
+        ASSERT_TRUE(rig.axis.synchronize(mode));
+        rig.axis.follow(mode == cyclic_velocity ? speed : 1);
+    }
+    rig.ask(mode == cyclic_torque ? 100 : speed);
+}
+constexpr std::array modes{profile_position, profile_velocity, cyclic_position, cyclic_velocity,
+                           cyclic_torque};
+
 TEST(SetPointGate, keeps_an_axis_that_was_turned_by_hand_where_it_is) {
-    for (const OperationMode mode :
-         {cyclic_position, cyclic_velocity, cyclic_torque, profile_position, profile_velocity})
+    for (const OperationMode mode : modes)
         on_each_drive([&](Watched& rig) {
             SCOPED_TRACE(testing::Message() << "mode " << static_cast<int>(mode));
             ASSERT_TRUE(rig.gets_power());
-            switch (mode) {
-            case cyclic_position: follow_positions(rig, 20, 300); break;
-            case profile_position:
-                ASSERT_TRUE(rig.axis.move_to(50, 20));
-                rig.ask(20);
-                break;
-            case profile_velocity:
-                ASSERT_TRUE(rig.axis.move_at(20));
-                rig.ask(20);
-                break;
-            default:
-                ASSERT_TRUE(rig.axis.synchronize(mode));
-                rig.ask(100);
-                rig.axis.follow(20);
-                break;
-            }
+            begin(rig, mode, 20);
             rig.watched_run(400);
             EXPECT_NE(rig.servo.position(), 0);
             rig.axis.power(false);
@@ -89,11 +89,10 @@ TEST(SetPointGate, gives_no_power_while_the_drive_shows_cyclic_position) {
             rig.watched_cycle();
         }
         EXPECT_EQ(rig.servo.state(), DriveState::switched_on);
-        EXPECT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::error_stop; }))
-            << "somebody learns of it";
+        EXPECT_TRUE(rig.comes_to(AxisMode::error_stop)) << "somebody learns of it";
         rig.servo.faults.refuses_mode = false;
         rig.axis.reset();
-        EXPECT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::standstill; }));
+        EXPECT_TRUE(rig.comes_to(AxisMode::standstill));
     });
 }
 
@@ -118,24 +117,20 @@ TEST(SetPointGate, sends_a_place_only_to_a_drive_that_shows_profile_position) {
     on_each_drive([](Watched& rig) {
         ASSERT_TRUE(rig.gets_power());
         follow_positions(rig, 20, 200);
-        ASSERT_TRUE(rig.axis.move_to(50, 5));
-        rig.ask(5);
+        ASSERT_TRUE(rig.move_to(50, 5));
         while (rig.servo.mode() == 8) {
             rig.watched_cycle();
             EXPECT_LT(rig.last.position, 5);
         }
         rig.watched_run(1000);
         EXPECT_NEAR(rig.servo.velocity(), 5, 1e-9);
-        ASSERT_TRUE(rig.axis.move_to(10, 50));
-        rig.ask(50);
-        EXPECT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::standstill; }));
+        ASSERT_TRUE(rig.move_to(10, 50));
+        EXPECT_TRUE(rig.comes_to(AxisMode::standstill));
         EXPECT_NEAR(rig.servo.position(), 10, 1e-9);
     });
 }
 
 TEST(SetPointGate, hands_over_between_all_modes) {
-    constexpr std::array modes{profile_position, profile_velocity, cyclic_position, cyclic_velocity,
-                               cyclic_torque};
     for (const OperationMode from : modes)
         for (const OperationMode to : modes)
             on_each_drive([&](Watched& rig) {
@@ -143,17 +138,7 @@ TEST(SetPointGate, hands_over_between_all_modes) {
                 ASSERT_TRUE(rig.gets_power());
                 double speed = 30;
                 for (const OperationMode mode : {from, to}) {
-                    if (mode == cyclic_position)
-                        follow_positions(rig, speed, 200);
-                    else if (mode == profile_position)
-                        ASSERT_TRUE(rig.axis.move_to(500, speed));
-                    else if (mode == profile_velocity)
-                        ASSERT_TRUE(rig.axis.move_at(speed));
-                    else {
-                        ASSERT_TRUE(rig.axis.synchronize(mode));
-                        rig.axis.follow(mode == cyclic_velocity ? speed : 1);
-                    }
-                    rig.ask(mode == cyclic_torque ? 100 : speed);
+                    begin(rig, mode, speed);
                     rig.watched_run(mode == cyclic_position ? 0 : 600);
                     if (mode != cyclic_torque) {
                         EXPECT_NEAR(rig.servo.velocity(), speed, 1e-6);
@@ -163,7 +148,7 @@ TEST(SetPointGate, hands_over_between_all_modes) {
                 }
                 ASSERT_TRUE(rig.axis.halt());
                 rig.ask_rest();
-                EXPECT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::standstill; }));
+                EXPECT_TRUE(rig.comes_to(AxisMode::standstill));
                 EXPECT_EQ(rig.servo.velocity(), 0);
                 const double there = rig.servo.position();
                 rig.watched_run(200);
@@ -177,15 +162,13 @@ TEST(SetPointGate, takes_no_homing_before_for_the_one_asked_for) {
         rig.servo.set_home(7);
         ASSERT_TRUE(rig.gets_power());
         for (int count = 1; count <= 2; ++count) {
-            ASSERT_TRUE(rig.axis.home());
-            rig.ask(20);
+            ASSERT_TRUE(rig.go_home());
             EXPECT_TRUE(rig.watched_until([&] { return rig.axis.state() != AxisMode::homing; }));
             EXPECT_EQ(rig.axis.state(), AxisMode::standstill);
             EXPECT_EQ(rig.servo.homings(), count);
             EXPECT_NEAR(rig.servo.position(), 0, 1e-9);
-            ASSERT_TRUE(rig.axis.move_to(9, 50));
-            rig.ask(50);
-            EXPECT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::standstill; }));
+            ASSERT_TRUE(rig.move_to(9, 50));
+            EXPECT_TRUE(rig.comes_to(AxisMode::standstill));
         }
     });
 }
@@ -194,18 +177,15 @@ TEST(SetPointGate, calls_no_homing_done_that_the_drive_never_began) {
     on_each_drive([](Watched& rig) {
         rig.servo.faults.remembers_home = true;
         ASSERT_TRUE(rig.gets_power());
-        ASSERT_TRUE(rig.axis.home());
-        rig.ask(20);
-        ASSERT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::standstill; }));
-        ASSERT_TRUE(rig.axis.move_to(5, 50));
-        rig.ask(50);
-        ASSERT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::standstill; }));
+        ASSERT_TRUE(rig.go_home());
+        ASSERT_TRUE(rig.comes_to(AxisMode::standstill));
+        ASSERT_TRUE(rig.move_to(5, 50));
+        ASSERT_TRUE(rig.comes_to(AxisMode::standstill));
         rig.servo.faults.ignores_homing = true;
-        ASSERT_TRUE(rig.axis.home());
-        rig.ask(20);
+        ASSERT_TRUE(rig.go_home());
         rig.watched_run(1000);
         EXPECT_EQ(rig.axis.state(), AxisMode::homing);
-        EXPECT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::error_stop; }));
+        EXPECT_TRUE(rig.comes_to(AxisMode::error_stop));
         EXPECT_EQ(rig.servo.homings(), 1);
     });
 }
@@ -218,7 +198,7 @@ TEST(SetPointGate, adds_a_superimposed_motion_to_the_one_that_runs) {
         rig.ask(50);
         EXPECT_FALSE(rig.axis.superimpose(2, 50, 500)) << "the drive makes it, and adds nothing";
         EXPECT_EQ(rig.axis.state(), AxisMode::discrete_motion);
-        ASSERT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::standstill; }));
+        ASSERT_TRUE(rig.comes_to(AxisMode::standstill));
         EXPECT_NEAR(rig.servo.position(), 2, 1e-9);
         follow_positions(rig, 20, 100);
         ASSERT_TRUE(rig.axis.superimpose(3, 10, 500));
@@ -274,11 +254,10 @@ TEST(SetPointGate, lets_no_set_point_through_that_is_no_number) {
 TEST(SetPointGate, gives_no_power_behind_an_error_stop) {
     on_each_drive([](Watched& rig) {
         ASSERT_TRUE(rig.gets_power());
-        ASSERT_TRUE(rig.axis.move_to(500, 20));
-        rig.ask(20);
+        ASSERT_TRUE(rig.move_to(500, 20));
         rig.watched_run(300);
         rig.servo.lose_power();
-        ASSERT_TRUE(rig.watched_until([&] { return rig.axis.state() == AxisMode::error_stop; }));
+        ASSERT_TRUE(rig.comes_to(AxisMode::error_stop));
         rig.axis.power(true); // again, without a reset
         rig.watched_run(500);
         EXPECT_NE(rig.servo.state(), DriveState::operation_enabled);

@@ -73,17 +73,11 @@ struct Anybody : Watched {
         case 5: axis.release(); break;
         case 6:
         case 7:
-            if (axis.home()) {
-                ask(20);
-                homings_before = servo.homings();
-            }
+            if (go_home()) homings_before = servo.homings();
             break;
         case 8:
         case 9:
-            if (axis.move_to(place, speed)) {
-                ask(speed);
-                place_asked = place;
-            }
+            if (move_to(place, speed)) place_asked = place;
             break;
         case 10:
             if (axis.move_at(place)) ask(std::abs(place));

@@ -27,6 +27,19 @@ struct Watched : DriveRig {
         expire(3 * round_trip() + servo.faults.mode_steps + 20);
         asked = speed;
     }
+    bool move_to(double place, double speed) {
+        if (!axis.move_to(place, speed)) return false;
+        ask(speed);
+        return true;
+    }
+    bool go_home() {
+        if (!axis.home()) return false;
+        ask(20);
+        return true;
+    }
+    bool comes_to(motion::AxisMode state) {
+        return watched_until([&] { return axis.state() == state; });
+    }
     void ask_rest() { expire(static_cast<int>(cycles_out) + 1); }
     [[nodiscard]] int round_trip() const { return static_cast<int>(cycles_in + cycles_out) + 1; }
 

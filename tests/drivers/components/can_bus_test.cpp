@@ -212,9 +212,7 @@ TEST_F(CanBus, tells_how_many_frames_were_lost) {
 
 TEST_F(CanBus, takes_a_burst_to_its_end_without_another_frame_to_wake_it) {
     run_until(10ms);
-    can::Frame frame;
-    frame.id = 0x181;
-    frame.length = 6;
+    can::Frame frame{.id = 0x181, .length = 6};
     wire.babble(frame, 250ns, clock.now() + 1us);
     run_until(10ms + tick);
     wire.babble(frame, 0ns, never);
@@ -407,7 +405,7 @@ TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {
     wire.bus_off(twin);
     run_until(25ms);
     ASSERT_EQ(master->faults, 1);
-    stop_unheard();
+    stop_unheard("can");
     run_until(30ms);
     change(0, LifeChange::start);
     run_until(35ms);

@@ -50,7 +50,7 @@ struct ForcedDemand : OnDemand {
     }
     void wait() {
         instance.engines()[0].waiter().wake();
-        run_until(clock.now().time_since_epoch() + 20ms);
+        run(20ms);
     }
     [[nodiscard]] std::vector<int> sent() {
         std::vector<int> values;
@@ -141,7 +141,7 @@ TEST_F(OnDemand, sends_demands_whose_times_are_in_no_order) {
     for (const Time at : {at_ns(130'000'000), at_ns(110'000'000), at_ns(105'000'000)}) {
         master->sync_at = at;
         master->sync_next = 5;
-        run_until(clock.now().time_since_epoch() + 20ms);
+        run(20ms);
     }
     EXPECT_EQ(heard_of(0x080).size(), 3u);
 }
@@ -164,10 +164,10 @@ TEST_F(ForcedDemand, repeats_no_demand_with_a_time_that_lies_a_little_ahead) {
         heard.clear();
         master->sync_at = is_ahead ? clock.now() + 900ms : Time::min();
         master->sync_next = 1;
-        run_until(clock.now().time_since_epoch() + 20ms);
+        run(20ms);
         force("can.sync.count", FacetKind::input, 1);
         release();
-        run_until(clock.now().time_since_epoch() + 20ms);
+        run(20ms);
         EXPECT_EQ(heard_of(0x080).size(), 2u) << is_ahead;
     }
 }
@@ -177,13 +177,13 @@ TEST_F(ForcedDemand, does_not_send_after_a_force_what_a_fault_dropped_behind_it)
     write(1);
     force("can.sync.count", FacetKind::input, 7);
     wire.bus_off(twin);
-    run_until(clock.now().time_since_epoch() + 20ms);
+    run(20ms);
     master->sync_next = 7; // dropped: the bus is off
-    run_until(clock.now().time_since_epoch() + 400ms);
+    run(400ms);
     ASSERT_FALSE(bus->is_faulted.last());
     heard.clear();
     release();
-    run_until(clock.now().time_since_epoch() + 20ms);
+    run(20ms);
     EXPECT_TRUE(sent().empty());
     write(8);
     EXPECT_EQ(sent(), std::vector{8});
@@ -191,12 +191,12 @@ TEST_F(ForcedDemand, does_not_send_after_a_force_what_a_fault_dropped_behind_it)
 
 TEST_F(HalfForced, does_not_send_after_a_force_what_a_fault_dropped_behind_it) {
     wire.bus_off(twin);
-    run_until(clock.now().time_since_epoch() + 20ms);
+    run(20ms);
     demand(129, 6); // dropped: the bus is off
-    run_until(clock.now().time_since_epoch() + 400ms);
+    run(400ms);
     heard.clear();
     release();
-    run_until(clock.now().time_since_epoch() + 20ms);
+    run(20ms);
     EXPECT_EQ(demanded(), All{});
 }
 
@@ -204,7 +204,7 @@ TEST_F(ForcedDemand, does_not_send_at_its_stop_what_a_force_hid) {
     demand_each_once();
     force("can.sync.count", FacetKind::input, 7);
     write(5);
-    run_until(clock.now().time_since_epoch() + 3s);
+    run(3s);
     heard.clear();
     change(0, LifeChange::stop);
     wait();
@@ -229,10 +229,10 @@ TEST_F(ForcedDemand, does_not_send_after_a_force_what_a_fault_dropped_whose_time
     write(1);
     force("can.sync.count", FacetKind::input, 7);
     wire.bus_off(twin);
-    run_until(clock.now().time_since_epoch() + 20ms);
+    run(20ms);
     master->sync_at = clock.now() + 900ms;
     master->sync_next = 9; // dropped: the bus is off
-    run_until(clock.now().time_since_epoch() + 400ms);
+    run(400ms);
     ASSERT_FALSE(bus->is_faulted.last());
     heard.clear();
     release();
@@ -245,7 +245,7 @@ TEST_F(ForcedDemand, sends_after_a_force_what_was_demanded_since_a_fault_whateve
     const Time before = clock.now();
     force("can.sync.count", FacetKind::input, 7);
     wire.bus_off(twin);
-    run_until(clock.now().time_since_epoch() + 800ms);
+    run(800ms);
     ASSERT_FALSE(bus->is_faulted.last());
     heard.clear();
     master->sync_at = before; // as who hands on the time of what was measured
@@ -284,9 +284,9 @@ TEST_F(OnDemand, sends_a_command_whose_halves_are_seen_in_two_cycles) {
         heard.clear();
         master->nmt_at = clock.now() + ahead;
         EXPECT_TRUE(master->commands_alone.push(1));
-        run_until(clock.now().time_since_epoch() + 2ms);
+        run(2ms);
         master->node_next = 1;
-        run_until(clock.now().time_since_epoch() + 100ms);
+        run(100ms);
         EXPECT_EQ(heard_of(0x000).size(), 1u) << ahead / 1ms;
     }
 }

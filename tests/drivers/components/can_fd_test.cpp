@@ -103,10 +103,7 @@ TEST_F(PlaningMachine, is_proven_by_both_bit_rates) {
 
 TEST_F(PlaningMachine, takes_no_frame_of_another_format) {
     run_for(20ms);
-    can::Frame wrong;
-    wrong.id = 0x182;
-    wrong.length = 1;
-    wrong.stamp = clock.now();
+    can::Frame wrong{.id = 0x182, .length = 1, .stamp = clock.now()};
     set_format(wrong, can::Format::flexible);
     EXPECT_TRUE(plant.can.RawFarEnd::send(wrong));
     EXPECT_EQ(plant.can.refused(), 0u);

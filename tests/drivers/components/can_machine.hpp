@@ -5,12 +5,7 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/restarter.hpp"
 #include "drivers/can/twin_bus.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-#include "tests/drivers/components/board.hpp"
-#include "tests/drivers/components/unheard.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/drivers/components/machine_rig.hpp"
 
 #include <vector>
 
@@ -153,7 +148,7 @@ inline constexpr auto can_machine = machine("can-machine",
 // clang-format on
 
 /// The machine, the wire and its far end, which hears everything and sends what a test gives it.
-struct CanMachine : testing::Test {
+struct CanMachine : MachineRig<can_machine> {
     static constexpr std::array machine_sends{can::standard(0x201), can::standard(0x000),
                                               can::standard(0x080)};
     static constexpr std::array machine_hears{can::standard(0x181), can::standard(0x182),
@@ -174,38 +169,22 @@ struct CanMachine : testing::Test {
         begin(twin);
     }
     void begin(can::Device& device) {
-        const ProvidedDevice provided{type_id<can::Device>, "wire", &device};
-        const auto configured = instance.configure({&provided, 1});
-        ASSERT_TRUE(configured) << configured.error().view();
+        configure("wire", device);
         bus = instance.find<Bus>("can");
         master = instance.find<Master>("master");
         restarter = instance.find<can::Restarter>("restarter");
     }
-    /// Runs to `end`, counted from the start.
-    void run_until(Duration end) {
-        if (!started) {
-            world.add({this, [](void* self) { return static_cast<CanMachine*>(self)->next_tick; },
-                       [](void* self, Time now) { static_cast<CanMachine*>(self)->carry(now); }});
-            world.start();
-        }
-        started = true;
-        EXPECT_TRUE(world.run_until(Time{end}));
-    }
-    void carry(Time now) {
-        next_tick = now + tick;
+    Time carry(Time now) override {
         far_end.service(now);
         wire.deliver_until(now);
         can::Frame frame;
         while (far_end.receive(frame).what != can::Received::none)
             if (!frame.error.restarted) heard.push_back(frame);
+        return now + tick;
     }
     /// From the far end, at the next tick.
     void send(std::uint32_t id, std::uint8_t length, can::Payload data) {
-        can::Frame frame;
-        frame.id = id;
-        frame.length = length;
-        frame.data = data;
-        frame.stamp = clock.now();
+        can::Frame frame{.id = id, .length = length, .data = data, .stamp = clock.now()};
         EXPECT_EQ(far_end.send(frame, can::Keep::every), can::Send::queued);
     }
     /// The master writes it in one of its next cycles.
@@ -222,25 +201,14 @@ struct CanMachine : testing::Test {
     void demand_each_once() {
         demand(1, 1);
         master->sync_next = 1;
-        run_until(clock.now().time_since_epoch() + 2ms);
+        run(2ms);
         heard.clear();
     }
-    /// Of the activity by its row: 0 is the bus', 2 the restarter's.
-    void change(std::size_t activity, LifeChange change) {
-        const Sentence refusal = world.change_activity(activity, change);
-        EXPECT_TRUE(refusal.empty()) << refusal.view();
-    }
-    void stop_unheard() { test::stop_unheard(world, instance, "can"); }
     [[nodiscard]] std::uint64_t bus_cycles() const { return instance.engines()[0].statistics().cycles; }
 
-    os::Clock clock{os::Clock::Kind::virtual_time};
     can::TwinBus wire{1};
     can::Twin twin;
     can::Twin far_end;
-    MachineInstance instance{AtRunTime<can_machine, board>::machine(), clock};
-    VirtualWorld world{instance};
-    bool started = false;
-    Time next_tick{};
     std::vector<can::Frame> heard;
     Bus* bus = nullptr;
     Master* master = nullptr;

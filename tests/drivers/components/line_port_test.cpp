@@ -1,11 +1,8 @@
 // Digital lines as a component: edges and their times, levels, losses, and what stays behind at stop.
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/gpio/twin.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-#include "tests/drivers/components/board.hpp"
 #include "tests/drivers/components/forced_port.hpp"
-#include "tests/drivers/components/unheard.hpp"
+#include "tests/drivers/components/machine_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -123,47 +120,29 @@ constexpr std::array<gpio::Line, lines.rows.size()> placed_lines = [] {
     return all;
 }();
 
-struct Lines : testing::Test {
+struct Lines : MachineRig<line_machine> {
     static constexpr Duration tick = 100us;
 
     Lines() { EXPECT_TRUE(twin.open({.chip = "twin", .lines = placed_lines})); }
-    void begin(gpio::Device& device) {
-        const ProvidedDevice provided{type_id<gpio::Device>, "lines", &device};
-        const auto configured = instance.configure({&provided, 1});
-        ASSERT_TRUE(configured) << configured.error().view();
-        listener = instance.find<Listener>("listener");
-    }
     void run_until(Duration end) {
-        if (listener == nullptr) begin(twin);
-        if (!started) {
-            world.add({this, [](void* self) { return static_cast<Lines*>(self)->next_tick; },
-                       [](void* self, Time now) {
-                           static_cast<Lines*>(self)->next_tick = now + tick;
-                           static_cast<Lines*>(self)->twin.deliver_until(now);
-                       }});
-            world.start();
+        if (listener == nullptr) {
+            configure<gpio::Device>("lines", twin);
+            listener = instance.find<Listener>("listener");
         }
-        started = true;
-        EXPECT_TRUE(world.run_until(Time{end}));
+        MachineRig::run_until(end);
+    }
+    Time carry(Time now) override {
+        twin.deliver_until(now);
+        return now + tick;
     }
     [[nodiscard]] std::vector<Heard> heard() const {
         return {listener->heard.begin(), listener->heard.end()};
     }
-    void change_io(LifeChange change) {
-        const Sentence refusal = world.change_activity(0, change);
-        EXPECT_TRUE(refusal.empty()) << refusal.view();
-    }
-    void stop_unheard() { test::stop_unheard(world, instance, "io"); }
     [[nodiscard]] std::uint64_t io_cycles() const { return instance.engines()[0].statistics().cycles; }
     [[nodiscard]] bool driven(std::size_t line) const { return (twin.outputs() & at(line)) != 0; }
 
-    os::Clock clock{os::Clock::Kind::virtual_time};
     gpio::Twin twin{7};
-    MachineInstance instance{AtRunTime<line_machine, board>::machine(), clock};
-    VirtualWorld world{instance};
     Listener* listener = nullptr;
-    bool started = false;
-    Time next_tick{};
 };
 
 TEST_F(Lines, tell_edges_with_their_times_in_their_order) {
@@ -315,7 +294,7 @@ TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
     ASSERT_TRUE(driven(valve));
     ASSERT_TRUE(driven(lamp));
     ASSERT_EQ(listener->lost.get(), 1);
-    change_io(LifeChange::stop);
+    change(0, LifeChange::stop);
     EXPECT_EQ(twin.outputs(), at(brake));
     listener->heard.clear();
     listener->opens = true; // told to nobody
@@ -324,7 +303,7 @@ TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
     EXPECT_EQ(listener->faults, 1) << "lines that nobody drives cannot be relied on";
     EXPECT_TRUE(listener->faulted.get());
     EXPECT_EQ(twin.outputs(), at(brake));
-    change_io(LifeChange::start);
+    change(0, LifeChange::start);
     run_until(12ms);
     EXPECT_TRUE(driven(lamp)) << "what is wanted is written again";
     EXPECT_FALSE(driven(valve)) << "what was told before the start is not";
@@ -357,7 +336,7 @@ TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes)
     EXPECT_TRUE(listener->faulted.get());
     run_until(2s);
     EXPECT_EQ(listener->faults, 1);
-    stop_unheard();
+    stop_unheard("io");
     run_until(2s + 5ms);
     EXPECT_EQ(listener->faults, 1) << "it is known already";
     EXPECT_TRUE(listener->faulted.get());
@@ -412,17 +391,17 @@ TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_st
     listener->opens = true;
     run_until(3ms);
     twin.set_removed(true);
-    stop_unheard();
+    stop_unheard("io");
     run_until(5ms);
     EXPECT_TRUE(listener->faulted.get());
     EXPECT_EQ(listener->faults, 1);
     EXPECT_TRUE(driven(valve));
     twin.set_removed(false);
-    change_io(LifeChange::start);
+    change(0, LifeChange::start);
     run_until(8ms);
     EXPECT_EQ(twin.outputs(), at(brake));
     EXPECT_FALSE(listener->faulted.get());
-    change_io(LifeChange::stop);
+    change(0, LifeChange::stop);
     run_until(9ms);
     EXPECT_EQ(instance.life().left_unsafe(), "");
 }
@@ -433,7 +412,7 @@ TEST_F(Lines, leave_safe_values_behind_though_the_chip_refuses_them_once) {
     run_until(3ms);
     ASSERT_TRUE(driven(valve));
     twin.refuse(1);
-    change_io(LifeChange::stop);
+    change(0, LifeChange::stop);
     run_until(5ms);
     EXPECT_EQ(twin.outputs(), at(brake));
     EXPECT_EQ(instance.life().left_unsafe(), "");
@@ -453,8 +432,7 @@ TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
     ForcedPort wanted{instance, "io.lamp", FacetKind::input};
     wanted.to(false);
     run_until(10ms);
-    const Sentence refusal = world.change_activity(1, LifeChange::stop);
-    EXPECT_TRUE(refusal.empty()) << refusal.view();
+    change(1, LifeChange::stop);
     run_until(20ms);
     EXPECT_FALSE(driven(lamp));
     run_until(100ms);

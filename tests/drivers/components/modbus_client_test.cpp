@@ -111,7 +111,7 @@ TEST_F(Utility, writes_nothing_that_grew_stale_during_an_outage) {
 TEST_F(Utility, is_safe_when_its_writer_stopped_while_the_server_was_away_for_long) {
     start_the_pump();
     twin.inject(modbus::Fault::down);
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    change(1, LifeChange::stop);
     run_until(20s);
     ASSERT_TRUE(pump_runs());
     twin.inject(modbus::Fault::none);
@@ -310,8 +310,8 @@ TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reache
         twin.set_exception(6);
         SCOPED_TRACE(static_cast<int>(fault));
         twin.inject(fault);
-        stop_unheard();
-        stop_unheard(); // and is told so again
+        stop_unheard("server");
+        stop_unheard("server"); // and is told so again
         twin.inject(modbus::Fault::none);
         change_server(LifeChange::restart);
         run(3s);
@@ -323,19 +323,15 @@ TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reache
 }
 
 /// Longer than a time stamp may lie ahead of a cycle.
-TEST(SlowServer, gives_values_that_are_good) {
-    os::Clock clock{os::Clock::Kind::virtual_time};
+using SlowServer = MachineRig<utility_machine>;
+
+TEST_F(SlowServer, gives_values_that_are_good) {
     modbus::Twin twin{3s, 1200ms};
-    MachineInstance instance{AtRunTime<utility_machine, board>::machine(), clock};
-    VirtualWorld world{instance};
-    const ProvidedDevice provided{type_id<modbus::Transport>, "server",
-                                  static_cast<modbus::Transport*>(&twin)};
-    ASSERT_TRUE(instance.configure({&provided, 1}));
+    configure<modbus::Transport>("server", twin);
     const Reader& reader = *instance.find<Reader>("reader");
-    world.start();
     int good = 0;
     for (Duration end = 10ms; end < 30s; end += 10ms) {
-        ASSERT_TRUE(world.run_until(Time{end}));
+        run_until(end);
         good += reader.flow == Flow::fresh || reader.flow == Flow::old ? 1 : 0;
     }
     EXPECT_GT(good, 300); // of 3000: its row calls a value good for half a second

@@ -19,7 +19,7 @@ TEST_F(HeldPump, is_told_what_stands_behind_a_force_though_that_is_stale) {
             run(2s);
             EXPECT_TRUE(pump_runs());
             if (stops)
-                EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+                change(1, LifeChange::stop);
             else
                 pump.release();
             run(2s);
@@ -61,7 +61,7 @@ TEST_F(ForcedPump, is_told_once_more_what_is_forced_when_its_server_was_away_for
 TEST_F(ForcedPump, is_told_so_too_when_its_writer_stops) {
     reader->leaves_safe = false;
     begin("reader.pump", FacetKind::output);
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    change(1, LifeChange::stop);
     run_until(24s);
     EXPECT_FALSE(pump_runs());
 }
@@ -115,8 +115,8 @@ using ForcedSilent = ForcedTo<SilentPump>;
 
 TEST_F(ForcedSilent, obeys_a_writer_that_restarts_before_its_client_looks) {
     begin(1);
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
-    EXPECT_TRUE(world.change_activity(1, LifeChange::start).empty());
+    change(1, LifeChange::stop);
+    change(1, LifeChange::start);
     reader->pump_age = 20ms;
     reader->pump_next = 0;
     run_until(8s);
@@ -127,7 +127,7 @@ TEST_F(ForcedSilent, obeys_what_a_stop_leaves_whatever_its_time) {
     begin(1);
     reader->leaves_safe = true;
     reader->pump_age = 1s;
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    change(1, LifeChange::stop);
     run_until(8s);
     EXPECT_FALSE(pump_runs());
 }
@@ -139,8 +139,8 @@ TEST_F(ForcedSilent, hears_a_writer_that_was_stopped_twice) {
     run_until(5s);
     force(1);
     run_until(6s);
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
-    EXPECT_TRUE(world.change_activity(1, LifeChange::start).empty());
+    change(1, LifeChange::stop);
+    change(1, LifeChange::start);
     reader->pump_next = 0;
     run_until(9s);
     EXPECT_FALSE(pump_runs());
@@ -151,14 +151,14 @@ TEST_F(ForcedSilent, is_not_told_at_a_stop_what_lay_ahead_behind_the_force) {
     reader->pump_age = -900ms;
     reader->pump_next = 1;
     run_until(4100ms);
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    change(1, LifeChange::stop);
     run_until(8s);
     EXPECT_FALSE(pump_runs());
 }
 
 TEST_F(Forced, is_safe_after_a_stop_though_it_was_forced_to_what_it_had) {
     begin(1);
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    change(1, LifeChange::stop);
     run_until(8s);
     EXPECT_FALSE(pump_runs());
 }
@@ -191,7 +191,7 @@ TEST_F(PumpAhead, is_told_the_safe_value_of_a_stop_at_once) {
     reader->pump_next = 1;
     run_until(1100ms);
     ASSERT_TRUE(pump_runs());
-    EXPECT_TRUE(world.change_activity(1, LifeChange::stop).empty());
+    change(1, LifeChange::stop);
     run_until(1200ms);
     EXPECT_FALSE(pump_runs());
 }

@@ -3,11 +3,7 @@
 
 #include "drivers/modbus/client.hpp"
 #include "drivers/modbus/twin.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-#include "tests/drivers/components/board.hpp"
-#include "tests/drivers/components/unheard.hpp"
-#include <gtest/gtest.h>
+#include "tests/drivers/components/machine_rig.hpp"
 
 namespace tappet::test {
 
@@ -84,36 +80,23 @@ inline constexpr auto machine_with_hold = machine_with(stale_after(200ms), hold)
 // clang-format on
 
 template <const auto& table>
-struct UtilityOf : testing::Test {
+struct UtilityOf : MachineRig<table> {
     UtilityOf() {
         twin.set(modbus::Table::input_registers, 0, static_cast<std::uint16_t>(-55)); // -5.5 degC
-        const ProvidedDevice provided{type_id<modbus::Transport>, "server",
-                                      static_cast<modbus::Transport*>(&twin)};
-        const auto configured = instance.configure({&provided, 1});
-        EXPECT_TRUE(configured);
-        reader = instance.template find<Reader>("reader");
-        server = instance.template find<Client>("server");
-        world.start();
+        this->template configure<modbus::Transport>("server", twin);
+        reader = this->instance.template find<Reader>("reader");
+        server = this->instance.template find<Client>("server");
     }
-    void run_until(Duration end) { EXPECT_TRUE(world.run_until(Time{end})); }
-    void run(Duration time) { run_until(clock.now().time_since_epoch() + time); }
     void start_the_pump() {
-        run(1s);
+        this->run(1s);
         reader->pump_next = 1;
-        run(1s);
+        this->run(1s);
         ASSERT_TRUE(pump_runs());
     }
-    void change_server(LifeChange change) {
-        const Sentence refusal = world.change_activity(0, change);
-        EXPECT_TRUE(refusal.empty()) << refusal.view();
-    }
-    void stop_unheard() { test::stop_unheard(world, instance, "server"); }
+    void change_server(LifeChange change) { this->change(0, change); }
     [[nodiscard]] bool pump_runs() const { return twin.get(modbus::Table::coils, 0) != 0; }
 
-    os::Clock clock{os::Clock::Kind::virtual_time};
     modbus::Twin twin{300ms, 2ms};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
     Reader* reader = nullptr;
     Client* server = nullptr;
 };

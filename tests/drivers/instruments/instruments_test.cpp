@@ -7,14 +7,13 @@
 #include "drivers/instruments/velocity_axis.hpp"
 #include "kernel/base/random.hpp"
 #include "kernel/component/property_transaction.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-#include "tests/drivers/components/board.hpp"
+#include "tests/drivers/components/machine_rig.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace tappet {
 namespace {
@@ -72,20 +71,22 @@ constexpr auto table = machine("instruments",
     reactions(when("cell.overloaded", call("alarm.hear"))), behaviours());
 // clang-format on
 
-struct Instruments : testing::Test {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, test::board>::machine(), clock};
-    VirtualWorld world{instance};
+struct Instruments : test::MachineRig<table> {
     Instruments() {
         EXPECT_TRUE(instance.configure({}));
-        EXPECT_EQ(std::string{world.start().view()}, "");
+        pass(0ms);
     }
     template <class T>
     T& of(std::string_view name) {
         return *instance.find<T>(name);
     }
     Wires& wires() { return of<Wires>("wires"); }
-    void pass(Duration time = 2ms) { static_cast<void>(world.run_until(clock.now() + time)); }
+    void pass(Duration time = 2ms) { run(time); }
+    /// It is so from now on, and is looked at.
+    template <class T> void give(T& what, std::type_identity_t<T> value, Duration time = 2ms) {
+        what = value;
+        pass(time);
+    }
 };
 
 TEST_F(Instruments, an_encoder_follows_its_register_over_its_ends_either_way) {
@@ -95,8 +96,7 @@ TEST_F(Instruments, an_encoder_follows_its_register_over_its_ends_either_way) {
     double place = 0.0;
     for (int i = 0; i < 2000; ++i) {
         place += 40.0 * (random.unit() - 0.45); // less than 32.768 m in a step, and away with time
-        wires().register_now = scale.count(place);
-        pass(1ms);
+        give(wires().register_now, scale.count(place), 1ms);
         ASSERT_NEAR(encoder.position.last(), place, 1.1e-3) << "step " << i;
     }
     EXPECT_GT(std::abs(place), 300.0) << "the register went round";
@@ -108,13 +108,11 @@ TEST_F(Instruments, an_encoder_that_falls_silent_holds_its_place_and_begins_at_i
     wires().register_now = 0xffff; // -1
     pass();
     EXPECT_DOUBLE_EQ(encoder.position.last(), 0.001);
-    wires().is_silent = true;
-    pass(20ms);
+    give(wires().is_silent, true, 20ms);
     EXPECT_FALSE(encoder.good.last());
     EXPECT_DOUBLE_EQ(encoder.position.last(), 0.001);
     wires().is_silent = false;
-    wires().register_now = 500;
-    pass();
+    give(wires().register_now, 500);
     EXPECT_TRUE(encoder.good.last());
     EXPECT_DOUBLE_EQ(encoder.position.last(), -0.5);
 }
@@ -123,12 +121,10 @@ TEST_F(Instruments, an_encoder_whose_disk_is_loose_or_that_loses_pulses_shows_wh
     SimulatedEncoder<16> scale{-1000.0};
     auto& encoder = of<Encoder<"m", 16>>("encoder");
     scale.slip(-100);
-    wires().register_now = scale.count(1.0);
-    pass();
+    give(wires().register_now, scale.count(1.0));
     EXPECT_DOUBLE_EQ(encoder.position.last(), 1.1);
     scale.stick(true);
-    wires().register_now = scale.count(5.0);
-    pass();
+    give(wires().register_now, scale.count(5.0));
     EXPECT_DOUBLE_EQ(encoder.position.last(), 1.1);
 }
 
@@ -136,29 +132,23 @@ TEST_F(Instruments, an_analog_input_scales_and_tells_a_broken_wire) {
     SimulatedTransmitter transmitter{{4.0, 20.0, 0.0, 16.0}};
     auto& pressure = of<AnalogInput<"bar">>("pressure");
     for (const double bar : {0.0, 3.5, 16.0}) {
-        wires().current_now = transmitter.raw(bar);
-        pass();
+        give(wires().current_now, transmitter.raw(bar));
         EXPECT_NEAR(pressure.value.last(), bar, 1e-12);
         EXPECT_TRUE(pressure.good.last());
     }
-    wires().current_now = transmitter.raw(40.0);
-    pass();
+    give(wires().current_now, transmitter.raw(40.0));
     EXPECT_TRUE(pressure.good.last()) << "a transmitter stays below the current that means failure";
     const double before = pressure.value.last();
     transmitter.break_wire(true);
-    wires().current_now = transmitter.raw(3.0);
-    pass();
+    give(wires().current_now, transmitter.raw(3.0));
     EXPECT_FALSE(pressure.good.last());
     EXPECT_EQ(pressure.value.last(), before) << "it is no pressure below nought";
-    wires().current_now = std::numeric_limits<double>::quiet_NaN();
-    pass();
+    give(wires().current_now, std::numeric_limits<double>::quiet_NaN());
     EXPECT_FALSE(pressure.good.last());
     transmitter.break_wire(false);
-    wires().current_now = transmitter.raw(3.0);
-    pass();
+    give(wires().current_now, transmitter.raw(3.0));
     EXPECT_TRUE(pressure.good.last());
-    wires().is_silent = true;
-    pass(20ms);
+    give(wires().is_silent, true, 20ms);
     EXPECT_FALSE(pressure.good.last());
 }
 
@@ -174,58 +164,46 @@ TEST(AnAnalogScale, draws_the_lines_of_NE_43) {
 TEST_F(Instruments, a_force_sensor_takes_its_tare_off_and_tells_an_overload_once) {
     auto& cell = of<ForceSensor>("cell");
     auto& alarm = of<Alarm>("alarm");
-    wires().newtons_now = 15.0;
-    pass();
+    give(wires().newtons_now, 15.0);
     cell.tare();
-    wires().newtons_now = 115.0;
-    pass();
+    give(wires().newtons_now, 115.0);
     EXPECT_DOUBLE_EQ(cell.force.last(), 100.0);
     cell.tare();
     cell.tare();
     pass();
     EXPECT_DOUBLE_EQ(cell.force.last(), 0.0) << "twice in one cycle is once";
-    wires().newtons_now = 15.0;
-    pass();
+    give(wires().newtons_now, 15.0);
     cell.tare();
-    wires().newtons_now = -1200.0;
-    pass(5ms);
+    give(wires().newtons_now, -1200.0, 5ms);
     EXPECT_EQ(alarm.times, 1);
     EXPECT_DOUBLE_EQ(alarm.heard, -1200.0);
-    wires().newtons_now = 0.0;
-    pass();
-    wires().newtons_now = 1200.0;
-    pass();
+    give(wires().newtons_now, 0.0);
+    give(wires().newtons_now, 1200.0);
     EXPECT_EQ(alarm.times, 2);
-    wires().newtons_now = std::numeric_limits<double>::quiet_NaN();
-    pass();
+    give(wires().newtons_now, std::numeric_limits<double>::quiet_NaN());
     EXPECT_FALSE(cell.good.last());
     EXPECT_DOUBLE_EQ(cell.force.last(), 1185.0);
     cell.tare();
-    wires().newtons_now = 15.0;
-    pass();
+    give(wires().newtons_now, 15.0);
     EXPECT_DOUBLE_EQ(cell.force.last(), 0.0) << "what is not good is no tare";
 }
 
 TEST_F(Instruments, nothing_is_good_that_is_no_number_whatever_is_measured) {
     auto& cell = of<ForceSensor>("cell");
-    wires().newtons_now = 1.7e308;
-    pass();
+    give(wires().newtons_now, 1.7e308);
     cell.tare();
-    wires().newtons_now = -1.7e308;
-    pass();
+    give(wires().newtons_now, -1.7e308);
     EXPECT_FALSE(cell.good.last());
     EXPECT_EQ(cell.force.last(), 1.7e308) << "the last one stays";
     EXPECT_EQ(of<Alarm>("alarm").times, 1) << "it is an overload all the same";
-    wires().newtons_now = 20.0;
-    pass();
+    give(wires().newtons_now, 20.0);
     EXPECT_TRUE(cell.good.last()) << "less the tare it is a number again";
     cell.tare();
     pass();
     EXPECT_EQ(cell.force.last(), 0.0);
 
     auto& encoder = of<Encoder<"m", 16>>("encoder");
-    wires().register_now = 500;
-    pass();
+    give(wires().register_now, 500);
     for (const double none : {1e-320, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
         encoder.counts_per_unit.set(none); // no proposal is accepted that says so
         wires().register_now += 100;
@@ -267,14 +245,12 @@ TEST_F(Instruments, an_axis_and_an_analog_output_send_what_they_may) {
     constexpr double endless = std::numeric_limits<double>::infinity();
     for (const auto& [wanted, sent] : {Case{0.3, 0.3}, Case{2.0, 0.5}, Case{-2.0, -0.5}, Case{no_number, 0.0},
                                        Case{endless, 0.0}, Case{-endless, 0.0}}) {
-        wires().velocity_now = wanted;
-        pass();
+        give(wires().velocity_now, wanted);
         EXPECT_EQ(wires().velocity.get(), sent) << wanted;
     }
     for (const auto& [wanted, sent] :
          {Case{5.0, 12.0}, Case{90.0, 20.0}, Case{-3.0, 4.0}, Case{no_number, 4.0}, Case{endless, 4.0}}) {
-        wires().pressure_now = wanted;
-        pass();
+        give(wires().pressure_now, wanted);
         EXPECT_DOUBLE_EQ(wires().raw.get(), sent) << wanted;
     }
     wires().velocity_now = 0.3, wires().pressure_now = 5.0;

@@ -48,9 +48,7 @@ inline constexpr auto& wrong = two<200'000, 10'000>;
 
 /// A frame of the system, rightly protected: as its node would send it, were it mad.
 constexpr can::Frame frame_of(const WireFrame& as, std::uint64_t contents, std::uint8_t counter) {
-    can::Frame frame;
-    frame.id = as.id;
-    frame.length = as.bytes;
+    can::Frame frame{.id = as.id, .length = as.bytes};
     for (std::size_t i = 0; i < frame.length; ++i)
         frame.data[i] = static_cast<std::uint8_t>(contents >> 8 * i);
     static_cast<void>(protect(std::span{frame.data}.first(frame.length),

@@ -23,9 +23,9 @@ TEST(Hostile, frames_stop_nobody_and_what_is_damaged_is_refused) {
         std::int64_t damaged = 0;
         for (int n = 0; n < 300; ++n) {
             const WireFrame& as = plan.frames[random.below(plan.frames.size())];
-            can::Frame frame;
-            frame.id = as.id;
-            frame.length = random.one_in(20) ? static_cast<std::uint8_t>(random.below(9)) : as.bytes;
+            can::Frame frame{.id = as.id,
+                             .length =
+                                 random.one_in(20) ? static_cast<std::uint8_t>(random.below(9)) : as.bytes};
             for (std::size_t i = 0; i < 8; ++i) frame.data[i] = static_cast<std::uint8_t>(random.next());
             frame.stamp = run.now() + 1ns;
             const bool is_right = random.one_in(2) && frame.length == as.bytes;

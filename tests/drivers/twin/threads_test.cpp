@@ -70,10 +70,7 @@ TEST(CanTwin, carries_frames_between_the_machines_thread_and_the_buss) {
     }};
     std::uint64_t wrong = 0;
     for (std::uint64_t i = 0; i < frames;) {
-        can::Frame f;
-        f.id = 0x201;
-        f.length = 8;
-        f.stamp = Time{1ms * clock_ms.load()};
+        can::Frame f{.id = 0x201, .length = 8, .stamp = Time{1ms * clock_ms.load()}};
         for (std::size_t b = 0; b < 8; ++b) f.data[b] = static_cast<std::uint8_t>(i >> (b % 3 * 8));
         const auto sent = f.data;
         machine.send(f, can::Keep::every);

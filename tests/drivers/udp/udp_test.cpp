@@ -23,6 +23,13 @@ std::string received(Device& from, std::size_t room = most_bytes) {
     const std::size_t size = from.receive(std::span{bytes}.first(room));
     return {reinterpret_cast<const char*>(bytes.data()), std::min(size, room)};
 }
+/// Whatever comes within two seconds.
+std::string awaited(Device& at) {
+    std::string got;
+    for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(at);
+    return got;
+}
+
 TEST(Twin, gives_datagrams_in_their_order_and_nothing_when_none_is_there) {
     Twin twin;
     EXPECT_EQ(received(twin), "");
@@ -66,9 +73,7 @@ TEST(Socket, receives_what_is_sent_to_its_port) {
     Sender sender;
     ASSERT_TRUE(sender.open("0.0.0.0", port).has_value()) << "each address of this box";
     ASSERT_TRUE(sender.tell(bytes_of("measured")));
-    std::string got;
-    for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(socket);
-    EXPECT_EQ(got, "measured");
+    EXPECT_EQ(awaited(socket), "measured");
     ASSERT_TRUE(sender.tell(bytes_of("a long one")));
     std::array<std::byte, 4> small;
     std::size_t size = 0;
@@ -77,11 +82,6 @@ TEST(Socket, receives_what_is_sent_to_its_port) {
 }
 
 TEST(Socket, asks_another_one_and_hears_its_answer) {
-    const auto awaited = [](Device& at) {
-        std::string got;
-        for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(at);
-        return got;
-    };
     const std::uint16_t port = free_port(SOCK_DGRAM);
     Socket answers, asks, other;
     ASSERT_TRUE(answers.open("127.0.0.1", port).has_value());
