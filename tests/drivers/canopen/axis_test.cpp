@@ -4,8 +4,11 @@
 namespace tappet::test {
 namespace {
 
+struct AxisWithoutPower : ServoAxis {
+    void SetUp() override {}
+};
+
 TEST_F(ServoAxis, says_done_of_no_motion_that_was_halted) {
-    power();
     ASSERT_TRUE(client->move_to.send(100.0, 20.0));
     run(1s);
     ASSERT_TRUE(client->halt.send());
@@ -22,7 +25,6 @@ TEST_F(ServoAxis, says_done_of_no_motion_that_was_halted) {
 }
 
 TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
-    power();
     ASSERT_TRUE(client->superimpose.send(5.0, 20.0, 100.0)); // from a stand, a relative move
     run(100ms);
     ASSERT_TRUE(client->move_to.send(-50.0, 80.0));
@@ -39,7 +41,6 @@ TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
 }
 
 TEST_F(ServoAxis, is_held_after_a_stop_until_it_is_released_also_without_power_in_between) {
-    power();
     ASSERT_TRUE(client->come_to_stop.send());
     EXPECT_TRUE(ends(client->come_to_stop));
     client->power_off.emit();
@@ -50,7 +51,7 @@ TEST_F(ServoAxis, is_held_after_a_stop_until_it_is_released_also_without_power_i
     EXPECT_EQ(client->move_to.state(), CommandState::rejected);
 }
 
-TEST_F(ServoAxis, goes_home_to_places_and_at_speeds_by_commands) {
+TEST_F(AxisWithoutPower, goes_home_to_places_and_at_speeds_by_commands) {
     servo.set_home(3);
     power();
     ASSERT_TRUE(client->home.send());
@@ -72,7 +73,6 @@ TEST_F(ServoAxis, goes_home_to_places_and_at_speeds_by_commands) {
 }
 
 TEST_F(ServoAxis, follows_set_points_at_each_sync) {
-    power();
     follow_positions();
     client->oscillates = true;
     run(2s);
@@ -83,7 +83,6 @@ TEST_F(ServoAxis, follows_set_points_at_each_sync) {
 }
 
 TEST_F(ServoAxis, takes_what_the_row_gives_for_a_velocity_that_grew_stale) {
-    power();
     ASSERT_TRUE(client->synchronize.send(9));
     client->oscillates = true;
     run(2100ms); // a tenth of a period: it moves
@@ -95,7 +94,6 @@ TEST_F(ServoAxis, takes_what_the_row_gives_for_a_velocity_that_grew_stale) {
 }
 
 TEST_F(ServoAxis, comes_to_rest_when_its_velocity_is_no_number) {
-    power();
     ASSERT_TRUE(client->synchronize.send(9));
     run(20ms);
     client->once = 20;
@@ -107,7 +105,6 @@ TEST_F(ServoAxis, comes_to_rest_when_its_velocity_is_no_number) {
 }
 
 TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
-    power();
     follow_positions();
     client->once = 1;
     run(500ms);
@@ -121,7 +118,6 @@ TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
 }
 
 TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_ordered) {
-    power();
     follow_positions();
     client->oscillates = true;
     run(2200ms);
@@ -136,7 +132,7 @@ TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_
     EXPECT_EQ(axis->target_velocity.last(), 3);
 }
 
-TEST_F(ServoAxis, stays_where_it_was_turned_without_power) {
+TEST_F(AxisWithoutPower, stays_where_it_was_turned_without_power) {
     servo.faults.knows_no_halt_in_cyclic = true;
     power();
     follow_positions();
@@ -154,7 +150,6 @@ TEST_F(ServoAxis, stays_where_it_was_turned_without_power) {
 }
 
 TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
-    power();
     ASSERT_TRUE(client->superimpose.send(1.0, 10.0, 500.0));
     EXPECT_TRUE(ends(client->superimpose));
     EXPECT_NEAR(servo.position(), 1, 1e-3) << "from a stand: a relative motion";
@@ -175,7 +170,6 @@ TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
 }
 
 TEST_F(ServoAxis, stops_by_an_error_when_its_node_is_silent_and_comes_back_by_a_reset) {
-    power();
     ASSERT_TRUE(client->move_at.send(20.0));
     ASSERT_TRUE(until([&] { return servo.velocity() == 20; }));
     node.cut_off(true);
@@ -195,7 +189,6 @@ TEST_F(ServoAxis, stops_by_an_error_when_its_node_is_silent_and_comes_back_by_a_
 }
 
 TEST_F(ServoAxis, rejects_what_its_state_has_no_way_for) {
-    power();
     client->power_off.emit();
     EXPECT_TRUE(reaches(AxisMode::disabled));
     ASSERT_TRUE(client->move_at.send(20.0));
@@ -206,7 +199,6 @@ TEST_F(ServoAxis, rejects_what_its_state_has_no_way_for) {
 }
 
 TEST_F(ServoAxis, is_led_by_what_is_written_after_a_set_point_with_a_time_ahead) {
-    power();
     ASSERT_TRUE(client->synchronize.send(9));
     ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
     client->once = 30;
@@ -224,7 +216,6 @@ TEST_F(ServoAxis, is_led_by_what_is_written_after_a_set_point_with_a_time_ahead)
 }
 
 TEST_F(ServoAxis, does_not_jump_after_a_place_with_a_time_ahead) {
-    power();
     follow_positions();
     client->oscillates = true;
     run(1000ms);

@@ -12,10 +12,14 @@ namespace {
 using motion::AxisMode;
 
 struct Axis : testing::Test, DriveRig {
+    void SetUp() override { power(); }
     void power() { ASSERT_TRUE(gets_power()); }
 };
+struct AxisWithoutPower : Axis {
+    void SetUp() override {}
+};
 
-TEST_F(Axis, has_power_when_the_drive_says_so_and_not_before) {
+TEST_F(AxisWithoutPower, has_power_when_the_drive_says_so_and_not_before) {
     axis.power(true);
     run(2);
     EXPECT_EQ(axis.state(), AxisMode::disabled);
@@ -28,7 +32,6 @@ TEST_F(Axis, has_power_when_the_drive_says_so_and_not_before) {
 }
 
 TEST_F(Axis, goes_to_a_place_by_the_handshake_of_pp) {
-    power();
     ASSERT_TRUE(axis.move_to(25, 50));
     EXPECT_EQ(axis.state(), AxisMode::discrete_motion);
     const int from = cycles;
@@ -46,7 +49,6 @@ TEST_F(Axis, goes_to_a_place_by_the_handshake_of_pp) {
 }
 
 TEST_F(Axis, takes_a_new_place_while_it_moves) {
-    power();
     ASSERT_TRUE(axis.move_to(50, 50));
     run(200);
     ASSERT_TRUE(axis.move_to(-10, 50));
@@ -56,7 +58,6 @@ TEST_F(Axis, takes_a_new_place_while_it_moves) {
 }
 
 TEST_F(Axis, raises_the_set_point_bit_again_only_when_the_last_one_is_let_go) {
-    power();
     servo.faults.keeps_acknowledgement = true;
     ASSERT_TRUE(axis.move_to(5, 50));
     run(500);
@@ -73,7 +74,6 @@ TEST_F(Axis, raises_the_set_point_bit_again_only_when_the_last_one_is_let_go) {
 }
 
 TEST_F(Axis, ends_no_motion_that_the_drive_ignores) {
-    power();
     servo.faults.ignores_set_points = true;
     ASSERT_TRUE(axis.move_to(5, 50));
     run(2000);
@@ -82,7 +82,6 @@ TEST_F(Axis, ends_no_motion_that_the_drive_ignores) {
 }
 
 TEST_F(Axis, does_not_go_on_with_an_old_place_after_a_halt) {
-    power();
     ASSERT_TRUE(axis.move_to(50, 50));
     run(300);
     ASSERT_TRUE(axis.halt());
@@ -97,7 +96,6 @@ TEST_F(Axis, does_not_go_on_with_an_old_place_after_a_halt) {
 }
 
 TEST_F(Axis, turns_at_a_speed_until_it_is_halted) {
-    power();
     ASSERT_TRUE(axis.move_at(-30));
     EXPECT_EQ(axis.state(), AxisMode::continuous_motion);
     EXPECT_TRUE(until([&] { return servo.velocity() == -30; }));
@@ -109,7 +107,6 @@ TEST_F(Axis, turns_at_a_speed_until_it_is_halted) {
 }
 
 TEST_F(Axis, takes_no_motion_while_it_is_stopped) {
-    power();
     ASSERT_TRUE(axis.move_at(30));
     run(200);
     ASSERT_TRUE(axis.stop());
@@ -122,7 +119,7 @@ TEST_F(Axis, takes_no_motion_while_it_is_stopped) {
     EXPECT_TRUE(axis.move_at(30));
 }
 
-TEST_F(Axis, finds_its_home_and_does_not_take_an_old_one_for_it) {
+TEST_F(AxisWithoutPower, finds_its_home_and_does_not_take_an_old_one_for_it) {
     servo.set_home(7);
     power();
     ASSERT_TRUE(axis.home());
@@ -138,7 +135,7 @@ TEST_F(Axis, finds_its_home_and_does_not_take_an_old_one_for_it) {
     EXPECT_NEAR(servo.position(), 0, 1e-9);
 }
 
-TEST_F(Axis, stops_by_a_homing_that_failed) {
+TEST_F(AxisWithoutPower, stops_by_a_homing_that_failed) {
     servo.faults.fails_homing = true;
     power();
     ASSERT_TRUE(axis.home());
@@ -149,7 +146,6 @@ TEST_F(Axis, stops_by_a_homing_that_failed) {
 }
 
 TEST_F(Axis, follows_positions_velocities_and_torques_cycle_by_cycle) {
-    power();
     EXPECT_FALSE(axis.synchronize(OperationMode::profile_position));
     ASSERT_TRUE(axis.synchronize(OperationMode::cyclic_position));
     ASSERT_TRUE(until([&] { return axis.follows(); }));
@@ -175,7 +171,7 @@ TEST_F(Axis, follows_positions_velocities_and_torques_cycle_by_cycle) {
     EXPECT_FALSE(axis.follows());
 }
 
-TEST_F(Axis, stands_when_it_does_not_move_though_nothing_is_slow_enough) {
+TEST_F(AxisWithoutPower, stands_when_it_does_not_move_though_nothing_is_slow_enough) {
     axis.set_standing(0);
     power();
     ASSERT_TRUE(axis.move_at(5));
@@ -185,7 +181,6 @@ TEST_F(Axis, stands_when_it_does_not_move_though_nothing_is_slow_enough) {
 }
 
 TEST_F(Axis, superimposes_nothing_that_is_no_motion_from_a_stand_either) {
-    power();
     for (const auto& [distance, velocity, acceleration] : {std::array{10.0, 20.0, std::nan("")},
                                                            {10.0, 20.0, -5.0},
                                                            {10.0, -1.0, 5.0},
@@ -198,7 +193,6 @@ TEST_F(Axis, superimposes_nothing_that_is_no_motion_from_a_stand_either) {
 }
 
 TEST_F(Axis, waits_until_the_drive_shows_its_mode) {
-    power();
     servo.faults.refuses_mode = true;
     ASSERT_TRUE(axis.move_at(30));
     run(1000);
@@ -208,7 +202,6 @@ TEST_F(Axis, waits_until_the_drive_shows_its_mode) {
 }
 
 TEST_F(Axis, stops_by_a_fault_and_leaves_it_by_a_reset_alone) {
-    power();
     ASSERT_TRUE(axis.move_at(30));
     run(300);
     ASSERT_TRUE(servo.trip());
@@ -224,7 +217,6 @@ TEST_F(Axis, stops_by_a_fault_and_leaves_it_by_a_reset_alone) {
 }
 
 TEST_F(Axis, comes_to_rest_when_the_drive_takes_its_power_away) {
-    power();
     ASSERT_TRUE(axis.move_at(30));
     run(300);
     servo.stop_quickly();
@@ -238,7 +230,6 @@ TEST_F(Axis, comes_to_rest_when_the_drive_takes_its_power_away) {
 }
 
 TEST_F(Axis, stops_by_a_drive_that_is_not_heard) {
-    power();
     ASSERT_TRUE(axis.move_at(30));
     run(100);
     heard = false;
@@ -253,7 +244,6 @@ TEST_F(Axis, stops_by_a_drive_that_is_not_heard) {
 }
 
 TEST_F(Axis, tells_a_lag_and_a_limit_of_the_drive) {
-    power();
     ASSERT_TRUE(axis.move_to(5, 50));
     servo.faults.is_blocked = servo.faults.is_at_limit = true;
     EXPECT_TRUE(until([&] { return axis.lags(); }));

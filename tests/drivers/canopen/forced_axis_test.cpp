@@ -23,7 +23,6 @@ struct ForcedAxis : ServoAxis {
 };
 
 TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {
-    power();
     ASSERT_TRUE(client->synchronize.send(9));
     ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
     force(30);
@@ -33,7 +32,6 @@ TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {
 }
 
 TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
-    power();
     follow_positions();
     write(1);
     force(1.5);
@@ -43,7 +41,6 @@ TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
 }
 
 TEST_F(ForcedAxis, comes_to_rest_when_the_force_of_its_velocity_ends) {
-    power();
     ASSERT_TRUE(client->synchronize.send(9));
     run(20ms);
     write(30);
@@ -54,7 +51,6 @@ TEST_F(ForcedAxis, comes_to_rest_when_the_force_of_its_velocity_ends) {
 }
 
 TEST_F(ForcedAxis, is_led_by_nothing_that_was_written_before_it_follows) {
-    power();
     write(30);
     force(20);
     ASSERT_TRUE(client->synchronize.send(9));
@@ -64,7 +60,6 @@ TEST_F(ForcedAxis, is_led_by_nothing_that_was_written_before_it_follows) {
 }
 
 TEST_F(ForcedAxis, stands_when_its_writer_stops_behind_a_force) {
-    power();
     ASSERT_TRUE(client->synchronize.send(9));
     run(20ms);
     write(10);

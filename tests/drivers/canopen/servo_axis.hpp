@@ -141,6 +141,7 @@ struct ServoAxis : testing::Test, WireRig<servo_machine, Bus> {
         EXPECT_TRUE(good);
         EXPECT_EQ(refused, 0);
     }
+    void SetUp() override { power(); }
     void hear(const can::Frame& frame, Time now) override {
         if (node.receive(frame, now, *this) != canopen::SimulatedNode::Heard::process_data) return;
         servo.take({static_cast<std::uint16_t>(node.get(0x6040)), node.get_signed(0x6060),

@@ -4,10 +4,12 @@
 namespace tappet::test {
 namespace {
 
-using CanRestarter = CanMachine; // two attempts, 100 ms apart
+/// Two attempts, 100 ms apart.
+struct CanRestarter : CanMachine {
+    void SetUp() override { run_until(20ms); }
+};
 
 TEST_F(CanRestarter, restarts_a_faulted_bus_after_its_pause) {
-    run_until(20ms);
     wire.bus_off(twin);
     run_until(115ms);
     EXPECT_EQ(twin.counters().restarts, 0u) << "not before the pause is over";
@@ -20,7 +22,6 @@ TEST_F(CanRestarter, restarts_a_faulted_bus_after_its_pause) {
 }
 
 TEST_F(CanRestarter, gives_up_when_the_bus_faults_again_and_again) {
-    run_until(20ms);
     wire.set_acknowledged(false); // each restart ends in the same fault
     run_until(5s);
     EXPECT_EQ(restarter->restarts.last(), 2);
@@ -37,7 +38,6 @@ TEST_F(CanRestarter, gives_up_when_the_bus_faults_again_and_again) {
 
 TEST_F(CanRestarter, gives_up_when_restarts_fail) {
     twin.make_restarts_fail(true);
-    run_until(20ms);
     wire.bus_off(twin);
     run_until(2s);
     EXPECT_EQ(restarter->restarts.last(), 0);
@@ -46,7 +46,6 @@ TEST_F(CanRestarter, gives_up_when_restarts_fail) {
 
 TEST_F(CanRestarter, gives_up_when_its_device_allows_no_more_restarts) {
     restarter->attempts.set(100);
-    run_until(20ms);
     wire.set_acknowledged(false);
     run_until(5s);
     EXPECT_EQ(restarter->restarts.last(), 3);
@@ -54,7 +53,6 @@ TEST_F(CanRestarter, gives_up_when_its_device_allows_no_more_restarts) {
 }
 
 TEST_F(CanRestarter, surrenders_at_once_to_a_new_fault_when_its_attempts_are_used_up) {
-    run_until(20ms);
     for (int i = 0; i < 2; ++i) {
         wire.bus_off(twin);
         run(300ms);
@@ -67,7 +65,6 @@ TEST_F(CanRestarter, surrenders_at_once_to_a_new_fault_when_its_attempts_are_use
 }
 
 TEST_F(CanRestarter, tries_anew_when_it_is_stopped_and_started_again) {
-    run_until(20ms);
     for (int i = 0; i < 2; ++i) {
         wire.bus_off(twin);
         run(300ms);

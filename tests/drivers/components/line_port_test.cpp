@@ -124,6 +124,7 @@ struct Lines : MachineRig<line_machine> {
     static constexpr Duration tick = 100us;
 
     Lines() { EXPECT_TRUE(twin.open({.chip = "twin", .lines = placed_lines})); }
+    void SetUp() override { run_until(1ms); }
     void run_until(Duration end) {
         if (listener == nullptr) {
             configure<gpio::Device>("lines", twin);
@@ -145,8 +146,11 @@ struct Lines : MachineRig<line_machine> {
     Listener* listener = nullptr;
 };
 
+struct LinesBeforeTheStart : Lines {
+    void SetUp() override {}
+};
+
 TEST_F(Lines, tell_edges_with_their_times_in_their_order) {
-    run_until(1ms);
     EXPECT_TRUE(twin.drive(weft, true, Time{2010us}));
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2030us}));
     EXPECT_TRUE(twin.drive(weft, false, Time{2050us}));
@@ -160,7 +164,7 @@ TEST_F(Lines, tell_edges_with_their_times_in_their_order) {
     EXPECT_EQ(listener->weft_level.stamp(), Time{2050us});
 }
 
-TEST_F(Lines, tell_by_its_level_alone_a_button_that_is_pressed_before_the_start) {
+TEST_F(LinesBeforeTheStart, tell_by_its_level_alone_a_button_that_is_pressed_before_the_start) {
     EXPECT_TRUE(twin.drive(stop_button, true, Time{}));
     twin.deliver_until(Time{});
     run_until(5ms);
@@ -173,7 +177,7 @@ TEST_F(Lines, tell_by_its_level_alone_a_button_that_is_pressed_before_the_start)
     EXPECT_EQ(heard(), (std::vector<Heard>{{What::stop_fell, Time{6ms}}, {What::stop_rose, Time{7ms}}}));
 }
 
-TEST_F(Lines, forget_the_edges_before_the_start_however_many) {
+TEST_F(LinesBeforeTheStart, forget_the_edges_before_the_start_however_many) {
     for (int i = 0; i < 1500; ++i) { // more than the kernel's buffer holds
         EXPECT_TRUE(twin.drive(weft, i % 2 == 0, at_ns(i)));
         twin.deliver_until(at_ns(i));
@@ -185,7 +189,6 @@ TEST_F(Lines, forget_the_edges_before_the_start_however_many) {
 }
 
 TEST_F(Lines, read_the_levels_anew_after_lost_edges_and_tell_the_loss_first) {
-    run_until(1ms);
     twin.faults(stop_button).lose_next = 1;
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us})); // lost: seen when the next edge arrives
     run_until(3ms);
@@ -200,7 +203,6 @@ TEST_F(Lines, read_the_levels_anew_after_lost_edges_and_tell_the_loss_first) {
 }
 
 TEST_F(Lines, tell_every_edge_of_a_burst_that_did_arrive_though_others_were_lost) {
-    run_until(1ms);
     twin.faults(stop_button).lose_next = 1;
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2001us}));
     for (int i = 0; i < 200; ++i) { // more than one batch: the levels are newer than what still waits
@@ -220,7 +222,6 @@ TEST_F(Lines, tell_every_edge_of_a_burst_that_did_arrive_though_others_were_lost
 }
 
 TEST_F(Lines, tell_no_edge_twice_that_arrives_after_the_levels_were_read) {
-    run_until(1ms);
     twin.faults(weft).lose_next = 1;
     EXPECT_TRUE(twin.drive(weft, true, Time{2010us}));
     EXPECT_TRUE(twin.drive(weft, false, Time{2020us})); // shows the gap
@@ -252,7 +253,6 @@ TEST_F(Lines, drive_a_lamp_only_when_it_was_written_and_at_once) {
 }
 
 TEST_F(Lines, drive_what_the_row_says_when_the_wish_is_stale) {
-    run_until(1ms);
     listener->lamp_next = 1;
     run_until(60ms);                                 // good for 50 ms
     EXPECT_TRUE(twin.drive(weft, true, Time{61ms})); // anything that wakes
@@ -261,7 +261,6 @@ TEST_F(Lines, drive_what_the_row_says_when_the_wish_is_stale) {
 }
 
 TEST_F(Lines, drive_actuators_by_events) {
-    run_until(1ms);
     EXPECT_TRUE(driven(brake)) << "its safe value";
     listener->opens = true;
     run_until(3ms);
@@ -270,7 +269,6 @@ TEST_F(Lines, drive_actuators_by_events) {
 }
 
 TEST_F(Lines, leave_safe_values_behind_and_keep_them) {
-    run_until(1ms);
     listener->opens = true;
     listener->lamp_next = 1;
     run_until(3ms);
@@ -284,7 +282,6 @@ TEST_F(Lines, leave_safe_values_behind_and_keep_them) {
 }
 
 TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
-    run_until(1ms);
     listener->opens = true;
     listener->lamp_next = 1;
     twin.faults(weft).lose_next = 1;
@@ -329,7 +326,6 @@ TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
 }
 
 TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes) {
-    run_until(1ms);
     EXPECT_FALSE(listener->faulted.get());
     twin.set_removed(true);
     run_until(5ms);
@@ -343,7 +339,6 @@ TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes)
 }
 
 TEST_F(Lines, tell_a_fault_when_a_write_is_refused_and_write_what_was_asked_for_last_as_soon_as_it_can_be) {
-    run_until(1ms);
     twin.set_removed(true);
     run_until(5ms);
     listener->opens = true;
@@ -365,7 +360,6 @@ TEST_F(Lines, tell_a_fault_when_a_write_is_refused_and_write_what_was_asked_for_
 }
 
 TEST_F(Lines, tell_an_input_that_changed_while_the_chip_was_gone) {
-    run_until(1ms);
     twin.faults(stop_button).lose_next = 1;
     twin.set_removed(true);
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us}));
@@ -378,7 +372,6 @@ TEST_F(Lines, tell_an_input_that_changed_while_the_chip_was_gone) {
 }
 
 TEST_F(Lines, cost_next_to_nothing_while_their_chip_is_gone) {
-    run_until(1ms);
     twin.set_removed(true);
     run_until(5ms);
     const auto before = io_cycles();
@@ -387,7 +380,6 @@ TEST_F(Lines, cost_next_to_nothing_while_their_chip_is_gone) {
 }
 
 TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_stop) {
-    run_until(1ms);
     listener->opens = true;
     run_until(3ms);
     twin.set_removed(true);
@@ -407,7 +399,6 @@ TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_st
 }
 
 TEST_F(Lines, leave_safe_values_behind_though_the_chip_refuses_them_once) {
-    run_until(1ms);
     listener->opens = true;
     run_until(3ms);
     ASSERT_TRUE(driven(valve));
@@ -418,14 +409,13 @@ TEST_F(Lines, leave_safe_values_behind_though_the_chip_refuses_them_once) {
     EXPECT_EQ(instance.life().left_unsafe(), "");
 }
 
-TEST_F(Lines, refuse_to_start_without_their_chip) {
+TEST_F(LinesBeforeTheStart, refuse_to_start_without_their_chip) {
     const auto refused = instance.configure({});
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().view().find("\"lines\""), std::string_view::npos);
 }
 
 TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
-    run_until(1ms);
     listener->lamp_ahead = 40ms;
     listener->lamp_next = 1;
     run_until(5ms);

@@ -6,7 +6,6 @@ namespace tappet::test {
 namespace {
 
 TEST_F(SubstitutedPump, is_told_what_the_row_gives_for_a_stale_value) {
-    run_until(1s);
     reader->pump_next = 1; // once
     run_until(1150ms);
     EXPECT_TRUE(pump_runs());
@@ -22,7 +21,6 @@ TEST_F(SubstitutedPump, is_told_what_the_row_gives_for_a_stale_value) {
 }
 
 TEST_F(Utility, gives_values_the_time_of_their_answer) {
-    run_until(1s);
     EXPECT_DOUBLE_EQ(reader->value, -5.5);
     EXPECT_LE(reader->age, 100ms + 50ms) << "its period and the activity's";
     EXPECT_TRUE(reader->connected.get());
@@ -33,7 +31,6 @@ TEST_F(Utility, gives_values_the_time_of_their_answer) {
 }
 
 TEST_F(Utility, writes_a_change_soon_and_nothing_that_nobody_set) {
-    run_until(1s);
     const auto before = server->counters().requests;
     EXPECT_FALSE(pump_runs());
     reader->pump_next = 1;
@@ -52,7 +49,6 @@ TEST_F(Utility, reads_and_writes_in_one_cycle_when_both_are_due) {
 }
 
 TEST_F(Utility, lets_the_age_grow_while_the_server_is_silent) {
-    run_until(1s);
     twin.inject(modbus::Fault::silent);
     const double last = reader->value;
     twin.set(modbus::Table::input_registers, 0, 999);
@@ -70,7 +66,6 @@ TEST_F(Utility, lets_the_age_grow_while_the_server_is_silent) {
 }
 
 TEST_F(Utility, asks_a_silent_server_ever_more_seldom) {
-    run_until(1s);
     twin.inject(modbus::Fault::silent);
     run_until(11s);
     const auto first = server->counters().timeouts;
@@ -81,7 +76,6 @@ TEST_F(Utility, asks_a_silent_server_ever_more_seldom) {
 }
 
 TEST_F(Utility, reconnects_and_reads_fresh_values) {
-    run_until(1s);
     twin.inject(modbus::Fault::down);
     run_until(5s);
     EXPECT_FALSE(reader->connected.get());
@@ -97,7 +91,6 @@ TEST_F(Utility, reconnects_and_reads_fresh_values) {
 }
 
 TEST_F(Utility, writes_nothing_that_grew_stale_during_an_outage) {
-    run_until(1s);
     twin.inject(modbus::Fault::down);
     run_until(2s);
     reader->pump_next = 1;
@@ -120,7 +113,6 @@ TEST_F(Utility, is_safe_when_its_writer_stopped_while_the_server_was_away_for_lo
 }
 
 TEST_F(Utility, gives_no_fresh_value_for_an_exception) {
-    run_until(1s);
     twin.inject(modbus::Fault::exception);
     run_until(3s);
     EXPECT_EQ(reader->flow, Flow::stale);
@@ -168,7 +160,6 @@ TEST_F(Utility, says_why_the_server_is_lost_and_no_more_when_it_is_back) {
 }
 
 TEST_F(Utility, waits_for_one_answer_only_when_the_server_is_silent_and_two_rows_are_due) {
-    run_until(1s);
     twin.inject(modbus::Fault::silent);
     reader->pump_next = 1;
     run_until(1100ms); // both are due
@@ -177,7 +168,6 @@ TEST_F(Utility, waits_for_one_answer_only_when_the_server_is_silent_and_two_rows
 }
 
 TEST_F(Utility, keeps_its_back_off_however_long_its_period_is) {
-    run_until(1s);
     twin.inject(modbus::Fault::silent);
     const Time later = clock.now() + 200ms;
     server->work({later, later, 10s});
@@ -213,6 +203,7 @@ TEST_F(Utility, writes_its_safe_values_once_more_when_a_request_is_lost_or_refus
         change_server(LifeChange::stop);
         EXPECT_FALSE(pump_runs());
         change_server(LifeChange::start);
+        run(1s);
     }
 }
 
@@ -225,7 +216,6 @@ TEST_F(Utility, leaves_its_safe_values_though_an_answer_was_lost_just_before_the
 }
 
 TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
-    run_until(1s);
     reader->pump_next = 1;
     run_until(1500ms);
     twin.inject(modbus::Fault::down);
@@ -255,7 +245,6 @@ TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
 }
 
 TEST_F(Utility, writes_after_a_start_nothing_that_grew_stale_before_it) {
-    run_until(1s);
     reader->pump_next = 1;
     run_until(1500ms);
     change_server(LifeChange::stop);
@@ -292,7 +281,6 @@ TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
 }
 
 TEST_F(Utility, writes_nothing_old_when_a_force_ends) {
-    run_until(1s);
     reader->pump_next = 1; // once; its row says for how long that holds
     run_until(20s);
     ForcedPort on{instance, "server.pump.on", FacetKind::input};

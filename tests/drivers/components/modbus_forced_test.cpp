@@ -8,7 +8,6 @@ namespace {
 /// Forced at the input, then at the output; released, and then its writer stops.
 TEST_F(HeldPump, is_told_what_stands_behind_a_force_though_that_is_stale) {
     reader->leaves_safe = false;
-    run_until(1s);
     reader->pump_next = 0; // once
     run_until(2s);
     for (const auto& [name, kind] :
@@ -31,7 +30,6 @@ TEST_F(HeldPump, is_told_what_stands_behind_a_force_though_that_is_stale) {
 /// What the pump is told, forced at one end.
 struct ForcedPump : Utility {
     void begin(std::string_view name, FacetKind kind) {
-        run_until(1s);
         reader->pump_next = 0; // off, and that is all that its component says
         run_until(20s);
         pump.emplace(instance, name, kind).to(1.0);
@@ -197,7 +195,6 @@ TEST_F(PumpAhead, is_told_the_safe_value_of_a_stop_at_once) {
 }
 
 TEST_F(PumpAhead, is_not_believed_for_longer_than_its_row_says) {
-    run_until(1s);
     twin.inject(modbus::Fault::down);
     run_until(2800ms);
     reader->pump_next = 1; // good for 5 s

@@ -87,8 +87,8 @@ struct UtilityOf : MachineRig<table> {
         reader = this->instance.template find<Reader>("reader");
         server = this->instance.template find<Client>("server");
     }
+    void SetUp() override { this->run_until(1s); }
     void start_the_pump() {
-        this->run(1s);
         reader->pump_next = 1;
         this->run(1s);
         ASSERT_TRUE(pump_runs());
