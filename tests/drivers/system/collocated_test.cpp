@@ -1,8 +1,7 @@
 // The same system with its wire and without: what its components do and get is the same.
 #include "kernel/machine/accept.hpp"
 #include "kernel/system/collocated.hpp"
-#include "tests/drivers/system/pair.hpp"
-#include "toolchain/machine/system_run.hpp"
+#include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,12 +52,9 @@ TEST(Collocated, what_is_local_and_what_is_cut_behaves_alike) {
                              [&](Duration time) { local.run_for(time); });
     local.stop();
 
-    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
-    SystemRun cut{pair.view(), machines, {}, 1};
-    ASSERT_TRUE(cut.start());
-    const Seen in_two = tell(*cut.instance(0).find<Giver>("giver"), *cut.instance(1).find<Taker>("taker"),
-                             [&](Duration time) { cut.run_for(time); });
-    cut.stop();
+    PairRun cut;
+    cut.start(0ms);
+    const Seen in_two = tell(cut.giver(), cut.taker(), [&](Duration time) { cut.run.run_for(time); });
 
     EXPECT_EQ(in_one.got.size(), 25u);
     EXPECT_EQ(in_one.answers, (std::vector<std::int32_t>{6, 12, 18, 24, 30, 36, 42, 48}));

@@ -1,8 +1,6 @@
 // One time over the nodes of a wire: values keep the time at which they were true, whatever their nodes'
 // clocks show, to within the bound that the compiler has proven.
-#include "board/host/board.hpp"
-#include "drivers/system/station.hpp"
-#include "kernel/machine/accept.hpp"
+#include "tests/drivers/system/pair.hpp"
 #include "toolchain/machine/system_run.hpp"
 
 #include <gtest/gtest.h>
@@ -46,8 +44,7 @@ constexpr auto tells = machine("tells", components(component<Speaker>("speaker")
 constexpr auto three = nodes(node<speaks>("a"), node<listens>("b"), node<tells>("clock"));
 constexpr auto row = across(data("a.speaker.told_at", "b.listener.told_at", stale_after(60ms), hold), every(10ms),
                             in_natural_bits(35, 1e-6), with_time);
-constexpr auto clocked_wire = wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)),
-                                   common_clock("clock", every(100ms), within(200us)));
+constexpr auto clocked_wire = pair::usual_wire("wire", common_clock("clock", every(100ms), within(200us)));
 constexpr auto clocked = system("clocked", three, clocked_wire, crossings(row));
 // clang-format on
 using Speaks = AtRunTime<station<clocked, "a", speaks>, board::host>;
@@ -172,47 +169,45 @@ std::string refusal(const WireRow& wire, const Crossing& crossing) {
     return std::string{
         plan_system(system("lane", three, wire, crossings(crossing)), &systems::analyse_can).fault.view()};
 }
-template <class... Options>
-constexpr WireRow with(const Options&... options) {
-    return wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)),
-                options...);
-}
-
 TEST(CommonTime, refusals) {
     EXPECT_EQ(refusal(clocked_wire, row), "");
     EXPECT_EQ(
-        refusal(with(), row),
+        refusal(pair::usual_wire("wire"), row),
         "lane: crossing \"a.speaker.told_at\" -> \"b.listener.told_at\" is told with_time, but wire \"wire\" "
         "has no common time; add common_clock(\"node\", every(100ms), within(200us))");
-    EXPECT_EQ(refusal(with(common_clock("c", every(100ms), within(200us))), row),
+    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("c", every(100ms), within(200us))), row),
               "lane: common_clock(\"c\"): there is no such node; name one of nodes(...)");
-    EXPECT_EQ(refusal(with(common_clock("clock", every(0ms), within(200us))), row),
+    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(0ms), within(200us))), row),
               "lane: common_clock(\"clock\") is told every 0 ms; write every(...) from 10 ms to 10 s");
-    EXPECT_EQ(refusal(with(common_clock("clock", every(10ms), within(200us))), row),
+    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(10ms), within(200us))), row),
               "lane: common_clock(\"clock\") is told every 10 ms, of which a quarter must do for a frame and "
               "served_within(...) twice; write every(...) of 16 ms at least, or serve the wire sooner");
-    EXPECT_EQ(refusal(with(common_clock("clock", every(100ms), within(200us)),
-                           common_clock("a", every(100ms), within(200us))),
+    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms), within(200us)),
+                                       common_clock("a", every(100ms), within(200us))),
                       row),
               "lane: wire \"wire\" has 2 common_clock(...); one node tells the time, remove the others");
-    EXPECT_EQ(refusal(with(common_clock("clock", every(100ms), within(200us), stamps_late(0us))), row),
+    EXPECT_EQ(refusal(pair::usual_wire("wire",
+                                       common_clock("clock", every(100ms), within(200us), stamps_late(0us))),
+                      row),
               "lane: common_clock(\"clock\"): stamps are late by more than nothing, and clocks part by at "
               "most 1e-2; "
               "correct stamps_late(...) or drift(...)");
-    EXPECT_EQ(refusal(with(identifiers_from(0x200), fixed_identifiers), row),
+    EXPECT_EQ(refusal(pair::usual_wire("wire", identifiers_from(0x200), fixed_identifiers), row),
               "lane: wire \"wire\" says identifiers_from(...) and fixed_identifiers, which are made of what "
               "a frame is; "
               "remove one of them");
-    EXPECT_EQ(refusal(with(common_clock("clock", every(100ms))), row),
+    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms))), row),
               "lane: common_clock(\"clock\") does not say how well it is to be known; add within(200us)");
-    EXPECT_EQ(refusal(with(common_clock("clock", every(100ms), within(50us))), row),
+    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms), within(50us))), row),
               "lane: common_clock(\"clock\"): it is known to 124 us, but promised within 50 us; most of it, "
               "100 us, is "
               "how late frames are stamped; say stamps_late(...) of less where that is so, or promise less");
-    EXPECT_EQ(refusal(with(common_clock("clock", every(1s), within(150us), stamps_late(10us))), row),
-              "lane: common_clock(\"clock\"): it is known to 241 us, but promised within 150 us; most of it, "
-              "231 us, is "
-              "what clocks part in 1007 ms; tell it more often, or promise less");
+    EXPECT_EQ(
+        refusal(pair::usual_wire("wire", common_clock("clock", every(1s), within(150us), stamps_late(10us))),
+                row),
+        "lane: common_clock(\"clock\"): it is known to 241 us, but promised within 150 us; most of it, "
+        "231 us, is "
+        "what clocks part in 1007 ms; tell it more often, or promise less");
     Crossing long_lived = row;
     long_lived.data.max_age = 2s;
     EXPECT_EQ(refusal(clocked_wire, long_lived),

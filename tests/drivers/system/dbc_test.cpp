@@ -2,9 +2,8 @@
 // there.
 #include "drivers/can/dbc/writer.hpp"
 #include "tests/drivers/can/hex.hpp"
-#include "tests/drivers/system/pair.hpp"
+#include "tests/drivers/system/pair_run.hpp"
 #include "tests/toolchain/program.hpp"
-#include "toolchain/machine/system_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,19 +18,16 @@ using testing::HasSubstr;
 
 TEST(SystemDbc, is_read_by_a_tool_that_is_not_ours_and_so_are_the_frames) {
     const auto& plan = systems::plan_of<pair>;
-    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
-    SystemRun run{pair.view(), machines, {}, 1};
+    PairRun both;
     std::array<can::Identifier, plan.frames.size()> all{};
     for (std::size_t f = 0; f < all.size(); ++f) all[f] = {plan.frames[f].id, false};
     can::Twin ear;
     ASSERT_TRUE(ear.open({.interface = "ear", .receive = all}));
-    ASSERT_TRUE(run.wire().attach(ear));
-    ASSERT_TRUE(run.start());
-    run.run_for(300ms);
-    auto& giver = *run.instance(0).find<Giver>("giver");
-    giver.tells = -123.44;
-    giver.to_send = {77};
-    run.run_for(60ms);
+    ASSERT_TRUE(both.run.wire().attach(ear));
+    both.start();
+    both.giver().tells = -123.44;
+    both.giver().to_send = {77};
+    both.run.run_for(60ms);
     std::string orders;
     const std::string file = testing::TempDir() + "pair_test.dbc";
     using Rows = systems::StationRows<pair, 0>;
@@ -47,7 +43,6 @@ TEST(SystemDbc, is_read_by_a_tool_that_is_not_ours_and_so_are_the_frames) {
     }
     orders += "decode " + std::to_string(level) + " 0 " + can::hex_of(of_level) + "\\n";
     orders += "decode " + std::to_string(sent) + " 0 " + can::hex_of(of_event) + "\\n";
-    run.stop();
     const Ended read = run_line("printf '" + orders + "' | /usr/bin/python3 " TAPPET_DBC_ORACLE);
     EXPECT_EQ(read.exit_code, 0) << read.text;
     EXPECT_THAT(read.text, HasSubstr("data_of_a_giver_level"));

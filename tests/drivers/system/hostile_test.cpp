@@ -1,6 +1,5 @@
 // Frames of a node that lies: of any identifier of the wire, with any contents, damaged or rightly protected.
-#include "tests/drivers/system/pair.hpp"
-#include "toolchain/machine/system_run.hpp"
+#include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,15 +10,14 @@ TEST(Hostile, frames_stop_nobody_and_what_is_damaged_is_refused) {
     const auto& plan = systems::plan_of<pair>;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         Random random{seed};
-        const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
-        SystemRun run{pair.view(), machines, {}, seed};
+        PairRun both{seed};
+        SystemRun& run = both.run;
         std::array<can::Identifier, plan.frames.size()> all{};
         for (std::size_t f = 0; f < all.size(); ++f) all[f] = {plan.frames[f].id, false};
         can::Twin liar;
         ASSERT_TRUE(liar.open({.interface = "liar", .transmit = all}));
         ASSERT_TRUE(run.wire().attach(liar));
-        ASSERT_TRUE(run.start());
-        run.run_for(300ms);
+        both.start();
         std::int64_t damaged = 0;
         for (int n = 0; n < 300; ++n) {
             const WireFrame& as = plan.frames[random.below(plan.frames.size())];
@@ -46,7 +44,6 @@ TEST(Hostile, frames_stop_nobody_and_what_is_damaged_is_refused) {
         refused += run.instance(0).find<systems::Link<pair, 0>>("wire")->frames_refused.last();
         refused += run.instance(1).find<systems::Link<pair, 1>>("wire")->frames_refused.last();
         EXPECT_GT(refused, damaged / 2) << "seed " << seed;
-        run.stop();
     }
 }
 

@@ -1,29 +1,29 @@
 // Two machines on one wire: what crosses arrives as if it were local, and what does not is known.
-#include "tests/drivers/system/pair.hpp"
-#include "toolchain/machine/system_run.hpp"
+#include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
 
 namespace tappet::pair {
 namespace {
 
-struct LinkTest : testing::Test {
+struct LinkTest : testing::Test, PairRun<> {
     void SetUp() override {
-        const auto started = run.start();
-        ASSERT_TRUE(started) << started.error().view();
+        start(0ms);
         ASSERT_TRUE(run.run_until(
             [&] { return giver().other_is_there.get() && taker().other_is_there.get(); }, 200ms));
         ASSERT_TRUE(run.run_for(200ms)); // each row was told
     }
-    void TearDown() override { run.stop(); }
-
-    Giver& giver() { return *run.instance(0).find<Giver>("giver"); }
-    Taker& taker() { return *run.instance(1).find<Taker>("taker"); }
     systems::Link<pair, 0>& from() { return *run.instance(0).find<systems::Link<pair, 0>>("wire"); }
     systems::Link<pair, 1>& to() { return *run.instance(1).find<systems::Link<pair, 1>>("wire"); }
 
-    std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
-    SystemRun run{pair.view(), machines, {}, 1};
+    /// It is done within the time.
+    void change(std::size_t node, std::string_view component, LifeChange change, Duration within) {
+        MachineInstance& there = run.instance(node);
+        const std::size_t part = find_component(there.machine().table, component);
+        const LifeTicket ticket = there.life().ask_component(part, change);
+        run.run_for(within);
+        ASSERT_EQ(there.life().answer_of_component(part, ticket).outcome, LifeOutcome::done);
+    }
 };
 
 TEST_F(LinkTest, tells_a_value_in_the_bits_that_its_row_says) {
@@ -105,16 +105,15 @@ TEST_F(LinkTest, a_command_to_a_node_that_dies_fails) {
 }
 
 TEST(LinkAlone, a_node_that_is_first_on_the_wire_is_heard_when_another_one_comes) {
-    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
-    SystemRun run{pair.view(), machines, {}, 1};
+    PairRun both;
+    SystemRun& run = both.run;
     ASSERT_TRUE(run.start(0)); // nobody acknowledges
     run.run_for(5s);
     EXPECT_TRUE(can::faulted(run.end(0).state()));
     ASSERT_TRUE(run.start(1));
     run.run_for(5s);
-    EXPECT_TRUE(run.instance(0).find<Giver>("giver")->other_is_there.get());
-    EXPECT_TRUE(run.instance(1).find<Taker>("taker")->other_is_there.get());
-    run.stop();
+    EXPECT_TRUE(both.giver().other_is_there.get());
+    EXPECT_TRUE(both.taker().other_is_there.get());
 }
 
 TEST_F(LinkTest, whoever_is_not_heard_any_more_believes_nobody_is_there) {
@@ -128,16 +127,10 @@ TEST_F(LinkTest, whoever_is_not_heard_any_more_believes_nobody_is_there) {
 
 TEST_F(LinkTest, whoever_stops_its_link_believes_nobody_is_there) {
     ASSERT_TRUE(giver().other_is_there.get());
-    MachineInstance& here = run.instance(0);
-    const std::size_t part = find_component(here.machine().table, "wire");
-    const LifeTicket stop = here.life().ask_component(part, LifeChange::stop);
-    run.run_for(20ms);
-    ASSERT_EQ(here.life().answer_of_component(part, stop).outcome, LifeOutcome::done);
+    change(0, "wire", LifeChange::stop, 20ms);
     EXPECT_FALSE(giver().other_is_there.get());
     EXPECT_FALSE(taker().other_is_there.get());
-    const LifeTicket start = here.life().ask_component(part, LifeChange::start);
-    run.run_for(1s);
-    ASSERT_EQ(here.life().answer_of_component(part, start).outcome, LifeOutcome::done);
+    change(0, "wire", LifeChange::start, 1s);
     EXPECT_TRUE(giver().other_is_there.get() && taker().other_is_there.get());
 }
 
@@ -149,11 +142,7 @@ TEST_F(LinkTest, an_event_for_a_node_that_is_gone_is_known_to_be_lost) {
 }
 
 TEST_F(LinkTest, an_event_for_a_component_that_does_not_run_counts_as_delivered_and_is_dropped_there) {
-    MachineInstance& there = run.instance(1);
-    const std::size_t part = find_component(there.machine().table, "taker");
-    const LifeTicket stop = there.life().ask_component(part, LifeChange::stop);
-    run.run_for(20ms);
-    ASSERT_EQ(there.life().answer_of_component(part, stop).outcome, LifeOutcome::done);
+    change(1, "taker", LifeChange::stop, 20ms);
     giver().to_send = {7};
     giver().asks = 1;
     run.run_for(60ms);
@@ -161,9 +150,7 @@ TEST_F(LinkTest, an_event_for_a_component_that_does_not_run_counts_as_delivered_
     EXPECT_EQ(giver().losses, 0) << "its node took it up";
     EXPECT_EQ(giver().doubled.state(), CommandState::failed) << "a command says that it was rejected there";
 
-    const LifeTicket start = there.life().ask_component(part, LifeChange::start);
-    run.run_for(20ms);
-    ASSERT_EQ(there.life().answer_of_component(part, start).outcome, LifeOutcome::done);
+    change(1, "taker", LifeChange::start, 20ms);
     giver().to_send = {8};
     run.run_for(60ms);
     EXPECT_EQ(taker().got, (std::vector<std::int32_t>{8}));

@@ -1,9 +1,6 @@
 // What is no number goes to no other machine, as a value, with an event, with a command or in its result, in
 // steps or as it is.
-#include "board/host/board.hpp"
-#include "drivers/system/station.hpp"
-#include "kernel/machine/accept.hpp"
-#include "toolchain/machine/system_run.hpp"
+#include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -67,7 +64,7 @@ constexpr auto lead_table = machine("lead", components(component<Lead>("x")),
 constexpr auto follow_table = machine("follow", components(component<Follow>("x")),
     activities(activity("x", every(5ms), runs("x"), budget(50us))), connections(), reactions(), behaviours());
 constexpr auto two = system("two", nodes(node<lead_table>("a"), node<follow_table>("b")),
-    wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us))),
+    pair::usual_wire("wire"),
     crossings(
         across(data("a.x.level", "b.x.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
         across(data("a.x.raw",   "b.x.raw",   stale_after(60ms), hold), every(20ms)),
@@ -75,10 +72,13 @@ constexpr auto two = system("two", nodes(node<lead_table>("a"), node<follow_tabl
         across(uses("a.x.stop_at", "b.x.stop_at"), at_most(1, 100ms), within(20ms), in_bits(24, 0.1))));
 // clang-format on
 
-struct TwoMachines : testing::Test {
+using LeadFirmware = AtRunTime<station<two, "a", lead_table>, board::host>;
+using FollowFirmware = AtRunTime<station<two, "b", follow_table>, board::host>;
+
+struct TwoMachines : testing::Test, OnOneWire<LeadFirmware, FollowFirmware> {
+    TwoMachines() : OnOneWire{two.view()} {}
     void SetUp() override {
-        ASSERT_TRUE(run.start());
-        run.run_for(300ms);
+        start();
         a = run.instance(0).find<Lead>("x");
         b = run.instance(1).find<Follow>("x");
         tell(5);
@@ -87,16 +87,11 @@ struct TwoMachines : testing::Test {
         ASSERT_EQ(b->raw.get(), 5);
         ASSERT_EQ(a->stop_at.state(), CommandState::done);
     }
-    void TearDown() override { run.stop(); }
     void tell(double what) {
         a->tells = what;
         a->acts = true;
         run.run_for(500ms);
     }
-    const std::array<AcceptedMachine, 2> machines{
-        AtRunTime<station<two, "a", lead_table>, board::host>::machine(),
-        AtRunTime<station<two, "b", follow_table>, board::host>::machine()};
-    SystemRun run{two.view(), machines, {}, 1};
     Lead* a = nullptr;
     Follow* b = nullptr;
 };

@@ -79,15 +79,18 @@ inline constexpr auto taker_table = machine("taker",
     activities(activity("taking", every(5ms), runs("taker"), budget(50us))),
     connections(), reactions(), behaviours());
 
-inline constexpr auto pair = system("pair",
-    nodes(node<giver_table>("a"), node<taker_table>("b")),
-    wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us))),
-    crossings(
-        across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
-        across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms), if_lost("a.giver.not_taken")),
-        across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24)),
-        presence("b", "a.giver.other_is_there"),
-        presence("a", "b.taker.other_is_there")),
+template <class... Options>
+constexpr WireRow usual_wire(std::string_view name, const Options&... options) {
+    return wire(name, bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)), options...);
+}
+inline constexpr auto both_nodes = nodes(node<giver_table>("a"), node<taker_table>("b"));
+inline constexpr auto level_row = across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1));
+inline constexpr auto sent_row = across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms), if_lost("a.giver.not_taken"));
+inline constexpr auto doubled_row = across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24));
+inline constexpr auto b_row = presence("b", "a.giver.other_is_there");
+inline constexpr auto a_row = presence("a", "b.taker.other_is_there");
+inline constexpr auto pair = system("pair", both_nodes, usual_wire("wire"),
+    crossings(level_row, sent_row, doubled_row, b_row, a_row),
     promises(
         reaction("a.giver.sent", "b.taker.take", within(15ms)),
         reaction("a.giver.level", "b.taker.level", within(26ms)),

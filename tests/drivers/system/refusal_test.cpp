@@ -8,9 +8,7 @@
 namespace tappet::pair {
 namespace {
 
-constexpr auto good_wire =
-    wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)));
-constexpr auto both_nodes = nodes(node<giver_table>("a"), node<taker_table>("b"));
+constexpr auto good_wire = usual_wire("wire");
 
 template <std::size_t N, std::size_t X, std::size_t P = 0>
 std::string refusal(const Section<SystemNode, N>& n, const WireRow& w, const Section<Crossing, X>& x,
@@ -25,14 +23,8 @@ template <class... Rows>
 std::string refusal(const Rows&... rows) {
     return refusal(both_nodes, good_wire, crossings(rows...));
 }
-constexpr auto level =
-    across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1));
-constexpr auto sent = across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms));
-constexpr auto doubled =
-    across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24));
-
 TEST(SystemRefusals, a_good_one_is_accepted) {
-    EXPECT_EQ(refusal(level, sent, doubled, presence("b", "a.giver.other_is_there")), "");
+    EXPECT_EQ(refusal(level_row, sent_row, doubled_row, presence("b", "a.giver.other_is_there")), "");
 }
 
 TEST(SystemRefusals, of_nodes_and_wire) {
@@ -42,12 +34,12 @@ TEST(SystemRefusals, of_nodes_and_wire) {
               "lane: node \"a\" stands twice; rename one of them");
     EXPECT_EQ(refusal(nodes(node<giver_table>("a.b"), node<taker_table>("b")), good_wire, crossings()),
               "lane: node \"a.b\": a node's name is not empty and has no dot; rename it");
-    EXPECT_EQ(refusal(both_nodes, wire("wire"), crossings(level)),
+    EXPECT_EQ(refusal(both_nodes, wire("wire"), crossings(level_row)),
               "lane: wire \"wire\" has no bit rate; add bit_rate(500'000)");
-    EXPECT_EQ(refusal(both_nodes, wire("giver", bit_rate(500'000)), crossings(level)),
+    EXPECT_EQ(refusal(both_nodes, wire("giver", bit_rate(500'000)), crossings(level_row)),
               "lane: node \"a\" has a component \"giver\", which is the wire's name; rename one of them");
     EXPECT_EQ(refusal(both_nodes, wire("wire", bit_rate(500'000), beats(20ms), silent_after(30ms)),
-                      crossings(level)),
+                      crossings(level_row)),
               "lane: wire \"wire\": a node is silent after 30000 us, but one lost beat must not make it so, "
               "and beats come every 20000 us; say silent_after(...) of more than twice that");
 }
@@ -68,7 +60,7 @@ TEST(SystemRefusals, of_names) {
     EXPECT_EQ(
         refusal(presence("a", "b.taker.level")),
         "lane: presence of \"a\" -> \"b.taker.level\": \"b.taker.level\" is no input of type bool; name one");
-    EXPECT_EQ(refusal(level, level),
+    EXPECT_EQ(refusal(level_row, level_row),
               "lane: crossing \"a.giver.level\" -> \"b.taker.level\" is told by the same number as "
               "\"a.giver.level\" -> \"b.taker.level\", or stands twice; remove it, or rename a node");
 }
@@ -148,13 +140,13 @@ TEST(SystemRefusals, of_what_a_stranger_would_try) {
         "of that are its every(...) and the deadline by which the wire is served; shorten those, or say a "
         "longer within(...)");
     EXPECT_EQ(refusal(both_nodes, wire("wire", bit_rate(500'000), beats(20ms), silent_after(41ms)),
-                      crossings(level)),
+                      crossings(level_row)),
               "lane: wire \"wire\": one lost beat must not make a node silent, and with that the next one "
               "may come after 43352 us; say silent_after(...) of more than that");
     EXPECT_EQ(
-        refusal(both_nodes, wire("wire", bit_rate(500'000), identifiers_from(0x7FE)), crossings(level)),
+        refusal(both_nodes, wire("wire", bit_rate(500'000), identifiers_from(0x7FE)), crossings(level_row)),
         "lane: wire \"wire\": 3 frames from identifier 2046 on go beyond the last of 11 bits; begin lower");
-    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level, sent),
+    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level_row, sent_row),
                       promises(reaction("a.giver.sent", "b.taker.level", within(1s),
                                         via("b.taker.take", "a.giver.level")))),
               "reaction \"a.giver.sent\" -> \"b.taker.level\": via(\"b.taker.take\", \"a.giver.level\") does "
@@ -162,33 +154,34 @@ TEST(SystemRefusals, of_what_a_stranger_would_try) {
 }
 
 TEST(SystemRefusals, of_promises_and_of_a_wire_that_is_too_slow) {
-    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level, sent),
+    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level_row, sent_row),
                       promises(reaction("a.giver.sent", "b.taker.take", within(5ms)))),
               "reaction \"a.giver.sent\" -> \"b.taker.take\" may take 13622 us, but is promised within 5000 "
               "us; most of it, 5000 us, is the period of activity \"taking\" at node \"b\"; shorten that, or "
               "promise less");
-    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level),
+    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level_row),
                       promises(reaction("a.giver.sent", "b.taker.take", within(50ms)))),
               "reaction \"a.giver.sent\" -> \"b.taker.take\": no row leads from \"a.giver.sent\" to "
               "\"b.taker.take\"; add it, or name what lies between with via(\"in\", \"out\")");
-    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level),
+    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level_row),
                       promises(stops("b", "a.giver.other_is_there", within(1s)))),
               "stops \"b\" -> \"a.giver.other_is_there\": nothing of node \"b\" reaches "
               "\"a.giver.other_is_there\"; add presence(\"b\", \"a.giver.other_is_there\")");
     EXPECT_EQ(
         refusal(both_nodes, wire("wire", bit_rate(10'000), beats(20ms), silent_after(70ms)),
-                crossings(level)),
+                crossings(level_row)),
         "lane: the beat of node \"a\": a frame of it may never come through wire \"wire\", which all frames "
         "together load by 240 % at 10000 bit/s; tell less, or less often, or run the wire faster");
     constexpr auto slow = wire("wire", bit_rate(125'000), beats(20ms), silent_after(70ms));
     EXPECT_EQ(refusal(both_nodes, slow,
-                      crossings(level, across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms),
-                                              within(12ms)))),
+                      crossings(level_row, across(when("a.giver.sent", tell("b.taker.take")),
+                                                  at_most(1, 40ms), within(12ms)))),
               "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": a frame of it may still wait for wire "
               "\"wire\" when the next one follows, 6000 us later; tell less, or less often, run the wire "
               "faster, or give it more time");
     EXPECT_EQ(
-        refusal(level, across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(12ms))),
+        refusal(level_row,
+                across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(12ms))),
         "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": a frame of it may take 2832 us on wire "
         "\"wire\" and has 1000 us; tell less, or less often, run the wire faster, or give it more time");
 }

@@ -1,7 +1,5 @@
 // A node of another version of the system: what is the same there works, what differs is refused by name.
-#include "kernel/machine/accept.hpp"
-#include "tests/drivers/system/pair.hpp"
-#include "toolchain/machine/system_run.hpp"
+#include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,23 +9,19 @@ namespace {
 // clang-format off
 /// The value is told in finer steps.
 inline constexpr auto newer_pair = system("pair",
-    nodes(node<giver_table>("a"), node<taker_table>("b")),
-    wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us))),
+    both_nodes, usual_wire("wire"),
     crossings(
         across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.01)),
-        across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms), if_lost("a.giver.not_taken")),
-        across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24)),
-        presence("b", "a.giver.other_is_there"),
-        presence("a", "b.taker.other_is_there")));
+        sent_row, doubled_row, b_row, a_row));
 // clang-format on
 using NewerTaker = AtRunTime<station<newer_pair, "b", taker_table>, board::host>;
 
 TEST(Versions, what_is_the_same_works_and_what_differs_is_refused_by_name) {
-    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), NewerTaker::machine()};
-    SystemRun run{pair.view(), machines, {}, 1};
-    ASSERT_TRUE(run.start());
-    auto& giver = *run.instance(0).find<Giver>("giver");
-    auto& taker = *run.instance(1).find<Taker>("taker");
+    PairRun<GiverFirmware, NewerTaker> both;
+    both.start(0ms);
+    SystemRun& run = both.run;
+    Giver& giver = both.giver();
+    Taker& taker = both.taker();
     auto& from = *run.instance(0).find<systems::Link<pair, 0>>("wire");
     auto& to = *run.instance(1).find<systems::Link<newer_pair, 1>>("wire");
     ASSERT_TRUE(
@@ -46,23 +40,19 @@ TEST(Versions, what_is_the_same_works_and_what_differs_is_refused_by_name) {
     EXPECT_EQ(from.refused.last().view(), "node \"b\" " + std::string{refusal});
     EXPECT_FALSE(to.works(0));
     EXPECT_TRUE(to.works(1));
-    run.stop();
 }
 
 TEST(Versions, the_right_one_is_taken_when_it_comes) {
-    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
-    SystemRun run{pair.view(), machines, {}, 1};
-    ASSERT_TRUE(run.start());
-    run.run_for(300ms);
+    PairRun both;
+    both.start();
+    SystemRun& run = both.run;
     run.stop(1); // in order: it says so
     run.run_for(20ms);
-    EXPECT_FALSE(run.instance(0).find<Giver>("giver")->other_is_there.get())
-        << "before its silence would tell";
+    EXPECT_FALSE(both.giver().other_is_there.get()) << "before its silence would tell";
     ASSERT_TRUE(run.start(1));
     run.run_for(300ms);
-    EXPECT_TRUE(run.instance(1).find<Taker>("taker")->level.good());
+    EXPECT_TRUE(both.taker().level.good());
     EXPECT_EQ((run.instance(1).find<systems::Link<pair, 1>>("wire")->refused.last().view()), "");
-    run.stop();
 }
 
 } // namespace

@@ -1,7 +1,5 @@
 // The same rows on other wires: CAN FD, which takes wide values, and identifiers that no row moves.
-#include "kernel/machine/accept.hpp"
-#include "tests/drivers/system/pair.hpp"
-#include "toolchain/machine/system_run.hpp"
+#include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -68,10 +66,9 @@ using ArmFirmware = AtRunTime<station<wide, "a", arm_table>, board::host>;
 using DeskFirmware = AtRunTime<station<wide, "b", desk_table>, board::host>;
 
 TEST(CanFd, takes_values_arguments_and_results_that_no_classical_frame_takes) {
-    const std::array<AcceptedMachine, 2> machines{ArmFirmware::machine(), DeskFirmware::machine()};
-    SystemRun run{wide.view(), machines, {}, 1};
-    ASSERT_TRUE(run.start());
-    run.run_for(300ms);
+    OnOneWire<ArmFirmware, DeskFirmware> both{wide.view()};
+    both.start();
+    SystemRun& run = both.run;
     Arm& arm = *run.instance(0).find<Arm>("arm");
     Desk& desk = *run.instance(1).find<Desk>("desk");
     const Pose pose{1.5, -2, 1e300, -0.0, 4, 5};
@@ -82,7 +79,6 @@ TEST(CanFd, takes_values_arguments_and_results_that_no_classical_frame_takes) {
     EXPECT_EQ(desk.reached, pose);
     EXPECT_EQ(arm.mirror.state(), CommandState::done);
     EXPECT_EQ(arm.mirror.result<0>(), (Pose{-1.5, 2, -1e300, 0, -4, -5}));
-    run.stop();
 }
 
 TEST(CanFd, frames_are_protected_as_long_ones_are_and_proven_in_both_bit_rates) {
@@ -92,14 +88,13 @@ TEST(CanFd, frames_are_protected_as_long_ones_are_and_proven_in_both_bit_rates) 
     // Arbitration in 32 bits of 2 us; behind it 33 + 640 + 5 of 0.5 us.
     EXPECT_EQ(data.on_wire, 403us);
     EXPECT_EQ(plan.frames[plan.place[1].answer].bytes, 7);
-    const std::array<AcceptedMachine, 2> machines{ArmFirmware::machine(), DeskFirmware::machine()};
-    SystemRun run{wide.view(), machines, {}, 1};
+    OnOneWire<ArmFirmware, DeskFirmware> both{wide.view()};
+    SystemRun& run = both.run;
     can::Twin ear;
     const std::array all{can::Identifier{data.id, false}};
     ASSERT_TRUE(ear.open({.interface = "ear", .receive = all, .takes_fd = true}));
     ASSERT_TRUE(run.wire().attach(ear));
-    ASSERT_TRUE(run.start());
-    run.run_for(300ms);
+    both.start();
     can::Frame frame;
     ASSERT_EQ(ear.receive(frame).what, can::Received::frame);
     EXPECT_EQ(can::format_of(frame), can::Format::flexible_faster);
@@ -110,24 +105,14 @@ TEST(CanFd, frames_are_protected_as_long_ones_are_and_proven_in_both_bit_rates) 
               ProtectionVerdict::Kind::wrong_crc);
     for (const WireFrame& each : plan.frames)
         EXPECT_LE(run.end(each.node).longest_response({each.id, false}), each.worst);
-    run.stop();
 }
 
 // clang-format off
-constexpr WireRow good_wire(std::string_view name) {
-    return wire(name, bit_rate(500'000), beats(20ms), silent_after(70ms), served_within(1ms, budget(40us)));
-}
-constexpr auto fixed_wire = wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms),
-                                 served_within(1ms, budget(40us)), fixed_identifiers);
-constexpr auto level_row = across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1));
-constexpr auto sent_row = across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms));
-constexpr auto doubled_row = across(uses("a.giver.doubled", "b.taker.twice"), at_most(1, 100ms), within(20ms), in_bits(24));
-constexpr auto b_row = presence("b", "a.giver.other_is_there");
-constexpr auto a_row = presence("a", "b.taker.other_is_there");
-constexpr auto older = system("fixed", nodes(node<giver_table>("a"), node<taker_table>("b")), fixed_wire,
+constexpr auto fixed_wire = usual_wire("wire", fixed_identifiers);
+constexpr auto older = system("fixed", both_nodes, fixed_wire,
     crossings(level_row, a_row, b_row));
 /// More rows, of which two come first on the wire.
-constexpr auto newer = system("fixed", nodes(node<giver_table>("a"), node<taker_table>("b")), fixed_wire,
+constexpr auto newer = system("fixed", both_nodes, fixed_wire,
     crossings(sent_row, level_row, doubled_row, a_row, b_row));
 // clang-format on
 using OlderTaker = AtRunTime<station<older, "b", taker_table>, board::host>;
@@ -142,11 +127,11 @@ TEST(FixedIdentifiers, a_version_with_other_rows_works_in_all_that_both_have) {
         EXPECT_EQ(found, 1u) << std::hex << frame.id;
         EXPECT_LT(frame.id, 1u << 29);
     }
-    const std::array<AcceptedMachine, 2> machines{NewerGiver::machine(), OlderTaker::machine()};
-    SystemRun run{older.view(), machines, {}, 1};
-    ASSERT_TRUE(run.start());
-    Giver& giver = *run.instance(0).find<Giver>("giver");
-    Taker& taker = *run.instance(1).find<Taker>("taker");
+    PairRun<NewerGiver, OlderTaker> both{1, older.view()};
+    both.start(0ms);
+    SystemRun& run = both.run;
+    Giver& giver = both.giver();
+    Taker& taker = both.taker();
     giver.tells = 12;
     giver.to_send = {1};
     run.run_for(400ms);
@@ -157,7 +142,6 @@ TEST(FixedIdentifiers, a_version_with_other_rows_works_in_all_that_both_have) {
               "node \"b\" has no r");
     EXPECT_TRUE(taker.got.empty()) << "of that row the older one knows nothing";
     EXPECT_EQ((run.instance(1).find<systems::Link<older, 1>>("wire")->frames_refused.last()), 0);
-    run.stop();
 }
 
 TEST(FixedIdentifiers, win_the_wire_by_how_soon_the_next_one_may_follow) {
@@ -223,10 +207,7 @@ std::uint16_t layout_of(const WireRow& on) {
 }
 
 TEST(Layouts, differ_where_the_same_bits_mean_something_else) {
-    const auto on = [](const CommonClock& clock) {
-        return wire("wire", bit_rate(500'000), beats(20ms), silent_after(70ms),
-                    served_within(1ms, budget(40us)), fixed_identifiers, clock);
-    };
+    const auto on = [](const CommonClock& clock) { return usual_wire("wire", fixed_identifiers, clock); };
     const WireRow usual = on(common_clock("a", every(100ms), within(200us)));
     std::vector<std::uint16_t> all{
         layout_of<std::int32_t>(usual),
@@ -256,11 +237,11 @@ constexpr auto bridge_table = machine("bridge",
     components(component<Bridge>("bridge")),
     activities(activity("bridge", every(5ms), runs("bridge"), budget(50us))),
     connections(), reactions(), behaviours());
-constexpr auto first_wire = system("first", nodes(node<giver_table>("a"), node<bridge_table>("m")), good_wire("left"),
+constexpr auto first_wire = system("first", nodes(node<giver_table>("a"), node<bridge_table>("m")), usual_wire("left"),
     crossings(across(data("a.giver.level", "m.bridge.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
               presence("m", "a.giver.other_is_there")));
 constexpr auto& on_first_wire = station<first_wire, "m", bridge_table>;
-constexpr auto second_wire = system("second", nodes(node<on_first_wire>("m"), node<taker_table>("b")), good_wire("right"),
+constexpr auto second_wire = system("second", nodes(node<on_first_wire>("m"), node<taker_table>("b")), usual_wire("right"),
     crossings(across(data("m.bridge.doubled", "b.taker.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
               presence("m", "b.taker.other_is_there")));
 // clang-format on
@@ -277,7 +258,7 @@ TEST(Priorities, follow_deadlines_and_where_that_is_not_enough_audsley) {
     // An answer of 6.6 ms must go before values of 6.2 ms: those would else wait for it in their own node's
     // queue.
     const auto tight = system(
-        "tight", nodes(node<giver_table>("a"), node<taker_table>("b")),
+        "tight", both_nodes,
         wire("wire", bit_rate(372'000), beats(14'300us), silent_after(43ms),
              served_within(200us, budget(40us))),
         crossings(across(data("a.giver.level", "b.taker.level", stale_after(60ms), hold), every(6'200us),
@@ -301,12 +282,11 @@ TEST(Priorities, follow_deadlines_and_where_that_is_not_enough_audsley) {
 }
 
 TEST(Pace, what_comes_sooner_than_its_row_says_waits_and_is_counted) {
-    const std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
-    SystemRun run{pair.view(), machines, {}, 1};
-    ASSERT_TRUE(run.start());
-    run.run_for(300ms);
-    Giver& giver = *run.instance(0).find<Giver>("giver");
-    Taker& taker = *run.instance(1).find<Taker>("taker");
+    PairRun both;
+    both.start();
+    SystemRun& run = both.run;
+    Giver& giver = both.giver();
+    Taker& taker = both.taker();
     auto& link = *run.instance(0).find<systems::Link<pair, 0>>("wire");
     giver.to_send = {1, 2, 3}; // 5 ms after each other; at_most(1, 40ms)
     run.run_for(20ms);
@@ -320,7 +300,6 @@ TEST(Pace, what_comes_sooner_than_its_row_says_waits_and_is_counted) {
     giver.to_send = {4};
     run.run_for(200ms);
     EXPECT_EQ(link.held_back.last(), 2);
-    run.stop();
 }
 
 } // namespace
