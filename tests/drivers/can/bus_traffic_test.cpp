@@ -42,45 +42,33 @@ TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
     EXPECT_EQ(rows[2].deadline, 100ms);
 }
 
-TEST(BusTraffic, is_refused_when_the_bus_is_too_slow) {
+TEST(BusTraffic, is_refused_by_the_largest_part_of_the_time_that_a_frame_takes) {
     EXPECT_EQ(
         refusal(at(125'000), heard(0x181, "a", 8, 1ms), heard(0x182, "b", 8, 10ms)),
         "frame \"a\" may never come through: what is more urgent, and itself, fill the bus, which all frames "
         "together load by 118 % at 125000 bit/s; send less often, or run the bus faster");
-}
-TEST(BusTraffic, is_refused_for_a_long_frame_that_has_just_begun) {
     EXPECT_EQ(refusal(at(125'000), heard(0x181, "a", 1, 1ms), heard(0x182, "b", 8, 100ms)),
               "frame \"a\" may take 1600 us but is due within 1000 us; most of it, 1080 us, is \"b\", which "
               "may just "
               "have begun; shorten that, or lengthen the period");
-}
-TEST(BusTraffic, is_refused_for_its_own_time) {
     EXPECT_EQ(refusal(at(125'000, 0, 100us), sent(0x181, "a", 8, every(2ms))),
               "frame \"a\" may still wait when the next one follows, 2000 us later; most of it, 1080 us, is "
               "its own "
               "time on the wire; lengthen its period, or run the bus faster than 125000 bit/s");
-}
-TEST(BusTraffic, is_refused_for_what_wins_before_it) {
     EXPECT_EQ(refusal(at(500'000), heard(0x100, "busy", 8, 600us), heard(0x200, "b", 8, 800us),
                       heard(0x300, "c", 8, 100ms)),
               "frame \"b\" may take 810 us but is due within 800 us; most of it, 270 us, is \"busy\", which "
               "wins the "
               "bus before it; send that less often, or give this one a lower identifier");
-}
-TEST(BusTraffic, is_refused_for_a_late_node) {
     EXPECT_EQ(
         refusal(at(500'000), heard(0x100, "late", 8, 2ms, 1900us)),
         "frame \"late\" may take 2170 us but is due within 2000 us; most of it, 1900 us, is how late it may "
         "come to its queue; shorten the response of the activity that drives the bus, or what its node is "
         "said to be late by");
-}
-TEST(BusTraffic, is_refused_for_errors) {
     EXPECT_EQ(
         refusal(at(500'000, 3), heard(0x100, "a", 8, 1ms)),
         "frame \"a\" may take 1266 us but is due within 1000 us; most of it, 996 us, are errors on the wire; "
         "lengthen the period, or say fewer with bus_errors(...) of the board's device");
-}
-TEST(BusTraffic, is_refused_for_less_urgent_frames_in_flight) {
     EXPECT_EQ(
         refusal(at(250'000, 0, 1ms), sent(0x100, "urgent", 1, every(3ms)),
                 sent(0x200, "long", 8, on_demand(100ms)), sent(0x201, "longer", 8, on_demand(100ms)),
@@ -89,6 +77,7 @@ TEST(BusTraffic, is_refused_for_less_urgent_frames_in_flight) {
         "less urgent frames of this machine that the controller holds already; shorten those, or lengthen "
         "the period");
 }
+
 TEST(BusTraffic, is_refused_when_the_machine_is_too_slow_to_hand_over) {
     constexpr std::array names{"b", "c", "d", "e", "f", "g", "h", "i", "j"};
     const std::string refused = [&]<std::size_t... I>(std::index_sequence<I...>) {

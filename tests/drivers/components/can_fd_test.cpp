@@ -2,10 +2,7 @@
 #include "drivers/can/bus.hpp"
 #include "drivers/can/far_end.hpp"
 #include "drivers/plant/simulation.hpp"
-#include "kernel/machine/accept.hpp"
-#include "kernel/machine/worlds/virtual_world.hpp"
-
-#include <gtest/gtest.h>
+#include "tests/drivers/components/machine_rig.hpp"
 
 namespace tappet::test {
 namespace {
@@ -53,39 +50,30 @@ struct Scanner final : Plant {
     can::FarEnd<signals> can{ends, "wire"};
 };
 
-struct PlaningMachine : testing::Test {
+struct PlaningMachine : MachineRig<planing_machine, box, on_box> {
     PlaningMachine() {
         devices.set_bit_rates({500'000, 2'000'000});
-        const auto opened = devices.open(machine);
+        const auto opened = devices.open(instance.machine());
         EXPECT_TRUE(opened) << opened.error().view();
         const auto configured = instance.configure(devices.provided());
         EXPECT_TRUE(configured) << configured.error().view();
-        world.add({this, [](void* self) { return static_cast<PlaningMachine*>(self)->next; },
-                   [](void* self, Time now) { static_cast<PlaningMachine*>(self)->advance(now); }});
-        world.start();
     }
-    void advance(Time now) {
+    Time carry(Time now) override {
         devices.advance(now);
-        next = now + 50us;
+        return now + 50us;
     }
-    void run_for(Duration time) { EXPECT_TRUE(world.run_until(clock.now() + time)); }
 
     Scanner plant;
     SimulatedDevices devices{plant, 1};
-    AcceptedMachine machine = AtRunTime<planing_machine, box, on_box>::machine();
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{machine, clock};
-    VirtualWorld world{instance};
-    Time next{};
     can::Bus<signals>& bus = *instance.find<can::Bus<signals>>("can");
 };
 
 TEST_F(PlaningMachine, has_values_that_lie_behind_the_eighth_byte_in_and_out) {
     plant.can.set("scan.width", 123.456);
-    run_for(100ms);
+    run(100ms);
     EXPECT_NEAR(plant.can.get("recipe.thickness"), 61.728, 0.0005);
     plant.can.set("scan.width", 8000.25);
-    run_for(100ms);
+    run(100ms);
     EXPECT_NEAR(plant.can.get("recipe.thickness"), 4000.125, 0.0005);
     EXPECT_EQ(bus.wrong_lengths.last(), 0);
     EXPECT_GE(bus.longest_response("recipe"), 740us) << "300 + 5 bits, all of them slow";
@@ -102,20 +90,20 @@ TEST_F(PlaningMachine, is_proven_by_both_bit_rates) {
 }
 
 TEST_F(PlaningMachine, takes_no_frame_of_another_format) {
-    run_for(20ms);
+    run(20ms);
     can::Frame wrong{.id = 0x182, .length = 1, .stamp = clock.now()};
     set_format(wrong, can::Format::flexible);
     EXPECT_TRUE(plant.can.RawFarEnd::send(wrong));
     EXPECT_EQ(plant.can.refused(), 0u);
-    run_for(20ms);
+    run(20ms);
     EXPECT_EQ(bus.wrong_lengths.last(), 1);
 }
 
 TEST_F(PlaningMachine, counts_frames_that_the_bus_cut_short) {
-    run_for(20ms);
+    run(20ms);
     devices.bus("wire").faults.only = can::standard(0x181);
     devices.bus("wire").faults.corrupt_length.next = 2;
-    run_for(20ms);
+    run(20ms);
     EXPECT_EQ(bus.wrong_lengths.last(), 2);
 }
 

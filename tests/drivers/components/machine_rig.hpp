@@ -12,7 +12,9 @@
 
 namespace tappet::test {
 
-template <const auto& table> struct MachineRig : testing::Test {
+/// On the box of these tests, or on another one as the binding has it.
+template <const auto& table, const auto& box = board, const auto&... binding>
+struct MachineRig : testing::Test {
     template <class Interface> void configure(std::string_view name, Interface& device) {
         const ProvidedDevice provided{type_id<Interface>, name, &device};
         const auto configured = instance.configure({&provided, 1});
@@ -50,7 +52,7 @@ template <const auto& table> struct MachineRig : testing::Test {
         EXPECT_EQ(instance.life().left_unsafe(), driver);
     }
     os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, box, binding...>::machine(), clock};
     VirtualWorld world{instance};
 
 private:

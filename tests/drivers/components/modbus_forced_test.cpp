@@ -70,16 +70,7 @@ inline constexpr auto silent_registers = modbus::register_map(
     modbus::write("pump", modbus::coils(0, 1), modbus::every(1s), modbus::stale_after(5s),
                   modbus::bit("on", 0))
         .safe_by_silence());
-inline constexpr auto silent_machine = machine(
-    "silent",
-    components(component<modbus::Client<silent_registers>>("server", device("server")),
-               component<Reader>("reader")),
-    activities(activity("server", every(50ms), runs("server"), not_real_time),
-               activity("reader", every(1ms), runs("reader"), budget(20us))),
-    connections(data("server.unit.temperature", "reader.temperature"),
-                data("server.connected", "reader.connected"), data("server.outages", "reader.outages"),
-                data("server.outages_survived", "reader.survived"), data("reader.pump", "server.pump.on")),
-    reactions(), behaviours());
+inline constexpr auto silent_machine = machine_with<modbus::Client<silent_registers>>();
 struct SilentPump : UtilityOf<silent_machine> {};
 
 TEST_F(SilentPump, is_not_told_at_the_stop_what_a_force_kept_from_it) {

@@ -54,11 +54,11 @@ struct Reader {
 using Client = modbus::Client<registers>;
 
 // clang-format off
-template <class... Pump>
+template <class Server = Client, class... Pump>
 constexpr auto machine_with(const Pump&... pump) {
     return machine("utility-machine",
         components(
-            component<Client>("server", device("server")),
+            component<Server>("server", device("server")),
             component<Reader>("reader")),
         activities( // the reader stops first, so that what it writes last reaches the server
             activity("server", every(50ms), runs("server"), not_real_time),

@@ -34,6 +34,10 @@ struct ModbusSession : testing::Test {
         }
         now = end;
     }
+    void want(double degrees, double percent) {
+        EXPECT_TRUE(session.set(wanted_temperature, degrees, now));
+        EXPECT_TRUE(session.set(wanted_humidity, percent, now));
+    }
     Twin server{300ms};
     Session<3, 5> session{map, server};
     Time now{};
@@ -96,16 +100,14 @@ TEST_F(ModbusSession, writes_nothing_before_all_values_of_a_row_were_set) {
     EXPECT_TRUE(session.set(wanted_temperature, 22, now));
     run_until(Time{3s});
     EXPECT_EQ(server.get(Table::holding_registers, 8), 0);
-    EXPECT_TRUE(session.set(wanted_temperature, 22, now));
-    EXPECT_TRUE(session.set(wanted_humidity, 60, now));
+    want(22, 60);
     run_until(now + 10ms);
     EXPECT_EQ(server.get(Table::holding_registers, 8), 22) << "a change goes out at once";
     EXPECT_EQ(server.get(Table::holding_registers, 9), 60);
 }
 
 TEST_F(ModbusSession, repeats_what_it_wrote_and_stops_when_it_is_stale) {
-    session.set(wanted_temperature, 22, now);
-    session.set(wanted_humidity, 60, now);
+    want(22, 60);
     run_until(Time{100ms});
     server.set(Table::holding_registers, 8, 0); // the server restarted and forgot
     run_until(Time{2s});
@@ -120,8 +122,7 @@ TEST_F(ModbusSession, sends_nothing_stale_after_an_outage) {
     run_until(Time{1s});
     server.inject(Fault::down);
     run_until(Time{2s});
-    session.set(wanted_temperature, 22, now);
-    session.set(wanted_humidity, 60, now);
+    want(22, 60);
     run_until(Time{12s});
     server.inject(Fault::none);
     run_until(Time{40s});
@@ -133,8 +134,7 @@ TEST_F(ModbusSession, sends_nothing_stale_after_an_outage) {
 TEST_F(ModbusSession, makes_safe_what_grew_stale_before_the_server_had_it) {
     for (const Fault fault : {Fault::down, Fault::silent, Fault::exception}) {
         SCOPED_TRACE(static_cast<int>(fault));
-        session.set(wanted_temperature, 22, now);
-        session.set(wanted_humidity, 60, now);
+        want(22, 60);
         run_until(now + 1s);
         server.inject(fault);
         run_until(now + 1s);
@@ -151,8 +151,7 @@ TEST_F(ModbusSession, makes_safe_what_grew_stale_before_the_server_had_it) {
 }
 
 TEST_F(ModbusSession, brings_a_new_value_to_the_server_beside_one_that_was_written_long_ago) {
-    session.set(wanted_temperature, 22, now);
-    session.set(wanted_humidity, 60, now);
+    want(22, 60);
     run_until(Time{20s});
     session.set(wanted_humidity, 40, now);
     run_until(Time{21s});
@@ -162,8 +161,7 @@ TEST_F(ModbusSession, brings_a_new_value_to_the_server_beside_one_that_was_writt
 }
 
 TEST_F(ModbusSession, writes_no_stale_value_to_a_server_that_may_have_begun_anew) {
-    session.set(wanted_temperature, 90, now);
-    session.set(wanted_humidity, 1, now);
+    want(90, 1);
     run_until(Time{20s});
     server.inject(Fault::down);
     run_until(Time{22s});
@@ -295,8 +293,7 @@ TEST_F(ModbusSession, reconnects_after_garbage_and_foreign_answers) {
 TEST_F(ModbusSession, keeps_reading_while_values_to_write_change_all_the_time) {
     run_until(Time{1s});
     for (int i = 0; i < 500; ++i) {
-        session.set(wanted_temperature, i, now);
-        session.set(wanted_humidity, i, now);
+        want(i, i);
         run_until(now + 10ms);
     }
     EXPECT_LT(now - session.value(temperature).stamp, 150ms);

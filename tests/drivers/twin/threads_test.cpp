@@ -39,16 +39,12 @@ TEST(CanTwin, carries_frames_between_the_machines_thread_and_the_buss) {
     static constexpr std::array from_plant{can::Identifier{0x181, false}};
     can::TwinBus bus{1};
     can::Twin machine, plant;
-    ASSERT_TRUE(machine.open({.interface = "machine",
-                              .receive = from_plant,
-                              .transmit = from_machine,
-                              .max_age = 10s,
-                              .confirm_within = 60s}));
-    ASSERT_TRUE(plant.open({.interface = "plant",
-                            .receive = from_machine,
-                            .transmit = from_plant,
-                            .max_age = 10s,
-                            .confirm_within = 60s}));
+    can::Settings settings{.interface = "machine", .receive = from_plant, .transmit = from_machine};
+    settings.max_age = 10s, settings.confirm_within = 60s;
+    ASSERT_TRUE(machine.open(settings));
+    settings.interface = "plant";
+    std::swap(settings.receive, settings.transmit);
+    ASSERT_TRUE(plant.open(settings));
     ASSERT_TRUE(bus.attach(machine) && bus.attach(plant));
     constexpr std::uint64_t frames = 20'000;
     std::atomic<std::int64_t> clock_ms{1};
