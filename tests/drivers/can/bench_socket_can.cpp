@@ -24,6 +24,10 @@ Frame frame(std::uint32_t id, Time made = now()) {
     return {.id = id, .length = 2, .data = {0xAB, 0xCD}, .stamp = made};
 }
 
+struct Dump : Foreign {
+    Dump() : Foreign{"candump -L can0"} { std::this_thread::sleep_for(200ms); }
+};
+
 struct RealCan : testing::Test {
     Settings settings{.interface = "can0", .receive = receives, .transmit = sends, .bit_rate = 500'000};
     SocketCan can;
@@ -57,8 +61,7 @@ TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
 
 TEST_F(RealCan, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
     open();
-    Foreign dump{"candump -L can0"};
-    std::this_thread::sleep_for(200ms);
+    const Dump dump;
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
     EXPECT_TRUE(run_for(10ms).empty()) << "its own frame is a confirmation only";
     EXPECT_TRUE(dump.says("can0 201#ABCD"));
@@ -68,8 +71,7 @@ TEST_F(RealCan, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
 
 TEST_F(RealCan, sends_a_burst_in_the_order_of_identifiers_with_few_frames_in_flight) {
     open();
-    Foreign dump{"candump -L can0"};
-    std::this_thread::sleep_for(200ms);
+    const Dump dump;
     for (std::uint32_t i = 64; i > 0; --i) ASSERT_EQ(can.send(frame(0x200 + i)), Send::queued);
     run_for(50ms);
     EXPECT_EQ(can.counters().sent, 64u);
@@ -102,8 +104,7 @@ TEST_F(RealCan, says_how_many_frames_an_overflow_cost) {
 TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_clean) {
     settings.restarts_allowed = 1;
     open();
-    Foreign dump{"candump -L can0"};
-    std::this_thread::sleep_for(200ms);
+    const Dump dump;
     ASSERT_EQ(run_foreign("cansend can0 20000040#0000000000000000"), 0);
     EXPECT_EQ(can.send(frame(0x201)), Send::queued) << "the machine does not know yet";
     Frame f;
@@ -257,8 +258,7 @@ TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format)
 
 TEST_F(RealCanFd, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
     open();
-    Foreign dump{"candump -L can0"};
-    std::this_thread::sleep_for(200ms);
+    const Dump dump;
     const Frame fast = numbered(standard(0x201), Format::flexible_faster),
                 slow = numbered(standard(0x202), Format::flexible, 32);
     EXPECT_EQ(can.send(fast), Send::queued);
@@ -277,8 +277,7 @@ TEST_F(RealCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_
     SafeSender sender;
     const auto opened = sender.open("can0", safe);
     ASSERT_TRUE(opened) << opened.error().view();
-    Foreign dump{"candump -L can0"};
-    std::this_thread::sleep_for(200ms);
+    const Dump dump;
     sender.send(SafeSender::Purpose::rehearsal);
     EXPECT_EQ(sender.left(), 2u);
     for (int n = 0; n < 2; ++n) {

@@ -11,24 +11,20 @@ struct AxisWithoutPower : ServoAxis {
 TEST_F(ServoAxis, says_done_of_no_motion_that_was_halted) {
     ASSERT_TRUE(client->move_to.send(100.0, 20.0));
     run(1s);
-    ASSERT_TRUE(client->halt.send());
-    EXPECT_TRUE(ends(client->halt));
+    EXPECT_TRUE(does(client->halt));
     EXPECT_EQ(client->move_to.state(), CommandState::failed);
     client->move_to.reset();
     follow_positions();
     ASSERT_TRUE(client->superimpose.send(50.0, 10.0, 500.0));
     run(500ms);
-    client->halt.reset();
-    ASSERT_TRUE(client->halt.send());
-    EXPECT_TRUE(ends(client->halt));
+    EXPECT_TRUE(does(client->halt));
     EXPECT_EQ(client->superimpose.state(), CommandState::failed);
 }
 
 TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
     ASSERT_TRUE(client->superimpose.send(5.0, 20.0, 100.0)); // from a stand, a relative move
     run(100ms);
-    ASSERT_TRUE(client->move_to.send(-50.0, 80.0));
-    EXPECT_TRUE(ends(client->move_to));
+    EXPECT_TRUE(does(client->move_to, -50.0, 80.0));
     EXPECT_EQ(client->superimpose.state(), CommandState::failed);
     client->superimpose.reset();
     follow_positions();
@@ -41,8 +37,7 @@ TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
 }
 
 TEST_F(ServoAxis, is_held_after_a_stop_until_it_is_released_also_without_power_in_between) {
-    ASSERT_TRUE(client->come_to_stop.send());
-    EXPECT_TRUE(ends(client->come_to_stop));
+    EXPECT_TRUE(does(client->come_to_stop));
     client->power_off.emit();
     run(200ms);
     power();
@@ -54,18 +49,15 @@ TEST_F(ServoAxis, is_held_after_a_stop_until_it_is_released_also_without_power_i
 TEST_F(AxisWithoutPower, goes_home_to_places_and_at_speeds_by_commands) {
     servo.set_home(3);
     power();
-    ASSERT_TRUE(client->home.send());
-    EXPECT_TRUE(ends(client->home));
+    EXPECT_TRUE(does(client->home));
     EXPECT_NEAR(servo.position(), 0, 1e-3);
     client->home.reset();
-    ASSERT_TRUE(client->move_to.send(25.0, 80.0));
-    EXPECT_TRUE(ends(client->move_to));
+    EXPECT_TRUE(does(client->move_to, 25.0, 80.0));
     EXPECT_NEAR(servo.position(), 25, 1e-3);
     ASSERT_TRUE(client->move_at.send(-40.0));
     EXPECT_TRUE(until([&] { return servo.velocity() == -40; }));
     EXPECT_EQ(axis->state.last(), AxisMode::continuous_motion);
-    ASSERT_TRUE(client->come_to_stop.send());
-    EXPECT_TRUE(ends(client->come_to_stop));
+    EXPECT_TRUE(does(client->come_to_stop));
     EXPECT_EQ(servo.velocity(), 0);
     EXPECT_EQ(axis->state.last(), AxisMode::stopping);
     client->release.emit();
@@ -150,13 +142,11 @@ TEST_F(AxisWithoutPower, stays_where_it_was_turned_without_power) {
 }
 
 TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
-    ASSERT_TRUE(client->superimpose.send(1.0, 10.0, 500.0));
-    EXPECT_TRUE(ends(client->superimpose));
+    EXPECT_TRUE(does(client->superimpose, 1.0, 10.0, 500.0));
     EXPECT_NEAR(servo.position(), 1, 1e-3) << "from a stand: a relative motion";
     client->superimpose.reset();
     follow_positions();
-    ASSERT_TRUE(client->superimpose.send(4.0, 10.0, 500.0));
-    EXPECT_TRUE(ends(client->superimpose));
+    EXPECT_TRUE(does(client->superimpose, 4.0, 10.0, 500.0));
     EXPECT_EQ(axis->state.last(), AxisMode::synchronized_motion);
     run(20ms);
     EXPECT_NEAR(servo.position(), 5, 1e-3);

@@ -185,6 +185,10 @@ struct ServoAxis : testing::Test, WireRig<servo_machine, Bus> {
     template <class Call> bool ends(Call& call) {
         return until([&] { return !in_flight(call.state()); }) && call.state() == CommandState::done;
     }
+    template <class Call, class... Arguments> bool does(Call& call, Arguments... arguments) {
+        call.reset();
+        return call.send(arguments...) && ends(call);
+    }
 
     canopen::SimulatedDevice<canopen::dictionary<files::servo_eds>> node{9};
     canopen::SimulatedServo servo;

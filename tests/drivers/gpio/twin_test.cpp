@@ -21,6 +21,10 @@ constexpr Mask bit(std::size_t line) { return Mask{1} << line; }
 struct GpioTwin : testing::Test {
     GpioTwin() { EXPECT_TRUE(twin.open({.chip = "loom", .lines = loom_lines})); }
     EdgeBatch read() { return twin.read_edges(edges); }
+    void change(std::size_t line, bool level, Time at) {
+        ASSERT_TRUE(twin.drive(line, level, at));
+        twin.deliver_until(at);
+    }
     Twin twin;
     std::array<Edge, 64> edges{};
 };
@@ -40,8 +44,7 @@ TEST_F(GpioTwin, delivers_edges_in_order_with_number_and_time) {
 }
 
 TEST_F(GpioTwin, makes_no_edge_of_a_level_that_stays) {
-    twin.drive(drop_wire, false, Time{1ms});
-    twin.deliver_until(Time{1ms});
+    change(drop_wire, false, Time{1ms});
     EXPECT_EQ(read().count, 0u);
 }
 
@@ -59,8 +62,7 @@ TEST_F(GpioTwin, leaves_the_rest_for_the_next_read) {
 TEST_F(GpioTwin, notices_lost_edges_and_reads_the_levels_again) {
     twin.faults(drop_wire).lose_next = 3;
     for (int i = 0; i < 3; ++i) twin.drive(drop_wire, i % 2 == 0, Time{1ms * (i + 1)});
-    twin.drive(detector, true, Time{5ms});
-    twin.deliver_until(Time{5ms});
+    change(detector, true, Time{5ms});
     const EdgeBatch batch = read();
     ASSERT_EQ(batch.count, 1u);
     EXPECT_EQ(edges[0].missed, 3u);
@@ -74,14 +76,12 @@ TEST_F(GpioTwin, notices_lost_edges_and_reads_the_levels_again) {
 TEST_F(GpioTwin, notices_that_its_buffer_overflowed) {
     Time at{1ms};
     for (std::size_t i = 0; i < Twin::event_buffer + 50; ++i, at += 1ms) {
-        ASSERT_TRUE(twin.drive(drop_wire, i % 2 == 0, at));
-        twin.deliver_until(at);
+        change(drop_wire, i % 2 == 0, at);
     }
     std::uint64_t got = 0;
     for (std::size_t n = read().count; n != 0; n = read().count) got += n;
     EXPECT_EQ(got, Twin::event_buffer);
-    twin.drive(detector, true, at);
-    twin.deliver_until(at);
+    change(detector, true, at);
     EXPECT_EQ(read().gap.missed, 50u);
 }
 
@@ -155,8 +155,7 @@ TEST_F(GpioTwin, calls_its_listener_once_per_delivery_with_edges) {
     twin.deliver_until(Time{1ms});
     EXPECT_EQ(calls, 0);
     twin.drive(drop_wire, true, Time{2ms});
-    twin.drive(detector, true, Time{2ms});
-    twin.deliver_until(Time{2ms});
+    change(detector, true, Time{2ms});
     EXPECT_EQ(calls, 1);
 }
 
@@ -164,12 +163,10 @@ TEST_F(GpioTwin, accounts_for_every_edge_under_random_losses) {
     twin.faults(drop_wire).lose_one_in = 4;
     std::uint64_t driven = 0;
     for (Time at{1ms}; at < Time{1s}; at += 1ms, ++driven) {
-        twin.drive(drop_wire, driven % 2 == 0, at);
-        twin.deliver_until(at);
+        change(drop_wire, driven % 2 == 0, at);
         read();
     }
-    twin.drive(detector, true, Time{2s});
-    twin.deliver_until(Time{2s});
+    change(detector, true, Time{2s});
     read();
     EXPECT_EQ(twin.counters().edges + twin.counters().missed, driven + 1);
     EXPECT_GT(twin.counters().missed, 0u);
@@ -212,8 +209,7 @@ TEST_F(GpioTwin, refuses_every_call_while_its_chip_is_removed_and_changes_nothin
     EXPECT_TRUE(twin.write(bit(lamp), bit(lamp)));
     const Mask before = twin.outputs();
     twin.set_removed(true);
-    twin.drive(drop_wire, true, Time{1ms});
-    twin.deliver_until(Time{1ms});
+    change(drop_wire, true, Time{1ms});
     EXPECT_FALSE(twin.write(bit(lamp), 0));
     EXPECT_FALSE(twin.make_safe());
     EXPECT_FALSE(twin.levels().known);

@@ -38,6 +38,10 @@ struct Asked {
     Answer read(std::uint16_t address = 7) {
         return transport.read(Table::holding_registers, address, words);
     }
+    void come_back() {
+        if (transport.recover()) return;
+        ASSERT_EQ(transport.connect().outcome, Outcome::ok);
+    }
     RawServer server;
     LibmodbusTransport transport;
     std::array<std::uint16_t, 3> words{};
@@ -109,9 +113,7 @@ TEST_P(WireOfASilentServer, never_has_its_late_answer_taken_for_the_next_one) {
     server.let_go();
     Answer answer{.outcome = Outcome::timeout};
     while (answer.outcome == Outcome::timeout) { // a busy host may need more than the time told
-        if (!transport.recover()) {
-            ASSERT_EQ(transport.connect().outcome, Outcome::ok);
-        }
+        come_back();
         answer = read(50);
     }
     EXPECT_EQ(answer.outcome, Outcome::ok);
@@ -127,9 +129,7 @@ TEST_P(WireOfASilentServer, never_has_an_answer_taken_that_comes_while_the_next_
             std::this_thread::sleep_for(std::chrono::milliseconds{30});
             server.let_go();
         }};
-        if (!transport.recover()) {
-            EXPECT_EQ(transport.connect().outcome, Outcome::ok);
-        }
+        come_back();
         const std::array<std::uint16_t, 3> to{1, 2, 3};
         Answer answer = writes ? transport.write(Table::holding_registers, 50, to) : read(50);
         late.join();
@@ -138,9 +138,7 @@ TEST_P(WireOfASilentServer, never_has_an_answer_taken_that_comes_while_the_next_
         }
         // A busy host may need more than the time told.
         for (; answer.outcome == Outcome::timeout; answer = read(50)) {
-            if (!transport.recover()) {
-                ASSERT_EQ(transport.connect().outcome, Outcome::ok);
-            }
+            come_back();
         }
         EXPECT_EQ(answer.outcome, Outcome::ok);
         EXPECT_EQ(read(60).outcome, Outcome::ok);
