@@ -43,26 +43,19 @@ TEST(Frame, keeps_the_format_that_it_was_given) {
     }
 }
 
-TEST(FrameTime, agrees_with_the_published_lengths_of_classical_frames) {
+TEST(FrameTime, is_that_of_the_frames_format_kind_and_length) {
     constexpr BitRates rates{1'000'000'000, 0}; // a bit takes 1 ns
     Frame f = of_length(8, false);
     EXPECT_EQ(frame_time_ns(f, rates), 135); // Davis et al. 2007: 55 + 10 n for 11-bit identifiers
+    f.extended = true;
+    EXPECT_EQ(frame_time_ns(f, rates), 160); // 80 + 10 n for 29-bit identifiers
+    f.extended = false;
     f.remote = true;
     EXPECT_EQ(frame_time_ns(f, rates), 55) << "its length is only asked for";
-    f.remote = false;
-    f.length = 0;
-    EXPECT_EQ(frame_time_ns(f, rates), 55);
-    f.extended = true;
-    f.length = 8;
-    EXPECT_EQ(frame_time_ns(f, rates), 160); // 80 + 10 n for 29-bit identifiers
-}
-
-TEST(FrameTime, of_can_fd_is_that_of_its_two_bit_rates) {
-    Frame f = of_length(64);
+    f = of_length(64);
     EXPECT_EQ(frame_time_ns(f, {500'000, 2'000'000}), 1'420'000) << "710 bits, all of them slow";
     f.bit_rate_switch = true;
     EXPECT_EQ(frame_time_ns(f, {500'000, 2'000'000}), 403'000) << "32 slow ones, 678 fast ones";
-    EXPECT_EQ(frame_time_ns(f, {500'000, 0}), -1) << "there is no second rate";
 }
 
 } // namespace

@@ -18,6 +18,10 @@ struct Network : testing::Test, NetworkRig {
     }
 };
 
+struct WorkingNetwork : Network {
+    void SetUp() override { run_until(500ms); }
+};
+
 TEST_F(Network, checks_configures_and_starts_its_nodes) {
     run_until(400ms);
     EXPECT_TRUE(operational()) << reason();
@@ -35,8 +39,7 @@ TEST_F(Network, checks_configures_and_starts_its_nodes) {
     EXPECT_EQ(encoder.get({0x1800, 2}), 1u);
 }
 
-TEST_F(Network, carries_process_data_as_it_was_mapped) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, carries_process_data_as_it_was_mapped) {
     EXPECT_EQ(people->statusword.get(), 0x231);
     EXPECT_EQ(people->velocity.get(), -1234 * 0.1);
     EXPECT_EQ(people->position.get(), 0xABC);
@@ -136,8 +139,7 @@ TEST_F(Network, polls_a_node_whose_boot_up_nobody_heard) {
     EXPECT_TRUE(operational()) << reason();
 }
 
-TEST_F(Network, has_a_node_back_whose_cable_was_broken) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, has_a_node_back_whose_cable_was_broken) {
     encoder.cut_off(true);
     run(200ms);
     EXPECT_FALSE(operational());
@@ -150,8 +152,7 @@ TEST_F(Network, has_a_node_back_whose_cable_was_broken) {
     EXPECT_EQ(starts, 3) << "it was led back and started again";
 }
 
-TEST_F(Network, configures_a_node_anew_that_booted_while_it_worked) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, configures_a_node_anew_that_booted_while_it_worked) {
     drive.power_on(clock.now() + 5ms);
     run(8ms);
     EXPECT_FALSE(operational());
@@ -162,8 +163,7 @@ TEST_F(Network, configures_a_node_anew_that_booted_while_it_worked) {
     EXPECT_EQ(drive.get({0x1A00, 0}), 2u);
 }
 
-TEST_F(Network, refuses_a_node_that_was_replaced_while_it_was_away) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, refuses_a_node_that_was_replaced_while_it_was_away) {
     drive.power_off();
     run(500ms);
     drive.replace({.device_type = 0x00020192, .vendor = 0x3E8, .product = 0x402, .revision = 0x00010002});
@@ -189,8 +189,7 @@ TEST_F(Network, leads_a_node_back_that_was_started_by_somebody_else) {
     EXPECT_FALSE(drive.operational());
 }
 
-TEST_F(Network, starts_a_node_again_that_left_its_operational_state) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, starts_a_node_again_that_left_its_operational_state) {
     drive.receive(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, 5), clock.now(), *this);
     run(60ms);
     EXPECT_FALSE(operational());
@@ -199,8 +198,7 @@ TEST_F(Network, starts_a_node_again_that_left_its_operational_state) {
     EXPECT_TRUE(operational());
 }
 
-TEST_F(Network, tells_and_keeps_emergencies) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, tells_and_keeps_emergencies) {
     drive.send_emergency(0x2310, 0x03, clock.now(), *this);
     run(10ms);
     ASSERT_EQ(people->emergencies.size(), 1u);
@@ -218,8 +216,7 @@ TEST_F(Network, tells_and_keeps_emergencies) {
     EXPECT_EQ(manager->emergencies()[14].code, 0x8013);
 }
 
-TEST_F(Network, lets_nodes_notice_that_the_manager_is_gone) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, lets_nodes_notice_that_the_manager_is_gone) {
     const Sentence refusal = world.change_activity(1, LifeChange::stop);
     ASSERT_TRUE(refusal.empty()) << refusal.view();
     run(500ms);
@@ -227,8 +224,7 @@ TEST_F(Network, lets_nodes_notice_that_the_manager_is_gone) {
     EXPECT_FALSE(drive.operational());
 }
 
-TEST_F(Network, tells_its_nodes_at_stop_to_take_what_is_safe_and_only_then_to_leave) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, tells_its_nodes_at_stop_to_take_what_is_safe_and_only_then_to_leave) {
     ASSERT_TRUE(operational());
     heard.clear();
     world.stop();
@@ -245,8 +241,7 @@ TEST_F(Network, tells_its_nodes_at_stop_to_take_what_is_safe_and_only_then_to_le
     EXPECT_EQ(phase(0), NodePhase::absent);
 }
 
-TEST_F(Network, gives_a_person_the_reset_of_one_node) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, gives_a_person_the_reset_of_one_node) {
     manager->reset(7);
     run(20ms);
     EXPECT_FALSE(encoder.alive());
@@ -255,8 +250,7 @@ TEST_F(Network, gives_a_person_the_reset_of_one_node) {
     EXPECT_EQ(manager->reboots.last(), 1);
 }
 
-TEST_F(Network, resets_no_node_that_was_to_be_reset_before_it_stood) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, resets_no_node_that_was_to_be_reset_before_it_stood) {
     static_cast<void>(world.change_activity(1, LifeChange::stop));
     manager->reset(7); // of its last cycle, and not yet sent
     run(2s);
@@ -266,8 +260,7 @@ TEST_F(Network, resets_no_node_that_was_to_be_reset_before_it_stood) {
     for (const can::Frame& each : heard) EXPECT_FALSE(each.id == 0 && each.data[0] == 0x81) << "reset node";
 }
 
-TEST_F(Network, survives_frames_that_nobody_asked_for) {
-    run_until(500ms);
+TEST_F(WorkingNetwork, survives_frames_that_nobody_asked_for) {
     for (const std::uint32_t id : {0x585u, 0x705u, 0x085u})
         for (std::uint8_t length = 0; length <= 8; ++length) {
             can::Frame frame{.id = id, .length = length};
