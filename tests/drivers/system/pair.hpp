@@ -4,6 +4,7 @@
 #include "board/host/board.hpp"
 #include "drivers/system/station.hpp"
 #include "kernel/machine/accept.hpp"
+#include "tests/drivers/system/alone.hpp"
 
 #include <vector>
 
@@ -70,14 +71,8 @@ struct Taker {
 };
 
 // clang-format off
-inline constexpr auto giver_table = machine("giver",
-    components(component<Giver>("giver")),
-    activities(activity("giving", every(5ms), runs("giver"), budget(50us))),
-    connections(), reactions(), behaviours());
-inline constexpr auto taker_table = machine("taker",
-    components(component<Taker>("taker")),
-    activities(activity("taking", every(5ms), runs("taker"), budget(50us))),
-    connections(), reactions(), behaviours());
+inline constexpr auto giver_table = test::alone<Giver>("giver", "giving", every(5ms), budget(50us));
+inline constexpr auto taker_table = test::alone<Taker>("taker", "taking", every(5ms), budget(50us));
 
 template <class... Options>
 constexpr WireRow usual_wire(std::string_view name, const Options&... options) {

@@ -4,6 +4,7 @@
 #include "board/host/board.hpp"
 #include "drivers/system/station.hpp"
 #include "kernel/machine/accept.hpp"
+#include "tests/drivers/system/alone.hpp"
 #include "tests/drivers/system/history.hpp"
 #include "toolchain/machine/system_run.hpp"
 
@@ -128,14 +129,8 @@ struct Taker {
 };
 
 // clang-format off
-inline constexpr auto sender_table = machine("sender",
-    components(component<Sender>("sender")),
-    activities(activity("sending", every(5ms), runs("sender"), budget(50us), deadline(500us))),
-    connections(), reactions(), behaviours());
-inline constexpr auto taker_table = machine("taker",
-    components(component<Taker>("taker")),
-    activities(activity("taking", every(5ms), runs("taker"), budget(50us), deadline(500us))),
-    connections(), reactions(), behaviours());
+inline constexpr auto sender_table = test::alone<Sender>("sender", "sending", every(5ms), budget(50us), deadline(500us));
+inline constexpr auto taker_table = test::alone<Taker>("taker", "taking", every(5ms), budget(50us), deadline(500us));
 
 inline constexpr auto trio = system("trio",
     nodes(node<sender_table>("one"), node<sender_table>("two"), node<taker_table>("taker")),

@@ -45,14 +45,8 @@ struct Desk {
 };
 
 // clang-format off
-constexpr auto arm_table = machine("arm",
-    components(component<Arm>("arm")),
-    activities(activity("arm", every(5ms), runs("arm"), budget(50us))),
-    connections(), reactions(), behaviours());
-constexpr auto desk_table = machine("desk",
-    components(component<Desk>("desk")),
-    activities(activity("desk", every(5ms), runs("desk"), budget(50us))),
-    connections(), reactions(), behaviours());
+constexpr auto arm_table = test::alone<Arm>("arm", "arm", every(5ms), budget(50us));
+constexpr auto desk_table = test::alone<Desk>("desk", "desk", every(5ms), budget(50us));
 
 constexpr auto wide = system("wide",
     nodes(node<arm_table>("a"), node<desk_table>("b")),
@@ -233,10 +227,7 @@ struct Bridge {
     }
 };
 // clang-format off
-constexpr auto bridge_table = machine("bridge",
-    components(component<Bridge>("bridge")),
-    activities(activity("bridge", every(5ms), runs("bridge"), budget(50us))),
-    connections(), reactions(), behaviours());
+constexpr auto bridge_table = test::alone<Bridge>("bridge", "bridge", every(5ms), budget(50us));
 constexpr auto first_wire = system("first", nodes(node<giver_table>("a"), node<bridge_table>("m")), usual_wire("left"),
     crossings(across(data("a.giver.level", "m.bridge.level", stale_after(60ms), hold), every(10ms), in_bits(24, 0.1)),
               presence("m", "a.giver.other_is_there")));
