@@ -1,7 +1,7 @@
 // Method calls that components answer by turns: whoever asks, in whatever activity, is answered in each of
 // its steps by the one that runs.
 #include "tests/kernel/control/axis.hpp"
-#include "tests/kernel/machine/accepted_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
 
@@ -60,17 +60,17 @@ constexpr auto table = machine("axis",
         exclusive("gauge", fallback("drawn", "drawn"), chain("measured", "measured"), chain("guessed", "guessed"))));
 // clang-format on
 
-struct Calls : testing::Test, test::VirtualRig {
+struct Calls : testing::Test, VirtualRig {
     Calls() : VirtualRig{AtRunTime<table, box>::machine()} {
         start();
         run(20ms);
     }
-    Gauge& gauge(std::string_view name) { return part<Gauge>(name); }
-    Asker& asker(std::string_view name) { return part<Asker>(name); }
+    Gauge& gauge(std::string_view name) { return the<Gauge>(name); }
+    Asker& asker(std::string_view name) { return the<Asker>(name); }
     void hand_over_to(std::string_view chain) {
         ScriptText name;
         EXPECT_TRUE(name.assign(chain));
-        EXPECT_TRUE(part<ChainSwitch>("gauge").run(name));
+        EXPECT_TRUE(the<ChainSwitch>("gauge").run(name));
     }
     std::int64_t answers() { return gauge("drawn").asked + gauge("measured").asked + gauge("guessed").asked; }
 };

@@ -1,6 +1,6 @@
 // A level that commands a faster one: the command arrives as the row says, and its silence does too.
 #include "tests/kernel/control/axis.hpp"
-#include "tests/kernel/machine/accepted_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <vector>
 
@@ -62,7 +62,7 @@ constexpr auto cascade = machine(
         loop("place", gain("position.kp"))));
 
 template <RateTransition how>
-struct Rig : test::VirtualRig {
+struct Rig : VirtualRig {
     Inner* inner = instance.find<Inner>("inner");
 
     Rig() : VirtualRig{AtRunTime<cascade<how>, box>::machine()} { start(); }

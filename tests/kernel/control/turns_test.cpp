@@ -1,7 +1,7 @@
 // Components that run by turns: one writer in every cycle, a hand-over within one cycle and without a bump,
 // and what happens when a part fails.
 #include "tests/kernel/control/axis.hpp"
-#include "tests/kernel/machine/accepted_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include "kernel/base/random.hpp"
 
@@ -14,22 +14,22 @@ using testing::HasSubstr;
 
 constexpr auto table = axis_machine(control(axis_level, process("watcher"), axis_modes));
 
-struct Rig : test::VirtualRig {
+struct Rig : VirtualRig {
     explicit Rig(bool measures = true) : VirtualRig{AtRunTime<table, box>::machine()} {
-        start([&] { part<Slide>("slide").is_silent = !measures; });
+        start([&] { the<Slide>("slide").is_silent = !measures; });
         EXPECT_TRUE(!measures || run(3ms));
     }
     ComponentState state(std::string_view name) {
         return instance.life().state_of(find_component(instance.machine().table, name));
     }
 
-    std::string running() { return std::string{part<ChainSwitch>("mode").chain.last().view()}; }
-    std::string hindered() { return std::string{part<ChainSwitch>("mode").hindered.last().view()}; }
+    std::string running() { return std::string{the<ChainSwitch>("mode").chain.last().view()}; }
+    std::string hindered() { return std::string{the<ChainSwitch>("mode").hindered.last().view()}; }
     /// Asks as a component would, and waits for the end.
     CommandState ask(const char* chain) {
         ScriptText name;
         EXPECT_TRUE(name.assign(chain));
-        auto& call = part<Watcher>("watcher").run;
+        auto& call = the<Watcher>("watcher").run;
         call.reset();
         EXPECT_TRUE(call.send(name));
         EXPECT_TRUE(run(4ms));
@@ -68,13 +68,13 @@ TEST(Turns, begin_when_every_input_has_a_valid_value_and_not_with_a_zero) {
     EXPECT_TRUE(rig.run(5ms));
     EXPECT_EQ(rig.state("standing"), ComponentState::waiting);
     EXPECT_EQ(rig.state("limiter"), ComponentState::waiting);
-    EXPECT_EQ(rig.part<Limiter>("limiter").cycles, 0u);
+    EXPECT_EQ(rig.the<Limiter>("limiter").cycles, 0u);
     EXPECT_FALSE(rig.instance.stop_asked()) << "who waits has not failed";
-    rig.part<Slide>("slide").is_silent = false;
+    rig.the<Slide>("slide").is_silent = false;
     EXPECT_TRUE(rig.run(3ms));
     EXPECT_EQ(rig.state("standing"), ComponentState::running);
     EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
-    EXPECT_GT(rig.part<Limiter>("limiter").cycles, 0u);
+    EXPECT_GT(rig.the<Limiter>("limiter").cycles, 0u);
 }
 
 TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {
@@ -87,7 +87,7 @@ TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {
     EXPECT_EQ(rig.ask("jgo"), CommandState::rejected);
     EXPECT_EQ(rig.ask("jog"), CommandState::done) << "it runs already";
     EXPECT_TRUE(rig.run(20ms));
-    EXPECT_EQ(rig.part<Watcher>("watcher").changes, 1u);
+    EXPECT_EQ(rig.the<Watcher>("watcher").changes, 1u);
     EXPECT_EQ(rig.instance.observation().counted(0, 1).what, "jog");
     EXPECT_EQ(rig.instance.observation().counted(0, 1).times, 1u);
 }
@@ -97,11 +97,11 @@ TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {
 // itself would move it in one step.
 TEST(Turns, leave_one_writer_in_every_cycle_and_no_jump_of_the_velocity) {
     Rig rig;
-    auto& mode = rig.part<ChainSwitch>("mode");
-    auto& sent = rig.part<Limiter>("limiter");
-    auto& slide = rig.part<Slide>("slide");
+    auto& mode = rig.the<ChainSwitch>("mode");
+    auto& sent = rig.the<Limiter>("limiter");
+    auto& slide = rig.the<Slide>("slide");
     Random random{7};
-    rig.part<Mover>("jogging").speed = 0.3;
+    rig.the<Mover>("jogging").speed = 0.3;
     EXPECT_TRUE(rig.run(20ms));
     double before = sent.sent.last();
     constexpr std::array<const char*, 3> chains{"stand", "jog", "softly"};
@@ -130,7 +130,7 @@ TEST(Turns, leave_one_writer_in_every_cycle_and_no_jump_of_the_velocity) {
 
 TEST(Turns, do_not_happen_when_one_cannot_start_and_say_what_hinders) {
     Rig rig;
-    rig.part<Mover>("jogging").is_mute =
+    rig.the<Mover>("jogging").is_mute =
         true; // its start() writes nothing: nobody reads what it wrote long ago
     EXPECT_EQ(rig.ask("jog"), CommandState::failed);
     EXPECT_EQ(rig.running(), "stand");
@@ -140,7 +140,7 @@ TEST(Turns, do_not_happen_when_one_cannot_start_and_say_what_hinders) {
     EXPECT_EQ(rig.state("standing"), ComponentState::running);
     EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
     EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
-    rig.part<Mover>("jogging").is_mute = false;
+    rig.the<Mover>("jogging").is_mute = false;
     EXPECT_EQ(rig.ask("softly"), CommandState::done);
     EXPECT_EQ(rig.hindered(), "");
 }
@@ -149,7 +149,7 @@ TEST(Turns, asked_for_before_anything_was_measured_leave_all_waiting) {
     Rig rig{false};
     EXPECT_EQ(rig.ask("softly"), CommandState::failed);
     EXPECT_FALSE(rig.instance.stop_asked());
-    rig.part<Slide>("slide").is_silent = false;
+    rig.the<Slide>("slide").is_silent = false;
     EXPECT_TRUE(rig.run(3ms));
     EXPECT_EQ(rig.running(), "stand");
     EXPECT_EQ(rig.state("position"), ComponentState::running);
@@ -158,9 +158,9 @@ TEST(Turns, asked_for_before_anything_was_measured_leave_all_waiting) {
 TEST(Turns, stop_the_machine_when_the_fallback_is_asked_for_and_cannot_start) {
     Rig rig;
     EXPECT_EQ(rig.ask("jog"), CommandState::done);
-    rig.part<Mover>("standing").is_mute = true;
+    rig.the<Mover>("standing").is_mute = true;
     ScriptText stand{"stand"};
-    EXPECT_TRUE(rig.part<ChainSwitch>("mode").run(stand));
+    EXPECT_TRUE(rig.the<ChainSwitch>("mode").run(stand));
     rig.run(4ms);
     EXPECT_TRUE(rig.instance.stop_asked()) << "who asks for rest does not get motion";
 }
@@ -173,7 +173,7 @@ TEST(Turns, fall_back_when_a_part_of_the_chain_stops) {
     EXPECT_EQ(rig.running(), "stand");
     EXPECT_EQ(rig.state("standing"), ComponentState::running);
     EXPECT_TRUE(rig.run(10ms));
-    EXPECT_EQ(rig.part<Watcher>("watcher").fallbacks, 1u);
+    EXPECT_EQ(rig.the<Watcher>("watcher").fallbacks, 1u);
     EXPECT_FALSE(rig.instance.stop_asked());
     EXPECT_EQ(rig.ask("softly"), CommandState::done) << "who was stopped starts with its chain";
 }
@@ -201,7 +201,7 @@ TEST(Turns, end_with_the_component_that_hands_over_and_begin_with_it) {
     EXPECT_TRUE(rig.run(3ms));
     EXPECT_EQ(rig.state("jogging"), ComponentState::stopped);
     EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
-    EXPECT_EQ(rig.part<Limiter>("limiter").sent.last(), 0.0);
+    EXPECT_EQ(rig.the<Limiter>("limiter").sent.last(), 0.0);
     EXPECT_EQ(rig.ask("stand"), CommandState::rejected);
     rig.change("mode", LifeChange::start);
     EXPECT_TRUE(rig.run(3ms));
@@ -234,7 +234,7 @@ TEST(Turns, are_refused_though_a_force_stands_for_what_nobody_wrote_and_leave_it
     Rig rig;
     EXPECT_TRUE(rig.run(5ms));
     rig.force("position.target", 0.3);
-    rig.part<Mover>("jogging").is_mute = true;
+    rig.the<Mover>("jogging").is_mute = true;
     EXPECT_NE(rig.ask("jog"), CommandState::done);
     EXPECT_EQ(rig.running(), "stand");
     EXPECT_TRUE(rig.is_forced());
@@ -270,13 +270,13 @@ struct ForcedTurn : testing::Test {
         EXPECT_TRUE(rig.run(5ms));
         rig.force("limiter.velocity", 1.5);
         EXPECT_TRUE(rig.run(3ms));
-        EXPECT_EQ(rig.part<Limiter>("limiter").sent.last(), 1.5);
+        EXPECT_EQ(rig.the<Limiter>("limiter").sent.last(), 1.5);
     }
 
     void expect_it_ends() {
         EXPECT_TRUE(rig.run(20ms));
         EXPECT_FALSE(rig.is_forced());
-        EXPECT_NE(rig.part<Limiter>("limiter").sent.last(), 1.5);
+        EXPECT_NE(rig.the<Limiter>("limiter").sent.last(), 1.5);
     }
 };
 
@@ -288,7 +288,7 @@ TEST_F(ForcedTurn, ends_with_a_stop_of_its_writer) {
 TEST_F(ForcedTurn, ends_with_a_stop_of_its_writer_before_a_turn_that_it_writes_too) {
     rig.change("position", LifeChange::restart);
     ScriptText jog{"jog"};
-    EXPECT_TRUE(rig.part<ChainSwitch>("mode").run(jog));
+    EXPECT_TRUE(rig.the<ChainSwitch>("mode").run(jog));
     expect_it_ends();
     EXPECT_EQ(rig.running(), "jog");
 }

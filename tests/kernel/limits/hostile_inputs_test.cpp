@@ -3,7 +3,7 @@
 #include "kernel/limits/limits.hpp"
 
 #include "tests/kernel/base/hostile.hpp"
-#include "tests/kernel/machine/accepted_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 namespace tappet {
 namespace {
@@ -39,7 +39,7 @@ private:
     }
 };
 
-using test::box, test::infinite, test::no_number;
+using test::infinite, test::no_number;
 
 template <class... Rows>
 constexpr auto machine_with(const Rows&... rows) {
@@ -54,10 +54,10 @@ constexpr auto held = machine_with(limit("drive.speed", 5.0, 40.0), rate("drive.
                                    limit("drive.force", lowest_force, highest_force),
                                    limit("drive.notch", -3.0, 5.0), rate("drive.place", per_second));
 
-struct Drives : test::Hostile, test::VirtualRig {
+struct Drives : test::Hostile, VirtualRig {
     Drive* drive = instance.find<Drive>("drive");
 
-    Drives() : VirtualRig{AtRunTime<held, box>::machine()} {}
+    Drives() : VirtualRig{AtRunTime<held, test_board>::machine()} {}
     void want() {
         drive->speed_wanted = value();
         drive->force_wanted = value();
@@ -105,7 +105,7 @@ TEST_F(Drives, leave_their_limits_at_no_time) {
 template <class... Rows>
 Sentence refusal(const Rows&... rows) {
     const auto table = machine_with(rows...);
-    return Accepted{table.view(), box}.refusal();
+    return Accepted{table.view(), test_board}.refusal();
 }
 
 TEST(Rows, with_ends_that_a_port_cannot_have_are_refused) {

@@ -2,7 +2,7 @@
 // are refused.
 #include "kernel/limits/limits.hpp"
 
-#include "tests/kernel/machine/accepted_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <gmock/gmock.h>
 
@@ -13,7 +13,6 @@
 namespace tappet {
 namespace {
 
-using test::box;
 using testing::HasSubstr;
 
 /// Writes what the test wants, each millisecond.
@@ -70,9 +69,9 @@ constexpr auto machine_with(const Extra&... extra) {
 }
 
 template <const auto& table>
-struct Rig : test::VirtualRig {
+struct Rig : VirtualRig {
     explicit Rig(const std::function<void(Source&)>& before_start = [](Source&) {})
-        : VirtualRig{AtRunTime<table, box>::machine()} {
+        : VirtualRig{AtRunTime<table, test_board>::machine()} {
         start([&] { before_start(source); });
     }
     /// What is seen of a speed that is wanted for so long.
@@ -255,7 +254,7 @@ TEST(Limits, leave_a_forced_value_alone_and_hold_again_after_it) {
 template <class... Rows>
 std::string refusal(const Rows&... rows) {
     const auto table = machine_with(limits(rows...));
-    return std::string{Accepted{table.view(), box}.refusal().view()};
+    return std::string{Accepted{table.view(), test_board}.refusal().view()};
 }
 
 TEST(LimitRows, are_refused_with_row_fault_and_cure) {
@@ -305,9 +304,9 @@ constexpr auto hasty = machine("hasty", components(component<Hasty>("source")),
                                connections(), reactions(), behaviours(), limits(rate("source.speed", 500.0)));
 
 TEST(Rate, is_that_of_the_machines_time_whatever_time_a_value_claims) {
-    test::VirtualRig rig{AtRunTime<hasty, box>::machine()};
+    VirtualRig rig{AtRunTime<hasty, test_board>::machine()};
     rig.start();
-    const Output<double>& speed = rig.part<Hasty>("source").speed;
+    const Output<double>& speed = rig.the<Hasty>("source").speed;
     ASSERT_TRUE(rig.run(1ms));
     const double first = speed.last();
     ASSERT_TRUE(rig.run(1s));

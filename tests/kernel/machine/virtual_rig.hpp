@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -15,17 +16,37 @@ namespace tappet {
 
 inline constexpr Board test_board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
 
-/// A machine that is placed.
-template <const auto& table, const Board& board = test_board> struct PlacedRig {
-    os::Clock clock{os::Clock::Kind::virtual_time};
-    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
-    VirtualWorld world{instance};
+struct VirtualRig {
+    explicit VirtualRig(const AcceptedMachine& machine) : instance{machine, clock} {}
 
+    void configure() {
+        const auto configured = instance.configure({});
+        EXPECT_TRUE(configured) << (configured ? "" : configured.error().view());
+    }
+    /// Configuring makes the components anew.
+    void start(const std::function<void()>& once_configured = [] {}) {
+        configure();
+        once_configured();
+        EXPECT_EQ(world.start().view(), "");
+    }
     /// False: it stopped meanwhile.
     bool run(Duration time) { return world.run_until(clock.now() + time); }
+    template <class C> C& the(std::string_view name) { return *instance.find<C>(name); }
+    LifeTicket change(std::string_view name, LifeChange how) {
+        return instance.life().ask_component(find_component(instance.machine().table, name), how);
+    }
+
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance;
+    VirtualWorld world{instance};
+};
+
+/// A machine that is placed.
+template <const auto& table, const Board& board = test_board> struct PlacedRig : VirtualRig {
+    PlacedRig() : VirtualRig{AtRunTime<table, board>::machine()} {}
+
     /// It goes on so long.
     void pass(Duration time) { ASSERT_TRUE(run(time)); }
-    template <class C> C& the(std::string_view name) { return *instance.template find<C>(name); }
     template <class T> T& property(std::string_view component, std::string_view name) {
         const MachineView& of = instance.machine().table;
         const std::size_t c = find_component(of, component);
@@ -51,10 +72,7 @@ template <const auto& table, const Board& board = test_board> struct PlacedRig {
 };
 /// One that is configured.
 template <const auto& table, const Board& board = test_board> struct ConfiguredRig : PlacedRig<table, board> {
-    ConfiguredRig() {
-        const auto configured = this->instance.configure({});
-        EXPECT_TRUE(configured) << configured.error().view();
-    }
+    ConfiguredRig() { this->configure(); }
 };
 /// One that runs.
 template <const auto& table, const Board& board = test_board> struct RunningRig

@@ -2,7 +2,7 @@
 #include "kernel/pieces/cam_shaft.hpp"
 
 #include "tests/kernel/base/hostile.hpp"
-#include "tests/kernel/machine/accepted_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <cmath>
 #include <vector>
@@ -85,8 +85,8 @@ private:
 inline constexpr auto absolute = TAPPET_CAM_TABLE("encoder.code");
 inline constexpr auto counting = TAPPET_CAM_TABLE("encoder.counter", set("counter_bits", 16));
 
-struct Turning : test::Hostile, test::VirtualRig {
-    explicit Turning(const AcceptedMachine& machine = AtRunTime<absolute, test::box>::machine())
+struct Turning : test::Hostile, VirtualRig {
+    explicit Turning(const AcceptedMachine& machine = AtRunTime<absolute, test_board>::machine())
         : VirtualRig{machine} {
         start();
         ejector.encoder = &encoder;
@@ -236,7 +236,7 @@ TEST_F(Turning, windows_are_told_to_be_left_at_start_and_stop) {
 }
 
 struct Counting : Turning {
-    Counting() : Turning{AtRunTime<counting, test::box>::machine()} {}
+    Counting() : Turning{AtRunTime<counting, test_board>::machine()} {}
 };
 
 TEST_F(Counting, a_turn_begins_where_a_counter_was_seen_first_and_wraps_do_not_matter) {

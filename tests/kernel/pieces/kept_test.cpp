@@ -3,7 +3,7 @@
 #include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
 #include "tests/kernel/base/hostile.hpp"
-#include "tests/kernel/machine/accepted_rig.hpp"
+#include "tests/kernel/machine/virtual_rig.hpp"
 #include "tests/kernel/os/folder.hpp"
 
 namespace tappet {
@@ -41,11 +41,11 @@ inline constexpr auto table = machine("press",
 constexpr std::size_t aside = 1; ///< the activity
 
 /// One life of the machine, which ends without a word, as by the main switch.
-struct Life : test::VirtualRig {
+struct Life : VirtualRig {
     PropertyFiles files;
 
     explicit Life(const std::string& directory)
-        : VirtualRig{AtRunTime<table, test::box>::machine()}, files{directory} {
+        : VirtualRig{AtRunTime<table, test_board>::machine()}, files{directory} {
         instance.read_properties_from(files.store());
         start();
     }
@@ -59,46 +59,46 @@ struct Kept : test::Hostile {
 TEST_F(Kept, hours_and_totals_go_on_where_the_keeper_last_saved_them) {
     {
         Life life{directory};
-        life.part<Press>("press").turns = true;
-        life.part<Press>("press").count = 7;
+        life.the<Press>("press").turns = true;
+        life.the<Press>("press").count = 7;
         life.run(61s);
-        EXPECT_NEAR(life.part<HourMeter>("hours").hours.last() * 3600, 61.0, 0.1);
-        EXPECT_EQ(life.part<Total>("strokes").sum.last(), 7);
-        life.part<Press>("press").count = 9;
+        EXPECT_NEAR(life.the<HourMeter>("hours").hours.last() * 3600, 61.0, 0.1);
+        EXPECT_EQ(life.the<Total>("strokes").sum.last(), 7);
+        life.the<Press>("press").count = 9;
         life.run(10s);
-        EXPECT_EQ(life.part<Total>("strokes").sum.last(), 9);
-        EXPECT_EQ(life.part<PropertyKeeper>("keeper").saved.last(), 1);
-        EXPECT_EQ(life.part<PropertyKeeper>("keeper").failed.last(), 0);
+        EXPECT_EQ(life.the<Total>("strokes").sum.last(), 9);
+        EXPECT_EQ(life.the<PropertyKeeper>("keeper").saved.last(), 1);
+        EXPECT_EQ(life.the<PropertyKeeper>("keeper").failed.last(), 0);
     }
     Life life{directory};
     life.run(1s);
-    EXPECT_NEAR(life.part<HourMeter>("hours").hours.last() * 3600, 60.0, 0.2) << "it did not run since";
-    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 7) << "two were lost with the last seconds";
-    life.part<Press>("press").count = 2;
+    EXPECT_NEAR(life.the<HourMeter>("hours").hours.last() * 3600, 60.0, 0.2) << "it did not run since";
+    EXPECT_EQ(life.the<Total>("strokes").sum.last(), 7) << "two were lost with the last seconds";
+    life.the<Press>("press").count = 2;
     life.run(1s);
-    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 9);
-    life.part<Press>("press").count = 1;
+    EXPECT_EQ(life.the<Total>("strokes").sum.last(), 9);
+    life.the<Press>("press").count = 1;
     life.run(1s);
-    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 10) << "a smaller count began anew";
+    EXPECT_EQ(life.the<Total>("strokes").sum.last(), 10) << "a smaller count began anew";
 }
 
 TEST_F(Kept, a_total_that_is_restarted_counts_nothing_twice) {
     Life life{directory};
-    life.part<Press>("press").count = 10'000;
+    life.the<Press>("press").count = 10'000;
     life.run(1s);
 
     for (const LifeChange change : {LifeChange::stop, LifeChange::start, LifeChange::restart}) {
         life.change("strokes", change);
         life.run(100ms);
-        life.part<Press>("press").count += 5;
+        life.the<Press>("press").count += 5;
         life.run(100ms);
     }
-    EXPECT_EQ(life.part<Total>("strokes").sum.last(), 10'015);
+    EXPECT_EQ(life.the<Total>("strokes").sum.last(), 10'015);
 }
 
 TEST_F(Kept, an_activity_that_is_stopped_keeps_no_other_from_being_saved) {
     Life life{directory};
-    life.part<Press>("press").count = 7;
+    life.the<Press>("press").count = 7;
     life.run(1s);
     testing::internal::CaptureStdout();
     static_cast<void>(life.instance.life().ask_activity(aside, LifeChange::stop));
@@ -106,17 +106,17 @@ TEST_F(Kept, an_activity_that_is_stopped_keeps_no_other_from_being_saved) {
     const std::string said = testing::internal::GetCapturedStdout();
     EXPECT_NE(said.find("component \"spare\": its properties are not saved"), std::string::npos) << said;
     EXPECT_TRUE(std::filesystem::exists(directory + "/strokes.cpf"));
-    life.part<Press>("press").count = 8;
+    life.the<Press>("press").count = 8;
     life.run(61s);
     Life next{directory};
-    EXPECT_EQ(next.part<Total>("strokes").total.get(), 8);
+    EXPECT_EQ(next.the<Total>("strokes").total.get(), 8);
 }
 
 TEST_F(Kept, totals_and_hours_stop_at_the_ends_of_their_range_whatever_is_counted) {
     using Whole = std::numeric_limits<std::int64_t>;
     Life life{directory};
-    auto& total = life.part<Total>("strokes").total;
-    auto& count = life.part<Press>("press").count;
+    auto& total = life.the<Total>("strokes").total;
+    auto& count = life.the<Press>("press").count;
     total.set(-5);
     count = 3;
     life.run(20ms);
@@ -128,17 +128,17 @@ TEST_F(Kept, totals_and_hours_stop_at_the_ends_of_their_range_whatever_is_counte
         ASSERT_GE(total.get(), before) << count;
     }
     EXPECT_EQ(total.get(), Whole::max());
-    auto& hours = life.part<HourMeter>("hours").total;
+    auto& hours = life.the<HourMeter>("hours").total;
     hours.set(8'999'999'999s);
-    life.part<Press>("press").turns = true;
+    life.the<Press>("press").turns = true;
     life.run(5s);
     EXPECT_EQ(hours.get(), 9'000'000'000s) << "or no file of it is read again";
 }
 
 TEST_F(Kept, time_is_counted_only_while_it_runs) {
     Life life{directory};
-    Press& press = life.part<Press>("press");
-    const auto seconds = [&] { return life.part<HourMeter>("hours").hours.last() * 3600; };
+    Press& press = life.the<Press>("press");
+    const auto seconds = [&] { return life.the<HourMeter>("hours").hours.last() * 3600; };
     life.run(5s);
     EXPECT_EQ(seconds(), 0.0);
     press.turns = true;
@@ -154,7 +154,7 @@ TEST_F(Kept, a_keeper_that_cannot_write_says_so_and_goes_on) {
     testing::internal::CaptureStdout();
     life.run(125s);
     const std::string said = testing::internal::GetCapturedStdout();
-    EXPECT_EQ(life.part<PropertyKeeper>("keeper").failed.last(), 2);
+    EXPECT_EQ(life.the<PropertyKeeper>("keeper").failed.last(), 2);
     EXPECT_NE(said.find("keeper: "), std::string::npos) << said;
     EXPECT_TRUE(std::filesystem::exists(directory + "/strokes.cpf")) << "the others are kept";
 }
