@@ -25,8 +25,12 @@ struct Accepted::Tables {
         std::uninitialized_value_construct_n(rows, count);
         return {rows, count};
     }
-    TableIndexView take_index(const MachineView& m);
-    PlanView take_plan(const MachineView& m);
+    template <class... Rows>
+    void take(std::size_t count, std::span<Rows>&... tables) {
+        ((tables = take<Rows>(count)), ...);
+    }
+    void take_index(const MachineView& m, TableIndexView& index);
+    void take_plan(const MachineView& m, PlanView& plan);
     std::size_t draw_map();
 
     std::pmr::monotonic_buffer_resource arena;
@@ -34,38 +38,22 @@ struct Accepted::Tables {
     AcceptedMachine machine;
 };
 
-TableIndexView Accepted::Tables::take_index(const MachineView& m) {
-    const std::size_t c = m.components.size(), a = m.activities.size(), x = m.connections.size(),
-                      r = m.reactions.size();
-    return {.by_name = take<std::size_t>(c),
-            .activity = take<std::size_t>(c),
-            .position = take<std::size_t>(c),
-            .connections = take<Link>(x),
-            .reactions = take<Link>(r),
-            .rank = take<std::size_t>(a),
-            .by_rank = take<std::size_t>(a),
-            .in_order = take<std::size_t>(c),
-            .waits_for = take<std::size_t>(c),
-            .connections_into = {take<std::size_t>(c), take<std::size_t>(x)},
-            .connections_from = {take<std::size_t>(c), take<std::size_t>(x)},
-            .reactions_into = {take<std::size_t>(c), take<std::size_t>(r)},
-            .reach = take<std::uint64_t>(c),
-            .worst_response_ns = take<std::int64_t>(a)};
+void Accepted::Tables::take_index(const MachineView& m, TableIndexView& index) {
+    take(m.components.size(), index.by_name, index.activity, index.position, index.in_order, index.waits_for,
+         index.connections_into.first, index.connections_from.first, index.reactions_into.first, index.reach);
+    take(m.activities.size(), index.rank, index.by_rank, index.worst_response_ns);
+    take(m.connections.size(), index.connections, index.connections_into.next, index.connections_from.next);
+    take(m.reactions.size(), index.reactions, index.reactions_into.next);
 }
 
-PlanView Accepted::Tables::take_plan(const MachineView& m) {
-    const std::size_t c = m.components.size(), a = m.activities.size(), s = count_subscriptions(m);
-    return {.component_at = take<std::size_t>(c),
-            .part_of = take<std::uint32_t>(c),
-            .activities = take<ActivityPlan>(a),
-            .connections = take<ConnectionPlan>(m.connections.size()),
-            .subscriptions = take<Subscription>(s),
-            .subscription_at = take<SubscriptionPlan>(s),
-            .behaviours = take<BehaviourPlan>(m.behaviours.size()),
-            .mail = take<MailPlan>(a * a),
-            .requests = take<MailPlan>(a),
-            .command_mail = take<MailPlan>(a * a),
-            .command_requests = take<MailPlan>(a)};
+void Accepted::Tables::take_plan(const MachineView& m, PlanView& plan) {
+    const std::size_t a = m.activities.size();
+    take(m.components.size(), plan.component_at, plan.part_of);
+    take(a, plan.activities, plan.requests, plan.command_requests);
+    take(a * a, plan.mail, plan.command_mail);
+    take(m.connections.size(), plan.connections);
+    take(m.behaviours.size(), plan.behaviours);
+    take(count_subscriptions(m), plan.subscriptions, plan.subscription_at);
 }
 
 std::size_t Accepted::Tables::draw_map() {
@@ -101,15 +89,11 @@ std::size_t Accepted::Tables::draw_map() {
 }
 
 Accepted::Tables::Tables(const MachineView& m, const Board& board, const Binding& binding)
-    : machine{.table = m,
-              .board = &board,
-              .binding = &binding,
-              .index = take_index(m),
-              .plan = {},
-              .memory = {}} {
+    : machine{.table = m, .board = &board, .binding = &binding, .index = {}, .plan = {}, .memory = {}} {
+    take_index(m, machine.index);
     refusal = check(m, board, binding, machine.index);
     if (!refusal.empty()) return;
-    machine.plan = take_plan(m);
+    take_plan(m, machine.plan);
     make_plan(m, board, binding, machine.index, draw_map(), machine.plan);
     refusal = check_plan(m, board, machine.plan.subscriptions, machine.plan.bytes, machine.plan.stack_bytes);
     if (!refusal.empty()) return;

@@ -31,7 +31,7 @@ constexpr Plan<C, A, X, S, B> plan_for(const Machine<C, A, X, R, B, E...>& table
     Plan<C, A, X, S, B> plan;
     PlanView view = plan.view();
     make_plan(table.view(), board, binding, index.view(), map_bytes, view);
-    plan.take_sizes(view);
+    static_cast<PlanOfAll&>(plan) = view;
     return plan;
 }
 

@@ -32,7 +32,7 @@ struct Writer {
                     text.add("priority ").add(plan.priority);
                 text.add(", processor ").add(plan.processor);
                 text.add(", stack ").add(plan.stack_bytes / 1024).add(" KiB, runs");
-                for (std::size_t position = 0; position < plan.part_count; ++position)
+                for (std::size_t position = 0; position < plan.parts.count; ++position)
                     for (std::size_t c = 0; c < machine.table.components.size(); ++c)
                         if (machine.index.activity[c] == a && machine.index.position[c] == position)
                             text.add(" ").add(machine.table.components[c].name);
@@ -96,7 +96,7 @@ struct Writer {
         const auto kib = [](std::size_t bytes) { return (bytes + 1023) / 1024; };
         std::size_t components = 0, behaviours = 0, stacks = 0;
         for (const ComponentRow& row : machine.table.components) components += row.type->size;
-        for (const BehaviourPlan& plan : machine.plan.behaviours) behaviours += plan.memory_bytes;
+        for (const BehaviourPlan& plan : machine.plan.behaviours) behaviours += plan.memory.count;
         for (const ActivityPlan& plan : machine.plan.activities) stacks += plan.stack_bytes;
         say(Sentence{"memory: ", kib(machine.plan.bytes), " KiB; of these components ", kib(components),
                      ", behaviours ", kib(behaviours), ", map ", kib(machine.map.size()), ", stacks ",

@@ -100,24 +100,22 @@ void MachineBuilder::place_engines() {
     for (std::size_t a = 0; a < table.activities.size(); ++a) {
         const ActivityRow& row = table.activities[a];
         const ActivityPlan& plan = machine_.plan.activities[a];
-        auto* parts = instance_.at<EnginePart>(plan.parts_at);
-        auto* functions = instance_.at<FunctionTiming>(plan.functions_at);
-        auto* timers = instance_.at<EngineTimer>(plan.timers_at);
-        for (std::size_t f = 0; f < plan.part_count * functions_per_part; ++f)
-            new (functions + f) FunctionTiming{};
+        const auto parts = make(plan.parts);
+        const auto functions =
+            make(PlacesOf<FunctionTiming>{plan.functions_at, parts.size() * functions_per_part});
+        const auto timers = instance_.at(plan.timers);
         std::size_t timer_count = 0;
         for (std::size_t c = 0; c < table.components.size(); ++c) {
             if (machine_.index.activity[c] != a) continue;
             const ComponentRow& component_row = table.components[c];
             const std::uint32_t part = machine_.plan.part_of[c];
-            auto* placed = new (parts + part) EnginePart;
-            placed->place(instance_.component(c));
-            placed->type = component_row.type;
-            placed->name = component_row.name;
+            parts[part].place(instance_.component(c));
+            parts[part].type = component_row.type;
+            parts[part].name = component_row.name;
             for (std::size_t f = 0; f < component_row.type->facets.size(); ++f) {
                 const Facet& each = component_row.type->facets[f];
                 if (each.kind == FacetKind::timer)
-                    new (timers + timer_count++)
+                    new (&timers[timer_count++])
                         EngineTimer{static_cast<Timer*>(instance_.facet({c, f})), each.timer->fire, part};
             }
         }
@@ -133,14 +131,14 @@ void MachineBuilder::place_engines() {
         engine.at_most_n = row.at_most_n;
         engine.at_most_per = row.at_most_per;
         engine.stop_when_late = row.when_late == WhenLate::stop;
-        engine.parts = {parts, plan.part_count};
-        engine.functions = {functions, plan.part_count * functions_per_part};
-        engine.timers = {timers, timer_count};
-        engine.behaviours = {instance_.at<Behaviour>(plan.behaviours_at), plan.behaviour_count};
-        engine.inputs = {instance_.at<NeededInput>(plan.inputs_at), plan.input_count};
+        engine.parts = parts;
+        engine.functions = functions;
+        engine.timers = timers;
+        engine.behaviours = instance_.at(plan.behaviours);
+        engine.inputs = instance_.at(plan.inputs);
         engine.forced = &instance_.observation().forced_ports();
         for (EnginePart& part : engine.parts) part.stops.forced = engine.forced;
-        engine.guarded = {instance_.at<GuardedInput>(plan.guarded_at), plan.guarded_count};
+        engine.guarded = instance_.at(plan.guarded);
         auto* placed = new (&instance_.engines()[a]) Engine;
         placed->place(engine, instance_.clock());
         placed->on_stop(
@@ -226,10 +224,10 @@ void MachineBuilder::place_needed_inputs() {
         const Facet& input = facet_at(table, link.to);
         const std::size_t reader = machine_.index.activity[link.to.component];
         const std::size_t writer = machine_.index.activity[link.from.component];
-        const auto* from = instance_.at<EnginePart>(machine_.plan.activities[writer].parts_at) +
-                           machine_.plan.part_of[link.from.component];
+        const EnginePart& from =
+            instance_.at(machine_.plan.activities[writer].parts)[machine_.plan.part_of[link.from.component]];
         const bool is_awaited = input.valid_to_start || awaits(x);
-        new (instance_.at<NeededInput>(machine_.plan.activities[reader].inputs_at) + placed[reader]++)
+        new (&instance_.at(machine_.plan.activities[reader].inputs)[placed[reader]++])
             NeededInput{.input = instance_.facet(link.to),
                         .flow = input.port->flow,
                         .part = machine_.plan.part_of[link.to.component],
@@ -237,7 +235,7 @@ void MachineBuilder::place_needed_inputs() {
                         .has_initial = has_initial(x),
                         .same_activity = writer == reader,
                         .valid_to_start = is_awaited,
-                        .circle = !is_awaited && is_in_circle(link) ? &from->state : nullptr};
+                        .circle = !is_awaited && is_in_circle(link) ? &from.state : nullptr};
     }
 }
 

@@ -5,6 +5,8 @@
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/map/layout.hpp"
 
+#include <memory>
+
 namespace tappet {
 
 /// Before arming, on one thread; not real-time.
@@ -17,6 +19,13 @@ public:
     std::expected<void, Sentence> build(std::span<const ProvidedDevice> devices);
 
 private:
+    /// As they are by themselves.
+    template <class T>
+    std::span<T> make(const PlacesOf<T>& places) {
+        const std::span<T> made = instance_.at(places);
+        std::uninitialized_value_construct_n(made.data(), made.size());
+        return made;
+    }
     [[nodiscard]] std::expected<void, Sentence> share_memory();
     void construct();
     [[nodiscard]] Sentence configure_properties(std::size_t component);
@@ -38,8 +47,10 @@ private:
     void place_lanes(std::size_t subscription, AsyncReaction& reaction);
     void bind_receiver(std::size_t subscription, AsyncReaction& reaction);
     void place_mailboxes();
+    template <class Box>
+    std::span<Box> make_mailboxes(const PlacesOf<Box>& places, std::span<const MailPlan> mail,
+                                  const MailPlan& requests, std::size_t receiver);
     void connect_operations();
-    void place_command_processors();
 
     [[nodiscard]] Sentence place_behaviours();
     [[nodiscard]] Sentence connect_controls();

@@ -32,7 +32,7 @@ Sentence MachineBuilder::place_behaviours() {
         else if (const Sentence fault = place_unit(b, behaviour); !fault.empty())
             return Sentence{"behaviour of \"", row.component, "\": ", fault};
         behaviour.part = machine_.plan.part_of[c];
-        new (instance_.at<Behaviour>(machine_.plan.activities[activity].behaviours_at) + placed[activity]++)
+        new (&instance_.at(machine_.plan.activities[activity].behaviours)[placed[activity]++])
             Behaviour{behaviour};
     }
     return {};
@@ -69,14 +69,13 @@ Sentence MachineBuilder::place_unit(std::size_t b, Behaviour& behaviour) {
     const BehaviourRow& row = machine_.table.behaviours[b];
     const BehaviourPlan& plan = machine_.plan.behaviours[b];
     const ScriptUnit script = row.unit();
-    const std::span events{instance_.at<std::string_view>(plan.events_at), plan.event_count};
+    const std::span events = instance_.at(plan.events);
     std::size_t event = 0;
     for (const std::string_view name : events_of(script).all()) new (&events[event++]) std::string_view{name};
     const std::size_t c = find_component(machine_.table, row.component);
     auto* unit = new (instance_.at<void>(plan.unit_at)) BehaviourUnit;
     if (Sentence fault =
-            unit->place(script, row.code, row.options,
-                        machine_.memory.subspan(plan.memory_at, plan.memory_bytes), events, instance_, c);
+            unit->place(script, row.code, row.options, instance_.at(plan.memory), events, instance_, c);
         !fault.empty())
         return fault;
     unit->trace(&note_transition, &instance_.engines()[machine_.index.activity[c]]);
@@ -103,7 +102,7 @@ void MachineBuilder::place_slot(std::size_t b, Behaviour& behaviour) {
     const BehaviourRow& row = machine_.table.behaviours[b];
     const BehaviourPlan& plan = machine_.plan.behaviours[b];
     const std::size_t c = find_component(machine_.table, row.component);
-    const std::span events{instance_.at<std::string_view>(plan.events_at), plan.event_count};
+    const std::span events = instance_.at(plan.events);
     std::size_t event = 0;
     const auto name = [&](End end) {
         const std::string_view facet = facet_at(machine_.table, end).name;
@@ -114,16 +113,16 @@ void MachineBuilder::place_slot(std::size_t b, Behaviour& behaviour) {
         new (&events[event++]) std::string_view{path};
     };
     for_each_slot_event(machine_.table, row, name);
-    const auto memory = machine_.memory.subspan(plan.memory_at, plan.memory_bytes);
+    const std::span<std::byte> memory = instance_.at(plan.memory);
     BehaviourSlot::Place place;
     place.row = &row;
     place.machine = &instance_;
     place.component = c;
-    place.banks[0] = memory.first(plan.memory_bytes / 2);
-    place.banks[1] = memory.last(plan.memory_bytes / 2);
-    place.text = {instance_.at<char>(plan.text_at), plan.text_bytes};
+    place.banks[0] = memory.first(memory.size() / 2);
+    place.banks[1] = memory.last(memory.size() / 2);
+    place.text = instance_.at(plan.text);
     place.events = events;
-    place.handles = {instance_.at<EventHandle>(plan.handles_at), plan.event_count};
+    place.handles = {instance_.at<EventHandle>(plan.handles_at), events.size()};
     place.trace = &note_transition;
     place.engine = &instance_.engines()[machine_.index.activity[c]];
     place.part = machine_.plan.part_of[c];

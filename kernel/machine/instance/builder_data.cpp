@@ -43,7 +43,7 @@ void MachineBuilder::connect_data() {
         if (row.wakes_reader) add_waker(x);
         if (!is_guarded(row)) continue;
         const std::size_t reader = machine_.index.activity[link.to.component];
-        new (instance_.at<GuardedInput>(machine_.plan.activities[reader].guarded_at) + guarded[reader]++)
+        new (&instance_.at(machine_.plan.activities[reader].guarded)[guarded[reader]++])
             GuardedInput{.input = instance_.facet(link.to),
                          .port = facet_at(machine_.table, link.to).port,
                          .connection = x,

@@ -1,5 +1,5 @@
 // Wires the subscriptions of events: reaction rows, waits, the triggers of state machines, counters, the
-// observer; their handles and the mailboxes.
+// observer; and their handles.
 #include "kernel/machine/instance/builder.hpp"
 
 #include <new>
@@ -65,23 +65,23 @@ void MachineBuilder::place_lanes(std::size_t s, AsyncReaction& reaction) {
     const SubscriptionPlan& place = machine_.plan.subscription_at[s];
     const std::size_t n = machine_.table.activities.size();
     auto* lane_of = instance_.at<std::uint8_t>(place.lane_of_at);
-    auto* lanes = instance_.at<EventLane>(place.lanes_at);
+    const auto lanes = make(place.lanes);
     const std::size_t bytes = parcel_bytes(facet_at(machine_.table, row.event).type->size);
     const std::uint32_t places = parcel_places(row.quota, row.keeps_latest);
     std::size_t count = 0;
     for (std::size_t a = 0; a < n; ++a) {
         lane_of[a] = AsyncReaction::no_lane;
         if ((row.emitters >> a & 1) == 0) continue;
-        auto* lane = new (lanes + count) EventLane;
-        lane->row = &reaction;
-        lane->sender =
+        EventLane& lane = lanes[count];
+        lane.row = &reaction;
+        lane.sender =
             row.kind == SubscriberKind::wait ? count : machine_.plan.mail[a * n + row.receiver].sender_index;
         if (row.keeps_latest)
-            lane->latest = new (instance_.at<LatestMessage>(place.latest_at) + count) LatestMessage;
-        if (bytes != 0) lane->parcels = instance_.at<std::byte>(place.parcels_at) + count * places * bytes;
+            lane.latest = new (instance_.at<LatestMessage>(place.latest_at) + count) LatestMessage;
+        if (bytes != 0) lane.parcels = instance_.at<std::byte>(place.parcels_at) + count * places * bytes;
         lane_of[a] = static_cast<std::uint8_t>(count++);
     }
-    reaction.lanes = lanes;
+    reaction.lanes = lanes.data();
     reaction.lane_of = lane_of;
     // What a test or a plant emits in virtual time counts as the component's own.
     if (instance_.clock().is_virtual())
@@ -107,13 +107,11 @@ void MachineBuilder::bind_receiver(std::size_t s, AsyncReaction& reaction) {
         break;
     case SubscriberKind::wait: {
         auto* wait = static_cast<EventWaitState*>(instance_.facet(row.target));
-        auto* mailboxes = instance_.at<Mailbox>(place.mailboxes_at);
-        for (std::size_t i = 0; i < place.lane_count; ++i)
-            (new (mailboxes + i) Mailbox)
-                ->place(instance_.at<std::byte>(place.mail_at + i * Mailbox::bytes_for(row.quota)), row.quota,
-                        Overflow::reject);
-        wait->place(reaction.waker, instance_.clock(), {mailboxes, place.lane_count},
-                    place.lane_count * row.quota);
+        const auto mailboxes = make(PlacesOf<Mailbox>{place.mailboxes_at, place.lanes.count});
+        for (std::size_t i = 0; i < mailboxes.size(); ++i)
+            mailboxes[i].place(instance_.at<std::byte>(place.mail_at + i * Mailbox::bytes_for(row.quota)),
+                               row.quota, Overflow::reject);
+        wait->place(reaction.waker, instance_.clock(), mailboxes, mailboxes.size() * row.quota);
         reaction.inbox = &wait->inbox();
         reaction.waker = {&EventWaitState::wake, wait};
         reaction.run = &EventWaitState::receive;
@@ -138,25 +136,6 @@ void MachineBuilder::bind_receiver(std::size_t s, AsyncReaction& reaction) {
         break;
     }
     reaction.receiver = &receiver.plan().parts[reaction.part];
-}
-
-void MachineBuilder::place_mailboxes() {
-    const std::size_t n = machine_.table.activities.size();
-    for (std::size_t receiver = 0; receiver < n; ++receiver) {
-        const ActivityPlan& plan = machine_.plan.activities[receiver];
-        auto* mailboxes = instance_.at<Mailbox>(plan.mailboxes_at);
-        for (std::size_t i = 0; i < plan.sender_count; ++i) new (mailboxes + i) Mailbox;
-        for (std::size_t sender = 0; sender < n; ++sender) {
-            const MailPlan& mail = machine_.plan.mail[sender * n + receiver];
-            if (mail.capacity != 0)
-                mailboxes[mail.sender_index].place(instance_.at<std::byte>(mail.storage_at), mail.capacity,
-                                                   Overflow::reject);
-        }
-        if (const MailPlan& mail = machine_.plan.requests[receiver]; mail.capacity != 0)
-            mailboxes[mail.sender_index].place(instance_.at<std::byte>(mail.storage_at), mail.capacity,
-                                               Overflow::reject);
-        instance_.engines()[receiver].inbox().place({mailboxes, plan.sender_count});
-    }
 }
 
 } // namespace tappet

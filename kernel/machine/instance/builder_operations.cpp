@@ -1,13 +1,11 @@
-// Wires the uses rows: method calls to methods, command objects to the engines that take them up.
+// Wires the uses rows: method calls to methods, command objects to the engines that take them up. And the
+// mailboxes of engines, for messages and for commands.
 #include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/plan/operations.hpp"
-
-#include <new>
 
 namespace tappet {
 
 void MachineBuilder::connect_operations() {
-    place_command_processors();
     const MachineView& table = machine_.table;
     for (std::size_t row = 0; row < table.reactions.size(); ++row) {
         if (table.reactions[row].kind != ReactionKind::uses) continue;
@@ -25,28 +23,37 @@ void MachineBuilder::connect_operations() {
     }
 }
 
-void MachineBuilder::place_command_processors() {
+template <class Box>
+std::span<Box> MachineBuilder::make_mailboxes(const PlacesOf<Box>& places, std::span<const MailPlan> mail,
+                                              const MailPlan& requests, std::size_t receiver) {
+    const std::span<Box> boxes = make(places);
+    const auto place = [&](const MailPlan& each) {
+        if (each.capacity != 0)
+            boxes[each.sender_index].place(instance_.at<std::byte>(each.storage_at), each.capacity,
+                                           Overflow::reject);
+    };
     const std::size_t n = machine_.table.activities.size();
-    for (std::size_t receiver = 0; receiver < n; ++receiver) {
-        const ActivityPlan& plan = machine_.plan.activities[receiver];
-        auto* mailboxes = instance_.at<CommandMailbox>(plan.command_mailboxes_at);
-        for (std::size_t i = 0; i < plan.command_sender_count; ++i) new (mailboxes + i) CommandMailbox;
-        const auto place = [&](const MailPlan& mail) {
-            if (mail.capacity != 0)
-                mailboxes[mail.sender_index].place(instance_.at<std::byte>(mail.storage_at), mail.capacity,
-                                                   Overflow::reject);
-        };
-        for (std::size_t sender = 0; sender < n; ++sender)
-            place(machine_.plan.command_mail[sender * n + receiver]);
-        place(machine_.plan.command_requests[receiver]);
-        const MailPlan& requests = machine_.plan.command_requests[receiver];
-        const bool has_lines = find_interpreter(machine_.table) != nowhere;
-        if (has_lines) place(line_mail(requests));
-        auto* followed = instance_.at<CommandSlot*>(plan.followed_at);
-        for (std::size_t i = 0; i < plan.followed_count; ++i) new (followed + i) CommandSlot* {nullptr};
-        instance_.engines()[receiver].commands().place({mailboxes, plan.command_sender_count},
-                                                       {followed, plan.followed_count},
-                                                       requests.capacity + (has_lines ? line_commands : 0));
+    for (std::size_t sender = 0; sender < n; ++sender) place(mail[sender * n + receiver]);
+    place(requests);
+    return boxes;
+}
+
+void MachineBuilder::place_mailboxes() {
+    const auto& plan = machine_.plan;
+    const bool has_lines = find_interpreter(machine_.table) != nowhere;
+    for (std::size_t receiver = 0; receiver < plan.activities.size(); ++receiver) {
+        const ActivityPlan& places = plan.activities[receiver];
+        Engine& engine = instance_.engines()[receiver];
+        engine.inbox().place(make_mailboxes(places.mailboxes, plan.mail, plan.requests[receiver], receiver));
+        const MailPlan& requests = plan.command_requests[receiver];
+        const auto boxes = make_mailboxes(places.command_mailboxes, plan.command_mail, requests, receiver);
+        if (has_lines) {
+            const MailPlan lines = line_mail(requests);
+            boxes[lines.sender_index].place(instance_.at<std::byte>(lines.storage_at), lines.capacity,
+                                            Overflow::reject);
+        }
+        engine.commands().place(boxes, make(places.followed),
+                                requests.capacity + (has_lines ? line_commands : 0));
     }
 }
 

@@ -79,6 +79,10 @@ public:
     [[nodiscard]] const T* at(std::size_t offset) const noexcept TAPPET_REALTIME {
         return reinterpret_cast<const T*>(machine_.memory.data() + offset);
     }
+    template <class T>
+    [[nodiscard]] std::span<T> at(const PlacesOf<T>& places) noexcept TAPPET_REALTIME {
+        return {at<T>(places.at), places.count};
+    }
     /// Of a section of another folder.
     [[nodiscard]] std::span<std::byte> extra_memory(std::size_t section) const noexcept;
     /// By which everybody but its engine enters a component. Real-time.

@@ -33,25 +33,39 @@ constexpr bool is_command_row(const MachineView& m, const TableIndexView& r, std
 
 namespace detail {
 
-/// Of a checked table. `Plan` and `Ground` are those of kernel/machine/plan/plan.hpp.
-template <class Plan, class Layout>
-constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan& p, Layout& layout) {
+/// What the mailboxes at one receiver hold, and how many there are: of the senders in order of their urgency;
+/// after them all stand the requests, since what only watches the machine delays nobody's message.
+template <class Box>
+constexpr void plan_mail(const MachineView& m, const TableIndexView& r, PlacesOf<Box>& boxes,
+                         std::span<MailPlan> mail, MailPlan& requests, std::size_t receiver, Layout& layout) {
+    const auto place = [&](MailPlan& each) {
+        each.sender_index = boxes.count++;
+        each.storage_at = layout.take(Box::bytes_for(each.capacity), Box::alignment);
+    };
+    for (const std::size_t sender : r.by_rank)
+        if (auto& each = mail[sender * m.activities.size() + receiver]; each.capacity != 0) place(each);
+    if (find_observer(m) == nowhere) return;
+    requests.capacity = requests_waiting;
+    place(requests);
+}
+
+/// Of a checked table.
+constexpr void plan_commands(const MachineView& m, const TableIndexView& r, PlanView& p, Layout& layout) {
     const std::size_t n = m.activities.size();
-    const bool seen = find_observer(m) != nowhere;
     const bool has_lines = find_interpreter(m) != nowhere;
     for (std::size_t row = 0; row < m.reactions.size(); ++row) {
         if (!is_command_row(m, r, row)) continue;
         const std::size_t receiver = r.activity[r.reactions[row].to.component];
         // Each command object is one slot that is sent again only when it has ended: one place for each.
         ++p.command_mail[sender_of(m, r, row) * n + receiver].capacity;
-        ++p.activities[receiver].followed_count;
+        ++p.activities[receiver].followed.count;
     }
     for (const BehaviourRow& row : m.behaviours) {
         const std::size_t sender = r.activity[find_component(m, r.by_name, row.component)];
         for_each_command_slot(m, row.component, row.unit(), [&](End command) {
             const std::size_t receiver = r.activity[command.component];
             ++p.command_mail[sender * n + receiver].capacity;
-            ++p.activities[receiver].followed_count;
+            ++p.activities[receiver].followed.count;
         });
         // Of a slot each may go to any of its peers, of the old behaviour and of the new one.
         for (std::size_t receiver = 0; receiver < n; ++receiver) {
@@ -60,32 +74,22 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
                 reached |= r.activity[find_component(m, r.by_name, peer)] == receiver && receiver != sender;
             if (!reached) continue;
             p.command_mail[sender * n + receiver].capacity += 2 * row.slot.command_slots;
-            p.activities[receiver].followed_count += 2 * row.slot.command_slots;
+            p.activities[receiver].followed.count += 2 * row.slot.command_slots;
         }
     }
     for (std::size_t receiver = 0; receiver < n; ++receiver) {
         auto& activity = p.activities[receiver];
-        const auto place = [&](auto& mail) {
-            mail.sender_index = activity.command_sender_count++;
-            mail.storage_at =
-                layout.take(CommandMailbox::bytes_for(mail.capacity), CommandMailbox::alignment);
-        };
-        // Senders in order of their urgency; what only watches the machine stands after them all.
-        for (const std::size_t sender : r.by_rank)
-            if (auto& mail = p.command_mail[sender * n + receiver]; mail.capacity != 0) place(mail);
-        if (seen) {
-            p.command_requests[receiver].capacity = requests_waiting;
-            place(p.command_requests[receiver]);
-            activity.followed_count += requests_waiting;
-        }
+        MailPlan& requests = p.command_requests[receiver];
+        plan_mail(m, r, activity.command_mailboxes, p.command_mail, requests, receiver, layout);
+        activity.followed.count += requests.capacity;
         // Beside those of browsers, whose places have shares by role: lines would take the others'.
         if (has_lines) {
-            activity.followed_count += line_commands;
-            ++activity.command_sender_count;
+            activity.followed.count += line_commands;
+            ++activity.command_mailboxes.count;
             layout.take(CommandMailbox::bytes_for(line_commands), CommandMailbox::alignment);
         }
-        activity.command_mailboxes_at = layout.template take<CommandMailbox>(activity.command_sender_count);
-        activity.followed_at = layout.template take<CommandSlot*>(activity.followed_count);
+        layout.place(activity.command_mailboxes);
+        layout.place(activity.followed);
     }
 }
 

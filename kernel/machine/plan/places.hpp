@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/activity/engine.hpp"
+#include "kernel/base/layout.hpp"
 #include "kernel/machine/slots/behaviour_slot.hpp"
 #include "kernel/machine/table/binding.hpp"
 #include "kernel/machine/table/board.hpp"
@@ -42,24 +43,16 @@ struct Subscription {
 
 /// The places that belong to one activity.
 struct ActivityPlan {
-    std::size_t parts_at = 0;
-    std::size_t part_count = 0;
-    std::size_t functions_at = 0;
-    std::size_t timers_at = 0;
-    std::size_t timer_count = 0;
-    std::size_t behaviours_at = 0;
-    std::size_t behaviour_count = 0;
-    std::size_t guarded_at = 0;
-    std::size_t guarded_count = 0;
-    std::size_t inputs_at = 0; ///< what its components need before they start
-    std::size_t input_count = 0;
-    std::size_t mailboxes_at = 0;
-    std::size_t sender_count = 0;
-    std::size_t command_mailboxes_at = 0;
-    std::size_t command_sender_count = 0;
-    std::size_t followed_at = 0;
-    std::size_t followed_count = 0; ///< commands that may be at work at once
-    std::size_t tape_at = nowhere;  ///< CycleTape, where a component records the machine's cycles
+    PlacesOf<EnginePart> parts;
+    std::size_t functions_at = 0; ///< FunctionTiming, functions_per_part of each part
+    PlacesOf<EngineTimer> timers;
+    PlacesOf<Behaviour> behaviours;
+    PlacesOf<GuardedInput> guarded;
+    PlacesOf<NeededInput> inputs; ///< what its components need before they start
+    PlacesOf<Mailbox> mailboxes;  ///< one of each sender
+    PlacesOf<CommandMailbox> command_mailboxes;
+    PlacesOf<CommandSlot*> followed; ///< commands that may be at work at once
+    std::size_t tape_at = nowhere;   ///< CycleTape, where a component records the machine's cycles
     std::size_t tape_words = 0;
     std::size_t stack_at = 0;
     std::size_t stack_bytes = 0;
@@ -79,9 +72,8 @@ struct ConnectionPlan {
 struct SubscriptionPlan {
     std::size_t subscribers_at = nowhere; ///< of the event's first subscription: the place of the whole array
     std::size_t async_at = nowhere;
-    std::size_t binding_at = nowhere; ///< of a trigger or an observer
-    std::size_t lanes_at = nowhere;   ///< one for each emitting activity, in their order
-    std::size_t lane_count = 0;
+    std::size_t binding_at = nowhere;   ///< of a trigger or an observer
+    PlacesOf<EventLane> lanes;          ///< one for each emitting activity, in their order
     std::size_t lane_of_at = nowhere;   ///< of each activity; shared by the events of a component
     std::size_t latest_at = nowhere;    ///< of each lane, if it keeps the latest only
     std::size_t parcels_at = nowhere;   ///< of each lane, of arguments that a message has no room for
@@ -90,15 +82,12 @@ struct SubscriptionPlan {
 };
 
 struct BehaviourPlan {
-    std::size_t events_at = nowhere; ///< names of the events that it hears, or may hear
-    std::size_t event_count = 0;
-    std::size_t unit_at = nowhere;   ///< BehaviourUnit
-    std::size_t memory_at = nowhere; ///< of the unit; of a slot its two banks, one after the other
-    std::size_t memory_bytes = 0;
-    std::size_t slot_at = nowhere;    ///< BehaviourSlot
-    std::size_t handles_at = nowhere; ///< of a slot's events
-    std::size_t text_at = nowhere;    ///< of the script on its way into a slot
-    std::size_t text_bytes = 0;
+    PlacesOf<std::string_view> events; ///< names of the events that it hears, or may hear
+    std::size_t unit_at = nowhere;     ///< BehaviourUnit
+    PlacesOf<std::byte> memory;        ///< of the unit; of a slot its two banks, one after the other
+    std::size_t slot_at = nowhere;     ///< BehaviourSlot
+    std::size_t handles_at = nowhere;  ///< of a slot's events
+    PlacesOf<char> text;               ///< of the script on its way into a slot
 };
 
 /// A mailbox from one activity to another: its ring's storage, and its index at the receiver.
@@ -108,19 +97,9 @@ struct MailPlan {
     std::size_t sender_index = 0;
 };
 
-struct PlanView {
-    std::span<std::size_t> component_at;
-    std::span<std::uint32_t> part_of; ///< the component's index in its engine
-    std::span<ActivityPlan> activities;
-    std::span<ConnectionPlan> connections;
-    std::span<Subscription> subscriptions;
-    std::span<SubscriptionPlan> subscription_at;
-    std::span<BehaviourPlan> behaviours;
-    std::span<MailPlan> mail;             ///< [sender * activities + receiver]
-    std::span<MailPlan> requests;         ///< into each activity, of the components that see the machine
-    std::span<MailPlan> command_mail;     ///< as mail, of commands alone
-    std::span<MailPlan> command_requests; ///< as requests, of commands alone
-    std::size_t extras_at = 0;            ///< of the sections of other folders, one after the other
+/// What is there once.
+struct PlanOfAll {
+    std::size_t extras_at = 0; ///< of the sections of other folders, one after the other
     std::size_t engines_at = 0;
     std::size_t observed_at = 0; ///< Observed
     std::size_t scope_at = 0;    ///< scope::Directory; 0: nothing records the machine's cycles
@@ -129,6 +108,20 @@ struct PlanView {
     std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
     std::size_t bytes = 0;        ///< of everything below
     std::size_t stack_bytes = 0;  ///< of these, stacks
+};
+
+struct PlanView : PlanOfAll {
+    std::span<std::size_t> component_at{};
+    std::span<std::uint32_t> part_of{}; ///< the component's index in its engine
+    std::span<ActivityPlan> activities{};
+    std::span<ConnectionPlan> connections{};
+    std::span<Subscription> subscriptions{};
+    std::span<SubscriptionPlan> subscription_at{};
+    std::span<BehaviourPlan> behaviours{};
+    std::span<MailPlan> mail{};             ///< [sender * activities + receiver]
+    std::span<MailPlan> requests{};         ///< into each activity, of the components that see the machine
+    std::span<MailPlan> command_mail{};     ///< as mail, of commands alone
+    std::span<MailPlan> command_requests{}; ///< as requests, of commands alone
 };
 
 /// What stands once in a machine for whoever looks at it.

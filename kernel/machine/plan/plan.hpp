@@ -23,41 +23,23 @@ inline constexpr std::size_t least_stack_bytes = 128 * 1024;
 inline constexpr std::size_t least_stack_bytes = 16 * 1024;
 #endif
 
-class Layout {
-public:
-    constexpr std::size_t take(std::size_t bytes, std::size_t align) noexcept {
-        at_ = (at_ + align - 1) / align * align;
-        const std::size_t here = at_;
-        at_ += bytes;
-        return here;
-    }
-    template <class T>
-    constexpr std::size_t take(std::size_t count = 1) noexcept {
-        return take(count * sizeof(T), alignof(T));
-    }
-    [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
-
-private:
-    std::size_t at_ = 0;
-};
-
 constexpr void plan_components(const MachineView& m, const TableIndexView& r, PlanView& p, Layout& layout) {
     // Activity by activity, so that what runs together lies together, each on lines of its own.
     std::size_t begin = 0;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& activity = p.activities[a];
         layout.take(0, line_pair_bytes);
-        activity.part_count = m.activities[a].runs.size();
-        for (const std::size_t c : r.in_order.subspan(begin, activity.part_count)) {
+        activity.parts.count = m.activities[a].runs.size();
+        for (const std::size_t c : r.in_order.subspan(begin, activity.parts.count)) {
             p.component_at[c] = layout.take(m.components[c].type->size, m.components[c].type->align);
             p.part_of[c] = static_cast<std::uint32_t>(r.position[c]);
             for (const auto& facet : m.components[c].type->facets)
-                activity.timer_count += facet.kind == FacetKind::timer;
+                activity.timers.count += facet.kind == FacetKind::timer;
         }
-        begin += activity.part_count;
-        activity.parts_at = layout.take<EnginePart>(activity.part_count);
-        activity.functions_at = layout.take<FunctionTiming>(activity.part_count * functions_per_part);
-        activity.timers_at = layout.take<EngineTimer>(activity.timer_count);
+        begin += activity.parts.count;
+        layout.place(activity.parts);
+        activity.functions_at = layout.take<FunctionTiming>(activity.parts.count * functions_per_part);
+        layout.place(activity.timers);
     }
 }
 
@@ -84,12 +66,12 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
         }
         if (row.wakes_reader) plan.waker_at = layout.take<WakerNode>();
         if (has_values_between(row)) plan.between_at = layout.take<BetweenValues>();
-        if (is_guarded(row)) ++p.activities[reader].guarded_count;
-        if (is_needed_input(m, row, link)) ++p.activities[reader].input_count;
+        if (is_guarded(row)) ++p.activities[reader].guarded.count;
+        if (is_needed_input(m, row, link)) ++p.activities[reader].inputs.count;
     }
     for (auto& activity : p.activities) {
-        activity.guarded_at = layout.take<GuardedInput>(activity.guarded_count);
-        activity.inputs_at = layout.take<NeededInput>(activity.input_count);
+        layout.place(activity.guarded);
+        layout.place(activity.inputs);
     }
 }
 
@@ -113,42 +95,28 @@ constexpr void plan_subscriptions(const MachineView& m, const TableIndexView& r,
         if (lane_of_at == nowhere) lane_of_at = layout.take<std::uint8_t>(activities);
         plan.lane_of_at = lane_of_at;
         plan.async_at = layout.take<AsyncReaction>();
-        plan.lane_count = static_cast<std::size_t>(std::popcount(row.emitters));
-        plan.lanes_at = layout.take<EventLane>(plan.lane_count);
-        if (row.keeps_latest) plan.latest_at = layout.take<LatestMessage>(plan.lane_count);
+        plan.lanes.count = static_cast<std::size_t>(std::popcount(row.emitters));
+        layout.place(plan.lanes);
+        if (row.keeps_latest) plan.latest_at = layout.take<LatestMessage>(plan.lanes.count);
         if (const std::size_t bytes = parcel_bytes(facet_at(m, row.event).type->size); bytes != 0)
-            plan.parcels_at = layout.take(
-                plan.lane_count * parcel_places(row.quota, row.keeps_latest) * bytes, alignof(std::uint64_t));
+            plan.parcels_at =
+                layout.take(plan.lanes.count * parcel_places(row.quota, row.keeps_latest) * bytes,
+                            alignof(std::uint64_t));
         if (row.kind == SubscriberKind::trigger) plan.binding_at = layout.take<TriggerBinding>();
         if (row.kind == SubscriberKind::observer) plan.binding_at = layout.take<ObserverBinding>();
         if (row.kind == SubscriberKind::wait) {
-            plan.mailboxes_at = layout.take<Mailbox>(plan.lane_count);
-            plan.mail_at = layout.take(plan.lane_count * Mailbox::bytes_for(row.quota), Mailbox::alignment);
+            plan.mailboxes_at = layout.take<Mailbox>(plan.lanes.count);
+            plan.mail_at = layout.take(plan.lanes.count * Mailbox::bytes_for(row.quota), Mailbox::alignment);
             continue;
         }
         for (std::size_t sender = 0; sender < activities; ++sender)
             if ((row.emitters >> sender & 1) != 0)
                 p.mail[sender * activities + row.receiver].capacity += row.quota;
     }
-    // At each receiver the senders stand in order of their urgency.
-    const std::size_t n = m.activities.size();
-    const bool seen = find_observer(m) != nowhere;
-    for (std::size_t receiver = 0; receiver < n; ++receiver) {
-        ActivityPlan& activity = p.activities[receiver];
-        for (const std::size_t sender : r.by_rank) {
-            MailPlan& mail = p.mail[sender * n + receiver];
-            if (mail.capacity == 0) continue;
-            mail.sender_index = activity.sender_count++;
-            mail.storage_at = layout.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
-        }
-        // After them all stand the requests: what only watches the machine delays nobody's message.
-        if (seen) {
-            MailPlan& mail = p.requests[receiver];
-            mail.capacity = requests_waiting;
-            mail.sender_index = activity.sender_count++;
-            mail.storage_at = layout.take(Mailbox::bytes_for(mail.capacity), Mailbox::alignment);
-        }
-        activity.mailboxes_at = layout.take<Mailbox>(activity.sender_count);
+    for (std::size_t receiver = 0; receiver < activities; ++receiver) {
+        auto& boxes = p.activities[receiver].mailboxes;
+        plan_mail(m, r, boxes, p.mail, p.requests[receiver], receiver, layout);
+        layout.place(boxes);
     }
 }
 
@@ -157,24 +125,23 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
         const BehaviourRow& row = m.behaviours[b];
         BehaviourPlan& plan = p.behaviours[b];
         if (row.is_slot()) {
-            plan.event_count = count_slot_events(m, row);
+            plan.events.count = count_slot_events(m, row);
             plan.slot_at = layout.take<BehaviourSlot>();
-            plan.handles_at = layout.take<EventHandle>(plan.event_count);
-            plan.text_bytes = slot_text_bytes(row.slot);
-            plan.text_at = layout.take(plan.text_bytes, 1);
-            plan.memory_bytes = 2 * bank_bytes(row, plan.event_count, longest_slot_event(m, row));
+            plan.handles_at = layout.take<EventHandle>(plan.events.count);
+            plan.text.count = slot_text_bytes(row.slot);
+            layout.place(plan.text);
+            plan.memory.count = 2 * bank_bytes(row, plan.events.count, longest_slot_event(m, row));
         } else {
             const ScriptUnit unit = row.unit();
-            plan.event_count = events_of(unit).count;
+            plan.events.count = events_of(unit).count;
             plan.unit_at = layout.take<BehaviourUnit>();
-            plan.memory_bytes = unit_bytes(unit, plan.event_count);
+            plan.memory.count = unit_bytes(unit, plan.events.count);
         }
-        plan.events_at = layout.take<std::string_view>(plan.event_count);
-        plan.memory_at = layout.take(plan.memory_bytes, unit_alignment);
-        ++p.activities[r.activity[find_component(m, row.component)]].behaviour_count;
+        layout.place(plan.events);
+        plan.memory.at = layout.take(plan.memory.count, unit_alignment);
+        ++p.activities[r.activity[find_component(m, row.component)]].behaviours.count;
     }
-    for (auto& activity : p.activities)
-        activity.behaviours_at = layout.take<Behaviour>(activity.behaviour_count);
+    for (auto& activity : p.activities) layout.place(activity.behaviours);
 }
 
 } // namespace detail
@@ -182,7 +149,7 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
 /// Plans a checked table for a board. The map comes first: whoever looks at the memory begins there.
 constexpr void make_plan(const MachineView& m, const Board& board, const Binding& binding,
                          const TableIndexView& r, std::size_t map_bytes, PlanView& p) {
-    detail::Layout layout;
+    Layout layout;
     layout.take(map_bytes, alignof(std::max_align_t));
     p.observed_at = layout.take<Observed>();
     detail::plan_components(m, r, p, layout);
@@ -233,7 +200,7 @@ constexpr Sentence check_plan(const MachineView& m, const Board& board, std::spa
 
 /// The storage of a plan, of the table's own sizes.
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t S, std::size_t B>
-struct Plan {
+struct Plan : PlanOfAll {
     std::array<std::size_t, C> component_at{};
     std::array<std::uint32_t, C> part_of{};
     std::array<ActivityPlan, A> activities{};
@@ -245,27 +212,10 @@ struct Plan {
     std::array<MailPlan, A> requests{};
     std::array<MailPlan, A * A> command_mail{};
     std::array<MailPlan, A> command_requests{};
-    std::size_t extras_at = 0;
-    std::size_t engines_at = 0;
-    std::size_t observed_at = 0;
-    std::size_t scope_at = 0;
-    std::size_t recordings_at = 0;
-    std::size_t recordings = 0;
-    std::size_t shared_bytes = 0;
-    std::size_t bytes = 0;
-    std::size_t stack_bytes = 0;
 
     constexpr PlanView view() noexcept {
-        return {component_at,     part_of,    activities,   connections, subscriptions,
-                subscription_at,  behaviours, mail,         requests,    command_mail,
-                command_requests, extras_at,  engines_at,   observed_at, scope_at,
-                recordings_at,    recordings, shared_bytes, bytes,       stack_bytes};
-    }
-    constexpr void take_sizes(const PlanView& v) noexcept {
-        extras_at = v.extras_at;
-        engines_at = v.engines_at, bytes = v.bytes, stack_bytes = v.stack_bytes;
-        observed_at = v.observed_at, shared_bytes = v.shared_bytes;
-        scope_at = v.scope_at, recordings_at = v.recordings_at, recordings = v.recordings;
+        return {*this,           component_at, part_of, activities, connections,  subscriptions,
+                subscription_at, behaviours,   mail,    requests,   command_mail, command_requests};
     }
 };
 

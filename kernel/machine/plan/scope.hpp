@@ -2,8 +2,8 @@
 // that it may run, and room for the worst cycles.
 #pragma once
 
+#include "kernel/machine/plan/places.hpp"
 #include "kernel/machine/plan/scope_layout.hpp"
-#include "kernel/machine/table/index.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -37,12 +37,10 @@ constexpr std::size_t tape_words(const ActivityRow& row) noexcept {
     return std::bit_ceil(std::max(fewest, std::min(wanted, most_tape_words)));
 }
 
-/// `Plan` and `Ground` are those of kernel/machine/plan/plan.hpp.
-template <class Plan, class Layout>
-constexpr void plan_scope(const MachineView& m, Plan& p, Layout& layout) {
+constexpr void plan_scope(const MachineView& m, PlanView& p, Layout& layout) {
     if (!records_cycles(m)) return;
     p.scope_at = layout.take(sizeof(scope::Directory), CycleTape::alignment);
-    layout.template take<scope::Tape>(m.activities.size());
+    layout.take<scope::Tape>(m.activities.size());
     std::size_t ranked = 0;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         p.activities[a].tape_words = tape_words(m.activities[a]);
