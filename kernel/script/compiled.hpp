@@ -96,24 +96,11 @@ struct StoredScript {
     template <ScriptSizes room>
     constexpr explicit StoredScript(const DraftScript<room>& script_read) : unit{script_read.outcome.unit} {
         const ScriptBuffer<room>& from = script_read.rows;
-        const auto copies = [](const auto& rows_read, auto& to) {
-            for (std::size_t i = 0; i < to.size(); ++i) to[i] = rows_read[i];
-        };
-        copies(from.instructions, rows.instructions);
-        copies(from.conditions, rows.conditions);
-        copies(from.nodes, rows.nodes);
-        copies(from.arcs, rows.arcs);
-        copies(from.programs, rows.programs);
-        copies(from.variables, rows.variables);
-        copies(from.links, rows.links);
-        copies(from.image, rows.image);
-        copies(from.states, rows.states);
-        copies(from.transitions, rows.transitions);
-        copies(from.captures, rows.captures);
-        copies(from.types, rows.types);
-        copies(from.instances, rows.instances);
-        copies(from.names, rows.names);
-        copies(from.reach, rows.reach);
+        for_each_table(
+            [](const auto& rows_read, auto& to) {
+                for (std::size_t i = 0; i < to.size(); ++i) to[i] = rows_read[i];
+            },
+            from, rows);
 
         const auto names = [&](std::string_view& name) {
             if (name.empty())

@@ -165,13 +165,7 @@ private:
     /// "RootStateMachine Type name(arguments)"
     constexpr void parse_root() {
         advance();
-        const Token type_at = need_name("the type of the state machine");
-        const TypeIndex type = ok() ? find_machine_type(type_at.text) : none;
-        if (ok() && type == none) {
-            Nearest nearest{type_at.text};
-            for (std::size_t i = 0; i < types_.used; ++i) nearest.consider(types_.room[i].name);
-            fail_unknown(type_at, "state machine type", nearest, " before this line");
-        }
+        const TypeIndex type = parse_machine_type("the type of the state machine", " before this line");
         const Token name = need_name("the name of the state machine");
         if (!ok()) return;
         check_instance_name(name, name.text);
@@ -246,7 +240,6 @@ private:
         for (std::size_t i = 0; i < instances_.used; ++i) {
             const BehaviourType& type = types_.room[instances_.room[i].type];
             s.data += aligned(type.tables.layout.size, data_alignment);
-            s.bound_links += static_cast<std::uint32_t>(type.tables.links.size());
             for (const LinkRow& row : type.tables.links) s.command_slots += row.needs_slot ? 1 : 0;
             for (const TransitionRow& row : type.machine.transitions) s.timers += row.timed ? 1 : 0;
             for (const NodeRow& node : type.tables.nodes)

@@ -55,6 +55,17 @@ protected:
             if (types_.room[i].name == name && !types_.room[i].is_program()) return static_cast<TypeIndex>(i);
         return none;
     }
+    /// Of a machine that stands before.
+    constexpr TypeIndex parse_machine_type(std::string_view wanted, std::string_view before) {
+        const Token name = need_name(wanted);
+        const TypeIndex type = ok() ? find_machine_type(name.text) : none;
+        if (ok() && type == none) {
+            Nearest nearest{name.text};
+            for (std::size_t i = 0; i < types_.used; ++i) nearest.consider(types_.room[i].name);
+            fail_unknown(name, "state machine type", nearest, before);
+        }
+        return type;
+    }
 
     /// "name" or "name = value" of a variable of a whole type.
     constexpr void parse_variable_of(TypeId type, VariableKind kind) {
@@ -181,13 +192,7 @@ private:
         static_cast<void>(take(Sign::semicolon));
     }
     constexpr void parse_child() {
-        const Token type_name_at = need_name("the type of the child machine");
-        const TypeIndex type = ok() ? find_machine_type(type_name_at.text) : none;
-        if (ok() && type == none) {
-            Nearest nearest{type_name_at.text};
-            for (std::size_t i = 0; i < types_.used; ++i) nearest.consider(types_.room[i].name);
-            fail_unknown(type_name_at, "state machine type", nearest, " before this one");
-        }
+        const TypeIndex type = parse_machine_type("the type of the child machine", " before this one");
         const Token name = need_name("the name of the child machine");
         if (!ok()) return;
         Child child;

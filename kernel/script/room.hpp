@@ -32,7 +32,6 @@ struct ScriptSizes {
     std::uint32_t reach = 0; ///< components
     // Not of the room, but of who runs it, over all instances.
     std::uint32_t data = 0; ///< bytes, each instance's aligned to data_alignment
-    std::uint32_t bound_links = 0;
     std::uint32_t command_slots = 0;
     std::uint32_t timers = 0; ///< nodes and transitions that wait for time
 
@@ -56,6 +55,26 @@ constexpr ScriptSizes script_sizes_for(std::uint32_t nodes, std::uint32_t data_b
     s.reach = components;
     s.data = data_bytes;
     return s;
+}
+
+/// Calls visit(of.table..) of each table of a script: with its size, its room, its rows, or several of these.
+template <class Visit, class... Of>
+constexpr void for_each_table(const Visit& visit, Of&... of) {
+    visit(of.instructions...);
+    visit(of.conditions...);
+    visit(of.nodes...);
+    visit(of.arcs...);
+    visit(of.programs...);
+    visit(of.variables...);
+    visit(of.links...);
+    visit(of.image...);
+    visit(of.states...);
+    visit(of.transitions...);
+    visit(of.captures...);
+    visit(of.types...);
+    visit(of.instances...);
+    visit(of.names...);
+    visit(of.reach...);
 }
 
 /// What compile_into() fills. The spans outlive the unit.
@@ -96,8 +115,9 @@ struct ScriptBuffer {
     std::array<Reachable, sizes.reach> reach{};
 
     [[nodiscard]] constexpr ScriptRoom room() noexcept {
-        return {instructions, conditions,  nodes,    arcs,  programs,  variables, links, image,
-                states,       transitions, captures, types, instances, names,     reach};
+        ScriptRoom room;
+        for_each_table([](auto& rows, auto& span) { span = rows; }, *this, room);
+        return room;
     }
 };
 

@@ -2,6 +2,7 @@
 // loading, which lay things there.
 #pragma once
 
+#include "kernel/base/layout.hpp"
 #include "kernel/machine/slots/behaviour_unit.hpp"
 #include "kernel/script/room.hpp"
 
@@ -25,20 +26,18 @@ public:
         return reinterpret_cast<T*>(place);
     }
     constexpr std::byte* take(std::size_t bytes, std::size_t align) noexcept {
-        at_ = (at_ + align - 1) / align * align;
-        const std::size_t here = at_;
-        at_ += bytes;
-        return memory_.empty() || at_ > memory_.size() ? nullptr : memory_.data() + here;
+        const std::size_t here = counted_.take(bytes, align);
+        return memory_.empty() || full() ? nullptr : memory_.data() + here;
     }
     template <class T> constexpr void take(std::span<T>& into, std::size_t count) noexcept {
         into = {take<T>(count), count};
     }
-    [[nodiscard]] constexpr std::size_t used() const noexcept { return at_; }
-    [[nodiscard]] constexpr bool full() const noexcept { return at_ > memory_.size(); }
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return counted_.used(); }
+    [[nodiscard]] constexpr bool full() const noexcept { return used() > memory_.size(); }
 
 private:
     std::span<std::byte> memory_{};
-    std::size_t at_ = 0;
+    Layout counted_{};
 };
 
 /// The commands of one instance that are sent to other activities: calls visit(link number, facet).
@@ -115,21 +114,12 @@ namespace detail {
 /// The rows of a compiled script, in a bank.
 constexpr ScriptRoom take_script_room(UnitLayout& layout, const ScriptSizes& sizes) noexcept {
     ScriptRoom room;
-    layout.take(room.instructions, sizes.instructions);
-    layout.take(room.conditions, sizes.conditions);
-    layout.take(room.nodes, sizes.nodes);
-    layout.take(room.arcs, sizes.arcs);
-    layout.take(room.programs, sizes.programs);
-    layout.take(room.variables, sizes.variables);
-    layout.take(room.links, sizes.links);
-    room.image = {layout.take(sizes.image, data_alignment), sizes.image};
-    layout.take(room.states, sizes.states);
-    layout.take(room.transitions, sizes.transitions);
-    layout.take(room.captures, sizes.captures);
-    layout.take(room.types, sizes.types);
-    layout.take(room.instances, sizes.instances);
-    layout.take(room.names, sizes.names);
-    layout.take(room.reach, sizes.reach);
+    for_each_table(
+        [&layout]<class Row>(std::span<Row>& rows, std::size_t count) {
+            if constexpr (std::is_same_v<Row, std::byte>) layout.take(0, data_alignment);
+            layout.take(rows, count);
+        },
+        room, sizes);
     return room;
 }
 
