@@ -22,6 +22,9 @@ constexpr FacetAction facet_action(bool fits, Primitive run, const Facet& facet,
         {.run = run, .facet = &facet, .size = static_cast<std::uint16_t>(type != nullptr ? type->size : 0)},
         type};
 }
+constexpr FacetAction facet_action(FacetKind kind, Primitive run, const Facet& facet, TypeId type) noexcept {
+    return facet_action(facet.kind == kind, run, facet, type);
+}
 
 } // namespace detail
 
@@ -52,12 +55,10 @@ constexpr FacetAction find_write(const Facet& facet) noexcept {
 }
 /// `to`: a bool, of an input.
 constexpr FacetAction input_valid(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::input, &primitive::input_valid, facet,
-                                type_id<bool>);
+    return detail::facet_action(FacetKind::input, &primitive::input_valid, facet, type_id<bool>);
 }
 constexpr FacetAction input_fresh(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::input, &primitive::input_fresh, facet,
-                                type_id<bool>);
+    return detail::facet_action(FacetKind::input, &primitive::input_fresh, facet, type_id<bool>);
 }
 /// `to`: a Duration, of an input or an output.
 constexpr FacetAction port_age(const Facet& facet) noexcept {
@@ -67,34 +68,29 @@ constexpr FacetAction port_age(const Facet& facet) noexcept {
 
 /// A buffered output is given `a`; `to`: a bool, whether all readers had room. type: of the value.
 constexpr FacetAction push_buffer(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::buffer_output, &primitive::push_buffer, facet,
-                                facet.type);
+    return detail::facet_action(FacetKind::buffer_output, &primitive::push_buffer, facet, facet.type);
 }
 /// `to` = the oldest value of a buffered input; an empty one fails the action.
 constexpr FacetAction pop_buffer(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::buffer_input, &primitive::pop_buffer, facet,
-                                facet.type);
+    return detail::facet_action(FacetKind::buffer_input, &primitive::pop_buffer, facet, facet.type);
 }
 /// As pop_buffer; an empty one is waited for. The whole node is executed again, so it does this first.
 constexpr FacetAction wait_buffer(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::buffer_input, &primitive::wait_buffer, facet,
-                                facet.type);
+    return detail::facet_action(FacetKind::buffer_input, &primitive::wait_buffer, facet, facet.type);
 }
 /// `to`: a bool.
 constexpr FacetAction buffer_empty(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::buffer_input, &primitive::buffer_empty, facet,
-                                type_id<bool>);
+    return detail::facet_action(FacetKind::buffer_input, &primitive::buffer_empty, facet, type_id<bool>);
 }
 
 // Below, `a` holds the arguments packed one after the other without gaps, each in its C++ type; they are
 // listed in facet.type->elements, those of a command in facet.command->arguments->elements.
 
 constexpr FacetAction emit_event(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::event, &primitive::emit_event, facet, nullptr);
+    return detail::facet_action(FacetKind::event, &primitive::emit_event, facet, nullptr);
 }
 constexpr FacetAction call_operation(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::operation, &primitive::call_operation, facet,
-                                nullptr);
+    return detail::facet_action(FacetKind::operation, &primitive::call_operation, facet, nullptr);
 }
 /// `to`: the result, of `type`, which is null when there is none.
 constexpr FacetAction call_method(const Facet& facet) noexcept {
@@ -113,27 +109,24 @@ constexpr FacetAction do_method(const Facet& facet) noexcept {
 /// Of the own component: begins it here and now. `to`: argument and result bytes, kept while the program
 /// runs; the instructions before wrote the arguments there.
 constexpr FacetAction begin_command(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::command, &primitive::begin_command, facet, nullptr);
+    return detail::facet_action(FacetKind::command, &primitive::begin_command, facet, nullptr);
 }
 /// `to`: a bool, done; `a`: the bytes of begin_command, whose results are good then.
 constexpr FacetAction command_progress(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::command, &primitive::command_progress, facet,
-                                type_id<bool>);
+    return detail::facet_action(FacetKind::command, &primitive::command_progress, facet, type_id<bool>);
 }
 /// Of another activity: sends it with the arguments `a`, again while an earlier one is on its way. The link
 /// needs a slot.
 constexpr FacetAction send_command(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::command, &primitive::send_command, facet, nullptr);
+    return detail::facet_action(FacetKind::command, &primitive::send_command, facet, nullptr);
 }
 /// `to`: a bool, done; rejected or failed fails the condition.
 constexpr FacetAction command_ended(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::command, &primitive::command_ended, facet,
-                                type_id<bool>);
+    return detail::facet_action(FacetKind::command, &primitive::command_ended, facet, type_id<bool>);
 }
 /// `to`: the packed results, facet.command->results, of one that ended.
 constexpr FacetAction command_results(const Facet& facet) noexcept {
-    return detail::facet_action(facet.kind == FacetKind::command, &primitive::command_results, facet,
-                                nullptr);
+    return detail::facet_action(FacetKind::command, &primitive::command_results, facet, nullptr);
 }
 
 /// `to`: a Duration, since the node was entered.

@@ -82,13 +82,13 @@ constexpr OperatorMatch find_binary(Operator op, TypeId a, TypeId b) noexcept {
         return detail::find_matrix_binary(op, a, b);
     const bool compares = op == Operator::equal || op == Operator::unequal;
     if (a->kind == ValueKind::enumeration && a == b && compares)
-        return {{.run = op == Operator::equal ? &primitive::bytes_equal : &primitive::bytes_unequal,
+        return {{.run = op == Operator::equal ? primitive::bytes_equal : primitive::bytes_unequal,
                  .size = static_cast<std::uint16_t>(a->size)},
                 script_bool,
                 a,
                 b};
     if (a->kind == ValueKind::text && b->kind == ValueKind::text && compares)
-        return {{.run = op == Operator::equal ? &primitive::text_equal : &primitive::text_unequal,
+        return {{.run = op == Operator::equal ? primitive::text_equal : primitive::text_unequal,
                  .size = static_cast<std::uint16_t>(a->length_at),
                  .rows = static_cast<std::uint8_t>(b->length_at & 0xff),
                  .inner = static_cast<std::uint8_t>(b->length_at >> 8)},

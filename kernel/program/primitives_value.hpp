@@ -35,16 +35,16 @@ constexpr bool same_bytes(const Instruction& in, const std::byte* a, const std::
         if (a[i] != b[i]) return false;
     return true;
 }
-constexpr ActionResult bytes_equal(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
-                                   const std::byte* b) noexcept TAPPET_REALTIME {
-    store_value(to, same_bytes(in, a, b));
+/// `to`: whether `a` and `b` are the same, or are not.
+template <bool wanted, bool (*same)(const Instruction& in, const std::byte* a, const std::byte* b) noexcept
+          TAPPET_REALTIME>
+constexpr ActionResult compare(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
+                               const std::byte* b) noexcept TAPPET_REALTIME {
+    store_value(to, same(in, a, b) == wanted);
     return ActionResult::done;
 }
-constexpr ActionResult bytes_unequal(ProgramContext&, const Instruction& in, std::byte* to,
-                                     const std::byte* a, const std::byte* b) noexcept TAPPET_REALTIME {
-    store_value(to, !same_bytes(in, a, b));
-    return ActionResult::done;
-}
+inline constexpr Primitive bytes_equal = &compare<true, &same_bytes>;
+inline constexpr Primitive bytes_unequal = &compare<false, &same_bytes>;
 
 // ---- texts: characters from the first byte on, their number after them as Text<N> has it
 
@@ -72,16 +72,8 @@ constexpr bool same_text(const Instruction& in, const std::byte* a, const std::b
         if (a[i] != b[i]) return false;
     return true;
 }
-constexpr ActionResult text_equal(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
-                                  const std::byte* b) noexcept TAPPET_REALTIME {
-    store_value(to, same_text(in, a, b));
-    return ActionResult::done;
-}
-constexpr ActionResult text_unequal(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
-                                    const std::byte* b) noexcept TAPPET_REALTIME {
-    store_value(to, !same_text(in, a, b));
-    return ActionResult::done;
-}
+inline constexpr Primitive text_equal = &compare<true, &same_text>;
+inline constexpr Primitive text_unequal = &compare<false, &same_text>;
 
 // ---- parts of values
 

@@ -184,14 +184,14 @@ void ProgramText::read_one(const Instruction& in, Reading& reading) const {
         std::string text = std::string{function->name} + "(" + value(in.a, function->a, reading).text;
         if (function->b != nullptr) text += ", " + value(in.b, function->b, reading).text;
         give(in, unknown(text + ")"), reading);
-    } else if (in.run == &p::bytes_equal || in.run == &p::bytes_unequal) {
+    } else if (in.run == p::bytes_equal || in.run == p::bytes_unequal) {
         // Of two enumerations one is a variable or a value whose type is known; the other is of the same.
         const VariableRow* const a_row = row_at(in.a);
         const VariableRow* const b_row = row_at(in.b);
         const TypeId type = a_row != nullptr ? a_row->type : b_row != nullptr ? b_row->type : nullptr;
         const Expression a = value(in.a, type, reading);
         const Expression b = value(in.b, type, reading);
-        const char* const sign = in.run == &p::bytes_equal ? " == " : " != ";
+        const char* const sign = in.run == p::bytes_equal ? " == " : " != ";
         Expression sum{"(" + a.text + sign + b.text + ")", {}};
         if (!a.model.empty() && !b.model.empty()) sum.model = "(" + a.model + sign + b.model + ")";
         give(in, std::move(sum), reading);
