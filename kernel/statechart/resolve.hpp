@@ -142,6 +142,18 @@ struct ResolvedView {
     bool plain = false;
     bool preconditions = false; ///< some state has one
 
+    /// Reads what stands in a room.
+    constexpr void lead_to(const auto& room) {
+        triggers = std::span{room.triggers}.first(std::min(sizes.triggers, room.triggers.size()));
+        plans = room.plans.data();
+        cells = room.cells.data();
+        asked = room.asked.data();
+        arcs = room.arcs.data();
+        steps = room.steps.data();
+        regions = room.regions.data();
+        captured = room.captured.data();
+    }
+
     // What plan_entries() asks of a tree of states.
     [[nodiscard]] constexpr std::size_t depth_of(StateIndex state) const noexcept TAPPET_REALTIME {
         return plans[state].depth;
@@ -237,11 +249,13 @@ public:
         for (std::size_t i = 0; i < names_.states(); ++i) put(room_.plans, i, plan_of(i));
         return {names_.states(), names_.triggers, arcs_, asked_, steps_, names_.regions, history_, captured_};
     }
-    /// The flags of the view; its pointers are whose the room is.
-    constexpr void describe(ResolvedView& view) const {
-        view.final_state = names_.final_state;
-        view.plain = plain_;
-        view.preconditions = preconditions_;
+    /// What is known of the machine, without the pointers: they are whose the room is.
+    [[nodiscard]] constexpr ResolvedView describe(const ResolvedSizes& taken) const {
+        return {.table = names_.table,
+                .sizes = taken,
+                .final_state = names_.final_state,
+                .plain = plain_,
+                .preconditions = preconditions_};
     }
 
 private:
@@ -386,22 +400,6 @@ private:
     bool preconditions_ = false;
 };
 
-constexpr ResolvedView view_of(const StateMachineTable& table, const ResolvedRoom& room,
-                               const ResolvedSizes& taken, const Resolver& resolver) {
-    ResolvedView view{.table = table,
-                      .triggers = room.triggers.first(std::min(taken.triggers, room.triggers.size())),
-                      .plans = room.plans.data(),
-                      .cells = room.cells.data(),
-                      .asked = room.asked.data(),
-                      .arcs = room.arcs.data(),
-                      .steps = room.steps.data(),
-                      .regions = room.regions.data(),
-                      .captured = room.captured.data(),
-                      .sizes = taken};
-    resolver.describe(view);
-    return view;
-}
-
 } // namespace statechart
 
 /// Resolves a table that check() found good, and answers a view of the room. Whether it fitted into the room
@@ -409,8 +407,9 @@ constexpr ResolvedView view_of(const StateMachineTable& table, const ResolvedRoo
 constexpr ResolvedView resolve_into(const StateMachineTable& table, const ResolvedRoom& room) {
     const StateHierarchy names{table};
     statechart::Resolver resolver{names, room};
-    const ResolvedSizes taken = resolver.resolve();
-    return statechart::view_of(table, room, taken, resolver);
+    ResolvedView view = resolver.describe(resolver.resolve());
+    view.lead_to(room);
+    return view;
 }
 
 /// What a machine takes; nothing when check() finds a fault in it.
@@ -460,21 +459,13 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
                 .add(list(sizes))
                 .add("; make the room larger or the machine smaller");
         }
-        described = statechart::view_of(of, {}, taken, resolver);
+        described = resolver.describe(taken);
         return {};
     }
     /// Without a machine, a view that no execution starts.
     [[nodiscard]] constexpr ResolvedView view() const {
         ResolvedView view = described;
-        if (view.table.states.empty()) return view;
-        view.triggers = std::span{triggers}.first(described.sizes.triggers);
-        view.plans = plans.data();
-        view.cells = cells.data();
-        view.asked = asked.data();
-        view.arcs = arcs.data();
-        view.steps = steps.data();
-        view.regions = regions.data();
-        view.captured = captured.data();
+        if (!view.table.states.empty()) view.lead_to(*this);
         return view;
     }
 };
