@@ -54,30 +54,23 @@ struct Places {
 
 constexpr Places places_of(const Sizes& sizes) noexcept {
     Places places;
-    std::size_t at = sizeof(recorded::Directory);
-    const auto take = [&at](std::size_t bytes) {
-        const std::size_t here = at;
-        at += (bytes + 7) / 8 * 8;
-        return here;
-    };
-    places.counters_at = take(sizes.triggers * sizeof(std::atomic<std::uint64_t>));
-    places.emissions_at = take(sizes.emissions * sizeof(Emissions));
-    places.channels_at = take(sizes.channels * sizeof(recorded::Channel));
-    places.tapes_at = take(sizes.tapes * sizeof(recorded::Tape));
-    places.recorders_at = take(sizes.tapes * sizeof(Recorder));
-    places.recorded_at = take(sizes.channels * sizeof(Recorded));
-    places.last_at = take(sizes.last_words * sizeof(std::uint64_t));
+    Layout layout;
+    layout.take<recorded::Directory>();
+    places.counters_at = layout.take<std::atomic<std::uint64_t>>(sizes.triggers);
+    places.emissions_at = layout.take<Emissions>(sizes.emissions);
+    places.channels_at = layout.take<recorded::Channel>(sizes.channels);
+    places.tapes_at = layout.take<recorded::Tape>(sizes.tapes);
+    places.recorders_at = layout.take<Recorder>(sizes.tapes);
+    places.recorded_at = layout.take<Recorded>(sizes.channels);
+    places.last_at = layout.take<std::uint64_t>(sizes.last_words);
     std::size_t tape = 0;
-    for (const OfActivity& each : sizes.activities) {
-        if (each.channels == 0) continue;
-        at = (at + recorded::ValueTape::alignment - 1) / recorded::ValueTape::alignment *
-             recorded::ValueTape::alignment;
-        places.tape_at[tape++] = take(recorded::ValueTape::bytes_for(tape_words(each)));
-    }
-    places.bytes = at;
+    for (const OfActivity& each : sizes.activities)
+        if (each.channels != 0)
+            places.tape_at[tape++] =
+                layout.take(recorded::ValueTape::bytes_for(tape_words(each)), recorded::ValueTape::alignment);
+    places.bytes = layout.used();
     return places;
 }
-static_assert(alignof(Recorder) <= 8 && alignof(Recorded) <= 8 && sizeof(Recorded) % 8 == 0);
 
 void connect(std::span<const ReportRow> rows, MachineInstance& machine, std::span<std::byte> memory);
 std::atomic<std::uint64_t>* counter(std::span<std::byte> memory, std::size_t number) noexcept;
