@@ -96,12 +96,13 @@ std::size_t BrowserService::answer_for_nobody(void* self, std::string_view packe
     return good ? into.size() - service.for_nobody_.size() : 0;
 }
 
-void BrowserService::finish(Client& client, Reply& reply) noexcept {
+BrowserService::Verdict BrowserService::finish(Client& client, Reply& reply) noexcept {
     const std::string_view text = reply.finish();
     if (for_nobody_.data() == nullptr)
         connections_.send(client, text);
     else
         for_nobody_ = for_nobody_.subspan(text.copy(for_nobody_.data(), for_nobody_.size()));
+    return {};
 }
 
 BrowserService::Verdict BrowserService::check_role(const Client& client, std::string_view what, Role least) {

@@ -75,7 +75,8 @@ private:
     void handle(Client& client, std::string_view packet, bool cut);
     Verdict answer(Client& client, const Request& request);
     void note(const Client& client, std::string_view what, std::string_view packet, const Verdict& verdict);
-    void finish(Client& client, Reply& reply) noexcept;
+    /// The reply is the answer: nothing is refused.
+    Verdict finish(Client& client, Reply& reply) noexcept;
     /// As BrowsingAnswerer.
     static std::size_t answer_for_nobody(void* self, std::string_view request, std::span<char> into);
     [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {

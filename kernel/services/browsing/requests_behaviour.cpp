@@ -167,8 +167,7 @@ BrowserService::Verdict BrowserService::behaviours(Client& client, const Request
             slot != nullptr && (!one || slot == only || slot == machine_->slot_of_row(wanted.row)))
             put_slot(reply, *slot);
     reply.json().close(']');
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 BrowserService::Verdict BrowserService::behave(Client& client, const Request& request) {
@@ -255,8 +254,7 @@ BrowserService::Verdict BrowserService::script(Client& client, const Request& re
     upload_.characters = end;
     Reply reply{request.number, true};
     reply.json().field("bytes", end);
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 BrowserService::Verdict BrowserService::load(Client& client, const Request& request) {
@@ -290,8 +288,7 @@ BrowserService::Verdict BrowserService::change_slot(Client& client, const Reques
         return {Refusal::not_now, Sentence{"that engine has too many requests to serve; ask again"}};
     }
     Reply reply{request.number, true};
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 BrowserService::Verdict BrowserService::unload(Client& client, const Request& request,

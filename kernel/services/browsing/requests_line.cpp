@@ -92,8 +92,7 @@ BrowserService::Verdict BrowserService::break_off(Client& client, const Request&
     default: break;
     }
     Reply reply{request.number, true};
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 } // namespace tappet

@@ -19,8 +19,7 @@ BrowserService::Verdict BrowserService::hello(Client& client, const Request& req
         .field("role", to_text(client.role))
         .field("build_id", std::string_view{header.build_id.data()})
         .field("time_ns", to_ns(now_));
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 BrowserService::Verdict BrowserService::map(Client& client, const Request& request) {
@@ -49,8 +48,7 @@ BrowserService::Verdict BrowserService::counters(Client& client, const Request& 
             json.open('{').field("row", count.what).field("times", count.times).close('}');
         }
     json.close(']');
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 BrowserService::Verdict BrowserService::get(Client& client, const Request& request) {
@@ -64,8 +62,7 @@ BrowserService::Verdict BrowserService::get(Client& client, const Request& reque
         put_value(reply, end, name);
     }
     reply.json().close(']');
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
@@ -130,8 +127,7 @@ BrowserService::Verdict BrowserService::forced(Client& client, const Request& re
             reply.json().value(name.view());
         }
     reply.json().close(']');
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 } // namespace tappet

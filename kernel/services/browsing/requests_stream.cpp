@@ -33,8 +33,7 @@ BrowserService::Verdict BrowserService::subscribe(Client& client, const Request&
     handle.connect();
     place->lost = -lost_of(*place); // from now on
     Reply reply{request.number, true};
-    finish(client, reply);
-    return {};
+    return finish(client, reply);
 }
 
 BrowserService::Verdict BrowserService::unsubscribe(Client& client, const Request& request) {
@@ -46,8 +45,7 @@ BrowserService::Verdict BrowserService::unsubscribe(Client& client, const Reques
         if (!each.taken || each.asker.client != client.serial || !(each.event == event)) continue;
         drop(each);
         Reply reply{request.number, true};
-        finish(client, reply);
-        return {};
+        return finish(client, reply);
     }
     return {Refusal::not_now, Sentence{"\"", request.arguments[0], "\" is not subscribed to"}};
 }
