@@ -10,6 +10,7 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/row_option.hpp"
 #include "kernel/base/time.hpp"
 
 #include <cstdint>
@@ -121,40 +122,23 @@ struct LoopRow {
     bool may_overshoot = false;
 };
 
-struct LoopGain {
-    std::string_view property{};
-};
 /// The property that holds the proportional gain, in 1/s times the plant's unit: a rate for each unit of
 /// error.
-constexpr LoopGain gain(std::string_view property) noexcept { return {property}; }
-struct LoopIntegral {
-    std::string_view property{};
-};
+constexpr RowOption<LoopRow, std::string_view> gain(std::string_view property) noexcept {
+    return {&LoopRow::gain, property};
+}
 /// The property that holds the integral gain, for each second.
-constexpr LoopIntegral integral(std::string_view property) noexcept { return {property}; }
-struct LoopFactor {
-    double value;
-};
+constexpr RowOption<LoopRow, std::string_view> integral(std::string_view property) noexcept {
+    return {&LoopRow::integral, property};
+}
 /// Of a spring between axis and sensor: what is measured for each unit of way (force in N for a metre).
-constexpr LoopFactor stiffness(double value) noexcept { return {value}; }
-struct LoopTransport {
-    Duration time;
-};
+constexpr RowOption<LoopRow, double> stiffness(double value) noexcept { return {&LoopRow::factor, value}; }
 /// Time from the Effector through hardware and wire back to the Sensor, beyond one period.
-constexpr LoopTransport transport(Duration time) noexcept { return {time}; }
-struct MayOvershoot {};
+constexpr RowOption<LoopRow, Duration> transport(Duration time) noexcept {
+    return {&LoopRow::transport, time};
+}
 /// It will overshoot, and that is known.
-inline constexpr MayOvershoot may_overshoot{};
-
-namespace detail {
-
-constexpr void apply(LoopRow& row, LoopGain option) noexcept { row.gain = option.property; }
-constexpr void apply(LoopRow& row, LoopIntegral option) noexcept { row.integral = option.property; }
-constexpr void apply(LoopRow& row, LoopFactor option) noexcept { row.factor = option.value; }
-constexpr void apply(LoopRow& row, LoopTransport option) noexcept { row.transport = option.time; }
-constexpr void apply(LoopRow& row, MayOvershoot) noexcept { row.may_overshoot = true; }
-
-} // namespace detail
+inline constexpr RowOption may_overshoot{&LoopRow::may_overshoot, true};
 
 /// A loop around an axis that goes where its rate leads it (an integrator): the compiler sees that
 /// gain, period and delay let it be stable.

@@ -18,6 +18,7 @@
 //     static_assert(check(loom_cycle.view()).empty());
 #pragma once
 
+#include "kernel/base/row_option.hpp"
 #include "kernel/statechart/table.hpp"
 
 #include <array>
@@ -111,12 +112,6 @@ template <AskedOf> struct Question : Asked {
 };
 using When = Question<AskedOf::transition>;
 using Precondition = Question<AskedOf::state>;
-struct In {
-    std::string_view state;
-};
-struct Region {
-    std::string_view name;
-};
 struct OtherwiseTo {
     std::string_view state;
 };
@@ -126,15 +121,10 @@ struct On {
 struct After {
     Duration time;
 };
-struct Because {
-    std::string_view reason;
-};
 
 // A row takes each part once and belongs to one component type;
 // what is against that is kept for the check to report.
-template <class Row> constexpr void give(Row& row, std::string_view part, bool is_given) {
-    if (is_given && row.twice.empty()) row.twice = part;
-}
+using detail::give;
 template <class Row, class Reference, class Pointer>
 constexpr void give(Row& row, std::string_view part, Reference& place, const Bound<Pointer>& bound) {
     give(row, part, !place.empty());
@@ -177,29 +167,32 @@ template <auto Function>
 inline constexpr statechart::Otherwise otherwise{statechart::bind<Function, void>()};
 constexpr statechart::OtherwiseTo otherwise_to(std::string_view state) { return {state}; }
 /// The region of the composite that this state lies in: one state of each is active.
-constexpr statechart::Region region(std::string_view name) { return {name}; }
+constexpr RowOptionOnce<StateRow, std::string_view> region(std::string_view name) {
+    return {&StateRow::region, name, "region"};
+}
 /// How a transition enters its composite target: as it was last left, see EntryKind.
 inline constexpr EntryKind shallow_history = EntryKind::shallow_history;
 inline constexpr EntryKind deep_history = EntryKind::deep_history;
 /// The composite state around this one.
-constexpr statechart::In in(std::string_view state) { return {state}; }
+constexpr RowOptionOnce<StateRow, std::string_view> in(std::string_view state) {
+    return {&StateRow::parent, state, "in"};
+}
 /// An event transition: "component.event", or "event" of the own component.
 constexpr statechart::On on(std::string_view event) { return {event}; }
 /// A time-out: time since the transition's source was entered.
 constexpr statechart::After after(Duration time) { return {time}; }
 /// What the operator is told when the transition is taken.
-constexpr statechart::Because because(std::string_view reason) { return {reason}; }
+constexpr RowOptionOnce<TransitionRow, std::string_view> because(std::string_view reason) {
+    return {&TransitionRow::because, reason, "because"};
+}
 
 namespace statechart {
 
+using detail::apply;
 constexpr void apply(StateRow& row, StateRole role) {
     bool& place = role == tappet::initial ? row.initial : row.final;
     give(row, role == tappet::initial ? "initial" : "final", place);
     place = true;
-}
-constexpr void apply(StateRow& row, In part) {
-    give(row, "in", !row.parent.empty());
-    row.parent = part.state;
 }
 constexpr void apply(StateRow& row, const Entry& part) { give(row, "entry", row.entry, part); }
 constexpr void apply(StateRow& row, Exit (*part)() noexcept) { give(row, "exit", row.exit, part()); }
@@ -207,10 +200,6 @@ constexpr void apply(StateRow& row, const Run& part) { give(row, "run", row.run,
 constexpr void apply(StateRow& row, const Handle& part) { give(row, "handle", row.handle, part); }
 constexpr void apply(StateRow& row, const Precondition& part) {
     give(row, "precondition", row.precondition, part);
-}
-constexpr void apply(StateRow& row, Region part) {
-    give(row, "region", !row.region.empty());
-    row.region = part.name;
 }
 
 constexpr void apply(TransitionRow& row, On part) {
@@ -222,10 +211,6 @@ constexpr void apply(TransitionRow& row, After part) {
     give(row, "after", row.timed);
     row.timed = true;
     row.after = part.time;
-}
-constexpr void apply(TransitionRow& row, Because part) {
-    give(row, "because", !row.because.empty());
-    row.because = part.reason;
 }
 constexpr void apply(TransitionRow& row, const When& part) { give(row, "guard", row.guard, part); }
 constexpr void apply(TransitionRow& row, const Then& part) { give(row, "then", row.then, part); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/row_option.hpp"
 #include "kernel/base/time.hpp"
 
 #include <cstdint>
@@ -81,23 +82,20 @@ struct Budget {
 };
 /// Processor time of one cycle, synchronous reactions included: what the schedulability analysis believes.
 constexpr Budget budget(Duration each) noexcept { return {each}; }
-struct Deadline {
-    Duration after;
-};
 /// From the release to the end of the cycle; the period, or that of at_most, unless stated. The shorter, the
 /// higher the priority.
-constexpr Deadline deadline(Duration after) noexcept { return {after}; }
+constexpr RowOptionOnce<ActivityRow, Duration> deadline(Duration after) noexcept {
+    return {&ActivityRow::deadline_after, after, "a deadline"};
+}
 struct NotRealTime {};
 /// May block; runs below every real-time activity, without budget or deadline.
 inline constexpr NotRealTime not_real_time{};
-struct StackBytes {
-    std::size_t bytes;
-};
 /// Of its thread; 64 KiB unless stated, 16 KiB at least.
-constexpr StackBytes stack(std::size_t bytes) noexcept { return {bytes}; }
-struct StopWhenLate {};
+constexpr RowOption<ActivityRow, std::size_t> stack(std::size_t bytes) noexcept {
+    return {&ActivityRow::stack, bytes};
+}
 /// A missed deadline stops the machine; without this it is counted and reported.
-inline constexpr StopWhenLate stop_when_late{};
+inline constexpr RowOption stop_when_late{&ActivityRow::when_late, WhenLate::stop};
 
 struct Runs {
     Bounded<std::string_view, ActivityRow::max_runs> names{};
@@ -113,9 +111,6 @@ constexpr Runs runs(const Names&... names) {
 
 namespace detail {
 
-constexpr void give(ActivityRow& row, std::string_view option, bool is_given) noexcept {
-    if (is_given && row.twice.empty()) row.twice = option;
-}
 constexpr void apply(ActivityRow& row, const TriggerOption& option) noexcept {
     give(row, "a trigger", row.has_trigger);
     row.trigger = option.trigger == Trigger::every && !row.real_time ? Trigger::background : option.trigger;
@@ -133,16 +128,10 @@ constexpr void apply(ActivityRow& row, Budget option) noexcept {
     give(row, "a budget", row.budget_each != Duration::zero());
     row.budget_each = option.each;
 }
-constexpr void apply(ActivityRow& row, Deadline option) noexcept {
-    give(row, "a deadline", row.deadline_after != Duration::zero());
-    row.deadline_after = option.after;
-}
 constexpr void apply(ActivityRow& row, NotRealTime) noexcept {
     row.real_time = false;
     if (row.trigger == Trigger::every) row.trigger = Trigger::background;
 }
-constexpr void apply(ActivityRow& row, StackBytes option) noexcept { row.stack = option.bytes; }
-constexpr void apply(ActivityRow& row, StopWhenLate) noexcept { row.when_late = WhenLate::stop; }
 constexpr void apply(ActivityRow& row, const Runs& option) noexcept {
     give(row, "runs", !row.runs.empty());
     row.runs = option.names;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/row_option.hpp"
 #include "kernel/script/unit.hpp"
 #include "kernel/statechart/execution.hpp"
 #include "kernel/statechart/rows.hpp"
@@ -89,52 +90,9 @@ constexpr Bounded<std::string_view, Slot::max_names> names(const Names&... each)
 
 namespace detail {
 
-template <class Tag>
-struct SlotNumber {
-    std::uint32_t value;
-};
-template <class Tag>
-struct SlotNames {
-    Bounded<std::string_view, Slot::max_names> list;
-};
-struct NodesTag {};
-struct DataTag {};
-struct DepthTag {};
-struct CommandsTag {};
-struct TimersTag {};
-struct PeersTag {};
-struct OperationsTag {};
-struct EventsTag {};
-struct TextTag {};
-struct TrialTag {};
-struct SlotAngle {
-    std::string_view output;
-};
+using SlotNumber = RowOption<Slot, std::uint32_t>;
+using SlotNames = RowOption<Slot, Bounded<std::string_view, Slot::max_names>>;
 
-constexpr void apply(Slot& row, SlotNumber<NodesTag> option) noexcept { row.nodes = option.value; }
-constexpr void apply(Slot& row, SlotNumber<DataTag> option) noexcept { row.data_bytes = option.value; }
-constexpr void apply(Slot& row, SlotNumber<DepthTag> option) noexcept { row.depth = option.value; }
-constexpr void apply(Slot& row, SlotNumber<CommandsTag> option) noexcept { row.command_slots = option.value; }
-constexpr void apply(Slot& row, SlotNumber<TimersTag> option) noexcept { row.timers = option.value; }
-constexpr void apply(Slot& row, const SlotNames<PeersTag>& option) noexcept { row.peers = option.list; }
-constexpr void apply(Slot& row, const SlotNames<OperationsTag>& option) noexcept {
-    row.operations = option.list;
-}
-constexpr void apply(Slot& row, const SlotNames<EventsTag>& option) noexcept { row.events = option.list; }
-constexpr void apply(Slot& row, SlotNumber<TextTag> option) noexcept { row.text_bytes = option.value; }
-constexpr void apply(Slot& row, SlotNumber<TrialTag> option) noexcept { row.trial = option.value; }
-constexpr void apply(Slot& row, SlotAngle option) noexcept { row.angle = option.output; }
-
-struct Reactive {};
-struct Escalates {};
-struct StatementBound {
-    std::uint32_t statements;
-};
-constexpr void apply(BehaviourOptions& row, Reactive) noexcept { row.reactive = true; }
-constexpr void apply(BehaviourOptions& row, Escalates) noexcept { row.escalates = true; }
-constexpr void apply(BehaviourOptions& row, StatementBound bound) noexcept {
-    row.statements = bound.statements;
-}
 constexpr void apply(BehaviourOptions& row, OnError what) noexcept { row.on_error = what; }
 template <class Option>
 constexpr void apply(BehaviourRow& row, const Option& option) noexcept {
@@ -147,37 +105,39 @@ constexpr void apply(BehaviourRow& row, const Option& option) noexcept {
 } // namespace detail
 
 /// Instructions of what is loaded.
-constexpr detail::SlotNumber<detail::NodesTag> nodes(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber nodes(std::uint32_t n) noexcept { return {&Slot::nodes, n}; }
 /// Of its variables and of arguments under way.
-constexpr detail::SlotNumber<detail::DataTag> data_bytes(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber data_bytes(std::uint32_t n) noexcept { return {&Slot::data_bytes, n}; }
 /// Of composite states and child machines.
-constexpr detail::SlotNumber<detail::DepthTag> depth(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber depth(std::uint32_t n) noexcept { return {&Slot::depth, n}; }
 /// Commands that it sends.
-constexpr detail::SlotNumber<detail::CommandsTag> command_slots(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber command_slots(std::uint32_t n) noexcept { return {&Slot::command_slots, n}; }
 /// Statements and transitions that wait for time.
-constexpr detail::SlotNumber<detail::TimersTag> timers(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber timers(std::uint32_t n) noexcept { return {&Slot::timers, n}; }
 /// The components, operations and events that what is loaded may name.
 template <class... Names>
-constexpr detail::SlotNames<detail::PeersTag> peers(const Names&... each) {
-    return {names(each...)};
+constexpr detail::SlotNames peers(const Names&... each) {
+    return {&Slot::peers, names(each...)};
 }
 /// Of its peers, as component.operation.
 template <class... Names>
-constexpr detail::SlotNames<detail::OperationsTag> operations(const Names&... each) {
-    return {names(each...)};
+constexpr detail::SlotNames operations(const Names&... each) {
+    return {&Slot::operations, names(each...)};
 }
 /// Of its peers, as component.event.
 template <class... Names>
-constexpr detail::SlotNames<detail::EventsTag> events(const Names&... each) {
-    return {names(each...)};
+constexpr detail::SlotNames events(const Names&... each) {
+    return {&Slot::events, names(each...)};
 }
 /// Characters of a script.
-constexpr detail::SlotNumber<detail::TextTag> text_bytes(std::uint32_t n) noexcept { return {n}; }
+constexpr detail::SlotNumber text_bytes(std::uint32_t n) noexcept { return {&Slot::text_bytes, n}; }
 /// A new behaviour must show that it works for so many steps in which it is told an event or a program of it
 /// runs; one that nobody asks for anything stays on trial.
-constexpr detail::SlotNumber<detail::TrialTag> trial(std::uint32_t steps) noexcept { return {steps}; }
+constexpr detail::SlotNumber trial(std::uint32_t steps) noexcept { return {&Slot::trial, steps}; }
 /// The output, in degrees and in the slot's activity, whose angle a loading may wait for.
-constexpr detail::SlotAngle angle_of(std::string_view output) noexcept { return {output}; }
+constexpr RowOption<Slot, std::string_view> angle_of(std::string_view output) noexcept {
+    return {&Slot::angle, output};
+}
 /// Room for one behaviour that is loaded later.
 template <class... Options>
 constexpr Slot slot(const Options&... options) {
@@ -187,11 +147,13 @@ constexpr Slot slot(const Options&... options) {
 }
 
 /// No run programs and no conditions in the engine's steps: it moves upon events and requests only.
-inline constexpr detail::Reactive reactive_mode{};
+inline constexpr RowOption reactive_mode{&BehaviourOptions::reactive, true};
 /// A child machine in error puts its parent in error, which may have no other way to notice.
-inline constexpr detail::Escalates escalates{};
+inline constexpr RowOption escalates{&BehaviourOptions::escalates, true};
 /// At most so many statements in one step of the engine; what is left over goes on in the next.
-constexpr detail::StatementBound at_most(std::uint32_t statements) noexcept { return {statements}; }
+constexpr RowOption<BehaviourOptions, std::uint32_t> at_most(std::uint32_t statements) noexcept {
+    return {&BehaviourOptions::statements, statements};
+}
 /// What an error that no parent handles does; it stops the machine unless stated.
 constexpr OnError on_error(OnError what) noexcept { return what; }
 

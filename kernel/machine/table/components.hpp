@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/row_option.hpp"
 #include "kernel/component/component.hpp"
 
 #include <concepts>
@@ -14,12 +15,6 @@ struct PropertyRow {
     std::string_view name{};
     PropertySetting setting;
 };
-
-struct DeviceName {
-    std::string_view name{};
-};
-/// The logical name of the device that a driver component drives; board/ says what stands behind it.
-constexpr DeviceName device(std::string_view name) noexcept { return {name}; }
 
 namespace detail {
 
@@ -62,18 +57,6 @@ constexpr PropertyRow set(std::string_view name) {
     return {name, {.kind = PropertySetting::Kind::list, .list = &detail::list_setting<values>}};
 }
 
-struct Watches {
-    std::string_view name{};
-};
-/// What a watchdog watches: an activity, or an output that a connection leads to another activity.
-constexpr Watches watches(std::string_view name) noexcept { return {name}; }
-
-struct Controls {
-    std::string_view component{};
-};
-/// The component whose life or behaviour this one controls: a BehaviourTask or a ComponentLife.
-constexpr Controls controls(std::string_view component) noexcept { return {component}; }
-
 struct PropertiesFile {
     std::string_view name{};
     bool may_be_missing = false;
@@ -97,11 +80,21 @@ struct ComponentRow {
     PropertiesFile properties{};
 };
 
+/// The logical name of the device that a driver component drives; board/ says what stands behind it.
+constexpr RowOption<ComponentRow, std::string_view> device(std::string_view name) noexcept {
+    return {&ComponentRow::device, name};
+}
+/// What a watchdog watches: an activity, or an output that a connection leads to another activity.
+constexpr RowOption<ComponentRow, std::string_view> watches(std::string_view name) noexcept {
+    return {&ComponentRow::watched, name};
+}
+/// The component whose life or behaviour this one controls: a BehaviourTask or a ComponentLife.
+constexpr RowOption<ComponentRow, std::string_view> controls(std::string_view component) noexcept {
+    return {&ComponentRow::controlled, component};
+}
+
 namespace detail {
 
-constexpr void apply(ComponentRow& row, DeviceName option) noexcept { row.device = option.name; }
-constexpr void apply(ComponentRow& row, Watches option) noexcept { row.watched = option.name; }
-constexpr void apply(ComponentRow& row, Controls option) noexcept { row.controlled = option.component; }
 constexpr void apply(ComponentRow& row, const PropertyRow& option) noexcept {
     row.too_many_settings |= !row.settings.push(option);
 }

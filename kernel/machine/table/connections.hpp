@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/number.hpp"
+#include "kernel/base/row_option.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/component/port.hpp"
 #include "kernel/exchange/ring.hpp"
@@ -76,31 +77,27 @@ template <const auto& Constant>
 constexpr Substitute substitute() noexcept {
     return {detail::row_constant<Constant>()};
 }
-struct Initially {
-    RowValue value;
-};
 /// What the reader gets before the first value; spelled as substitute. Without it that is the row's
 /// substitute, or the type's own default.
-constexpr Initially initially(double value) noexcept { return {{.given = true, .number = value}}; }
-template <const auto& Constant>
-constexpr Initially initially() noexcept {
-    return {detail::row_constant<Constant>()};
+constexpr RowOption<ConnectionRow, RowValue> initially(double value) noexcept {
+    return {&ConnectionRow::before_first, {.given = true, .number = value}};
 }
-struct Wakes {};
+template <const auto& Constant>
+constexpr RowOption<ConnectionRow, RowValue> initially() noexcept {
+    return {&ConnectionRow::before_first, detail::row_constant<Constant>()};
+}
 /// Each write wakes the reader's activity, and so does a value that grows stale: that, too, is news.
-inline constexpr Wakes wakes{};
-struct Delayed {};
+inline constexpr RowOption wakes{&ConnectionRow::wakes_reader, true};
 /// The reader sees the value of the previous cycle: breaks a data-flow cycle inside one activity.
-inline constexpr Delayed delayed{};
+inline constexpr RowOption delayed{&ConnectionRow::delayed_step, true};
 struct Scaled {
     double factor;
 };
 /// The reader gets each value times `factor`. Ports of floating numbers; in real time one multiplication for
 /// each value.
 constexpr Scaled scaled(double factor) noexcept { return {factor}; }
-struct Converted {};
 /// Likewise, and the factor leads from the unit of the output to the unit of the input.
-inline constexpr Converted converted{};
+inline constexpr RowOption converted{&ConnectionRow::converted, true};
 /// Of a slower writer: the reader gets its last value until the next one comes. What is done when nothing is
 /// said; commands from one level of control to another say it.
 inline constexpr RateTransition in_steps = RateTransition::hold;
@@ -131,7 +128,6 @@ constexpr void apply(ConnectionRow& row, Scaled option) noexcept {
     row.scale = option.factor;
     row.says_scale = true;
 }
-constexpr void apply(ConnectionRow& row, Converted) noexcept { row.converted = true; }
 constexpr void apply(ConnectionRow& row, StaleAfter option) noexcept {
     row.max_age = option.age;
     row.says_age = true;
@@ -145,10 +141,7 @@ constexpr void apply(ConnectionRow& row, Substitute option) noexcept {
     row.substitute = option.value;
     ++row.stale_answers;
 }
-constexpr void apply(ConnectionRow& row, Initially option) noexcept { row.before_first = option.value; }
 constexpr void apply(ConnectionRow& row, RateTransition option) noexcept { row.transition = option; }
-constexpr void apply(ConnectionRow& row, Wakes) noexcept { row.wakes_reader = true; }
-constexpr void apply(ConnectionRow& row, Delayed) noexcept { row.delayed_step = true; }
 constexpr void apply(ConnectionRow& row, Overflow option) noexcept { row.overflow = option; }
 
 } // namespace detail

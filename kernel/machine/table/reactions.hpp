@@ -1,6 +1,8 @@
 // Reaction rows: which operation runs upon which event, and in whose activity.
 #pragma once
 
+#include "kernel/base/row_option.hpp"
+
 #include <cstdint>
 #include <string_view>
 
@@ -60,21 +62,12 @@ constexpr ReactionRow uses(std::string_view requester, std::string_view operatio
     return row;
 }
 
-struct HandledBy {
-    std::string_view handle{};
-};
 /// The EventHandle, as component.handle, that connects and disconnects the row while the machine runs.
-constexpr HandledBy handled_by(std::string_view handle) noexcept { return {handle}; }
-struct Disconnected {};
+constexpr RowOption<ReactionRow, std::string_view> handled_by(std::string_view handle) noexcept {
+    return {&ReactionRow::handle, handle};
+}
 /// The row is not connected until its handle says so.
-inline constexpr Disconnected disconnected{};
-
-namespace detail {
-
-constexpr void apply(ReactionRow& row, HandledBy option) noexcept { row.handle = option.handle; }
-constexpr void apply(ReactionRow& row, Disconnected) noexcept { row.is_connected = false; }
-
-} // namespace detail
+inline constexpr RowOption disconnected{&ReactionRow::is_connected, false};
 
 /// Upon each emission of the event, as component.event: tell(...) or call(...).
 template <class... Options>

@@ -22,38 +22,30 @@ struct ReportRow {
     Duration after{};
 };
 
-struct EverySteps {
-    std::int64_t steps;
-};
 /// Recorded in the first step of its activity and in each n-th one after it. The default: in each.
-constexpr EverySteps every(std::int64_t steps) noexcept { return {steps}; }
+constexpr RowOption<ReportRow, std::int64_t> every(std::int64_t steps) noexcept {
+    return {&ReportRow::every, steps};
+}
 struct OnChange {
     double band;
 };
 /// Recorded when a cycle leaves it otherwise than it was recorded last: by more than `band` of its unit.
 constexpr OnChange on_change(double band = 0.0) noexcept { return {band}; }
-struct Before {
-    Duration time;
-};
 /// Of a row with a trigger: what was recorded so long before the event is kept. What is kept after it:
 /// after(time).
-constexpr Before before(Duration time) noexcept { return {time}; }
-struct TriggerEvent {
-    std::string_view event;
-};
+constexpr RowOption<ReportRow, Duration> before(Duration time) noexcept { return {&ReportRow::before, time}; }
 /// Recorded values are kept around this event only: "component.event".
-constexpr TriggerEvent trigger(std::string_view event) noexcept { return {event}; }
+constexpr RowOption<ReportRow, std::string_view> trigger(std::string_view event) noexcept {
+    return {&ReportRow::trigger, event};
+}
 
 namespace detail {
 
-constexpr void apply(ReportRow& row, EverySteps option) noexcept { row.every = option.steps; }
 constexpr void apply(ReportRow& row, OnChange option) noexcept {
     row.on_change = true;
     row.band = option.band;
 }
-constexpr void apply(ReportRow& row, Before option) noexcept { row.before = option.time; }
 constexpr void apply(ReportRow& row, statechart::After option) noexcept { row.after = option.time; }
-constexpr void apply(ReportRow& row, TriggerEvent option) noexcept { row.trigger = option.event; }
 
 } // namespace detail
 
