@@ -23,95 +23,72 @@ struct TimedHorn {
     }
 };
 
+/// The rows of small_machine.hpp with other options.
+void motion(Table& m, const auto&... options) {
+    m.put(activity("motion", options..., runs("shaft", "tension")));
+}
+void logic(Table& m, const auto&... options) {
+    m.put(activity("logic", on_work(), options..., runs("weft", "lamps")));
+}
+void hall(Table& m, const auto&... options) { m.put(activity("hall", options..., runs("climate"))); }
+void field(Table& m, const auto&... options) {
+    m.put(activity("field", at_most(1, 1ms), options..., runs("encoder")));
+}
+
 constexpr Fault activity_faults[] = {
     {"activity_twice",
      [](Table& m) { m.activities[3] = activity("motion", every(250ms), not_real_time, runs("climate")); },
      R"(loom: activity "motion" stands in activities(...) twice (rows 2 and 4); rename or remove one)"},
-    {"activity_two_triggers",
-     [](Table& m) {
-         m.put(activity("motion", every(1ms), on_work(), budget(120us), runs("shaft", "tension")));
-     },
+    {"activity_two_triggers", [](Table& m) { motion(m, every(1ms), on_work(), budget(120us)); },
      R"(loom: activity "motion" is given a trigger twice; keep one)"},
-    {"activity_budget_twice",
-     [](Table& m) {
-         m.put(activity("motion", every(1ms), budget(120us), budget(80us), runs("shaft", "tension")));
-     },
+    {"activity_budget_twice", [](Table& m) { motion(m, every(1ms), budget(120us), budget(80us)); },
      R"(loom: activity "motion" is given a budget twice; keep one)"},
     {"activity_runs_twice",
      [](Table& m) { m.put(activity("motion", every(1ms), budget(120us), runs("shaft"), runs("tension"))); },
      R"(loom: activity "motion" is given runs twice; keep one)"},
-    {"activity_phase_beyond_its_period",
-     [](Table& m) {
-         m.put(activity("motion", every(1ms, phase(1ms)), budget(120us), runs("shaft", "tension")));
-     },
+    {"activity_phase_beyond_its_period", [](Table& m) { motion(m, every(1ms, phase(1ms)), budget(120us)); },
      R"(loom: activity "motion": its phase of 1000 us does not lie within its period; write one from 0 us to below 1000 us)"},
     {"activity_runs_nothing", [](Table& m) { m.add(activity("idle", every(10ms), budget(1us))); },
      R"(loom: activity "idle" runs no component; add runs("...") or remove the row)"},
     {"activity_runs_unknown",
      [](Table& m) { m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tensoin"))); },
      R"(loom: activity "motion": there is no component "tensoin"; did you mean "tension"?)"},
-    {"activity_without_trigger",
-     [](Table& m) { m.put(activity("motion", budget(120us), runs("shaft", "tension"))); },
+    {"activity_without_trigger", [](Table& m) { motion(m, budget(120us)); },
      R"(loom: activity "motion": nothing wakes it; add every(...), on_work() or on_device("..."))"},
-    {"activity_without_budget",
-     [](Table& m) { m.put(activity("motion", every(1ms), runs("shaft", "tension"))); },
+    {"activity_without_budget", [](Table& m) { motion(m, every(1ms)); },
      R"(loom: activity "motion" has no budget; add budget(...), or not_real_time)"},
-    {"activity_without_rate",
-     [](Table& m) {
-         m.put(activity("logic", on_work(), deadline(2ms), budget(80us), runs("weft", "lamps")));
-     },
+    {"activity_without_rate", [](Table& m) { logic(m, deadline(2ms), budget(80us)); },
      R"(loom: activity "logic" does not say how often it may be woken; add at_most(n, per))"},
     {"activity_times_negative_that_nobody_asks",
-     [](Table& m) { m.put(activity("hall", every(250ms), not_real_time, budget(-1us), runs("climate"))); },
+     [](Table& m) { hall(m, every(250ms), not_real_time, budget(-1us)); },
      R"(loom: activity "hall": its budget is negative; correct budget(...))"},
-    {"activity_window_negative",
-     [](Table& m) { m.put(activity("hall", on_work(), not_real_time, at_most(1, -1ms), runs("climate"))); },
+    {"activity_window_negative", [](Table& m) { hall(m, on_work(), not_real_time, at_most(1, -1ms)); },
      R"(loom: activity "hall": the window of at_most is negative; correct at_most(n, per))"},
     {"activity_wakes_without_number",
      [](Table& m) {
-         m.put(activity("hall", on_work(), not_real_time,
-                        at_most(std::numeric_limits<std::int64_t>::max(), 1ms), runs("climate")));
+         hall(m, on_work(), not_real_time, at_most(std::numeric_limits<std::int64_t>::max(), 1ms));
      },
      R"(loom: activity "hall" promises more than 32 wakes in one window; shorten the window of at_most)"},
     {"activity_runs_too_many", [](Table& m) { m.activities[1].too_many_runs = true; },
      R"(loom: activity "motion" runs more than 64 components; divide it)"},
     {"activity_that_is_never_woken",
-     [](Table& m) {
-         m.put(activity("logic", on_work(), at_most(0, 10ms), deadline(2ms), budget(80us),
-                        runs("weft", "lamps")));
-     },
+     [](Table& m) { logic(m, at_most(0, 10ms), deadline(2ms), budget(80us)); },
      R"(loom: activity "logic": at_most needs at least one wake; write at_most(1, ...))"},
     {"activity_with_too_many_wakes",
-     [](Table& m) {
-         m.put(activity("logic", on_work(), at_most(33, 10ms), deadline(2ms), budget(80us),
-                        runs("weft", "lamps")));
-     },
+     [](Table& m) { logic(m, at_most(33, 10ms), deadline(2ms), budget(80us)); },
      R"(loom: activity "logic" promises more than 32 wakes in one window; shorten the window of at_most)"},
-    {"activity_deadline",
-     [](Table& m) {
-         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(-2ms), budget(80us),
-                        runs("weft", "lamps")));
-     },
+    {"activity_deadline", [](Table& m) { logic(m, at_most(4, 10ms), deadline(-2ms), budget(80us)); },
      R"(loom: activity "logic": its deadline is negative; correct deadline(...))"},
-    {"activity_period",
-     [](Table& m) { m.put(activity("motion", every(0ms), budget(120us), runs("shaft", "tension"))); },
+    {"activity_period", [](Table& m) { motion(m, every(0ms), budget(120us)); },
      R"(loom: activity "motion": its period is not positive; write every(1ms) or the like)"},
-    {"activity_stack",
-     [](Table& m) {
-         m.put(activity("motion", every(1ms), budget(120us), stack(4096), runs("shaft", "tension")));
-     },
+    {"activity_stack", [](Table& m) { motion(m, every(1ms), budget(120us), stack(4096)); },
      R"(loom: activity "motion": its stack of 4096 bytes is under 16384; enlarge stack(...))"},
-    {"activity_stack_of_all",
-     [](Table& m) {
-         m.put(
-             activity("motion", every(1ms), budget(120us), stack(~std::size_t{0}), runs("shaft", "tension")));
-     },
+    {"activity_stack_of_all", [](Table& m) { motion(m, every(1ms), budget(120us), stack(~std::size_t{0})); },
      R"(loom: activity "motion": its stack of 18446744073709551615 bytes is over 1073741824; write a smaller stack(...))"},
-    {"activity_blocks", [](Table& m) { m.put(activity("hall", every(250ms), budget(1ms), runs("climate"))); },
+    {"activity_blocks", [](Table& m) { hall(m, every(250ms), budget(1ms)); },
      R"(loom: activity "hall" is real-time but component "climate" may block (it has work()); run it in an activity that is not_real_time)"},
 };
-INSTANTIATE_TEST_SUITE_P(activities, Refusal, testing::ValuesIn(planted_into(small_loom, activity_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(activities, Refusal, planted_into(small_loom, activity_faults), name_of);
 
 constexpr Fault device_faults[] = {
     {"activity_on_device_elsewhere",
@@ -122,68 +99,41 @@ constexpr Fault device_faults[] = {
                         runs("weft", "encoder")));
      },
      R"(loom: activity "field" is woken by the device of "encoder" but does not run it; add it to runs(...))"},
-    {"activity_on_no_driver",
-     [](Table& m) {
-         m.put(activity("field", on_device("shaft"), at_most(1, 1ms), deadline(300us), budget(30us),
-                        runs("encoder")));
-     },
+    {"activity_on_no_driver", [](Table& m) { field(m, on_device("shaft"), deadline(300us), budget(30us)); },
      R"(loom: activity "field": component "shaft" drives no device to wake it; name a driver in on_device(...))"},
     {"activity_on_unknown_device",
-     [](Table& m) {
-         m.put(activity("field", on_device("encodre"), at_most(1, 1ms), deadline(300us), budget(30us),
-                        runs("encoder")));
-     },
+     [](Table& m) { field(m, on_device("encodre"), deadline(300us), budget(30us)); },
      R"(loom: activity "field": there is no component "encodre"; did you mean "encoder"?)"},
 };
-INSTANTIATE_TEST_SUITE_P(devices, Refusal, testing::ValuesIn(planted_into(small_loom, device_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(devices, Refusal, planted_into(small_loom, device_faults), name_of);
+
+template <class Type> void make_noise(Table& m) {
+    m.add(component<Type>("horn"));
+    m.add(activity("noise", on_work(), at_most(1, 100ms), budget(10us), runs("horn")));
+}
 
 constexpr Fault work_faults[] = {
-    {"activity_that_nothing_wakes",
-     [](Table& m) {
-         m.add(component<Horn>("horn"));
-         m.add(activity("noise", on_work(), at_most(1, 100ms), budget(10us), runs("horn")));
-     },
+    {"activity_that_nothing_wakes", make_noise<Horn>,
      R"(loom: activity "noise" runs on_work() but no row wakes it, so the step() of component "horn" would never run; add wakes to a connection into it, or when("...", tell("horn.operation")), or run it every(...))"},
-    {"activity_that_only_a_timer_wakes",
-     [](Table& m) {
-         m.add(component<TimedHorn>("horn"));
-         m.add(activity("noise", on_work(), at_most(1, 100ms), budget(10us), runs("horn")));
-     },
+    {"activity_that_only_a_timer_wakes", make_noise<TimedHorn>,
      R"(loom: activity "noise" runs on_work() but no row wakes it, so the step() of component "horn" would never run; add wakes to a connection into it, or when("...", tell("horn.operation")), or run it every(...))"},
-    {"timer_in_a_periodic_activity",
-     [](Table& m) {
-         m.add(component<TimedHorn>("horn"));
-         m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tension", "horn")));
-     },
+    {"timer_in_a_periodic_activity", [](Table& m) { m.add(component<TimedHorn>("horn"), "motion"); },
      R"(loom: activity "motion" is periodic but component "horn" has the timer "silence", which runs between periods; run it on_work() with at_most(n, per), so that the analysis counts it)"},
 };
-INSTANTIATE_TEST_SUITE_P(work, Refusal, testing::ValuesIn(planted_into(small_loom, work_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(work, Refusal, planted_into(small_loom, work_faults), name_of);
 
 constexpr Fault schedule_faults[] = {
     {"activity_budget_over_deadline",
-     [](Table& m) {
-         m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(20us), budget(30us),
-                        runs("encoder")));
-     },
+     [](Table& m) { field(m, on_device("encoder"), deadline(20us), budget(30us)); },
      R"(loom: activity "field": its budget is 30 us but its deadline 20 us; lower the budget or lengthen the deadline or the period)"},
-    {"activity_budget_that_wraps",
-     [](Table& m) {
-         m.put(activity("logic", on_work(), at_most(4, 10ms), budget(Duration{1LL << 62}),
-                        runs("weft", "lamps")));
-     },
+    {"activity_budget_that_wraps", [](Table& m) { logic(m, at_most(4, 10ms), budget(Duration{1LL << 62})); },
      R"(loom: activity "logic": its budget, for all wakes that may come together, is 9223372036854775 us but its deadline 10000 us; lower the budget or lengthen the deadline or the period)"},
-    {"activity_not_schedulable",
-     [](Table& m) {
-         m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(340us), budget(80us),
-                        runs("weft", "lamps")));
-     },
+    {"activity_not_schedulable", [](Table& m) { logic(m, at_most(4, 10ms), deadline(340us), budget(80us)); },
      R"(loom: activity "logic" is not schedulable on processor 1 of board "bench": its worst response is 350 us, its deadline 340 us; lower the budget of it or of a more urgent activity, lengthen its deadline, or place it elsewhere)"},
     {"board_stop_too_short", [](Table& m) { m.board.stop_within = 50ms; },
      R"(loom: board "bench": stop_within is 50 ms, but a stop may take 137 ms: 13 ms until it begins, 5 ms for two responses of each real-time activity, 100 ms for the ends of behaviours, 20 ms for what may block; write stop_within = 167ms into the board, or shorten deadlines)"},
 };
-INSTANTIATE_TEST_SUITE_P(schedules, Refusal, testing::ValuesIn(planted_into(small_loom, schedule_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(schedules, Refusal, planted_into(small_loom, schedule_faults), name_of);
 
 // ---- watchdogs
 
@@ -227,7 +177,6 @@ constexpr Fault watch_faults[] = {
      [](Table& m) { m.put(activity("kennel", on_work(), not_real_time, runs("dog"))); },
      R"(loom: component "dog" looks once in each cycle, but activity "kennel" may sleep for ever; run it in one that is every(...))"},
 };
-INSTANTIATE_TEST_SUITE_P(watches, Refusal, testing::ValuesIn(planted_into(guarded_loom, watch_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(watches, Refusal, planted_into(guarded_loom, watch_faults), name_of);
 
 } // namespace

@@ -40,8 +40,7 @@ constexpr Fault behaviour_faults[] = {
     {"behaviour_of_another_type", [](Table& m) { m.add(behaviour("tension", weft_cycle)); },
      R"(loom: behaviour of "tension": state machine "weft_cycle" is written for small::Weft but "tension" is a small::Tension; name a component of its type)"},
 };
-INSTANTIATE_TEST_SUITE_P(behaviours, Refusal, testing::ValuesIn(planted_into(small_loom, behaviour_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(behaviours, Refusal, planted_into(small_loom, behaviour_faults), name_of);
 
 Table loom_with_a_cycle() {
     Table m = small_loom();
@@ -52,15 +51,14 @@ Table loom_with_a_cycle() {
     return m;
 }
 
+void begin_on(Table& m, std::string_view event) { m.transitions[0].event = event; }
+
 constexpr Fault cycle_faults[] = {
-    {"behaviour_event_is_an_operation",
-     [](Table& m) { m.transitions[0] = transition("idle", "weaving", on("shaft.clear")); },
+    {"behaviour_event_is_an_operation", [](Table& m) { begin_on(m, "shaft.clear"); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.clear"): "shaft.clear" is an operation, not an event; name an event in on(...))"},
-    {"behaviour_foreign_event_unknown",
-     [](Table& m) { m.transitions[0] = transition("idle", "weaving", on("shaft.windw")); },
+    {"behaviour_foreign_event_unknown", [](Table& m) { begin_on(m, "shaft.windw"); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.windw"): component "shaft" has no event "windw"; did you mean "window"?)"},
-    {"behaviour_event_unknown",
-     [](Table& m) { m.transitions[0] = transition("idle", "weaving", on("thunder")); },
+    {"behaviour_event_unknown", [](Table& m) { begin_on(m, "thunder"); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "thunder"): component "weft" has no event "thunder"; name it, or another component's as component.event)"},
     {"state_unknown", [](Table& m) { m.transitions[0] = transition("idle", "weavng", on("shaft.window")); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weavng" on "shaft.window") leads to an unknown state "weavng"; did you mean "weaving"?)"},
@@ -77,8 +75,16 @@ constexpr Fault cycle_faults[] = {
     {"state_machine_without_safe_state", [](Table& m) { m.states[2] = state("safe"); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": no state is final; mark the safe state that the machine may be brought to from everywhere)"},
 };
-INSTANTIATE_TEST_SUITE_P(cycles, Refusal, testing::ValuesIn(planted_into(loom_with_a_cycle, cycle_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(cycles, Refusal, planted_into(loom_with_a_cycle, cycle_faults), name_of);
+
+/// Room in the shaft, and what it may reach.
+constexpr Slot small_slot(const auto&... options) {
+    return slot(nodes(10), data_bytes(64), depth(4), options...);
+}
+void reserve(Table& m, const auto&... options) { m.add(behaviour("shaft", small_slot(options...))); }
+void begin_with_checks(Table& m, const auto&... options) {
+    m.add(behaviour("shaft", checks, {}, small_slot(options...)));
+}
 
 constexpr Fault slot_faults[] = {
     {"slot_missing",
@@ -88,74 +94,44 @@ constexpr Fault slot_faults[] = {
          m.connections.clear(), m.reactions.clear(), m.behaviours.clear();
      },
      R"(loom: component "weft": no slot is reserved for it; add behaviour("weft", slot(...)) to behaviours(...))"},
-    {"slot_peer_unknown",
-     [](Table& m) { m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), peers("wefft")))); },
+    {"slot_peer_unknown", [](Table& m) { reserve(m, peers("wefft")); },
      R"(loom: slot of "shaft": among its peers, there is no component "wefft"; did you mean "weft"?)"},
-    {"slot_reach_unknown",
-     [](Table& m) {
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), operations("weft.relase"))));
-     },
+    {"slot_reach_unknown", [](Table& m) { reserve(m, operations("weft.relase")); },
      R"(loom: slot of "shaft": among its operations, component "weft" has no operation "relase"; did you mean "release"?)"},
-    {"slot_event_unknown",
-     [](Table& m) {
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), events("weft.release"))));
-     },
+    {"slot_event_unknown", [](Table& m) { reserve(m, events("weft.release")); },
      R"(loom: slot of "shaft": among its events, "weft.release" is an operation, not an event; name an event)"},
-    {"slot_operation_is_an_output",
-     [](Table& m) {
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), operations("weft.reference"))));
-     },
+    {"slot_operation_is_an_output", [](Table& m) { reserve(m, operations("weft.reference")); },
      R"(loom: slot of "shaft": among its operations, "weft.reference" is an output, not an operation; name an operation)"},
-    {"slot_angle_unknown",
-     [](Table& m) {
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), angle_of("encoder.angel"))));
-     },
+    {"slot_angle_unknown", [](Table& m) { reserve(m, angle_of("encoder.angel")); },
      R"(loom: slot of "shaft": its angle: component "encoder" has no output "angel"; did you mean "angle"?)"},
-    {"slot_angle_is_no_angle",
-     [](Table& m) {
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), angle_of("encoder.turns"))));
-     },
+    {"slot_angle_is_no_angle", [](Table& m) { reserve(m, angle_of("encoder.turns")); },
      R"(loom: slot of "shaft": its angle "encoder.turns" is an output of int; name an output of double, in degrees)"},
-    {"slot_angle_of_another_activity",
-     [](Table& m) {
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), angle_of("encoder.angle"))));
-     },
+    {"slot_angle_of_another_activity", [](Table& m) { reserve(m, angle_of("encoder.angle")); },
      R"(loom: slot of "shaft": its angle "encoder.angle" is written in another activity; name an output of activity "motion")"},
     {"slot_without_room", [](Table& m) { m.add(behaviour("shaft", Slot{})); },
      R"(loom: slot of "shaft" reserves no nodes, data or depth; state all three)"},
     {"slot_of_all",
      [](Table& m) { m.add(behaviour("shaft", slot(nodes(0xffff'ffff), data_bytes(64), depth(4)))); },
      R"(loom: slot of "shaft" reserves more than 16777216 of something; write smaller numbers)"},
-    {"slot_of_all_commands",
-     [](Table& m) {
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4), command_slots(0x8000'0001))));
-     },
+    {"slot_of_all_commands", [](Table& m) { reserve(m, command_slots(0x8000'0001)); },
      R"(loom: slot of "shaft" reserves more than 16777216 of something; write smaller numbers)"},
-    {"slot_begins_beyond_its_peers",
-     [](Table& m) { m.add(behaviour("shaft", checks, {}, slot(nodes(10), data_bytes(64), depth(4)))); },
+    {"slot_begins_beyond_its_peers", [](Table& m) { begin_with_checks(m); },
      R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft", and what is loaded does not; add it to peers(...) of the slot)"},
     {"slot_begins_beyond_its_operations",
-     [](Table& m) {
-         m.add(behaviour("shaft", checks, {},
-                         slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"),
-                              operations("tension.pre_tension"))));
-     },
+     [](Table& m) { begin_with_checks(m, peers("weft", "tension"), operations("tension.pre_tension")); },
      R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "tension.relax", and what is loaded does not; add it to operations(...) of the slot)"},
     {"slot_begins_beyond_its_events",
      [](Table& m) {
-         m.add(behaviour("shaft", checks, {},
-                         slot(nodes(10), data_bytes(64), depth(4), peers("weft", "tension"),
-                              operations("tension.relax"), events("weft.inserted"))));
+         begin_with_checks(m, peers("weft", "tension"), operations("tension.relax"), events("weft.inserted"));
      },
      R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft.broken", and what is loaded does not; add it to events(...) of the slot)"},
     {"slot_stack",
      [](Table& m) {
-         m.add(component<Observer>("browser"));
-         m.put(activity("hall", every(250ms), not_real_time, runs("climate", "browser")));
-         m.add(behaviour("shaft", slot(nodes(10), data_bytes(64), depth(4))));
+         m.add(component<Observer>("browser"), "hall");
+         reserve(m);
      },
      R"(loom: slot of "shaft": scripts are compiled in activity "hall", whose stack of 65536 bytes is under 229376; enlarge its stack(...))"},
 };
-INSTANTIATE_TEST_SUITE_P(slots, Refusal, testing::ValuesIn(planted_into(small_loom, slot_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(slots, Refusal, planted_into(small_loom, slot_faults), name_of);
 
 } // namespace

@@ -32,10 +32,8 @@ struct Hearer {
     }
 };
 void add_talk(Table& m, const ConnectionRow& row) {
-    m.add(component<Talker>("talker"));
-    m.add(component<Hearer>("hearer"));
-    m.put(activity("logic", on_work(), at_most(4, 10ms), deadline(2ms), budget(80us),
-                   runs("weft", "lamps", "talker", "hearer")));
+    m.add(component<Talker>("talker"), "logic");
+    m.add(component<Hearer>("hearer"), "logic");
     m.add(row);
 }
 
@@ -43,6 +41,11 @@ constexpr float standing = 0;
 constexpr int at_rest = 0;
 constexpr double endless = std::numeric_limits<double>::infinity();
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/// The row from the encoder to the shaft with other options.
+void measured(Table& m, const auto&... options) {
+    m.put(data("encoder.angle", "shaft.measured", options...));
+}
 
 constexpr Fault end_faults[] = {
     {"connection_missing", [](Table& m) { m.connections = {data("encoder.angle", "shaft.measured")}; },
@@ -97,29 +100,22 @@ constexpr Fault end_faults[] = {
     {"connection_of_data_by_a_buffer", [](Table& m) { m.put(buffer<4>("encoder.angle", "shaft.measured")); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": "encoder.angle" is an output, not a buffered output; write data(...))"},
 };
-INSTANTIATE_TEST_SUITE_P(ends, Refusal, testing::ValuesIn(planted_into(small_loom, end_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(ends, Refusal, planted_into(small_loom, end_faults), name_of);
 
 constexpr Fault option_faults[] = {
-    {"connection_stale_never", [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stop_machine)); },
+    {"connection_stale_never", [](Table& m) { measured(m, stop_machine); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" says what a stale value means but not when it is stale; add stale_after(...))"},
-    {"connection_stale_before_it_is_written",
-     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stale_after(-5ms), hold)); },
+    {"connection_stale_before_it_is_written", [](Table& m) { measured(m, stale_after(-5ms), hold); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": stale_after(-5000 us) is not above 0, so that no value would ever be stale; write the longest age, or leave it out)"},
-    {"connection_stale_at_once",
-     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stale_after(0ms), substitute(0))); },
+    {"connection_stale_at_once", [](Table& m) { measured(m, stale_after(0ms), substitute(0)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": stale_after(0 us) is not above 0, so that no value would ever be stale; write the longest age, or leave it out)"},
     {"connection_substitute_not_a_number",
-     [](Table& m) {
-         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute(no_number)));
-     },
+     [](Table& m) { measured(m, stale_after(4ms), substitute(no_number)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": the value in substitute is no number; write a finite one)"},
-    {"connection_substitute_infinite",
-     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute(endless))); },
+    {"connection_substitute_infinite", [](Table& m) { measured(m, stale_after(4ms), substitute(endless)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": the value in substitute is no number; write a finite one)"},
     {"connection_substitute_constant_infinite",
-     [](Table& m) {
-         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute<endless>()));
-     },
+     [](Table& m) { measured(m, stale_after(4ms), substitute<endless>()); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": the value in substitute is no number; write a finite one)"},
     {"connection_initially_infinite",
      [](Table& m) { m.put(data("shaft.speed", "tension.speed", initially(-endless))); },
@@ -127,29 +123,20 @@ constexpr Fault option_faults[] = {
     {"connection_initially_without_end_in_a_float",
      [](Table& m) { add_talk(m, data("talker.share", "hearer.share", initially(1e300))); },
      R"(loom: connection "talker.share" -> "hearer.share": the number in initially does not fit "hearer.share" of type float; write one that it can hold)"},
-    {"connection_scaled_by_infinity",
-     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", scaled(endless))); },
+    {"connection_scaled_by_infinity", [](Table& m) { measured(m, scaled(endless)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": the factor in scaled is nought or no number; write another)"},
-    {"connection_scaled_by_no_number",
-     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", scaled(no_number))); },
+    {"connection_scaled_by_no_number", [](Table& m) { measured(m, scaled(no_number)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": the factor in scaled is nought or no number; write another)"},
-    {"connection_scaled_by_nought",
-     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", scaled(0.0))); },
+    {"connection_scaled_by_nought", [](Table& m) { measured(m, scaled(0.0)); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": the factor in scaled is nought or no number; write another)"},
     {"connection_buffer_of_all",
      [](Table& m) { m.add(buffer<~std::size_t{0}>("encoder.samples", "shaft.samples")); },
      R"(loom: connection "encoder.samples" -> "shaft.samples" holds 18446744073709551615 values, more than the 16777216 of a row; write a smaller buffer<n>)"},
     {"connection_never_stale", [](Table& m) { add_talk(m, data("talker.count", "hearer.pulse")); },
      R"(loom: connection "talker.count" -> "hearer.pulse" never grows stale, but "hearer.pulse" tells a silence by it; add stale_after(...) and hold)"},
-    {"connection_stale_twice",
-     [](Table& m) {
-         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute(0), stop_machine));
-     },
+    {"connection_stale_twice", [](Table& m) { measured(m, stale_after(4ms), substitute(0), stop_machine); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" says more than once what a stale value means; keep one of hold, substitute and stop_machine)"},
-    {"connection_substitute_type",
-     [](Table& m) {
-         m.put(data("encoder.angle", "shaft.measured", stale_after(4ms), substitute<at_rest>()));
-     },
+    {"connection_substitute_type", [](Table& m) { measured(m, stale_after(4ms), substitute<at_rest>()); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": substitute gives a value of type int, but "shaft.measured" is of type double; name a constant of the port's type)"},
     {"connection_initially_type",
      [](Table& m) { m.put(data("shaft.speed", "tension.speed", initially<standing>())); },
@@ -159,10 +146,9 @@ constexpr Fault option_faults[] = {
     {"connection_buffer_stale",
      [](Table& m) { m.add(buffer<4>("encoder.samples", "shaft.samples", stale_after(4ms))); },
      R"(loom: connection "encoder.samples" -> "shaft.samples": values in a buffer have no age and no initial value; remove what says so from the row)"},
-    {"connection_delayed_across", [](Table& m) { m.put(data("encoder.angle", "shaft.measured", delayed)); },
+    {"connection_delayed_across", [](Table& m) { measured(m, delayed); },
      R"(loom: connection "encoder.angle" -> "shaft.measured": delayed means one cycle of one activity, but this row crosses from "field" to "motion"; remove delayed)"},
-    {"connection_wakes_a_periodic_activity",
-     [](Table& m) { m.put(data("encoder.angle", "shaft.measured", wakes)); },
+    {"connection_wakes_a_periodic_activity", [](Table& m) { measured(m, wakes); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" wakes activity "motion", which is periodic; remove wakes)"},
     {"connection_wakes_itself", [](Table& m) { add_talk(m, data("talker.count", "hearer.count", wakes)); },
      R"(loom: connection "talker.count" -> "hearer.count" wakes its own activity "logic"; remove wakes)"},
@@ -173,7 +159,6 @@ constexpr Fault option_faults[] = {
      [](Table& m) { add_talk(m, data("talker.count", "hearer.count", initially(128.0))); },
      R"(loom: connection "talker.count" -> "hearer.count": the number in initially does not fit "hearer.count" of type signed char; write one that it can hold)"},
 };
-INSTANTIATE_TEST_SUITE_P(options, Refusal, testing::ValuesIn(planted_into(small_loom, option_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(options, Refusal, planted_into(small_loom, option_faults), name_of);
 
 } // namespace

@@ -53,8 +53,7 @@ constexpr Fault level_faults[] = {
      },
      R"(axis: level "axis": it is the innermost and has no Effector, so that nothing reaches the hardware; add effector("..."))"},
 };
-INSTANTIATE_TEST_SUITE_P(control_levels, Refusal, testing::ValuesIn(planted_into(axis, level_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(control_levels, Refusal, planted_into(axis, level_faults), name_of);
 
 constexpr Fault cascade_faults[] = {
     {"cascade_of_nothing", [](Table& m) { m.control.levels.clear(); },
@@ -132,8 +131,7 @@ constexpr Fault cascade_faults[] = {
      },
      R"(cascade: connection "inner.velocity" -> "path.measured": a Controller of level "inside" does not write for a Generator of level "outside"; a Controller commands the Generator of the level right below its own)"},
 };
-INSTANTIATE_TEST_SUITE_P(control_cascades, Refusal, testing::ValuesIn(planted_into(cascade, cascade_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(control_cascades, Refusal, planted_into(cascade, cascade_faults), name_of);
 
 constexpr Fault flow_faults[] = {
     {"sensor_to_effector",
@@ -265,6 +263,6 @@ constexpr Fault flow_faults[] = {
      },
      R"(axis: level "axis": the Generator "path" has no stop(), so that others would go on with its last value when it has stopped; write safe values there: void stop(const Cycle&) noexcept TAPPET_REALTIME)"},
 };
-INSTANTIATE_TEST_SUITE_P(control_flow, Refusal, testing::ValuesIn(planted_into(axis, flow_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(control_flow, Refusal, planted_into(axis, flow_faults), name_of);
 
 } // namespace

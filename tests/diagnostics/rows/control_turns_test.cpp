@@ -151,7 +151,7 @@ constexpr Fault turn_faults[] = {
      },
      R"(axis: level "axis": "gentle.sent" tracks in mm/s, and "gentle.velocity" writes in m/s; give both the unit of what is sent)"},
 };
-INSTANTIATE_TEST_SUITE_P(control_turns, Refusal, testing::ValuesIn(planted_into(axis, turn_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(control_turns, Refusal, planted_into(axis, turn_faults), name_of);
 
 constexpr Fault loop_faults[] = {
     {"loop_of_no_gain", [](Table& m) { m.control.loops[0] = loop("place"); },
@@ -220,6 +220,6 @@ constexpr Fault loop_faults[] = {
      },
      R"(axis: loop "place": it is not stable with an integral gain of 404.5; set position.kp lower)"},
 };
-INSTANTIATE_TEST_SUITE_P(control_loops, Refusal, testing::ValuesIn(planted_into(axis, loop_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(control_loops, Refusal, planted_into(axis, loop_faults), name_of);
 
 } // namespace

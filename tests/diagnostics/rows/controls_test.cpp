@@ -38,8 +38,7 @@ constexpr Fault script_faults[] = {
     {"script_with_nothing_to_run", [](Table& m) { m.behaviours[0] = behaviour("weft", empty_script, {}); },
      R"(loom: behaviour of "weft": script "empty.osd" has nothing to run; add a RootStateMachine or a program)"},
 };
-INSTANTIATE_TEST_SUITE_P(scripts, Refusal, testing::ValuesIn(planted_into(small_loom, script_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(scripts, Refusal, planted_into(small_loom, script_faults), name_of);
 
 Table controlled_loom() {
     Table m = small_loom();
@@ -90,7 +89,6 @@ constexpr Fault control_faults[] = {
      },
      R"(loom: component "feeding" controls the behaviour of "weft", which activity "logic" runs; run both in that one)"},
 };
-INSTANTIATE_TEST_SUITE_P(controls, Refusal, testing::ValuesIn(planted_into(controlled_loom, control_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(controls, Refusal, planted_into(controlled_loom, control_faults), name_of);
 
 } // namespace

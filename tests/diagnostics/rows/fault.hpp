@@ -77,6 +77,8 @@ struct Table : Copy {
     [[nodiscard]] std::string refusal() const;
 
     void add(const ComponentRow& row);
+    /// The last to run in that activity.
+    void add(const ComponentRow& row, std::string_view activity);
     void add(const ActivityRow& row);
     void add(const ConnectionRow& row);
     void add(const ReactionRow& row);
@@ -113,7 +115,11 @@ std::ostream& operator<<(std::ostream& out, const Refused& row);
 /// refusals_test.cpp says what holds for each row.
 class Refusal : public testing::TestWithParam<Refused> {};
 
-std::vector<Refused> planted_into(Table (*good)(), std::span<const Fault> faults);
+inline auto planted_into(Table (*good)(), std::span<const Fault> faults) {
+    std::vector<Refused> rows;
+    for (const Fault& fault : faults) rows.push_back({fault, good});
+    return testing::ValuesIn(rows);
+}
 std::string name_of(const testing::TestParamInfo<Refused>& row);
 
 } // namespace tappet::diagnostics

@@ -102,8 +102,7 @@ constexpr Fault setting_faults[] = {
      [](Table& m) { m.put(component<Shaft>("shaft", set("angles.window.high", 361))); },
      R"(loom: component "shaft" sets property "angles.window.high" to 361, which is over its greatest value 360; set a value in its range, or widen range(...) in the interface of small::Shaft)"},
 };
-INSTANTIATE_TEST_SUITE_P(settings, Refusal, testing::ValuesIn(planted_into(small_loom, setting_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(settings, Refusal, planted_into(small_loom, setting_faults), name_of);
 
 constexpr Fault declaration_faults[] = {
     {"property_dotted", [](Table& m) { m.put(component<Named>("tension")); },
@@ -113,8 +112,7 @@ constexpr Fault declaration_faults[] = {
     {"bag_of_an_operation", [](Table& m) { m.put(component<Deeds>("tension")); },
      R"(loom: component "tension": its bag "deeds" holds "deeds.stop", which is an operation; a bag holds properties and bags)"},
 };
-INSTANTIATE_TEST_SUITE_P(declarations, Refusal,
-                         testing::ValuesIn(planted_into(small_loom, declaration_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(declarations, Refusal, planted_into(small_loom, declaration_faults), name_of);
 
 constexpr Fault file_faults[] = {
     {"properties_file_of_nothing",
@@ -130,6 +128,6 @@ constexpr Fault file_faults[] = {
      },
      R"(loom: component "tension" has the properties file "shaft.cpf" of component "shaft"; each needs a file of its own)"},
 };
-INSTANTIATE_TEST_SUITE_P(files, Refusal, testing::ValuesIn(planted_into(small_loom, file_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(files, Refusal, planted_into(small_loom, file_faults), name_of);
 
 } // namespace

@@ -66,8 +66,7 @@ constexpr Fault end_faults[] = {
      },
      R"(loom: component "watch": its event "broken" is heard by 0 of at least 1 reactions; add when("watch.broken", ...) to reactions(...))"},
 };
-INSTANTIATE_TEST_SUITE_P(reactions, Refusal, testing::ValuesIn(planted_into(small_loom, end_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(reactions, Refusal, planted_into(small_loom, end_faults), name_of);
 
 constexpr Fault call_faults[] = {
     {"reaction_across_activities", [](Table& m) { m.put(when("weft.broken", call("shaft.clear"))); },
@@ -84,8 +83,7 @@ constexpr Fault call_faults[] = {
      },
      R"(loom: reaction "relay.passed" -> "panel.note": activity "field" runs functions of "relay" too, and would call "panel.note" of activity "all"; use tell(...), or declare it any_thread if it is safe there)"},
 };
-INSTANTIATE_TEST_SUITE_P(calls_across, Refusal, testing::ValuesIn(planted_into(small_loom, call_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(calls_across, Refusal, planted_into(small_loom, call_faults), name_of);
 
 // ---- handles and waits
 
@@ -155,8 +153,7 @@ constexpr Fault handle_faults[] = {
      [](Table& m) { m.add(when("encoder.index", tell("panel.show"), disconnected)); },
      R"(loom: reaction "encoder.index" -> "panel.show" starts disconnected and nothing can connect it; add handled_by("component.handle"))"},
 };
-INSTANTIATE_TEST_SUITE_P(handles, Refusal, testing::ValuesIn(planted_into(loom_with_a_panel, handle_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(handles, Refusal, planted_into(loom_with_a_panel, handle_faults), name_of);
 
 constexpr Fault wait_faults[] = {
     {"reaction_calls_a_wait", [](Table& m) { m.add(when("encoder.index", call("panel.next_index"))); },
@@ -176,8 +173,7 @@ constexpr Fault wait_faults[] = {
     {"wait_untold", [](Table& m) { m.put(component<WaitingPanel>("panel")); },
      R"(loom: component "panel": no reaction tells its wait "next_index"; add when("...", tell("panel.next_index")))"},
 };
-INSTANTIATE_TEST_SUITE_P(waits, Refusal, testing::ValuesIn(planted_into(loom_with_a_panel, wait_faults)),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(waits, Refusal, planted_into(loom_with_a_panel, wait_faults), name_of);
 
 // ---- uses
 
@@ -249,6 +245,6 @@ constexpr Fault use_faults[] = {
     {"use_sent_by_of_a_method", [](Table& m) { m.put(uses("desk.force", "press.force", sent_by("spare"))); },
      R"(mill: use "desk.force" -> "press.force": sent_by("spare") is of commands; remove it)"},
 };
-INSTANTIATE_TEST_SUITE_P(uses, Refusal, testing::ValuesIn(planted_into(mill, use_faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(uses, Refusal, planted_into(mill, use_faults), name_of);
 
 } // namespace

@@ -20,6 +20,11 @@ void put_in_place(std::vector<Row>& section, const Row& row, std::string_view Ro
 } // namespace
 
 void Table::add(const ComponentRow& row) { components.push_back(row); }
+void Table::add(const ComponentRow& row, std::string_view activity) {
+    add(row);
+    const auto by = std::ranges::find(activities, activity, &ActivityRow::name);
+    EXPECT_TRUE(by != activities.end() && by->runs.push(row.name)) << "in activity \"" << activity << "\"";
+}
 void Table::add(const ActivityRow& row) { activities.push_back(row); }
 void Table::add(const ConnectionRow& row) { connections.push_back(row); }
 void Table::add(const ReactionRow& row) { reactions.push_back(row); }
@@ -65,11 +70,6 @@ Table mill() {
     return {machine.view(), small::mill_board, unbound};
 }
 
-std::vector<Refused> planted_into(Table (*good)(), std::span<const Fault> faults) {
-    std::vector<Refused> rows;
-    for (const Fault& fault : faults) rows.push_back({fault, good});
-    return rows;
-}
 std::string name_of(const testing::TestParamInfo<Refused>& row) { return std::string{row.param.fault.name}; }
 std::ostream& operator<<(std::ostream& out, const Refused& row) { return out << row.fault.name; }
 

@@ -121,6 +121,6 @@ constexpr Fault faults[] = {
     {"reporting_twice", [](Table& m) { m.reports.emplace_back().rows = {report("tension.torque")}; },
      R"(loom: reporting(...) stands twice; write all of its rows into one)"},
 };
-INSTANTIATE_TEST_SUITE_P(reporting, Refusal, testing::ValuesIn(planted_into(reported, faults)), name_of);
+INSTANTIATE_TEST_SUITE_P(reporting, Refusal, planted_into(reported, faults), name_of);
 
 } // namespace
