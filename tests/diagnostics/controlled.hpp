@@ -135,12 +135,15 @@ inline Table cascade() {
 }
 
 /// A component more, in the activity of the level.
-inline void place(Table& m, const ComponentRow& row) {
-    m.add(row);
-    static_cast<void>(m.activities[0].runs.push(row.name));
-}
+inline void place(Table& m, const ComponentRow& row) { m.add(row, m.activities[0].name); }
 inline void seat(Table& m, const RoleRow& role) {
     static_cast<void>(m.control.levels.back().roles.push(role));
+}
+/// The same with a row that leads to it.
+inline void seat(Table& m, const ComponentRow& row, const RoleRow& role, const ConnectionRow& to) {
+    place(m, row);
+    m.add(to);
+    seat(m, role);
 }
 
 } // namespace tappet::diagnostics

@@ -1,28 +1,40 @@
 // What a large machine costs to compile: 400 components of 20 types, 800 connections, 100 reactions; or one
-// machine of a large system: ten on one wire, with 100 rows across.
-//     large_machine --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--what machine|system]
+// machine of a large system: ten on one wire, with 100 rows across; or a large script with the firmware.
+//     large_machine --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--what
+//     machine|system|script]
 // Fails above the limits. Time is the compiler's own processor time: it does not depend on who else uses the
 // computer.
 #include "tests/diagnostics/large_machine.hpp"
+#include "tests/diagnostics/large_script.hpp"
 #include "tests/diagnostics/large_system.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <sys/resource.h>
 
 namespace {
 
+using namespace tappet::diagnostics;
+
 struct Subject {
+    std::string_view what;
+    void (*write)(std::ostream& file);
     const char* file;
     const char* text;
     double most_seconds;
     double most_megabytes;
 };
-constexpr Subject machine{"large_machine_table", "400 components, 800 connections, 100 reactions", 60, 1000};
-constexpr Subject of_a_system{"large_system_table", "one of 10 machines with 100 rows across", 60, 2000};
+constexpr Subject subjects[] = {
+    {"machine", [](std::ostream& file) { write_machine(file, {}); }, "large_machine_table",
+     "400 components, 800 connections, 100 reactions", 60, 1000},
+    {"system", [](std::ostream& file) { write_system(file, {}); }, "large_system_table",
+     "one of 10 machines with 100 rows across", 60, 2000},
+    {"script", write_script, "large_script_unit", "100 states, 1000 statements", 60, 2000}};
 
 double seconds(const timeval& time) {
     return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
@@ -40,23 +52,20 @@ int main(int count, char** words) {
          : word == "--what"   ? what
                               : build) = words[i + 1];
     }
-    if (compiler.empty() || source.empty() || build.empty() || (what != "machine" && what != "system")) {
+    const auto* const subject = std::ranges::find(subjects, what, &Subject::what);
+    if (compiler.empty() || source.empty() || build.empty() || subject == std::end(subjects)) {
         std::cerr << "usage: large_machine --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR "
-                     "[--what machine|system]\n";
+                     "[--what machine|system|script]\n";
         return 2;
     }
     if (flags.starts_with('@')) {
         std::ifstream file{flags.substr(1)};
         std::getline(file, flags);
     }
-    const Subject& subject = what == "system" ? of_a_system : machine;
-    const std::string table = build + "/" + subject.file;
+    const std::string table = build + "/" + subject->file;
     {
         std::ofstream file{table + ".cpp"};
-        if (what == "system")
-            tappet::diagnostics::write_system(file, {});
-        else
-            tappet::diagnostics::write_machine(file, {});
+        subject->write(file);
         if (!file.flush()) {
             std::cerr << table << ".cpp cannot be written\n";
             return 2;
@@ -65,14 +74,14 @@ int main(int count, char** words) {
     const std::string command =
         "cd '" + source + "' && '" + compiler + "' " + flags + " -c '" + table + ".cpp' -o '" + table + ".o'";
     if (std::system(command.c_str()) != 0) {
-        std::cout << subject.text << ": does not compile\n";
+        std::cout << subject->text << ": does not compile\n";
         return 1;
     }
     rusage used{};
     getrusage(RUSAGE_CHILDREN, &used);
     const double time = seconds(used.ru_utime) + seconds(used.ru_stime);
     const double memory = static_cast<double>(used.ru_maxrss) / 1000;
-    std::cout << subject.text << ": " << time << " s of processor time, " << memory << " MB (limits "
-              << subject.most_seconds << " s, " << subject.most_megabytes << " MB)\n";
-    return time < subject.most_seconds && memory < subject.most_megabytes ? 0 : 1;
+    std::cout << subject->text << ": " << time << " s of processor time, " << memory << " MB (limits "
+              << subject->most_seconds << " s, " << subject->most_megabytes << " MB)\n";
+    return time < subject->most_seconds && memory < subject->most_megabytes ? 0 : 1;
 }

@@ -10,6 +10,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace tappet::diagnostics {
@@ -27,6 +28,8 @@ inline std::string label(const ReactionRow& row) {
 inline std::string label(const BehaviourRow& row) {
     return (row.is_slot() ? "slot of \"" : "behaviour of \"") + std::string{row.component} + "\"";
 }
+
+template <class Row> std::string label_of(const Row& row) { return label(row); }
 
 struct Tally {
     std::size_t misspelt = 0, dropped = 0, doubled = 0, retyped = 0;
@@ -80,128 +83,87 @@ private:
         return list;
     }
 
-    /// `place` finds the name in a copy; `named` what the sentence must then have in it.
-    void misspell(std::string_view name, const std::function<std::string_view&(Copy&)>& place,
-                  const std::function<std::string(const Copy&)>& named) {
+    /// `place` finds the name in a row of the section; an empty one is none. The sentence then has in it
+    /// what `named` says of that row.
+    template <class Row, class Place>
+    void misspell(std::vector<Row> Copy::* section, std::size_t i, Place place,
+                  std::string (*named)(const std::type_identity_t<Row>&) = &label_of<Row>) {
+        Copy good{table_};
+        const std::string_view name = std::invoke(place, (good.*section)[i]);
         for (const std::string_view wrong : misspellings(name)) {
             Copy copy{table_};
-            place(copy) = wrong;
+            Row& row = (copy.*section)[i];
+            std::invoke(place, row) = wrong;
             expect(tally_.misspelt, "\"" + std::string{name} + "\" misspelt \"" + std::string{wrong} + "\"",
-                   copy, {named(copy)});
+                   copy, {named(row)});
         }
     }
 
     void misspell_names() {
         for (std::size_t i = 0; i < table_.components.size(); ++i) {
-            misspell(
-                table_.components[i].name, [i](Copy& c) -> std::string_view& { return c.components[i].name; },
-                [i](const Copy& c) { return "\"" + std::string{c.components[i].name} + "\""; });
-            if (!table_.components[i].device.empty())
-                misspell(
-                    table_.components[i].device,
-                    [i](Copy& c) -> std::string_view& { return c.components[i].device; },
-                    [i](const Copy& c) { return label(c.components[i]); });
-            if (!table_.components[i].watched.empty())
-                misspell(
-                    table_.components[i].watched,
-                    [i](Copy& c) -> std::string_view& { return c.components[i].watched; },
-                    [i](const Copy& c) { return label(c.components[i]); });
+            misspell(&Copy::components, i, &ComponentRow::name,
+                     [](const ComponentRow& row) { return "\"" + std::string{row.name} + "\""; });
+            misspell(&Copy::components, i, &ComponentRow::device);
+            misspell(&Copy::components, i, &ComponentRow::watched);
             for (std::size_t s = 0; s < table_.components[i].settings.size(); ++s)
-                misspell(
-                    table_.components[i].settings[s].name,
-                    [i, s](Copy& c) -> std::string_view& { return c.components[i].settings[s].name; },
-                    [i](const Copy& c) { return label(c.components[i]); });
+                misspell(&Copy::components, i,
+                         [s](ComponentRow& row) -> auto& { return row.settings[s].name; });
         }
         for (std::size_t i = 0; i < table_.activities.size(); ++i) {
-            const auto named = [i](const Copy& c) { return label(c.activities[i]); };
             if (table_.activities[i].trigger == Trigger::on_device)
-                misspell(
-                    table_.activities[i].device,
-                    [i](Copy& c) -> std::string_view& { return c.activities[i].device; }, named);
+                misspell(&Copy::activities, i, &ActivityRow::device);
             for (std::size_t n = 0; n < table_.activities[i].runs.size(); ++n)
-                misspell(
-                    table_.activities[i].runs[n],
-                    [i, n](Copy& c) -> std::string_view& { return c.activities[i].runs[n]; }, named);
+                misspell(&Copy::activities, i, [n](ActivityRow& row) -> auto& { return row.runs[n]; });
         }
         for (std::size_t i = 0; i < table_.connections.size(); ++i) {
-            const auto named = [i](const Copy& c) { return label(c.connections[i]); };
-            misspell(
-                table_.connections[i].from,
-                [i](Copy& c) -> std::string_view& { return c.connections[i].from; }, named);
-            misspell(
-                table_.connections[i].to, [i](Copy& c) -> std::string_view& { return c.connections[i].to; },
-                named);
+            misspell(&Copy::connections, i, &ConnectionRow::from);
+            misspell(&Copy::connections, i, &ConnectionRow::to);
         }
         for (std::size_t i = 0; i < table_.reactions.size(); ++i) {
-            const auto named = [i](const Copy& c) { return label(c.reactions[i]); };
-            misspell(
-                table_.reactions[i].event, [i](Copy& c) -> std::string_view& { return c.reactions[i].event; },
-                named);
-            misspell(
-                table_.reactions[i].target.operation,
-                [i](Copy& c) -> std::string_view& { return c.reactions[i].target.operation; }, named);
-            if (!table_.reactions[i].sent_by.empty())
-                misspell(
-                    table_.reactions[i].sent_by,
-                    [i](Copy& c) -> std::string_view& { return c.reactions[i].sent_by; }, named);
-            if (!table_.reactions[i].handle.empty())
-                misspell(
-                    table_.reactions[i].handle,
-                    [i](Copy& c) -> std::string_view& { return c.reactions[i].handle; }, named);
+            misspell(&Copy::reactions, i, &ReactionRow::event);
+            misspell(&Copy::reactions, i, operation_of);
+            misspell(&Copy::reactions, i, &ReactionRow::sent_by);
+            misspell(&Copy::reactions, i, &ReactionRow::handle);
         }
         for (std::size_t i = 0; i < table_.behaviours.size(); ++i) misspell_behaviour(i);
     }
 
+    static std::string_view& operation_of(ReactionRow& row) { return row.target.operation; }
+
     void misspell_behaviour(std::size_t i) {
         const BehaviourRow& row = table_.behaviours[i];
-        const auto named = [i](const Copy& c) { return label(c.behaviours[i]); };
-        misspell(
-            row.component, [i](Copy& c) -> std::string_view& { return c.behaviours[i].component; }, named);
-        for (std::size_t n = 0; n < row.slot.peers.size(); ++n)
-            misspell(
-                row.slot.peers[n],
-                [i, n](Copy& c) -> std::string_view& { return c.behaviours[i].slot.peers[n]; }, named);
-        for (std::size_t n = 0; n < row.slot.operations.size(); ++n)
-            misspell(
-                row.slot.operations[n],
-                [i, n](Copy& c) -> std::string_view& { return c.behaviours[i].slot.operations[n]; }, named);
-        for (std::size_t n = 0; n < row.slot.events.size(); ++n)
-            misspell(
-                row.slot.events[n],
-                [i, n](Copy& c) -> std::string_view& { return c.behaviours[i].slot.events[n]; }, named);
+        misspell(&Copy::behaviours, i, &BehaviourRow::component);
+        const auto misspell_each = [&](auto Slot::* names) {
+            for (std::size_t n = 0; n < (row.slot.*names).size(); ++n)
+                misspell(&Copy::behaviours, i,
+                         [&](BehaviourRow& each) -> auto& { return (each.slot.*names)[n]; });
+        };
+        misspell_each(&Slot::peers);
+        misspell_each(&Slot::operations);
+        misspell_each(&Slot::events);
         // The rows of a state machine are behind a view: a copy of them is kept while its names are misspelt.
-        for (std::size_t t = 0; t < row.type.machine.transitions.size(); ++t) {
-            const TransitionRow& transition = row.type.machine.transitions[t];
-            for (std::string_view TransitionRow::* const part :
-                 {&TransitionRow::from, &TransitionRow::to, &TransitionRow::event}) {
-                if ((transition.*part).empty()) continue;
-                for (const std::string_view wrong : misspellings(transition.*part)) {
-                    std::vector<TransitionRow> rows(row.type.machine.transitions.begin(),
-                                                    row.type.machine.transitions.end());
-                    rows[t].*part = wrong;
-                    Copy copy{table_};
-                    copy.behaviours[i].type.machine.transitions = rows;
-                    expect(tally_.misspelt,
-                           "in " + label(row) + " \"" + std::string{transition.*part} + "\" misspelt \"" +
-                               std::string{wrong} + "\"",
-                           copy, {"\"" + std::string{wrong} + "\""});
-                }
-            }
-        }
-        for (std::size_t s = 0; s < row.type.machine.states.size(); ++s) {
-            // A state that no row names, like a safe state reached by request alone, has any name.
-            if (!is_named(row.type.machine, row.type.machine.states[s].name)) continue;
-            for (const std::string_view wrong : misspellings(row.type.machine.states[s].name)) {
-                std::vector<StateRow> rows(row.type.machine.states.begin(), row.type.machine.states.end());
-                rows[s].name = wrong;
+        const StateMachineTable& machine = row.type.machine;
+        const auto misspell_in = [&](auto StateMachineTable::* section, std::size_t at, auto part) {
+            const auto& good = machine.*section;
+            for (const std::string_view wrong : misspellings(good[at].*part)) {
+                std::vector rows(good.begin(), good.end());
+                rows[at].*part = wrong;
                 Copy copy{table_};
-                copy.behaviours[i].type.machine.states = rows;
+                copy.behaviours[i].type.machine.*section = rows;
                 expect(tally_.misspelt,
-                       "state \"" + std::string{row.type.machine.states[s].name} + "\" misspelt \"" +
+                       "in " + label(row) + " \"" + std::string{good[at].*part} + "\" misspelt \"" +
                            std::string{wrong} + "\"",
                        copy, {"\"" + std::string{wrong} + "\""});
             }
-        }
+        };
+        for (std::size_t t = 0; t < machine.transitions.size(); ++t)
+            for (std::string_view TransitionRow::* const part :
+                 {&TransitionRow::from, &TransitionRow::to, &TransitionRow::event})
+                misspell_in(&StateMachineTable::transitions, t, part);
+        // A state that no row names, like a safe state reached by request alone, has any name.
+        for (std::size_t s = 0; s < machine.states.size(); ++s)
+            if (is_named(machine, machine.states[s].name))
+                misspell_in(&StateMachineTable::states, s, &StateRow::name);
     }
 
     static bool is_named(const StateMachineTable& machine, std::string_view state) {
@@ -280,37 +242,25 @@ private:
                     return keep(std::string{row.name} + "." + std::string{other.name});
         return {};
     }
-    void retype(std::string_view path, const std::function<std::string_view&(Copy&)>& place,
-                const std::function<std::string(const Copy&)>& named) {
+    template <class Row, class Place>
+    void retype(std::vector<Row> Copy::* section, std::size_t i, Place place) {
+        Copy copy{table_};
+        Row& row = (copy.*section)[i];
+        const std::string_view path = std::invoke(place, row);
         const std::string_view other = of_another_type(path);
         if (other.empty()) return;
-        Copy copy{table_};
-        place(copy) = other;
+        std::invoke(place, row) = other;
         expect(tally_.retyped, "\"" + std::string{path} + "\" exchanged for \"" + std::string{other} + "\"",
-               copy, {named(copy)});
+               copy, {label(row)});
     }
     void change_types() {
         for (std::size_t i = 0; i < table_.connections.size(); ++i) {
-            const auto named = [i](const Copy& c) { return label(c.connections[i]); };
-            retype(
-                table_.connections[i].from,
-                [i](Copy& c) -> std::string_view& { return c.connections[i].from; }, named);
-            retype(
-                table_.connections[i].to, [i](Copy& c) -> std::string_view& { return c.connections[i].to; },
-                named);
+            retype(&Copy::connections, i, &ConnectionRow::from);
+            retype(&Copy::connections, i, &ConnectionRow::to);
         }
         for (std::size_t i = 0; i < table_.reactions.size(); ++i) {
-            const auto named = [i](const Copy& c) { return label(c.reactions[i]); };
-            retype(
-                table_.reactions[i].event, [i](Copy& c) -> std::string_view& { return c.reactions[i].event; },
-                named);
-            retype(
-                table_.reactions[i].target.operation,
-                [i](Copy& c) -> std::string_view& { return c.reactions[i].target.operation; }, named);
-            if (!table_.reactions[i].handle.empty())
-                misspell(
-                    table_.reactions[i].handle,
-                    [i](Copy& c) -> std::string_view& { return c.reactions[i].handle; }, named);
+            retype(&Copy::reactions, i, &ReactionRow::event);
+            retype(&Copy::reactions, i, operation_of);
         }
         for (std::size_t i = 0; i < table_.components.size(); ++i) change_component(i);
     }

@@ -179,5 +179,16 @@ constexpr Machine<C, A, X, R, B> loom(const Section<ComponentRow, C>& c, const S
                                       const Section<BehaviourRow, B>& b) {
     return machine("loom", c, a, x, r, b);
 }
+inline constexpr auto good_loom =
+    loom(good_components, good_activities, good_connections, good_reactions, good_behaviours);
+
+/// With a component more, in an activity of its own.
+constexpr auto loom_with(const ComponentRow& component, const ActivityRow& activity) {
+    const auto& c = good_components.rows;
+    const auto& a = good_activities.rows;
+    return loom(components(c[0], c[1], c[2], c[3], c[4], c[5], component),
+                activities(a[0], a[1], a[2], a[3], activity), good_connections, good_reactions,
+                good_behaviours);
+}
 
 } // namespace small

@@ -4,9 +4,9 @@
 
 using namespace small;
 
-constexpr auto table = loom(components(component<Encoder>("encoder", device("main_encodr")),
-                                       component<Shaft>("shaft"), component<Tension>("tension"),
-                                       component<Weft>("weft"), component<Climate>("climate", device("hall")),
-                                       component<Lamps>("lamps", device("panel"))),
-                            good_activities, good_connections, good_reactions, good_behaviours);
+constexpr auto table = [] {
+    auto m = good_loom;
+    m.components[0].device = "main_encodr";
+    return m;
+}();
 template struct tappet::Firmware<table, good_board, good_binding>;

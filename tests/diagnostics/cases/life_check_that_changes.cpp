@@ -10,10 +10,5 @@ struct Horn {
 };
 
 constexpr auto table =
-    loom(components(good_components.rows[0], good_components.rows[1], good_components.rows[2],
-                    good_components.rows[3], good_components.rows[4], good_components.rows[5],
-                    component<Horn>("horn")),
-         activities(good_activities.rows[0], good_activities.rows[1], good_activities.rows[2],
-                    good_activities.rows[3], activity("noise", every(10ms), budget(10us), runs("horn"))),
-         good_connections, good_reactions, good_behaviours);
+    loom_with(component<Horn>("horn"), activity("noise", every(10ms), budget(10us), runs("horn")));
 template struct tappet::Firmware<table, good_board, good_binding>;

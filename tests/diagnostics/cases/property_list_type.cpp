@@ -5,10 +5,9 @@
 using namespace small;
 
 constexpr std::array<bool, 2> values{true, false};
-constexpr auto table =
-    loom(components(component<Encoder>("encoder", device("main_encoder")),
-                    component<Shaft>("shaft", set<values>("offsets")), component<Tension>("tension"),
-                    component<Weft>("weft"), component<Climate>("climate", device("hall")),
-                    component<Lamps>("lamps", device("panel"))),
-         good_activities, good_connections, good_reactions, good_behaviours);
+constexpr auto table = [] {
+    auto m = good_loom;
+    m.components[1] = component<Shaft>("shaft", set<values>("offsets"));
+    return m;
+}();
 template struct tappet::Firmware<table, good_board, good_binding>;

@@ -4,8 +4,9 @@
 
 using namespace small;
 
-constexpr auto table =
-    loom(good_components, good_activities, good_connections,
-         reactions(when("encoder.index", tell("shaft.on_index")), when("encoder.index", tell("shaft.clear"))),
-         good_behaviours);
+constexpr auto table = [] {
+    auto m = good_loom;
+    m.reactions[1] = when("encoder.index", tell("shaft.clear"));
+    return m;
+}();
 template struct tappet::Firmware<table, good_board, good_binding>;

@@ -6,12 +6,7 @@
 
 using namespace small;
 
-constexpr auto table =
-    loom(components(good_components.rows[0], good_components.rows[1], good_components.rows[2],
-                    good_components.rows[3], good_components.rows[4], good_components.rows[5],
-                    component<Watchdog>("dog", watches("motion"))),
-         activities(good_activities.rows[0], good_activities.rows[1], good_activities.rows[2],
-                    good_activities.rows[3], activity("kennel", every(10ms), not_real_time, runs("dog"))),
-         good_connections, good_reactions, good_behaviours);
+constexpr auto table = loom_with(component<Watchdog>("dog", watches("motion")),
+                                 activity("kennel", every(10ms), not_real_time, runs("dog")));
 
 template struct tappet::Firmware<table, good_board, good_binding>;

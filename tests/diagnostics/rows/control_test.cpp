@@ -111,11 +111,8 @@ constexpr Fault cascade_faults[] = {
      R"(cascade: connection "encoder.position" -> "path.measured": in_steps, interpolated and extrapolated are for a reader whose period divides the longer one of the writer; activity "fast" and activity "slow" are not such; remove it, or change a period)"},
     {"interpolated_whole_numbers",
      [](Table& m) {
-         m.add(component<Cycles>("counter"));
-         m.add(component<CyclesShown>("shown"));
-         m.put(activity("slow", every(4ms), budget(50us), runs("path", "outer", "counter")));
-         m.put(activity("fast", every(1ms), budget(50us),
-                        runs("slide", "encoder", "ramp", "inner", "limiter", "shown")));
+         m.add(component<Cycles>("counter"), "slow");
+         m.add(component<CyclesShown>("shown"), "fast");
          m.add(data("counter.count", "shown.count", interpolated));
      },
      R"(cascade: connection "counter.count" -> "shown.count": between two values of int lie none; write in_steps, or connect a floating number)"},
@@ -149,37 +146,29 @@ constexpr Fault flow_faults[] = {
      R"(axis: connection "encoder.position" -> "limiter.velocity": a Sensor does not write for an Effector; put a Controller between them, which makes outputs of inputs)"},
     {"generator_to_effector",
      [](Table& m) {
-         place(m, component<Limiter>("second"));
-         m.add(data("standing.target", "second.velocity", scaled(1.0)));
-         seat(m, effector("second"));
+         seat(m, component<Limiter>("second"), effector("second"),
+              data("standing.target", "second.velocity", scaled(1.0)));
      },
      R"(axis: connection "standing.target" -> "second.velocity": a Generator does not write for an Effector; put a Controller between them, be it one that passes set points on)"},
     {"generator_to_generator",
      [](Table& m) {
-         place(m, component<Mover>("path"));
-         m.add(data("standing.target", "path.measured"));
-         seat(m, generator("path"));
+         seat(m, component<Mover>("path"), generator("path"), data("standing.target", "path.measured"));
      },
      R"(axis: connection "standing.target" -> "path.measured": a Generator does not write for a Generator; make one Generator of both, or let a Controller of the level above command it)"},
     {"controller_to_controller",
      [](Table& m) {
-         place(m, component<Asked>("second"));
-         m.add(data("position.velocity", "second.target", scaled(1.0)));
-         seat(m, controller("second"));
+         seat(m, component<Asked>("second"), controller("second"),
+              data("position.velocity", "second.target", scaled(1.0)));
      },
      R"(axis: connection "position.velocity" -> "second.target": a Controller does not write for a Controller; make two levels of it: the outer Controller commands the inner Generator)"},
     {"generator_to_estimator",
      [](Table& m) {
-         place(m, component<Observer>("model"));
-         m.add(data("standing.target", "model.measured"));
-         seat(m, estimator("model"));
+         seat(m, component<Observer>("model"), estimator("model"), data("standing.target", "model.measured"));
      },
      R"(axis: connection "standing.target" -> "model.measured": a Generator does not write for an Estimator; an Estimator sees inputs and the outputs of the step before; read those)"},
     {"outputs_of_this_step_to_estimator",
      [](Table& m) {
-         place(m, component<Observer>("model"));
-         m.add(data("position.velocity", "model.sent"));
-         seat(m, estimator("model"));
+         seat(m, component<Observer>("model"), estimator("model"), data("position.velocity", "model.sent"));
      },
      R"(axis: connection "position.velocity" -> "model.sent": outputs reach an Estimator from the step before; add delayed)"},
     {"sensor_reads_the_kernel",
@@ -187,16 +176,13 @@ constexpr Fault flow_faults[] = {
      R"(axis: connection "limiter.sent" -> "encoder.counted": an Effector does not write for a Sensor; a Sensor reads hardware only)"},
     {"process_writes_the_data_flow",
      [](Table& m) {
-         place(m, component<Mover>("path"));
-         m.add(data("watcher.seen", "path.measured", stale_after(20ms)));
-         seat(m, generator("path"));
+         seat(m, component<Mover>("path"), generator("path"),
+              data("watcher.seen", "path.measured", stale_after(20ms)));
      },
      R"(axis: connection "watcher.seen" -> "path.measured": a process component reads all of the data flow and writes none of it, so that nobody looks for the writer of a value in two places; let "watcher" command "path" by an operation)"},
     {"from_outside_past_the_sensor",
      [](Table& m) {
-         place(m, component<Mover>("path"));
-         m.add(data("slide.place", "path.measured"));
-         seat(m, generator("path"));
+         seat(m, component<Mover>("path"), generator("path"), data("slide.place", "path.measured"));
      },
      R"(axis: connection "slide.place" -> "path.measured": what comes from outside of the control kernel comes by a Sensor, and "path" is a Generator; give "slide" its role in control(...), or let a Sensor bring it)"},
     {"controller_to_the_hardware",
@@ -245,9 +231,8 @@ constexpr Fault flow_faults[] = {
      R"(axis: level "axis": nothing leads to the Generator "path"; connect an input of it with what it makes its values of)"},
     {"nobody_reads_estimator",
      [](Table& m) {
-         place(m, component<Observer>("model"));
-         m.add(data("encoder.position", "model.measured"));
-         seat(m, estimator("model"));
+         seat(m, component<Observer>("model"), estimator("model"),
+              data("encoder.position", "model.measured"));
      },
      R"(axis: level "axis": nobody reads what the Estimator "model" writes; connect an output of it, or leave it out)"},
     {"no_safe_values",

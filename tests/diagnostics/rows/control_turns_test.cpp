@@ -153,6 +153,11 @@ constexpr Fault turn_faults[] = {
 };
 INSTANTIATE_TEST_SUITE_P(control_turns, Refusal, planted_into(axis, turn_faults), name_of);
 
+void gain_of(Table& m, double position, const LoopRow& row) {
+    m.components[5] = component<Follower>("position", set("kp", position));
+    m.control.loops[0] = row;
+}
+
 constexpr Fault loop_faults[] = {
     {"loop_of_no_gain", [](Table& m) { m.control.loops[0] = loop("place"); },
      R"(axis: loop "place": it has no gain; name the Controller's property: gain("..."))"},
@@ -179,32 +184,24 @@ constexpr Fault loop_faults[] = {
      R"(axis: loop "place": its two gains are of two components; name those of one)"},
     {"loop_with_ranges_beyond_it",
      [](Table& m) {
-         m.components[5] = component<Follower>("position", set("kp", 1.0));
-         m.control.loops[0] = loop("place", gain("position.kp"), integral("position.kp"), may_overshoot);
+         gain_of(m, 1.0, loop("place", gain("position.kp"), integral("position.kp"), may_overshoot));
      },
      R"(axis: loop "place": people may set position.kp to 0 beside 900 of position.kp while it runs, which is not stable; give both a range of gains that are, below 1818.182)"},
     {"loop_turned_round",
      [](Table& m) { m.control.loops[0] = loop("place", gain("position.kp"), stiffness(-1.0)); },
      R"(axis: loop "place": its gains, stiffness and transport are to be positive; a loop that feeds back with the other sign turns it round in the Sensor)"},
     {"loop_that_is_not_stable",
-     [](Table& m) {
-         m.components[5] = component<Follower>("position", set("kp", 700.0));
-         m.control.loops[0] = loop("place", gain("position.kp"), transport(2ms));
-     },
+     [](Table& m) { gain_of(m, 700.0, loop("place", gain("position.kp"), transport(2ms))); },
      R"(axis: loop "place": gain times period is 0.77 in the longest period, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 561.849, or shorten the delay)"},
     {"loop_with_a_range_beyond_it",
-     [](Table& m) {
-         m.components[5] = component<Follower>("position", set("kp", 100.0));
-         m.control.loops[0] = loop("place", gain("position.kp"), transport(2ms));
-     },
+     [](Table& m) { gain_of(m, 100.0, loop("place", gain("position.kp"), transport(2ms))); },
      R"(axis: loop "place": people may set position.kp to 900 while it runs, which is not stable; give it a range of gains that are, below 561.849)"},
     {"loop_that_overshoots",
      [](Table& m) { m.components[5] = component<Follower>("position", set("kp", 300.0)); },
      R"(axis: loop "place": gain times period is 0.33 in the longest period, and the most that does not overshoot with 1 step of delay is 0.25; set position.kp below 227.273, or add may_overshoot if that does no harm)"},
     {"contact_that_bounces",
      [](Table& m) {
-         m.components[5] = component<Follower>("position", set("kp", 3.15e-3));
-         m.control.loops[0] = loop("contact", gain("position.kp"), stiffness(2.0e5), transport(2ms));
+         gain_of(m, 3.15e-3, loop("contact", gain("position.kp"), stiffness(2.0e5), transport(2ms)));
      },
      R"(axis: loop "contact": gain times period is 0.693 in the longest period, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 2.809e-3, or shorten the delay)"},
     {"loop_that_overshoots_by_its_integral",
@@ -214,9 +211,8 @@ constexpr Fault loop_faults[] = {
      R"(axis: loop "place": with an integral around an axis it overshoots after each step of the set point; add may_overshoot if that does no harm, or leave the integral out)"},
     {"loop_with_too_much_integral",
      [](Table& m) {
-         m.control.loops[0] =
-             loop("place", gain("position.kp"), integral("position.kp"), stiffness(1.0), transport(3ms));
-         m.components[5] = component<Follower>("position", set("kp", 404.5));
+         gain_of(m, 404.5,
+                 loop("place", gain("position.kp"), integral("position.kp"), stiffness(1.0), transport(3ms)));
      },
      R"(axis: loop "place": it is not stable with an integral gain of 404.5; set position.kp lower)"},
 };

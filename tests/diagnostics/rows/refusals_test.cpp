@@ -57,12 +57,7 @@ std::string Table::refusal() const {
     return refusal_of(view, board, binding);
 }
 
-Table small_loom() {
-    static constexpr auto machine =
-        small::loom(small::good_components, small::good_activities, small::good_connections,
-                    small::good_reactions, small::good_behaviours);
-    return {machine.view(), small::good_board, small::good_binding};
-}
+Table small_loom() { return {small::good_loom.view(), small::good_board, small::good_binding}; }
 
 Table mill() {
     static constexpr auto machine = small::pressing(
