@@ -1,14 +1,11 @@
 // Thesis 5.4: the picture of a run shows its track, its states and what was seen; the program draws it
 // or says why not.
 #include "apps/car_tracking/host/picture.hpp"
+#include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 
 namespace tappet::car_tracking {
 namespace {
@@ -39,14 +36,12 @@ TEST(Picture, shows_every_located_car_and_every_image) {
 TEST(Picture, of_nothing_is_a_picture_of_the_room) { EXPECT_THAT(picture_of({}, {}), HasSubstr("tunnel")); }
 
 TEST(Program, draws_its_picture_or_says_why_not) {
-    const std::string folder = testing::TempDir();
-    const Ended drawn =
-        run_line(CAR_TRACKING " --virtual --seed 1 --for 2 --picture '" + folder + "car_tracking_test.svg'");
+    const test::Folder folder;
+    const std::string file = folder / "car_tracking_test.svg";
+    const Ended drawn = run_line(CAR_TRACKING " --virtual --seed 1 --for 2 --picture '" + file + "'");
     EXPECT_EQ(drawn.exit_code, 0) << drawn.text;
     EXPECT_THAT(drawn.text, HasSubstr("the plant measured {\"images\": 0"));
-    std::ifstream file{folder + "car_tracking_test.svg"};
-    EXPECT_THAT((std::string{std::istreambuf_iterator<char>{file}, {}}), HasSubstr("</svg>"));
-    std::remove((folder + "car_tracking_test.svg").c_str());
+    EXPECT_THAT(test::contents_of(file), HasSubstr("</svg>"));
 
     const Ended nowhere = run_line(CAR_TRACKING " --for 1 --picture /nowhere/at/all.svg");
     EXPECT_EQ(nowhere.exit_code, 2);

@@ -12,13 +12,7 @@ namespace {
 
 constexpr std::uint64_t picks = 100;
 
-loom::Settings breaks() {
-    loom::Settings settings;
-    settings.weft_break_one_in = 40;
-    settings.warp_break_one_in = 150;
-    settings.last_pick = picks;
-    return settings;
-}
+loom::Settings breaks() { return {.weft_break_one_in = 40, .warp_break_one_in = 150, .last_pick = picks}; }
 
 std::uint64_t digest_of(std::uint64_t seed, bool bad_wires = false) {
     LoomRig rig{seed, breaks()};
@@ -28,7 +22,7 @@ std::uint64_t digest_of(std::uint64_t seed, bool bad_wires = false) {
         rig.lines().faults(LoomRig::line_index(wires::line::button_start)).bounces = 3;
         rig.utility().inject(modbus::Fault::silent, 3);
     }
-    EXPECT_TRUE(rig.run().weave(picks, 300s)) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.run().weave(picks, 300s)) << rig.told();
     rig.run().stop();
     return rig.run().event_log_digest();
 }
@@ -82,9 +76,9 @@ TEST(Determinism, two_processes_report_the_same_but_for_the_memory_they_took) {
                             "--warp-break-one-in", "150", "--summary", path})
                       .exit_code,
                   0);
-    const std::string one = without_field(contents(first), "rss_bytes");
+    const std::string one = without_field(test::contents_of(first), "rss_bytes");
     EXPECT_NE(one.find("\"event_log_digest\": \"16b9cda172aa2aaf\""), std::string::npos) << one;
-    EXPECT_EQ(one, without_field(contents(second), "rss_bytes"));
+    EXPECT_EQ(one, without_field(test::contents_of(second), "rss_bytes"));
 }
 
 TEST(Speed, virtual_time_runs_fifty_times_faster_than_real_time) {

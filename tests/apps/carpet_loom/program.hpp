@@ -1,18 +1,11 @@
 // The host's carpet loom as a program of its own: what it is started with, what it answers.
 #pragma once
 
+#include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
-
-#include <unistd.h>
 
 namespace tappet::carpet {
 
@@ -24,18 +17,8 @@ inline Ended run_loom(const std::vector<std::string>& words) {
 
 /// It is gone with the program of the tests.
 inline std::string temporary_file(const std::string& name) {
-    struct Folder {
-        std::string path = testing::TempDir() + "carpet-loom-XXXXXX";
-        Folder() { EXPECT_NE(mkdtemp(path.data()), nullptr); }
-        ~Folder() { std::filesystem::remove_all(path); }
-    };
-    static const Folder folder;
-    return folder.path + "/" + name;
-}
-
-inline std::string contents(const std::string& path) {
-    std::ifstream file{path};
-    return {std::istreambuf_iterator<char>{file}, {}};
+    static const test::Folder folder;
+    return folder / name;
 }
 
 /// A JSON text without one field of a number.

@@ -59,7 +59,7 @@ TEST(Program, prints_its_options_and_its_plants_when_asked) {
 TEST(Program, writes_a_summary_with_every_field_that_is_promised) {
     const std::string path = temporary_file("summary.json");
     ASSERT_EQ(run_loom({"--picks", "20", "--seed", "4", "--summary", path}).exit_code, 0);
-    const std::string summary = contents(path);
+    const std::string summary = test::contents_of(path);
     for (const char* field : {"machine",
                               "board",
                               "world",

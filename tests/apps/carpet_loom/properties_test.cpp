@@ -5,7 +5,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -17,16 +16,11 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 struct Kept : testing::Test {
-    std::filesystem::path directory;
-    Kept() {
-        std::string pattern = testing::TempDir() + "carpet-loom-properties-XXXXXX";
-        directory = mkdtemp(pattern.data());
-    }
-    ~Kept() override { std::filesystem::remove_all(directory); }
+    test::Folder directory;
     void put(const char* name, const std::string& members) const {
         std::ofstream{directory / name} << "<properties>\n" << members << "\n</properties>\n";
     }
-    [[nodiscard]] std::string get(const char* name) const { return contents((directory / name).string()); }
+    [[nodiscard]] std::string get(const char* name) const { return test::contents_of(directory / name); }
     [[nodiscard]] Ended run(const std::string& seed = "4") const {
         return run_loom({"--picks", "10", "--seed", seed, "--properties", directory.string()});
     }

@@ -1,5 +1,6 @@
 // The cutter in real time, recorded by a program beside it from the first look to the end: the thesis' report
 // (3.3) as people use it.
+#include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 
 #include <nlohmann/json.hpp>
@@ -7,32 +8,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <vector>
-
-#include <stdlib.h>
 
 namespace cut_to_length {
 namespace {
 
 using tappet::Ended;
 using tappet::run_line;
+using tappet::test::Folder;
 using testing::HasSubstr;
-
-struct Folder {
-    std::filesystem::path path = [] {
-        char name[] = "/tmp/tappet_recorded_XXXXXX";
-        return std::filesystem::path{::mkdtemp(name)};
-    }();
-    ~Folder() { std::filesystem::remove_all(path); }
-};
 
 /// The machine runs while the shell does what is said, with `browse` for tappet-browse.
 Ended beside_the_cutter(const Folder& folder, const std::string& what) {
-    return run_line("cd " + folder.path.string() +
+    return run_line("cd " + folder.string() +
                     " && browse() { " TAPPET_BROWSE " --directory browsers \"$@\"; }"
                     "; " TAPPET_CUTTER
                     " --real --quiet --for 60 --browse browsers > machine 2>&1 & machine=$!"
@@ -49,8 +40,7 @@ TEST(RecordedCutter, tells_in_a_file_what_it_did_step_by_step) {
     EXPECT_THAT(ended.text, HasSubstr("wheel.fired  on change"));
     EXPECT_THAT(ended.text, HasSubstr("written to a.mcap: "));
     ASSERT_THAT(ended.text, HasSubstr("converted: 0"));
-    const Ended read =
-        run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder.path / "a.mcap").string());
+    const Ended read = run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder / "a.mcap").string());
     ASSERT_EQ(read.exit_code, 0) << read.text;
     std::map<std::string, std::vector<nlohmann::json>> topics;
     std::istringstream lines{read.text};
@@ -78,7 +68,7 @@ TEST(RecordedCutter, tells_in_a_file_what_it_did_step_by_step) {
             if (lost["message"]["channel"] == topic) told += lost["message"]["samples"].get<std::uint64_t>();
         EXPECT_GE(told, missing) << topic;
     }
-    std::ifstream table{folder.path / "a.csv"};
+    std::ifstream table{folder / "a.csv"};
     std::string head;
     std::getline(table, head);
     EXPECT_EQ(head.substr(0, 12), "time_s,lost,");
@@ -111,8 +101,7 @@ TEST(RecordedCutter, is_recorded_until_somebody_ends_it_or_it_ends_itself) {
     EXPECT_THAT(ended.text, HasSubstr("'machine' is no MCAP file"));
     EXPECT_THAT(ended.text, HasSubstr("'report stop' takes the file of 'report start'"));
     for (const char* name : {"a.mcap", "b.mcap"}) {
-        const Ended read =
-            run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder.path / name).string());
+        const Ended read = run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder / name).string());
         EXPECT_EQ(read.exit_code, 0) << name << ": " << read.text;
     }
 }
@@ -127,7 +116,7 @@ TEST(RecordedCutter, leaves_a_file_that_is_good_as_far_as_it_goes_when_the_recor
     EXPECT_THAT(ended.text, HasSubstr("the recording was cut off, and is good up to there"));
     EXPECT_THAT(ended.text, HasSubstr("converted: 0"));
     const Ended read =
-        run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder.path / "a.mcap").string() + " --cut");
+        run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder / "a.mcap").string() + " --cut");
     EXPECT_EQ(read.exit_code, 0) << read.text;
     EXPECT_THAT(read.text, HasSubstr("line.target"));
 }

@@ -2,9 +2,10 @@
 // Which black boxes are kept: the last ones, whatever the clock says.
 #include "toolchain/machine/black_box.hpp"
 
+#include "tests/toolchain/folder.hpp"
+
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -18,14 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BlackBoxes : testing::Test {
-    char name[32] = "/tmp/black-boxes-XXXXXX";
-    fs::path folder = ::mkdtemp(name);
+    test::Folder folder;
     map::black_box::Record record{.magic = map::black_box::magic, .machine = {"loom"}};
 
-    ~BlackBoxes() override { fs::remove_all(folder); }
     /// Written at a time of its clock, in s since 1970.
     void keep(std::time_t at) {
-        const Sentence path = keep_black_box(folder.native(), record, {});
+        const Sentence path = keep_black_box(folder.string(), record, {});
         ASSERT_FALSE(path.empty());
         const timespec times[] = {{at, 0}, {at, 0}};
         ASSERT_EQ(::utimensat(AT_FDCWD, path.data(), times, 0), 0);

@@ -34,24 +34,30 @@ Page* shared_page() {
         Page;
 }
 
-/// The guardian's way to the wire.
-class GuardedWire final : public GuardedDevices {
+/// The guardian's devices of a machine that has none.
+class NoDevices : public GuardedDevices {
 public:
-    explicit GuardedWire(WirePage& page) : page_{page} {}
     std::expected<void, Sentence> open(const AcceptedMachine&) override { return {}; }
     [[nodiscard]] std::span<const ProvidedDevice> provided() const noexcept override { return {}; }
     void report(os::ArmingReport&) override {}
     [[nodiscard]] WireCounters counters() const noexcept override { return {}; }
     [[nodiscard]] Bounded<int, 16> kept_by_guardian() const noexcept override { return {}; }
     std::expected<void, Sentence> prepare_safe_ending() override { return {}; }
+    std::size_t write_safe_lines() noexcept override { return 0; }
+    std::size_t send_safe_frames(Duration) noexcept override { return 0; }
+    std::size_t write_safe_registers(Duration, const Meanwhile&) noexcept override { return 0; }
+};
+
+/// The guardian's way to the wire.
+class GuardedWire final : public NoDevices {
+public:
+    explicit GuardedWire(WirePage& page) : page_{page} {}
     std::size_t write_safe_lines() noexcept override {
         ++page_.by_guardian;
         if (page_.is_gone) return 1;
         page_.be_safe();
         return 0;
     }
-    std::size_t send_safe_frames(Duration) noexcept override { return 0; }
-    std::size_t write_safe_registers(Duration, const Meanwhile&) noexcept override { return 0; }
 
 private:
     WirePage& page_;

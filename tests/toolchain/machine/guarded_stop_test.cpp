@@ -155,36 +155,34 @@ struct AFirmware : testing::Test {
     static_assert(bound < long_time, "who waits for a supervisor that sleeps is late");
 };
 
-TEST_F(AFirmware, that_is_asked_to_stop_does_so_itself_and_ends_well) {
-    ASSERT_NO_FATAL_FAILURE(run(Ill::nothing));
-    ask();
-    EXPECT_LT(until_safe(), bound);
-    EXPECT_EQ(exit_code(), 0);
-    EXPECT_EQ(page->by_guardian, 0);
-}
+/// Who is asked to stop, and whether its guardian wrote the outputs, too.
+struct Asked {
+    const char* name;
+    Ill ill;
+    int exit_code;
+    bool by_guardian;
+};
+void PrintTo(const Asked& row, std::ostream* out) { *out << row.name; }
+struct AskedToStop : AFirmware, testing::WithParamInterface<Asked> {};
+INSTANTIATE_TEST_SUITE_P(
+    firmware, AskedToStop,
+    testing::Values(Asked{"does_so_itself_and_ends_well", Ill::nothing, 0, false},
+                    Asked{"while_it_starts_is_safe_before_the_initialising_has_come_to_its_end",
+                          Ill::initialises_long, 0, false},
+                    Asked{"whose_finalising_takes_long_is_safe_before_it", Ill::finalises_long, 0, false},
+                    Asked{
+                        "whose_device_took_no_safe_values_is_made_safe_by_its_guardian_after_its_orderly_end",
+                        Ill::device_takes_nothing, 0, true},
+                    Asked{"whose_supervisor_does_not_come_to_the_end_of_a_stop_is_made_safe_by_its_guardian",
+                          Ill::supervisor_sleeps_in_stop, 128 + SIGKILL, true}),
+    [](const auto& row) { return std::string{row.param.name}; });
 
-TEST_F(AFirmware, that_is_asked_to_stop_while_it_starts_is_safe_before_the_initialising_has_come_to_its_end) {
-    ASSERT_NO_FATAL_FAILURE(run(Ill::initialises_long));
+TEST_P(AskedToStop, is_safe_in_time) {
+    ASSERT_NO_FATAL_FAILURE(run(GetParam().ill));
     ask();
     EXPECT_LT(until_safe(), bound);
-    EXPECT_EQ(exit_code(), 0);
-    EXPECT_EQ(page->by_guardian, 0);
-}
-
-TEST_F(AFirmware, whose_finalising_takes_long_is_safe_before_it) {
-    ASSERT_NO_FATAL_FAILURE(run(Ill::finalises_long));
-    ask();
-    EXPECT_LT(until_safe(), bound);
-    EXPECT_EQ(exit_code(), 0);
-    EXPECT_EQ(page->by_guardian, 0);
-}
-
-TEST_F(AFirmware, whose_device_took_no_safe_values_is_made_safe_by_its_guardian_after_its_orderly_end) {
-    ASSERT_NO_FATAL_FAILURE(run(Ill::device_takes_nothing));
-    ask();
-    EXPECT_LT(until_safe(), bound);
-    EXPECT_EQ(exit_code(), 0);
-    EXPECT_GT(page->by_guardian, 0);
+    EXPECT_EQ(exit_code(), GetParam().exit_code);
+    EXPECT_EQ(page->by_guardian > 0, GetParam().by_guardian);
 }
 
 TEST_F(AFirmware, whose_device_nobody_reaches_does_not_end_as_if_all_were_well) {
@@ -219,14 +217,6 @@ TEST_F(AFirmware, whose_supervisor_does_not_begin_a_stop_that_was_asked_for_is_m
     ASSERT_TRUE(becomes([] { return page->is_ill.load(); }));
     page->asked = to_ns(os::Clock::monotonic());
     EXPECT_LT(until_safe(), board.stop_begins_within() + 250ms);
-    EXPECT_EQ(exit_code(), 128 + SIGKILL);
-    EXPECT_GT(page->by_guardian, 0);
-}
-
-TEST_F(AFirmware, whose_supervisor_does_not_come_to_the_end_of_a_stop_is_made_safe_by_its_guardian) {
-    ASSERT_NO_FATAL_FAILURE(run(Ill::supervisor_sleeps_in_stop));
-    ask();
-    EXPECT_LT(until_safe(), bound);
     EXPECT_EQ(exit_code(), 128 + SIGKILL);
     EXPECT_GT(page->by_guardian, 0);
 }

@@ -5,6 +5,7 @@
 #include "kernel/os/clock.hpp"
 #include "kernel/os/sleep.hpp"
 #include "tests/kernel/os/watchdog_device.hpp"
+#include "tests/toolchain/machine/firmware_on_host.hpp"
 #include "toolchain/machine/firmware.hpp"
 
 #include <gmock/gmock.h>
@@ -19,19 +20,13 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 
-class Wires final : public GuardedDevices {
+class Wires final : public test::NoDevices {
 public:
     std::vector<std::string>& done;
     std::size_t dead_chips = 0;
     int server_steps = 1;
     explicit Wires(std::vector<std::string>& to) : done{to} {}
 
-    std::expected<void, Sentence> open(const AcceptedMachine&) override { return {}; }
-    std::span<const ProvidedDevice> provided() const noexcept override { return {}; }
-    void report(os::ArmingReport&) override {}
-    WireCounters counters() const noexcept override { return {}; }
-    Bounded<int, 16> kept_by_guardian() const noexcept override { return {}; }
-    std::expected<void, Sentence> prepare_safe_ending() override { return {}; }
     std::size_t write_safe_lines() noexcept override {
         done.emplace_back("lines");
         return dead_chips;

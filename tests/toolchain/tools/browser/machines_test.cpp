@@ -1,7 +1,7 @@
 // Several machines in one command: by name, side by side, and whatever one of them does the others are seen
 // (thesis 4.8).
+#include "tests/toolchain/tools/browser/outcome.hpp"
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
-#include "toolchain/tools/browser/program.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -20,43 +20,18 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-struct Outcome {
-    int code = -1;
-    std::string out{};
-    std::string errors{};
-};
-
-Outcome run_words(const std::vector<std::string>& words) {
-    std::ostringstream out;
-    std::ostringstream errors;
-    Surroundings surroundings{out, errors};
-    const int code = run_program(words, surroundings);
-    return {code, out.str(), errors.str()};
-}
-
-/// After the requests that open a session.
-std::vector<std::string> asked(const SampleMachine& machine) {
-    std::vector<std::string> all;
-    for (const std::string& each : machine.requests())
-        if (each != "hello" && each != "map") all.push_back(each);
-    return all;
-}
-
 class Several : public testing::Test {
 protected:
     Several() {
-        std::string pattern = testing::TempDir() + "tappet-machines-XXXXXX";
-        directory = ::mkdtemp(pattern.data());
-        std::filesystem::create_symlink(saw.socket(), directory + "/saw.socket");
-        std::filesystem::create_symlink(drill.socket(), directory + "/drill.socket");
+        std::filesystem::create_symlink(saw.socket(), directory / "saw.socket");
+        std::filesystem::create_symlink(drill.socket(), directory / "drill.socket");
     }
-    ~Several() override { std::filesystem::remove_all(directory); }
     [[nodiscard]] Outcome run(std::vector<std::string> words) const {
-        words.insert(words.begin(), {"--directory", directory, "--timeout", "500ms"});
+        words.insert(words.begin(), {"--directory", directory.string(), "--timeout", "500ms"});
         return run_words(words);
     }
     SampleMachine saw, drill;
-    std::string directory;
+    test::Folder directory;
 };
 
 TEST_F(Several, are_listed_with_what_they_are_about) {
@@ -94,12 +69,12 @@ TEST_F(Several, a_machine_hears_its_own_names_and_the_other_hears_nothing) {
     EXPECT_EQ(run({"restart", "saw.motion"}).code, 0);
     EXPECT_EQ(run({"behaviour", "pause", "saw.loom.cycle"}).out, "saw.loom.cycle: pause done\n");
     EXPECT_EQ(run({"save", "saw"}).code, 0);
-    EXPECT_THAT(asked(drill), IsEmpty());
-    EXPECT_THAT(asked(saw), ElementsAre("set shaft.gains.p 1.5 shaft.gains.i 2", "force loom.lamp true",
-                                        "restart motion", "behave pause loom.cycle", "save"));
+    EXPECT_THAT(drill.asked(), IsEmpty());
+    EXPECT_THAT(saw.asked(), ElementsAre("set shaft.gains.p 1.5 shaft.gains.i 2", "force loom.lamp true",
+                                         "restart motion", "behave pause loom.cycle", "save"));
     EXPECT_EQ(run({"call", "drill.shaft.reset"}).out, "drill.shaft.reset = 3\n");
     EXPECT_THAT(run({"call", "drill.shaft.reset", "--json"}).out, HasSubstr(R"("machine":"drill")"));
-    EXPECT_THAT(asked(drill), ElementsAre("call shaft.reset", "call shaft.reset"));
+    EXPECT_THAT(drill.asked(), ElementsAre("call shaft.reset", "call shaft.reset"));
 }
 
 TEST_F(Several, events_of_both_are_told_as_they_come) {
@@ -110,7 +85,7 @@ TEST_F(Several, events_of_both_are_told_as_they_come) {
     const Outcome told = run({"events", "saw.shaft.beat_up", "drill.shaft.beat_up", "--count", "2"});
     EXPECT_EQ(told.code, 0) << told.errors;
     EXPECT_EQ(told.out, "saw.shaft.beat_up [1.5] at 0.000005s\ndrill.shaft.beat_up [1.5] at 0.000005s\n");
-    EXPECT_THAT(asked(drill), ElementsAre("subscribe shaft.beat_up", "unsubscribe shaft.beat_up"));
+    EXPECT_THAT(drill.asked(), ElementsAre("subscribe shaft.beat_up", "unsubscribe shaft.beat_up"));
 }
 
 TEST_F(Several, what_one_command_tells_of_a_machine_is_told_of_each_or_of_the_one_that_is_named) {
@@ -178,8 +153,9 @@ TEST_F(Several, a_name_that_begins_with_no_machine_is_told_what_was_meant) {
                 HasSubstr("'shaft.angle' does not say of which machine: write drill.shaft.angle or "
                           "saw.shaft.angle"));
     EXPECT_THAT(errors({"get", "swa.shaft.angle"}), HasSubstr("did you mean \"saw\"?"));
-    EXPECT_THAT(errors({"get", "polisher.shaft.angle"}),
-                HasSubstr("there is no machine 'polisher' in '" + directory + "'; there are drill, saw"));
+    EXPECT_THAT(
+        errors({"get", "polisher.shaft.angle"}),
+        HasSubstr("there is no machine 'polisher' in '" + directory.string() + "'; there are drill, saw"));
     EXPECT_THAT(errors({"get", "saw.shaft.angel"}), HasSubstr("did you mean \"saw.shaft.angle\"?"));
     EXPECT_THAT(errors({"get", "saw.shaft.angle", "drill.shaft.angel"}), HasSubstr("drill.shaft.angle"));
     EXPECT_THAT(errors({"get", "saw"}), HasSubstr("'saw' is a machine; name what is meant in it"));
@@ -188,8 +164,8 @@ TEST_F(Several, a_name_that_begins_with_no_machine_is_told_what_was_meant) {
     EXPECT_THAT(errors({"set", "saw.shaft.gains.p", "1", "drill.shaft.gains.p", "1"}),
                 HasSubstr("'set' is about one machine at a time; these are of saw and drill"));
     EXPECT_THAT(errors({"set", "saw.shaft.gains.p"}), HasSubstr("'set' was given 1 arguments"));
-    EXPECT_THAT(asked(saw), IsEmpty());
-    EXPECT_THAT(asked(drill), IsEmpty());
+    EXPECT_THAT(saw.asked(), IsEmpty());
+    EXPECT_THAT(drill.asked(), IsEmpty());
 }
 
 TEST_F(Several, may_be_given_one_by_one_and_two_of_one_name_are_refused) {
@@ -202,12 +178,12 @@ TEST_F(Several, may_be_given_one_by_one_and_two_of_one_name_are_refused) {
 }
 
 TEST_F(Several, the_only_one_left_answers_to_its_name_all_the_same) {
-    std::filesystem::remove(directory + "/drill.socket");
+    std::filesystem::remove(directory / "drill.socket");
     saw.write("shaft.angle", 12.5);
     EXPECT_EQ(run({"get", "saw.shaft.angle"}).out, "shaft.angle = 12.5 deg\n");
     EXPECT_EQ(run({"get", "shaft.angle"}).out, "shaft.angle = 12.5 deg\n");
     EXPECT_EQ(run({"restart", "saw.shaft"}).code, 0);
-    EXPECT_THAT(asked(saw), ElementsAre("restart shaft"));
+    EXPECT_THAT(saw.asked(), ElementsAre("restart shaft"));
 }
 
 TEST_F(Several, a_refusal_says_whose_it_is) {

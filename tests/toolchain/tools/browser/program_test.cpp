@@ -1,6 +1,6 @@
 // The program from its command line to its exit code, against a machine under the test's hand (thesis 4.8).
-#include "toolchain/tools/browser/program.hpp"
 
+#include "tests/toolchain/tools/browser/outcome.hpp"
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -20,29 +20,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-struct Outcome {
-    int code = -1;
-    std::string out{};
-    std::string errors{};
-};
-
 class Program : public testing::Test {
 protected:
     Outcome run(std::vector<std::string> words) {
-        std::ostringstream out;
-        std::ostringstream errors;
-        Surroundings surroundings{out, errors};
         words.insert(words.begin(), {"--directory", machine.directory()});
-        const int code = run_program(words, surroundings);
-        return {code, out.str(), errors.str()};
+        return run_words(words);
     }
-    /// After the requests that open a session.
-    std::vector<std::string> asked() {
-        std::vector<std::string> all;
-        for (const std::string& each : machine.requests())
-            if (each != "hello" && each != "map") all.push_back(each);
-        return all;
-    }
+    std::vector<std::string> asked() { return machine.asked(); }
     SampleMachine machine;
 };
 
@@ -351,12 +335,9 @@ TEST_F(Program, without_a_machine_the_exit_code_is_3_and_the_cure_is_said) {
     const Outcome outcome = run({"list"});
     EXPECT_EQ(outcome.code, 3);
     EXPECT_THAT(outcome.errors, HasSubstr("start it again"));
-    std::ostringstream out;
-    std::ostringstream errors;
-    Surroundings surroundings{out, errors};
-    const std::vector<std::string> elsewhere{"list", "--directory", "/nowhere"};
-    EXPECT_EQ(run_program(elsewhere, surroundings), 3);
-    EXPECT_THAT(errors.str(), HasSubstr("--socket"));
+    const Outcome elsewhere = run_words({"list", "--directory", "/nowhere"});
+    EXPECT_EQ(elsewhere.code, 3);
+    EXPECT_THAT(elsewhere.errors, HasSubstr("--socket"));
 }
 
 TEST_F(Program, a_machine_that_does_not_answer_is_exit_code_5) {

@@ -35,6 +35,7 @@ public:
             ::execl(TAPPET_BROWSE, "tappet-browse", "--socket", machine.socket().c_str(), nullptr);
             ::_exit(127);
         }
+        EXPECT_TRUE(shows("sample> ")) << seen_;
     }
     ~Typed() {
         if (process_ > 0) ::kill(process_, SIGKILL);
@@ -87,7 +88,6 @@ TEST(Prompt, completes_names_with_tab_and_runs_the_line) {
     SampleMachine machine;
     machine.write("shaft.angle", 12.5);
     Typed typed{machine};
-    ASSERT_TRUE(typed.shows("sample> ")) << typed.seen();
     typed.type("ge\tsha\t.a\t\n"); // get, shaft, shaft.angle
     EXPECT_TRUE(typed.shows("shaft.angle = 12.5 deg")) << typed.seen();
     typed.type("set shaft.g\tp\t2.5\n");
@@ -100,7 +100,6 @@ TEST(Prompt, completes_names_with_tab_and_runs_the_line) {
 TEST(Prompt, lists_what_a_name_may_go_on_with) {
     SampleMachine machine;
     Typed typed{machine};
-    ASSERT_TRUE(typed.shows("sample> "));
     typed.type("set shaft.gains.\t");
     EXPECT_TRUE(typed.shows("shaft.gains.i\r\nshaft.gains.p")) << typed.seen();
 }
@@ -108,7 +107,6 @@ TEST(Prompt, lists_what_a_name_may_go_on_with) {
 TEST(Prompt, tells_what_was_wrong_and_goes_on) {
     SampleMachine machine;
     Typed typed{machine};
-    ASSERT_TRUE(typed.shows("sample> "));
     typed.type("get shaft.angel\n");
     EXPECT_TRUE(typed.shows("did you mean \"shaft.angle\"?")) << typed.seen();
     typed.type("help send\n");
@@ -122,7 +120,6 @@ TEST(Prompt, keeps_its_history_for_the_next_session) {
     SampleMachine machine;
     {
         Typed typed{machine};
-        ASSERT_TRUE(typed.shows("sample> "));
         typed.type("get loom.state\n");
         EXPECT_TRUE(typed.shows("loom.state = stopped")) << typed.seen();
         ASSERT_TRUE(typed.shows("sample> ")) << typed.seen();
@@ -130,7 +127,6 @@ TEST(Prompt, keeps_its_history_for_the_next_session) {
         EXPECT_EQ(typed.code(), 0);
     }
     Typed typed{machine};
-    ASSERT_TRUE(typed.shows("sample> "));
     typed.type("\x10\x10\n"); // ^P twice: after "quit"
     EXPECT_TRUE(typed.shows("loom.state = stopped")) << typed.seen();
 }
@@ -138,7 +134,6 @@ TEST(Prompt, keeps_its_history_for_the_next_session) {
 TEST(Prompt, an_interrupt_gives_up_the_line_and_no_more) {
     SampleMachine machine;
     Typed typed{machine};
-    ASSERT_TRUE(typed.shows("sample> "));
     typed.type("get nonsense\x03");
     ASSERT_TRUE(typed.shows("sample> ")) << typed.seen();
     typed.type("get loom.state\n");
@@ -149,7 +144,6 @@ TEST(WatchView, refreshes_marks_forced_values_and_ends_with_q) {
     SampleMachine machine;
     machine.write("shaft.angle", 12.5);
     Typed typed{machine};
-    ASSERT_TRUE(typed.shows("sample> "));
     typed.type("watch shaft.angle --every 20ms\n");
     ASSERT_TRUE(typed.shows("12.5")) << typed.seen();
     machine.write("shaft.angle", 33.25);
@@ -167,7 +161,6 @@ TEST(WatchView, refreshes_marks_forced_values_and_ends_with_q) {
 TEST(WatchView, says_when_the_machine_has_ended_and_exits_with_3) {
     SampleMachine machine;
     Typed typed{machine};
-    ASSERT_TRUE(typed.shows("sample> "));
     typed.type("watch shaft.angle --every 20ms\n");
     ASSERT_TRUE(typed.shows("picture 2")) << typed.seen();
     machine.end();

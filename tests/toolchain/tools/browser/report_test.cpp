@@ -1,6 +1,7 @@
 // Recorded values on their way out of a machine (thesis 3.3): what a browser takes off the tapes, what the
 // file then says, and what is left of both after overwriting, cuts and damage.
 #include "tests/kernel/services/reporting/recorded_machine.hpp"
+#include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 #include "toolchain/tools/browser/csv.hpp"
 #include "toolchain/tools/browser/record_file.hpp"
@@ -12,14 +13,11 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
-
-#include <unistd.h>
 
 namespace tappet::browser {
 namespace {
@@ -371,16 +369,14 @@ TEST_F(Recorded, a_reader_that_is_not_ours_finds_the_same) {
     const std::string& whole = end();
     const auto contents = mcap::read(whole);
     ASSERT_TRUE(contents.has_value());
-    char name[] = "/tmp/tappet_report_XXXXXX";
-    ::close(::mkstemp(name));
+    const test::Folder folder;
+    const std::string name = folder / "a.mcap";
     const auto foreign = [&](std::string_view bytes, std::string_view option) {
         std::ofstream{name, std::ios::binary} << bytes;
-        return run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + std::string{name} + " " +
-                        std::string{option});
+        return run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + name + " " + std::string{option});
     };
     const Ended all = foreign(whole, "");
     const Ended cut = foreign(std::string_view{whole}.substr(0, whole.size() * 2 / 3), "--cut");
-    std::filesystem::remove(name);
     ASSERT_EQ(all.exit_code, 0) << all.text;
     EXPECT_EQ(cut.exit_code, 0) << cut.text;
     EXPECT_THAT(all.text, StartsWith(cut.text));
@@ -462,11 +458,7 @@ TEST(Mcap, refuses_what_is_none_and_what_contradicts_itself) {
 // ---- files on the disk
 
 struct Disk : testing::Test {
-    std::filesystem::path folder = [] {
-        char name[] = "/tmp/tappet_report_XXXXXX";
-        return std::filesystem::path{::mkdtemp(name)};
-    }();
-    void TearDown() override { std::filesystem::remove_all(folder); }
+    test::Folder folder;
     [[nodiscard]] std::string at(const char* name) const { return (folder / name).string(); }
 };
 

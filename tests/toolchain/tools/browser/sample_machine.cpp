@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <filesystem>
 
 #include <poll.h>
 #include <sys/mman.h>
@@ -255,9 +254,7 @@ SampleMachine::SampleMachine() {
     block_ = {static_cast<std::byte*>(at), built.size()};
     std::ranges::copy(built, block_.begin());
 
-    std::string pattern = (std::filesystem::temp_directory_path() / "tappet-browse-XXXXXX").string();
-    directory_ = ::mkdtemp(pattern.data());
-    path_ = directory_ + "/sample.socket";
+    path_ = directory_ / "sample.socket";
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     std::ranges::copy(path_, address.sun_path);
@@ -271,7 +268,6 @@ SampleMachine::~SampleMachine() {
     end();
     ::munmap(block_.data(), block_.size());
     ::close(memory_);
-    std::filesystem::remove_all(directory_);
 }
 
 void SampleMachine::end() {
@@ -327,6 +323,12 @@ void SampleMachine::answer(std::string_view request, std::vector<std::string> pa
 std::vector<std::string> SampleMachine::requests() const {
     const std::scoped_lock lock{mutex_};
     return requests_;
+}
+
+std::vector<std::string> SampleMachine::asked() const {
+    std::vector<std::string> all = requests();
+    std::erase_if(all, [](const std::string& each) { return each == "hello" || each == "map"; });
+    return all;
 }
 
 void SampleMachine::reply(int client, std::string_view text) {

@@ -4,6 +4,7 @@
 
 #include "kernel/machine/map/layout.hpp"
 #include "kernel/services/browsing/protocol.hpp"
+#include "tests/toolchain/folder.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -22,14 +23,6 @@ namespace tappet::browser {
 class SampleMap {
 public:
     SampleMap();
-
-    struct Place {
-        std::uint64_t value = 0;
-        std::uint64_t stamp = 0;
-        std::uint64_t writes = 0;
-        std::uint64_t forced = 0;
-        std::uint64_t forced_value = 0;
-    };
 
     std::uint32_t activity(std::string_view name);
     std::uint32_t component(std::string_view name, std::string_view type, std::uint32_t activity,
@@ -88,7 +81,7 @@ public:
     SampleMachine& operator=(const SampleMachine&) = delete;
 
     [[nodiscard]] const std::string& socket() const { return path_; }
-    [[nodiscard]] const std::string& directory() const { return directory_; }
+    [[nodiscard]] const std::string& directory() const { return directory_.string(); }
     /// Writes a value as the machine would: its activity's generation is odd meanwhile.
     template <class T> void write(std::string_view facet, const T& value, std::int64_t stamp_ns = 1000) {
         write_bytes(facet, std::as_bytes(std::span{&value, 1}), stamp_ns);
@@ -101,6 +94,8 @@ public:
     /// number. Anything else gets an "ok".
     void answer(std::string_view request, std::vector<std::string> packets);
     [[nodiscard]] std::vector<std::string> requests() const;
+    /// After those that open a session.
+    [[nodiscard]] std::vector<std::string> asked() const;
     /// As the guardian of the machine would see it.
     [[nodiscard]] std::span<const std::byte> memory() const { return block_; }
     /// Closes every connection, as a machine that ends does.
@@ -120,7 +115,7 @@ private:
     std::map<std::uint32_t, std::uint32_t> activity_of_{};
     int memory_ = -1;
     std::span<std::byte> block_{};
-    std::string directory_{};
+    test::Folder directory_{};
     std::string path_{};
     int listener_ = -1;
     std::atomic<bool> ending_{false};

@@ -1,12 +1,12 @@
 // The lane as one looks at it: all its machines by the names of their system, whatever one of them does.
 #include "apps/woodworking_lane/host/lane_run.hpp"
-#include "toolchain/tools/browser/program.hpp"
+#include "tests/toolchain/folder.hpp"
+#include "tests/toolchain/tools/browser/outcome.hpp"
 
 #include <gmock/gmock.h>
 
 #include <atomic>
 #include <filesystem>
-#include <sstream>
 #include <thread>
 
 namespace tappet::browser {
@@ -16,20 +16,10 @@ using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 
-struct Outcome {
-    int code = -1;
-    std::string out{};
-    std::string errors{};
-};
-
 /// Five machines in a thread of their own, at the pace of this host's clock.
 class LaneBrowsed : public testing::Test {
 protected:
-    LaneBrowsed() {
-        std::string pattern = testing::TempDir() + "tappet-lane-XXXXXX";
-        directory = ::mkdtemp(pattern.data());
-        lane.system.browse_in(directory);
-    }
+    LaneBrowsed() { lane.system.browse_in(directory.string()); }
     void SetUp() override {
         const auto started = lane.start();
         ASSERT_TRUE(started) << started.error().view();
@@ -45,19 +35,14 @@ protected:
         runs = false;
         if (thread.joinable()) thread.join();
         lane.system.stop();
-        std::filesystem::remove_all(directory);
     }
     Outcome run(std::vector<std::string> words, const std::string& patience = "10s") const {
-        std::ostringstream out;
-        std::ostringstream errors;
-        Surroundings surroundings{out, errors};
-        words.insert(words.begin(), {"--directory", directory, "--timeout", patience});
-        const int code = run_program(words, surroundings);
-        return {code, out.str(), errors.str()};
+        words.insert(words.begin(), {"--directory", directory.string(), "--timeout", patience});
+        return run_words(words);
     }
 
     static constexpr std::size_t none = woodworking::node_count;
-    std::string directory;
+    test::Folder directory;
     woodworking::LaneRun lane{1, 1000};
     std::atomic<bool> runs{false};
     std::atomic<std::size_t> killed{none};
@@ -87,12 +72,13 @@ TEST_F(LaneBrowsed, shows_all_its_machines_and_goes_on_when_one_is_gone) {
     EXPECT_THAT(without.errors, HasSubstr("'drill' does not answer: no answer within 1000 ms"));
     EXPECT_EQ(run({"get", "saw.station.number"}).out, "saw.station.number = 0\n");
 
-    std::filesystem::remove(directory + "/drill.socket");
-    EXPECT_THAT(run({"list"}).out, HasSubstr("has no socket in '" + directory + "'; nobody hears it"));
+    std::filesystem::remove(directory / "drill.socket");
+    EXPECT_THAT(run({"list"}).out,
+                HasSubstr("has no socket in '" + directory.string() + "'; nobody hears it"));
     const Outcome asked = run({"get", "drill.station.number"});
     EXPECT_EQ(asked.code, 3);
     EXPECT_THAT(asked.errors, HasSubstr("'drill' is a node of this system, and has no socket in"));
-    std::filesystem::remove(directory + "/polish.socket");
+    std::filesystem::remove(directory / "polish.socket");
     EXPECT_THAT(run({"list"}).out,
                 ContainsRegex("polish +has no socket in .*; heard by conveyor, glue, saw"));
 }

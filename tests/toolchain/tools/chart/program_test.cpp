@@ -1,4 +1,5 @@
 // A machine's chart program as a user runs it: the chart of its table, its behaviours, and what it refuses.
+#include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 
 #include <gmock/gmock.h>
@@ -8,30 +9,20 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <vector>
 
 namespace tappet::chart {
 namespace {
 
+using test::contents_of;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 namespace fs = std::filesystem;
 
-std::string contents_of(const fs::path& path) {
-    std::ifstream file{path};
-    return {std::istreambuf_iterator<char>{file}, {}};
-}
-
 struct ChartProgram : testing::Test {
-    fs::path folder;
-    ChartProgram() {
-        std::string pattern = testing::TempDir() + "tappet-chart-XXXXXX";
-        folder = ::mkdtemp(pattern.data());
-    }
-    ~ChartProgram() override { fs::remove_all(folder); }
+    test::Folder folder;
 
     [[nodiscard]] Ended run(const std::string& program, const std::string& words) const {
         return run_line("'" + program + "' --to '" + (folder / "charts").string() + "' " + words);

@@ -36,6 +36,13 @@ SpinSearch searched(const PromelaModel& model, const std::vector<std::string>& d
     return found;
 }
 
+/// And nothing was found.
+SpinSearch found_sound(const PromelaModel& model, const std::vector<std::string>& defines) {
+    SpinSearch found = searched(model, defines);
+    EXPECT_EQ(found.errors, 0) << found.error << "\n" << in_words(found.trail);
+    return found;
+}
+
 /// States, transitions, events and requests that no run comes to.
 std::vector<std::string> never(const SpinSearch& found) {
     std::vector<std::string> marks;
@@ -56,13 +63,10 @@ protected:
 
 void expect_sound(const Chart& chart) {
     const PromelaModel model = to_promela(chart);
-    const SpinSearch alone = searched(model, {});
-    EXPECT_EQ(alone.errors, 0) << alone.error << "\n" << in_words(alone.trail);
-    const SpinSearch asked = searched(model, {"REQUESTS"});
-    EXPECT_EQ(asked.errors, 0) << asked.error << "\n" << in_words(asked.trail);
+    found_sound(model, {});
+    const SpinSearch asked = found_sound(model, {"REQUESTS"});
     EXPECT_THAT(never(asked), IsEmpty());
-    const SpinSearch stopped = searched(model, {"STOP"});
-    EXPECT_EQ(stopped.errors, 0) << stopped.error << "\n" << in_words(stopped.trail);
+    found_sound(model, {"STOP"});
 }
 
 TEST_F(Verification, of_the_loom_finds_no_deadlock_and_each_state_and_the_final_one_from_everywhere) {
@@ -76,17 +80,14 @@ TEST_F(Verification, of_the_car_tracker_s_script_finds_the_same_from_its_flat_fo
     expect_sound(chart);
     // The program runs until stopProgram, which only an event sets: the model follows that variable.
     EXPECT_THAT(to_promela(chart).text, HasSubstr("tracking_v_stopProgram = 1;"));
-    const SpinSearch failing = searched(to_promela(chart), {"FAILURES", "STOP"});
-    EXPECT_EQ(failing.errors, 0) << failing.error << "\n" << in_words(failing.trail);
+    found_sound(to_promela(chart), {"FAILURES", "STOP"});
 }
 
 TEST_F(Verification, finds_a_state_that_is_never_left) {
     static constexpr std::array states{state("a", initial), state("b"), state("end", final)};
     static constexpr std::array rows{transition("a", "b", on("panel.go")),
                                      transition("a", "end", on("panel.stop"))};
-    Chart chart;
-    chart.name = chart.component = "trap";
-    chart.machine = {"trap", states, rows, nullptr, nullptr, {}};
+    const Chart chart = chart_of("trap", states, rows);
     const SpinSearch found = searched(to_promela(chart), {});
     EXPECT_GT(found.errors, 0);
     EXPECT_THAT(found.error, HasSubstr("invalid end state"));
@@ -97,9 +98,7 @@ TEST_F(Verification, finds_a_state_that_no_run_comes_to) {
     static constexpr std::array states{state("a", initial), state("b"), state("end", final)};
     static constexpr std::array rows{transition("a", "end", on("panel.stop")),
                                      transition("b", "a", on("panel.go"))};
-    Chart chart;
-    chart.name = chart.component = "gap";
-    chart.machine = {"gap", states, rows, nullptr, nullptr, {}};
+    const Chart chart = chart_of("gap", states, rows);
     EXPECT_THAT(never(searched(to_promela(chart), {"REQUESTS"})), Contains("state gap b"));
 }
 
@@ -109,15 +108,13 @@ Composition loom() { return {charts_of(carpet::table.view()), carpet::table.view
 
 TEST_F(Verification, of_the_loom_with_its_weft_keeps_every_invariant) {
     const PromelaModel model = to_promela(loom());
-    const SpinSearch found = searched(model, {"REQUESTS"});
-    EXPECT_EQ(found.errors, 0) << found.error << "\n" << in_words(found.trail);
+    const SpinSearch found = found_sound(model, {"REQUESTS"});
     EXPECT_THAT(never(found), IsEmpty());
     EXPECT_GT(found.states, 10'000) << "so small a space shows nothing";
 }
 
 TEST_F(Verification, of_the_loom_with_its_weft_comes_to_the_final_state_from_everywhere) {
-    const SpinSearch found = searched(to_promela(loom()), {"STOP"});
-    EXPECT_EQ(found.errors, 0) << found.error << "\n" << in_words(found.trail);
+    found_sound(to_promela(loom()), {"STOP"});
 }
 
 /// The loom with one reaction row changed.

@@ -46,12 +46,13 @@ inline constexpr auto press_transitions = [] {
 }();
 // clang-format on
 
-inline Chart press() {
+inline Chart chart_of(std::string_view name, std::span<const StateRow> states,
+                      std::span<const TransitionRow> transitions, TypeId component = nullptr) {
     Chart chart;
-    chart.name = "press";
-    chart.component = "press";
-    chart.machine = {"press", press_states, press_transitions, type_id<Press>, nullptr, {}};
+    chart.name = chart.component = name;
+    chart.machine = {name, states, transitions, component, nullptr, {}};
     return chart;
 }
+inline Chart press() { return chart_of("press", press_states, press_transitions, type_id<Press>); }
 
 } // namespace tappet::chart

@@ -1,12 +1,12 @@
 // The front door as a user meets it: help and completion of every word from one table, and what is wrong is
 // said before anything is built.
+#include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 #include "toolchain/tools/front/figures.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -29,13 +29,10 @@ const std::vector<std::string> every_word{"new",   "build", "run",    "test", "c
 
 /// In a new machine's folder, which is gone with the test.
 struct Door : testing::Test {
-    fs::path folder;
+    test::Folder folder;
     Door() {
-        std::string pattern = testing::TempDir() + "tappet-door-XXXXXX";
-        folder = ::mkdtemp(pattern.data());
         EXPECT_EQ(run_line("cd '" + folder.string() + "' && '" TAPPET "' new press --cam").exit_code, 0);
     }
-    ~Door() override { fs::remove_all(folder); }
 
     [[nodiscard]] Ended tappet(const std::string& words) const {
         return run_line("cd '" + (folder / "press").string() + "' && '" TAPPET "' " + words);

@@ -2,10 +2,11 @@
 // that is there is written over.
 #include "toolchain/tools/front/project.hpp"
 
+#include "tests/toolchain/folder.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -19,16 +20,9 @@ namespace fs = std::filesystem;
 
 struct Folder : testing::Test {
     fs::path before = fs::current_path();
-    fs::path folder;
-    Folder() {
-        std::string pattern = testing::TempDir() + "tappet-front-XXXXXX";
-        folder = ::mkdtemp(pattern.data());
-        fs::current_path(folder);
-    }
-    ~Folder() override {
-        fs::current_path(before);
-        fs::remove_all(folder);
-    }
+    test::Folder folder;
+    Folder() { fs::current_path(folder); }
+    ~Folder() override { fs::current_path(before); }
 };
 
 struct Line {

@@ -1,5 +1,6 @@
 // What goes into an image and where it may be written, without a kernel of ours: the kernel's tables and the
 // disks are made up.
+#include "tests/toolchain/folder.hpp"
 #include "toolchain/tools/image/disk.hpp"
 #include "toolchain/tools/image/flash.hpp"
 #include "toolchain/tools/image/image.hpp"
@@ -25,12 +26,7 @@ using testing::Not;
 namespace fs = std::filesystem;
 
 struct Folder : testing::Test {
-    fs::path folder;
-    Folder() {
-        std::string pattern = testing::TempDir() + "tappet-image-test-XXXXXX";
-        folder = ::mkdtemp(pattern.data());
-    }
-    ~Folder() override { fs::remove_all(folder); }
+    test::Folder folder;
     static std::string fault_of(const auto& act) {
         try {
             act();
