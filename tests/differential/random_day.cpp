@@ -144,8 +144,6 @@ void RandomDay::single_step() {
 void RandomDay::do_something() {
     switch (random_.below(12)) {
     case 0:
-        if (root_ != nullptr) return emit();
-        break;
     case 1:
     case 2:
         if (root_ != nullptr) return emit();

@@ -35,7 +35,7 @@ Machine::Reply Machine::ask(const State* source, const Transition& transition,
         if (now - active_of(source)->entered_at < std::get<Span>(*after).ns) return Reply::no;
     }
     const auto failed = [&] {
-        fail(transition.line);
+        fail();
         count("guard fails");
         return Reply::failed;
     };
@@ -123,7 +123,7 @@ bool Machine::run_states(std::int64_t now) {
         running_ = nullptr;
         switch (result) {
         case ProgramRun::Result::ended: at.phase = Phase::ran; break;
-        case ProgramRun::Result::failed: fail(at.run.line()); return false;
+        case ProgramRun::Result::failed: fail(); return false;
         case ProgramRun::Result::left_over: at.phase = Phase::under_way; return false;
         default: at.phase = Phase::waits;
         }

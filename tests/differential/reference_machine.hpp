@@ -45,7 +45,6 @@ public:
     [[nodiscard]] const Type& type() const { return *type_; }
     std::vector<std::unique_ptr<Machine>>& children() { return children_; }
     [[nodiscard]] std::size_t lost() const { return lost_; }
-    [[nodiscard]] int fault_line() const { return fault_line_; }
 
     // ---- as the world of its programs
     [[nodiscard]] Kind kind_of(const std::string& name) const override;
@@ -126,7 +125,7 @@ private:
     void plan(const State* source, const State* target, const Block& program, const std::string& enters);
     void take(const Chosen& chosen);
     void replace(const State* target, bool departs);
-    void fail(int line);
+    void fail();
     [[nodiscard]] bool in_hand() const { return !acts_.empty() || !chosen_.empty(); }
     [[nodiscard]] bool is_final() const { return active_.size() == 1 && active_[0].state->final; }
 
@@ -179,7 +178,6 @@ private:
     std::set<const State*> ran_;
     std::size_t lost_ = 0;
     std::int64_t now_ = 0;
-    int fault_line_ = 0;
 };
 
 } // namespace tappet::reference

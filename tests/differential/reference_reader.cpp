@@ -155,7 +155,7 @@ private:
         return made;
     }
     void state(Type& machine, const std::string& parent, const std::string& region) {
-        State made{.parent = parent, .region = region, .line = here().line};
+        State made{.parent = parent, .region = region};
         for (;;) {
             if (take("initial"))
                 made.initial = true;
@@ -203,7 +203,7 @@ private:
         semicolons();
     }
     void transition(State& state, bool may_be_event) {
-        Transition made{.line = here().line};
+        Transition made;
         std::string otherwise_enters;
         if (take("after")) {
             made.timed = true;
@@ -284,7 +284,7 @@ private:
             Statement call{.kind = Statement::Kind::perform, .line = line};
             call.expressions.push_back(value);
             into.push_back(call);
-            value = {.kind = Expression::Kind::name, .text = std::string{result_of_call}, .line = line};
+            value = {.kind = Expression::Kind::name, .text = std::string{result_of_call}};
         }
         into.push_back(made);
     }
@@ -301,7 +301,7 @@ private:
         Statement fetched{.kind = Statement::Kind::assign, .line = line};
         fetched.text = call.parts.back().text;
         fetched.expressions.push_back(
-            {.kind = Expression::Kind::name, .text = std::string{result_of_program}, .line = line});
+            {.kind = Expression::Kind::name, .text = std::string{result_of_program}});
         call.parts.pop_back();
         into.push_back(made);
         into.push_back(fetched);
@@ -406,7 +406,7 @@ private:
     Expression expression(int at_least = 1) {
         Expression left = unary();
         for (int now = strength(); now >= at_least; now = strength()) {
-            Expression made{.kind = Expression::Kind::binary, .text = here().text, .line = here().line};
+            Expression made{.kind = Expression::Kind::binary, .text = here().text};
             if (made.text == "or") made.text = "||";
             if (made.text == "and") made.text = "&&";
             ++at_;
@@ -420,7 +420,7 @@ private:
     Expression unary() {
         for (std::string_view sign : {"!", "not", "-", "+"})
             if (is(sign)) {
-                Expression made{.kind = Expression::Kind::unary, .text = here().text, .line = here().line};
+                Expression made{.kind = Expression::Kind::unary, .text = here().text};
                 if (made.text == "not") made.text = "!";
                 ++at_;
                 made.parts.push_back(unary());
@@ -429,7 +429,7 @@ private:
         return postfix();
     }
     Expression postfix() {
-        Expression made{.line = here().line};
+        Expression made;
         const Word word = here();
         if (take("(")) {
             made = expression();
@@ -452,7 +452,7 @@ private:
             ++at_;
         }
         while (take("[")) {
-            Expression element{.kind = Expression::Kind::element, .line = made.line};
+            Expression element{.kind = Expression::Kind::element};
             element.parts.push_back(std::move(made));
             element.parts.push_back(expression());
             expect("]");

@@ -193,7 +193,7 @@ bool Machine::do_acts(std::int64_t now) {
             if (!current_.is_on()) current_.start(act.block);
             const ProgramRun::Result result = current_.run(scope_, now, left_);
             if (result == ProgramRun::Result::failed) {
-                fail(current_.line());
+                fail();
                 return false;
             }
             if (result != ProgramRun::Result::ended) {
@@ -226,9 +226,8 @@ bool Machine::work(std::int64_t now) {
     }
 }
 
-void Machine::fail(int line) {
+void Machine::fail() {
     error_ = true;
-    fault_line_ = line;
     current_.drop();
     count("machine in error");
     if (!policy_.escalates) return;

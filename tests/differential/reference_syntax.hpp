@@ -34,7 +34,6 @@ struct Expression {
     Value value{};
     std::string text{}; ///< the dotted name, or the operator
     std::vector<Expression> parts{};
-    int line = 0;
 };
 
 struct Statement;
@@ -79,7 +78,6 @@ struct Transition {
     bool has_otherwise = false;
     Block otherwise{};
     std::string otherwise_to{};
-    int line = 0;
 };
 
 struct State {
@@ -91,7 +89,6 @@ struct State {
     std::vector<Expression> preconditions{};
     Block entry{}, run{}, exit{}, handle{};
     std::vector<Transition> transitions{};
-    int line = 0;
 };
 
 struct Variable {
