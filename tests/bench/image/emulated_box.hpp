@@ -2,6 +2,8 @@
 // on its serial port is the text of a run.
 #pragma once
 
+#include "tests/toolchain/folder.hpp"
+
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -26,18 +28,12 @@ public:
     /// With a copy of the disk, which is gone with this. `keys`: what an engineer has given to its setup,
     /// after which it boots nothing but what they signed.
     explicit EmulatedBox(const std::filesystem::path& disk, const std::filesystem::path& keys = {}) {
-        std::string pattern = (std::filesystem::temp_directory_path() / "tappet-box-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder " + pattern);
-        folder_ = pattern;
         copy(disk, this->disk());
         copy("/usr/share/OVMF/OVMF_VARS_4M.fd", folder_ / "vars");
         if (!keys.empty()) enrol(keys);
         port_ = free_port();
     }
-    ~EmulatedBox() {
-        switch_off();
-        std::filesystem::remove_all(folder_);
-    }
+    ~EmulatedBox() { switch_off(); }
     EmulatedBox(const EmulatedBox&) = delete;
     EmulatedBox& operator=(const EmulatedBox&) = delete;
 
@@ -218,7 +214,7 @@ private:
         output_ = ends[0];
     }
 
-    std::filesystem::path folder_{};
+    test::Folder folder_{};
     std::string said_{};
     bool is_recorded_ = false;
     pid_t pid_ = -1;

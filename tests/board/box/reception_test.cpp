@@ -2,6 +2,8 @@
 // The sockets are real, time is the test's.
 #include "board/box/reception.hpp"
 
+#include "tests/toolchain/folder.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +29,6 @@ constexpr const char* greeted_and_told = "tappet-box 1 loom ipc 0123\nok\n";
 
 struct Receptions : testing::Test {
     Receptions() {
-        std::filesystem::create_directory(folder);
         std::filesystem::create_directory(folder / offers_folder);
         std::filesystem::current_path(folder);
         init::write_text(status_file, "");
@@ -35,7 +36,6 @@ struct Receptions : testing::Test {
     ~Receptions() override {
         for (const int each : ends) ::close(each);
         std::filesystem::current_path(before);
-        std::filesystem::remove_all(folder);
     }
     /// The client's end; greeted by then.
     int come(std::uint32_t address) {
@@ -80,8 +80,7 @@ struct Receptions : testing::Test {
     }
 
     std::filesystem::path before = std::filesystem::current_path();
-    std::filesystem::path folder =
-        std::filesystem::path{testing::TempDir()} / ("tappet-reception-" + std::to_string(::getpid()));
+    test::Folder folder;
     KeyPair keys = new_keys();
     ServiceFacts facts{.key = keys.open, .own = {"loom", "ipc", "a", 1, 0}, .nonce = "0123"};
     Reception::Time now{};

@@ -1,12 +1,12 @@
 // What init says, and the file that keeps it.
 #include "board/box/voice.hpp"
 
+#include "tests/toolchain/folder.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <fcntl.h>
@@ -17,14 +17,9 @@ namespace tappet::box {
 namespace {
 
 struct AVoice : testing::Test {
-    std::string folder = testing::TempDir() + "tappet-voice-" + std::to_string(::getpid());
-    std::string file = folder + "/box.log";
-    void SetUp() override { std::filesystem::create_directory(folder); }
-    void TearDown() override { std::filesystem::remove_all(folder); }
-    std::string kept() const {
-        std::ifstream text{file};
-        return {std::istreambuf_iterator<char>{text}, {}};
-    }
+    test::Folder folder;
+    std::string file = folder / "box.log";
+    std::string kept() const { return test::contents_of(file); }
 };
 
 TEST_F(AVoice, keeps_what_was_said_before_there_was_a_file_and_since) {

@@ -1,13 +1,12 @@
 // What the loader reads of a slot: byte for byte as its own tool writes it, and nothing of a torn file.
 #include "board/init/boot_state.hpp"
 
+#include "tests/toolchain/folder.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace tappet::init {
 namespace {
@@ -15,16 +14,13 @@ namespace {
 const BootState new_version{"C:SLOTB:tappet.efi", 7, 20, SlotState::installed};
 
 TEST(BootState, is_written_as_the_loaders_own_tool_does) {
-    std::string folder = testing::TempDir() + "tappet-boot-XXXXXX";
-    ASSERT_NE(::mkdtemp(folder.data()), nullptr);
-    const std::string file = folder + "/BGENV.DAT";
+    const test::Folder folder;
+    const std::string file = folder / "BGENV.DAT";
     const std::string tool =
         "bg_setenv -f " + file +
         " -r 7 --kernel=C:SLOTB:tappet.efi --args= --watchdog=20 --ustate=INSTALLED >/dev/null 2>&1";
     const int ending = std::system(tool.c_str()); // NOLINT: a test's own words
-    std::ifstream stream{file, std::ios::binary};
-    const std::string theirs{std::istreambuf_iterator<char>{stream}, {}};
-    std::filesystem::remove_all(folder);
+    const std::string theirs = test::contents_of(file);
     ASSERT_EQ(ending, 0) << "bg_setenv is of the package efibootguard: ci/setup";
     EXPECT_TRUE(encode(new_version) == theirs) << "of " << theirs.size() << " bytes";
 }

@@ -1,26 +1,21 @@
 // A line typed at the browser in a machine that runs: from the command line through the socket into the
 // engine and back to the exit code (thesis 3.4.6, 4.8).
 #include "tests/kernel/services/interpreter/line_rig.hpp"
-#include "toolchain/tools/browser/program.hpp"
+#include "tests/toolchain/tools/browser/outcome.hpp"
 
 #include <atomic>
-#include <csignal>
-#include <sstream>
 #include <thread>
 
 namespace tappet::press {
 namespace {
 
+using browser::Outcome;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// The machine's time goes on in a thread of its own, while the program waits for answers.
 class Execute : public Lines {
 protected:
-    struct Outcome {
-        int code = -1;
-        std::string out{}, errors{};
-    };
     void SetUp() override {
         Lines::SetUp();
         talker.reset();
@@ -37,12 +32,8 @@ protected:
         time.join();
     }
     Outcome type(std::vector<std::string> words, volatile std::sig_atomic_t* signal = nullptr) {
-        std::ostringstream out, errors;
-        browser::Surroundings surroundings{out, errors};
-        surroundings.signal = signal;
         words.insert(words.begin(), {"--socket", path(), "--timeout", "60s"});
-        const int code = browser::run_program(words, surroundings);
-        return {code, out.str(), errors.str()};
+        return browser::run_words(words, signal);
     }
     std::atomic<bool> is_over{false};
     std::thread time;

@@ -3,6 +3,7 @@
 
 #include "toolchain/tools/browser/program.hpp"
 
+#include <csignal>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -15,10 +16,12 @@ struct Outcome {
     std::string errors{};
 };
 
-inline Outcome run_words(const std::vector<std::string>& words) {
+inline Outcome run_words(const std::vector<std::string>& words,
+                         volatile std::sig_atomic_t* signal = nullptr) {
     std::ostringstream out;
     std::ostringstream errors;
     Surroundings surroundings{out, errors};
+    surroundings.signal = signal;
     const int code = run_program(words, surroundings);
     return {code, out.str(), errors.str()};
 }
