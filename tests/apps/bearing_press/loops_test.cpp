@@ -64,15 +64,32 @@ TEST_F(Loops, recover_from_whatever_they_began_with) {
     recover<Trim>({&Trim::target, &Trim::velocity, &Trim::sent}, {&Trim::wanted}, 0.03);
 }
 
+void link(Input<double>& input, Output<double>& output) {
+    PortAccess::data<double>.link_local(&input, &output, nullptr);
+}
+struct ToldPlace : Place {
+    Output<double> told_target, told_speed, told_position, told_sent;
+    ToldPlace() {
+        link(target, told_target);
+        link(speed, told_speed);
+        link(position, told_position);
+        link(sent, told_sent);
+    }
+};
+struct ToldRamp : bearing_press::Ramp {
+    Output<double> told_sent, told_command;
+    ToldRamp() {
+        link(sent, told_sent);
+        link(command, told_command);
+    }
+};
+
 TEST_F(Loops, of_places_ask_for_a_number_however_far_the_place_is) {
-    Output<double> target, speed, position, sent;
-    Place place;
-    PortAccess::data<double>.link_local(&place.target, &target, nullptr);
-    PortAccess::data<double>.link_local(&place.speed, &speed, nullptr);
-    PortAccess::data<double>.link_local(&place.position, &position, nullptr);
-    PortAccess::data<double>.link_local(&place.sent, &sent, nullptr);
+    ToldPlace place;
     for (int n = 0; n < 2000; ++n) {
-        for (Output<double>* each : {&target, &speed, &position, &sent}) each->write(number());
+        for (Output<double>* each :
+             {&place.told_target, &place.told_speed, &place.told_position, &place.told_sent})
+            each->write(number());
         if (n % 9 == 0) place.start({});
         place.step({.period = 1ms});
         ASSERT_TRUE(is_number(place.velocity.last()));
@@ -82,31 +99,27 @@ TEST_F(Loops, of_places_ask_for_a_number_however_far_the_place_is) {
 TEST_F(Loops, begin_from_rest_when_they_were_sent_what_is_no_number) {
     for (const double none :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-        Output<double> sent, command;
-        bearing_press::Ramp ramp;
-        PortAccess::data<double>.link_local(&ramp.sent, &sent, nullptr);
-        PortAccess::data<double>.link_local(&ramp.command, &command, nullptr);
-        sent.write(0.15);
+        ToldRamp ramp;
+        ramp.told_sent.write(0.15);
         ramp.start({});
         EXPECT_EQ(ramp.target.last(), 0.15);
-        sent.write(none);
+        ramp.told_sent.write(none);
         ramp.start({});
         EXPECT_EQ(ramp.target.last(), 0.0) << "and not where it was when it ran before";
     }
 }
 
 /// A slide that stands at 0.1 m; its drive does what it may.
-struct Slide {
-    double at = 0.1, worst = 0.0, speed = 0.0;
-    Output<double> position, sent;
-    Slide() { tell(); }
+struct PlacedSlide : ToldPlace {
+    double at = 0.1, worst = 0.0, drives = 0.0;
+    PlacedSlide() { tell(); }
     void tell() {
-        position.write(at);
-        sent.write(speed);
+        told_position.write(at);
+        told_sent.write(drives);
     }
     void go(double wanted) {
-        speed = std::clamp(wanted, -fastest, fastest);
-        at += speed * 1e-3;
+        drives = std::clamp(wanted, -fastest, fastest);
+        at += drives * 1e-3;
         worst = std::max(worst, std::abs(at - 0.1));
         tell();
     }
@@ -114,34 +127,24 @@ struct Slide {
 
 TEST_F(Loops, do_not_leave_their_place_for_a_target_that_was_far) {
     for (const double far : {10.0, -10.0, 1e3, 1e300, -1e300, 0.2}) {
-        Slide there;
-        Output<double> target, speed;
-        Place place;
-        PortAccess::data<double>.link_local(&place.target, &target, nullptr);
-        PortAccess::data<double>.link_local(&place.speed, &speed, nullptr);
-        PortAccess::data<double>.link_local(&place.position, &there.position, nullptr);
-        PortAccess::data<double>.link_local(&place.sent, &there.sent, nullptr);
-        target.write(far);
-        speed.write(0.0);
+        PlacedSlide place;
+        place.told_target.write(far);
+        place.told_speed.write(0.0);
         place.start({});
-        target.write(0.1); // it shall stand where it is
+        place.told_target.write(0.1); // it shall stand where it is
         for (int ms = 0; ms < 3000; ++ms) {
             place.step({.period = 1ms});
-            there.go(place.velocity.last());
+            place.go(place.velocity.last());
         }
-        EXPECT_LT(there.worst, 1e-6) << far;
+        EXPECT_LT(place.worst, 1e-6) << far;
     }
 }
 
 TEST_F(Loops, begin_at_the_speed_that_the_slide_has) {
     for (const double target_now : {0.1, 0.3, -5.0, 1e300}) {
-        Output<double> target, speed, position, sent;
-        Place place;
-        PortAccess::data<double>.link_local(&place.target, &target, nullptr);
-        PortAccess::data<double>.link_local(&place.speed, &speed, nullptr);
-        PortAccess::data<double>.link_local(&place.position, &position, nullptr);
-        PortAccess::data<double>.link_local(&place.sent, &sent, nullptr);
-        target.write(target_now), speed.write(0.0), position.write(0.1), sent.write(0.15);
+        ToldPlace place;
+        place.told_target.write(target_now), place.told_speed.write(0.0);
+        place.told_position.write(0.1), place.told_sent.write(0.15);
         place.start({});
         EXPECT_EQ(place.velocity.last(), 0.15);
         double before = 0.15;
@@ -157,15 +160,12 @@ TEST_F(Loops, begin_at_the_speed_that_the_slide_has) {
 }
 
 TEST_F(Loops, come_back_from_what_was_commanded_beyond_the_speed_of_the_drive) {
-    Output<double> sent, command;
-    bearing_press::Ramp ramp;
-    PortAccess::data<double>.link_local(&ramp.sent, &sent, nullptr);
-    PortAccess::data<double>.link_local(&ramp.command, &command, nullptr);
-    sent.write(0.0);
-    command.write(1e300);
+    ToldRamp ramp;
+    ramp.told_sent.write(0.0);
+    ramp.told_command.write(1e300);
     ramp.start({});
     for (int ms = 0; ms < 5000; ++ms) ramp.step({.period = 1ms});
-    command.write(0.0);
+    ramp.told_command.write(0.0);
     for (int ms = 0; ms < 64; ++ms) ramp.step({.period = 1ms}); // 0.25 m/s at 4 m/s2 take 63
     EXPECT_EQ(ramp.target.last(), 0.0);
 }
@@ -175,9 +175,8 @@ TEST_F(Loops, begin_no_faster_than_the_drive_whatever_was_sent) {
         Output<double> sent, position, target, command;
         sent.write(far), position.write(0.1), target.write(0.1), command.write(0.0);
         const auto begin = [&](auto& loop) {
-            PortAccess::data<double>.link_local(&loop.sent, &sent, nullptr);
-            if constexpr (requires { loop.position; })
-                PortAccess::data<double>.link_local(&loop.position, &position, nullptr);
+            link(loop.sent, sent);
+            if constexpr (requires { loop.position; }) link(loop.position, position);
             loop.start({});
             for (int ms = 1; ms <= 300; ++ms) loop.step({Time{ms * 1ms}, Time{ms * 1ms}, 1ms});
         };
@@ -189,11 +188,11 @@ TEST_F(Loops, begin_no_faster_than_the_drive_whatever_was_sent) {
         begin(standing);
         EXPECT_NEAR(standing.target.last(), 0.1, 0.05) << far;
         Place place;
-        PortAccess::data<double>.link_local(&place.target, &target, nullptr);
+        link(place.target, target);
         begin(place);
         EXPECT_LE(std::abs(place.velocity.last()), fastest) << far;
         bearing_press::Ramp ramp;
-        PortAccess::data<double>.link_local(&ramp.command, &command, nullptr);
+        link(ramp.command, command);
         begin(ramp);
         EXPECT_EQ(ramp.target.last(), 0.0) << far;
     }
@@ -215,8 +214,8 @@ TEST_F(Loops, seat_no_bearing_with_a_force_that_is_no_number) {
         PortAccess::event<>.subscribe(&press.seated, detail::operation_of<&Seat::once_more>.enter, &gate), 1,
         nullptr}
         .connect();
-    PortAccess::data<double>.link_local(&press.target, &target, nullptr);
-    PortAccess::data<double>.link_local(&press.force, &force, nullptr);
+    link(press.target, target);
+    link(press.force, force);
     const auto press_for_a_second = [&](double with) {
         target.write(2000.0);
         force.write(with);

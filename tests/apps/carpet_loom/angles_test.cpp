@@ -22,10 +22,13 @@ struct ByHand : LoomRig {
 
 class Angles : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(seed, Angles, testing::Range<std::uint64_t>(1, 5));
-
-TEST_P(Angles, the_valve_closes_when_the_shaft_stops_inside_its_window) {
+struct WeavingAngles : Angles {
     ByHand rig{GetParam()};
-    ASSERT_TRUE(rig.weave_by_hand());
+    void SetUp() override { ASSERT_TRUE(rig.weave_by_hand()); }
+};
+INSTANTIATE_TEST_SUITE_P(seed, WeavingAngles, testing::Range<std::uint64_t>(1, 5));
+
+TEST_P(WeavingAngles, the_valve_closes_when_the_shaft_stops_inside_its_window) {
     rig.stop_at(150.0);
     ASSERT_TRUE(rig.stands());
     const double stood_at = std::fmod(rig.plant().position_deg(), 360.0);
@@ -37,9 +40,7 @@ TEST_P(Angles, the_valve_closes_when_the_shaft_stops_inside_its_window) {
     EXPECT_FALSE(rig.output(wires::line::weft_release));
 }
 
-TEST_P(Angles, a_weft_that_is_missed_by_a_stop_inside_its_window_is_told) {
-    ByHand rig{GetParam()};
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_P(WeavingAngles, a_weft_that_is_missed_by_a_stop_inside_its_window_is_told) {
     rig.plant().inject({.fault = Fault::weft_break});
     rig.stop_at(235.0);
     ASSERT_TRUE(rig.stands());
@@ -70,12 +71,7 @@ TEST_P(Angles, the_cutter_and_the_valve_are_off_when_the_encoder_is_lost) {
     for (const double deg : {100.0, 245.0}) {
         ByHand rig{GetParam()};
         ASSERT_TRUE(rig.weave_by_hand());
-        ASSERT_TRUE(rig.run_until(
-            [&] {
-                const double angle = std::fmod(rig.plant().position_deg(), 360.0);
-                return angle > deg && angle < deg + 8.0;
-            },
-            1s));
+        ASSERT_TRUE(rig.run_until_angle(deg));
         rig.plant().inject({.fault = Fault::node_lost, .node = wires::node::encoder});
         rig.run_for(10ms);
         EXPECT_FALSE(rig.output(wires::line::weft_release));
@@ -85,11 +81,9 @@ TEST_P(Angles, the_cutter_and_the_valve_are_off_when_the_encoder_is_lost) {
     }
 }
 
-TEST_P(Angles, the_cutter_is_off_when_the_activity_of_the_shaft_hangs) {
-    ByHand rig{GetParam()};
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_P(WeavingAngles, the_cutter_is_off_when_the_activity_of_the_shaft_hangs) {
     ASSERT_TRUE(rig.run_until([&] { return rig.output(wires::line::yarn_cutter); }, 1s));
-    rig.run().world().hang(find_activity(rig.run().instance().machine().table, "shaft"), rig.now() + 1s);
+    rig.hang("shaft", 1s);
     rig.run_for(35ms); // it is silent after 20, and looked for each 5
     EXPECT_FALSE(rig.output(wires::line::yarn_cutter));
     rig.run_for(2s);
@@ -105,9 +99,7 @@ TEST_P(Angles, the_let_off_feeds_nothing_while_the_loom_stands_and_the_load_cell
         ASSERT_EQ(rig.component<WarpTension>("warp").target.last(), 0.0) << rig.state();
 }
 
-TEST_P(Angles, the_let_off_feeds_nothing_when_encoder_and_load_cell_are_lost_together) {
-    ByHand rig{GetParam()};
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_P(WeavingAngles, the_let_off_feeds_nothing_when_encoder_and_load_cell_are_lost_together) {
     rig.plant().inject({.fault = Fault::node_lost, .node = wires::node::load_cell});
     rig.plant().inject({.fault = Fault::node_lost, .node = wires::node::encoder});
     rig.run_for(40ms);
@@ -116,9 +108,7 @@ TEST_P(Angles, the_let_off_feeds_nothing_when_encoder_and_load_cell_are_lost_tog
     EXPECT_EQ(rig.plant().let_off_drive().target(), 0);
 }
 
-TEST_P(Angles, what_the_shaft_learns_of_a_broken_brake_stays_within_its_range) {
-    ByHand rig{GetParam()};
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_P(WeavingAngles, what_the_shaft_learns_of_a_broken_brake_stays_within_its_range) {
     auto& shaft = rig.component<MainShaft>("shaft");
     for (int stop = 0; stop < 6; ++stop) {
         rig.plant().press(Button::stop, 100ms);

@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace tappet::carpet {
@@ -24,14 +25,8 @@ namespace tappet::carpet {
 using CanBus = can::Bus<can_signals, canopen::frames<loom_network>>;
 using Network = canopen::Manager<loom_network>;
 
-/// Only what a test asks for goes wrong; the operator is at work.
-inline loom::Settings no_faults() { return {}; }
-/// The same, and nobody presses a button but the test.
-inline loom::Settings nobody_there() {
-    loom::Settings settings;
-    settings.operator_present = false;
-    return settings;
-}
+/// Only what a test asks for goes wrong, and nobody presses a button but the test.
+inline loom::Settings nobody_there() { return {.operator_present = false}; }
 
 /// The seeds of a suite, each another plant. Under the real-time sanitizer, which looks at the ways that the
 /// code takes and is twelve times slower, the first: the others take the same ways.
@@ -46,7 +41,8 @@ inline auto seeds(std::uint64_t number) {
 
 class LoomRig {
 public:
-    explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = no_faults())
+    /// By default only what a test asks for goes wrong; the operator is at work.
+    explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = {})
         : run_{std::make_unique<LoomRun>(settings, seed)} {
         const auto started = run_->start();
         EXPECT_TRUE(started) << started.error().view();
@@ -65,6 +61,21 @@ public:
     }
     bool run_until_state(std::string_view wanted, Duration limit) {
         return run_until([&] { return state() == wanted; }, limit);
+    }
+    bool run_until_angle(double deg) {
+        return run_until(
+            [&] {
+                const double angle = std::fmod(plant().position_deg(), 360.0);
+                return angle >= deg && angle < deg + 8.0;
+            },
+            1s);
+    }
+    bool run_until_it_stands(Duration limit) {
+        return run_until([&] { return plant().speed_rpm() == 0.0; }, limit);
+    }
+    /// An activity of the machine runs nothing for so long.
+    void hang(std::string_view activity, Duration time) {
+        run().world().hang(find_activity(run().instance().machine().table, activity), now() + time);
     }
     /// By hand, for a loom whose operator is away: its buttons, as long as a hand presses them.
     void acknowledge() { press(loom::Button::acknowledge); }
@@ -104,6 +115,10 @@ public:
     template <class T>
     [[nodiscard]] T& component(std::string_view name) {
         return *run_->instance().find<T>(name);
+    }
+    /// Why it is in this state, for who expected another one.
+    [[nodiscard]] std::string told() {
+        return "in state " + std::string{state()} + ": " + std::string{reason()};
     }
     [[nodiscard]] StopCause cause() { return component<Loom>("loom").cause.last(); }
     [[nodiscard]] LoomRun& run() { return *run_; }

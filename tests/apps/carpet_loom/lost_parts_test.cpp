@@ -13,14 +13,6 @@ using loom::Fault;
 struct Parts : LoomRig {
     explicit Parts(std::uint64_t seed = 5) : LoomRig{seed, nobody_there()} {}
 
-    bool at_angle(double deg) {
-        return run_until(
-            [&] {
-                const double angle = std::fmod(plant().position_deg(), 360.0);
-                return angle >= deg && angle < deg + 8.0;
-            },
-            1s);
-    }
     /// "component:..." or "activity:...".
     void change(const std::string& what, LifeChange how) {
         MachineInstance& instance = run().instance();
@@ -33,7 +25,7 @@ struct Parts : LoomRig {
         run_for(1ms);
     }
     void expect_stopped_and_staying_so(Duration within) {
-        EXPECT_TRUE(run_until([&] { return plant().speed_rpm() == 0.0; }, within)) << state();
+        EXPECT_TRUE(run_until_it_stands(within)) << state();
         run_for(200ms); // a shaft that stands shows so only by staying, and a drive that slips by going on
         const double stood_at = plant().position_deg();
         for (const Time end = now() + 2s; now() < end; run_for(1ms)) {
@@ -48,6 +40,15 @@ struct Parts : LoomRig {
     }
 };
 
+struct LostWhileWeaving : testing::Test {
+    Parts rig;
+    void SetUp() override { ASSERT_TRUE(rig.weave_by_hand()); }
+};
+struct LostWhenReady : testing::Test {
+    Parts rig;
+    void SetUp() override { ASSERT_TRUE(rig.prepare()); }
+};
+
 class WhileWeaving : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(part, WhileWeaving,
                          testing::Values("activity:shaft", "component:shaft", "component:weft", "activity:io",
@@ -59,7 +60,7 @@ TEST_P(WhileWeaving, the_stop_of_a_part_stops_the_loom_with_its_valve_closed) {
     for (const double deg : {100.0, 230.0}) { // the valve is open there, and the cutter on
         Parts rig;
         ASSERT_TRUE(rig.weave_by_hand());
-        ASSERT_TRUE(rig.at_angle(deg));
+        ASSERT_TRUE(rig.run_until_angle(deg));
         rig.change(GetParam(), LifeChange::stop);
         rig.run_for(30ms); // four milliseconds of silence are the encoder's; the watchdogs look each five
         EXPECT_FALSE(rig.output(wires::line::weft_release)) << "at " << deg << " deg";
@@ -74,7 +75,7 @@ TEST(TheLastResort, acts_when_it_starts_while_the_states_hang) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
     rig.change("component:last_resort", LifeChange::stop);
-    rig.run().world().hang(find_activity(rig.run().instance().machine().table, "logic"), rig.now() + 5s);
+    rig.hang("logic", 5s);
     rig.plant().press(Button::stop, 100ms); // somebody needs it
     rig.run_for(200ms);
     EXPECT_GT(rig.plant().speed_rpm(), 500.0);
@@ -85,8 +86,8 @@ TEST(TheLastResort, acts_when_it_starts_while_the_states_hang) {
 TEST(TheLines, that_come_back_braked_get_no_weft_while_the_states_hang) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
-    ASSERT_TRUE(rig.at_angle(60.0)); // before the release
-    rig.run().world().hang(find_activity(rig.run().instance().machine().table, "logic"), rig.now() + 1s);
+    ASSERT_TRUE(rig.run_until_angle(60.0)); // before the release
+    rig.hang("logic", 1s);
     rig.change("component:io", LifeChange::restart);
     EXPECT_TRUE(rig.output(wires::line::brake));
     for (const Time end = rig.now() + 1s; rig.now() < end; rig.run_for(1ms))
@@ -102,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(part, StartedAnew,
 TEST_P(StartedAnew, a_part_that_is_restarted_while_weaving_stops_the_loom_until_acknowledged) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
-    ASSERT_TRUE(rig.at_angle(100.0));
+    ASSERT_TRUE(rig.run_until_angle(100.0));
     rig.change(GetParam(), LifeChange::restart);
     rig.expect_stopped_and_staying_so(1s);
     EXPECT_TRUE(rig.state() == "fault" || rig.state() == "locked" || rig.state() == "stopped" ||
@@ -130,10 +131,9 @@ TEST_P(StartedAnew, a_part_that_is_restarted_while_the_loom_is_prepared_moves_no
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
 }
 
-TEST(LostParts, a_shaft_activity_that_hangs_is_told_by_its_watchdog_and_the_valve_closes_without_it) {
-    Parts rig;
-    ASSERT_TRUE(rig.weave_by_hand());
-    ASSERT_TRUE(rig.at_angle(85.0));
+TEST_F(LostWhileWeaving,
+       a_shaft_activity_that_hangs_is_told_by_its_watchdog_and_the_valve_closes_without_it) {
+    ASSERT_TRUE(rig.run_until_angle(85.0));
     ASSERT_TRUE(rig.output(wires::line::weft_release));
     MachineInstance& instance = rig.run().instance();
     instance.engines()[find_activity(instance.machine().table, "shaft")]
@@ -146,9 +146,7 @@ TEST(LostParts, a_shaft_activity_that_hangs_is_told_by_its_watchdog_and_the_valv
     rig.expect_stopped_and_staying_so(1s);
 }
 
-TEST(LostParts, every_component_runs_again_after_it_was_stopped_and_started) {
-    Parts rig;
-    ASSERT_TRUE(rig.prepare());
+TEST_F(LostWhenReady, every_component_runs_again_after_it_was_stopped_and_started) {
     MachineInstance& instance = rig.run().instance();
     for (std::size_t c = 0; c < instance.machine().table.components.size(); ++c) {
         const std::string_view name = instance.machine().table.components[c].name;
@@ -179,9 +177,7 @@ template <class T> void expect_left_at_rest(const T& leader) {
     EXPECT_TRUE(leader.fault.last());
 }
 
-TEST(LostParts, the_leader_of_the_main_drive_leaves_it_at_rest_when_it_alone_is_stopped) {
-    Parts rig;
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_F(LostWhileWeaving, the_leader_of_the_main_drive_leaves_it_at_rest_when_it_alone_is_stopped) {
     const auto& main = rig.component<MainDrive>("main");
     ASSERT_TRUE(main.at_speed.last());
     rig.change("component:main", LifeChange::stop);
@@ -193,9 +189,7 @@ TEST(LostParts, the_leader_of_the_main_drive_leaves_it_at_rest_when_it_alone_is_
     EXPECT_EQ(rig.plant().main_drive().target(), 0);
 }
 
-TEST(LostParts, the_leader_of_the_let_off_leaves_it_at_rest_when_it_alone_is_stopped) {
-    Parts rig;
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_F(LostWhileWeaving, the_leader_of_the_let_off_leaves_it_at_rest_when_it_alone_is_stopped) {
     const auto& warp = rig.component<WarpTension>("warp");
     ASSERT_NE(warp.target.last(), 0.0);
     ASSERT_TRUE(warp.in_band.last());
@@ -208,9 +202,7 @@ TEST(LostParts, the_leader_of_the_let_off_leaves_it_at_rest_when_it_alone_is_sto
     EXPECT_EQ(rig.plant().let_off_drive().target(), 0);
 }
 
-TEST(LostParts, nodes_that_nobody_watches_any_longer_are_not_said_to_work) {
-    Parts rig;
-    ASSERT_TRUE(rig.prepare());
+TEST_F(LostWhenReady, nodes_that_nobody_watches_any_longer_are_not_said_to_work) {
     ASSERT_TRUE(rig.component<Network>("network").operational.last());
     rig.change("component:network", LifeChange::stop);
     rig.run_for(20ms);
@@ -221,21 +213,17 @@ TEST(LostParts, nodes_that_nobody_watches_any_longer_are_not_said_to_work) {
     EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
 }
 
-TEST(LostParts, lines_that_are_driven_no_longer_are_an_emergency) {
-    Parts rig;
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_F(LostWhileWeaving, lines_that_are_driven_no_longer_are_an_emergency) {
     rig.change("activity:io", LifeChange::stop);
     ASSERT_TRUE(rig.run_until_state("emergency", 10ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the lines can no longer be relied on");
 }
 
-TEST(LostParts, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away) {
-    Parts rig;
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_F(LostWhileWeaving, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away) {
     rig.lines().set_removed(true);
     ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the lines can no longer be relied on");
-    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 1s)) << "by the drive alone";
+    EXPECT_TRUE(rig.run_until_it_stands(1s)) << "by the drive alone";
     rig.run_for(200ms);
     rig.acknowledge();
     EXPECT_EQ(rig.state(), "emergency");
@@ -245,13 +233,11 @@ TEST(LostParts, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
 }
 
-TEST(LostParts, a_loom_without_a_brake_is_stopped_by_its_drive_though_the_machine_ends) {
-    Parts rig;
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_F(LostWhileWeaving, a_loom_without_a_brake_is_stopped_by_its_drive_though_the_machine_ends) {
     rig.lines().set_removed(true);
     ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
     rig.change("activity:logic", LifeChange::stop); // as the first of an orderly stop
-    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 1s)) << "it does not coast";
+    EXPECT_TRUE(rig.run_until_it_stands(1s)) << "it does not coast";
 }
 
 TEST(LostParts, no_weft_is_released_into_the_stop_of_a_loom_whose_states_hang) {
@@ -259,8 +245,7 @@ TEST(LostParts, no_weft_is_released_into_the_stop_of_a_loom_whose_states_hang) {
         Parts rig;
         ASSERT_TRUE(rig.weave_by_hand());
         rig.run_for(later);
-        MachineInstance& instance = rig.run().instance();
-        rig.run().world().hang(find_activity(instance.machine().table, "logic"), rig.now() + 5s);
+        rig.hang("logic", 5s);
         rig.plant().press(Button::stop, 100ms); // wakes it in vain
         ASSERT_TRUE(rig.run_until([&] { return rig.output(wires::line::brake); }, 100ms));
         ASSERT_FALSE(rig.output(wires::line::weft_release));
@@ -271,9 +256,7 @@ TEST(LostParts, no_weft_is_released_into_the_stop_of_a_loom_whose_states_hang) {
     }
 }
 
-TEST(LostParts, a_shaft_activity_that_hangs_while_the_loom_is_ready_keeps_it_from_its_start) {
-    Parts rig;
-    ASSERT_TRUE(rig.prepare());
+TEST_F(LostWhenReady, a_shaft_activity_that_hangs_while_the_loom_is_ready_keeps_it_from_its_start) {
     MachineInstance& instance = rig.run().instance();
     instance.engines()[find_activity(instance.machine().table, "shaft")].mark_failed();
     rig.run_for(50ms);
@@ -284,18 +267,14 @@ TEST(LostParts, a_shaft_activity_that_hangs_while_the_loom_is_ready_keeps_it_fro
     EXPECT_EQ(rig.state(), "fault") << rig.reason();
 }
 
-TEST(LostParts, without_the_part_that_judges_the_wefts_the_loom_does_not_start) {
-    Parts rig;
-    ASSERT_TRUE(rig.prepare());
+TEST_F(LostWhenReady, without_the_part_that_judges_the_wefts_the_loom_does_not_start) {
     rig.change("component:weft", LifeChange::stop);
     rig.press(Button::start);
     rig.run_for(1s);
     EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
 }
 
-TEST(LostParts, a_drive_that_pulls_against_a_brake_is_stopped) {
-    Parts rig;
-    ASSERT_TRUE(rig.weave_by_hand());
+TEST_F(LostWhileWeaving, a_drive_that_pulls_against_a_brake_is_stopped) {
     rig.plant().set_line(wires::line::brake, true, rig.now()); // it grips unasked
     ASSERT_TRUE(rig.run_until_state("fault", 300ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the main drive does not keep its speed");

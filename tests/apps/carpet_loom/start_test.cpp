@@ -50,6 +50,13 @@ struct Start : LoomRig {
         EXPECT_TRUE(run_until([&] { return state() == "weave"; }, 5s)) << state() << ": " << reason();
         EXPECT_EQ(report().damage.total(), 0u);
     }
+    void end_and_start_again(StopReason reason) {
+        run().instance().ask_stop(reason, 0, run().instance().engines().data());
+        run_for(1ms);
+        run().stop();
+        ASSERT_TRUE(run().start_again());
+        expect_locked_until_acknowledged();
+    }
 };
 
 TEST(ALoom, moves_nothing_after_its_very_first_start) {
@@ -67,21 +74,13 @@ INSTANTIATE_TEST_SUITE_P(reason, AfterAnEnding,
 TEST_P(AfterAnEnding, the_next_start_moves_nothing_until_acknowledged) {
     Start rig;
     ASSERT_TRUE(rig.weave_by_hand());
-    rig.run().instance().ask_stop(GetParam(), 0, rig.run().instance().engines().data());
-    rig.run_for(1ms);
-    rig.run().stop();
-    ASSERT_TRUE(rig.run().start_again());
-    rig.expect_locked_until_acknowledged();
+    rig.end_and_start_again(GetParam());
 }
 
 TEST_P(AfterAnEnding, that_came_while_it_was_prepared_the_next_start_moves_nothing_either) {
     Start rig;
     ASSERT_TRUE(rig.prepare());
-    rig.run().instance().ask_stop(GetParam(), 0, rig.run().instance().engines().data());
-    rig.run_for(1ms);
-    rig.run().stop();
-    ASSERT_TRUE(rig.run().start_again());
-    rig.expect_locked_until_acknowledged();
+    rig.end_and_start_again(GetParam());
 }
 
 /// Gone without a word: the lines stay as they are, and the drives follow what they were last told.

@@ -20,9 +20,7 @@ double mean_size_of_errors(const loom::Report& report, std::size_t from, std::si
 }
 
 TEST_P(Weaving, prepares_runs_up_weaves_and_obeys_the_operators_stop) {
-    loom::Settings settings;
-    settings.last_pick = 30;
-    LoomRig rig{GetParam(), settings};
+    LoomRig rig{GetParam(), {.last_pick = 30}};
     EXPECT_TRUE(rig.run_until_state("ready", 5s));
     EXPECT_FALSE(rig.output(wires::line::lamp_run));
     EXPECT_TRUE(rig.run_until_state("run_up", 5s));
@@ -39,13 +37,10 @@ TEST_P(Weaving, prepares_runs_up_weaves_and_obeys_the_operators_stop) {
 }
 
 TEST_P(Weaving, stops_for_broken_wefts_and_warp_ends_within_ten_degrees_of_the_stop_angle) {
-    loom::Settings settings;
-    settings.weft_break_one_in = 12;
-    settings.warp_break_one_in = 25;
-    settings.operator_stop_one_in = 60;
-    settings.last_pick = 200;
-    LoomRig rig{GetParam(), settings};
-    ASSERT_TRUE(rig.run().weave(200, 400s)) << "in state " << rig.state() << ": " << rig.reason();
+    LoomRig rig{
+        GetParam(),
+        {.weft_break_one_in = 12, .warp_break_one_in = 25, .operator_stop_one_in = 60, .last_pick = 200}};
+    ASSERT_TRUE(rig.run().weave(200, 400s)) << rig.told();
     const loom::Report report = rig.report();
     ASSERT_GE(report.stops.size(), 6u);
     expect_stops_in_tolerance(report);
@@ -66,11 +61,8 @@ TEST_P(Weaving, stops_for_broken_wefts_and_warp_ends_within_ten_degrees_of_the_s
 }
 
 TEST_P(Weaving, learns_the_brake_from_its_stops) {
-    loom::Settings settings;
-    settings.weft_break_one_in = 6;
-    settings.last_pick = 150;
-    LoomRig rig{GetParam(), settings};
-    ASSERT_TRUE(rig.run().weave(150, 400s)) << "in state " << rig.state() << ": " << rig.reason();
+    LoomRig rig{GetParam(), {.weft_break_one_in = 6, .last_pick = 150}};
+    ASSERT_TRUE(rig.run().weave(150, 400s)) << rig.told();
     const loom::Report report = rig.report();
     ASSERT_GE(report.stops.size(), 9u);
     // The data sheet is believed for the first stop only; what the machine then believes is what the plant
@@ -89,21 +81,16 @@ TEST_P(Weaving, learns_the_brake_from_its_stops) {
 }
 
 TEST_P(Weaving, follows_a_brake_that_wears) {
-    loom::Settings settings;
-    settings.weft_break_one_in = 6;
-    settings.brake_wear_per_stop = 0.008; // all of the wear there is within twenty stops
-    settings.last_pick = 150;
-    LoomRig rig{GetParam(), settings};
-    ASSERT_TRUE(rig.run().weave(150, 400s)) << "in state " << rig.state() << ": " << rig.reason();
+    // All of the wear there is within twenty stops.
+    LoomRig rig{GetParam(), {.weft_break_one_in = 6, .last_pick = 150, .brake_wear_per_stop = 0.008}};
+    ASSERT_TRUE(rig.run().weave(150, 400s)) << rig.told();
     const loom::Report report = rig.report();
     expect_stops_in_tolerance(report);
     EXPECT_LE(mean_size_of_errors(report, report.stops.size() / 2, report.stops.size()), 2.0);
 }
 
 TEST_P(Weaving, opens_the_valve_at_its_angle) {
-    loom::Settings settings;
-    settings.last_pick = 100;
-    LoomRig rig{GetParam(), settings};
+    LoomRig rig{GetParam(), {.last_pick = 100}};
     ASSERT_TRUE(rig.run().weave(100, 60s));
     const loom::Report report = rig.report();
     EXPECT_GE(report.cam_samples, 100u);
@@ -113,9 +100,7 @@ TEST_P(Weaving, opens_the_valve_at_its_angle) {
 }
 
 TEST_P(Weaving, holds_the_warps_tension) {
-    loom::Settings settings;
-    settings.last_pick = 100;
-    LoomRig rig{GetParam(), settings};
+    LoomRig rig{GetParam(), {.last_pick = 100}};
     ASSERT_TRUE(rig.run().weave(100, 60s));
     const loom::Report report = rig.report();
     EXPECT_EQ(report.tension_out_of_band_s, 0.0);
@@ -124,9 +109,7 @@ TEST_P(Weaving, holds_the_warps_tension) {
 }
 
 TEST_P(Weaving, counts_the_picks_that_the_plant_counts) {
-    loom::Settings settings;
-    settings.last_pick = 60;
-    LoomRig rig{GetParam(), settings};
+    LoomRig rig{GetParam(), {.last_pick = 60}};
     ASSERT_TRUE(rig.run().weave(60, 60s));
     const auto counted = rig.component<WeftInsertion>("weft").picks_woven.last();
     EXPECT_NEAR(static_cast<double>(counted), static_cast<double>(rig.plant().picks()),

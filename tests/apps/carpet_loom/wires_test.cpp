@@ -12,20 +12,21 @@ namespace line = wires::line;
 
 class Wires : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(seed, Wires, seeds(4));
+struct WeavingWires : testing::TestWithParam<std::uint64_t> {
+    LoomRig rig{GetParam()};
+    void SetUp() override { ASSERT_TRUE(rig.weave()) << rig.told(); }
+};
+INSTANTIATE_TEST_SUITE_P(seed, WeavingWires, seeds(4));
 
 using LinePort = gpio::LinePort<io_lines>;
 using Utility = modbus::Client<utility_registers>;
 
 loom::Settings breaks_of_yarn(std::uint64_t last_pick) {
-    loom::Settings settings;
-    settings.weft_break_one_in = 15;
-    settings.warp_break_one_in = 40;
-    settings.last_pick = last_pick;
-    return settings;
+    return {.weft_break_one_in = 15, .warp_break_one_in = 40, .last_pick = last_pick};
 }
 
 void expect_woven(LoomRig& rig, std::uint64_t picks) {
-    EXPECT_TRUE(rig.run().weave(picks, 300s)) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.run().weave(picks, 300s)) << rig.told();
     const loom::Report report = rig.report();
     expect_stops_in_tolerance(report);
     expect_no_damage(report);
@@ -72,26 +73,22 @@ TEST_P(Wires, frames_of_unknown_identifiers_are_counted_and_nobodys_business) {
     expect_woven(rig, 30);
 }
 
-TEST_P(Wires, a_second_voice_in_the_encoders_frame_makes_the_loom_safe) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, a_second_voice_in_the_encoders_frame_makes_the_loom_safe) {
     can::Frame lie; // the shaft stands at code 0, it says
     lie.id = cob::encoder_position;
     lie.length = 4;
     rig.bus().babble(lie, 300us, rig.now());
     EXPECT_TRUE(rig.run_until_state("fault", 50ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the encoder is stale");
-    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 500ms));
+    EXPECT_TRUE(rig.run_until_it_stands(500ms));
     rig.run_for(5s);
     EXPECT_NE(rig.state(), "weave"); // acknowledged by the operator, and still contradicted
     rig.bus().babble(lie, 0us, rig.now());
-    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.weave()) << rig.told();
     expect_no_damage(rig.report());
 }
 
-TEST_P(Wires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_safe) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_safe) {
     can::Frame frozen;
     frozen.id = cob::encoder_position;
     frozen.length = 4;
@@ -102,13 +99,11 @@ TEST_P(Wires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_saf
     EXPECT_TRUE(rig.reason() == "the encoder stands while the drive turns" ||
                 rig.reason() == "the encoder is stale")
         << rig.reason();
-    EXPECT_TRUE(rig.run_until([&] { return rig.plant().speed_rpm() == 0.0; }, 500ms));
+    EXPECT_TRUE(rig.run_until_it_stands(500ms));
     expect_no_damage(rig.report());
 }
 
-TEST_P(Wires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
     rig.bus().overflow(rig.machine_can(), 3);
     rig.run_for(200ms);
     EXPECT_EQ(rig.component<CanBus>("can").frames_lost.last(), 3);
@@ -120,20 +115,16 @@ TEST_P(Wires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
     expect_no_damage(rig.report());
 }
 
-TEST_P(Wires, a_burst_of_lost_encoder_frames_is_the_stale_encoder_it_is) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, a_burst_of_lost_encoder_frames_is_the_stale_encoder_it_is) {
     rig.bus().faults.lose.next = 20;
     rig.bus().faults.only = can::standard(cob::encoder_position);
     ASSERT_TRUE(rig.run_until_state("fault", 30ms));
     EXPECT_EQ(rig.reason(), "the encoder is stale");
-    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.weave()) << rig.told();
     expect_no_damage(rig.report());
 }
 
-TEST_P(Wires, two_lost_encoder_frames_are_no_reason_to_stop) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, two_lost_encoder_frames_are_no_reason_to_stop) {
     rig.bus().faults.lose.next = 2;
     rig.bus().faults.only = can::standard(cob::encoder_position);
     rig.run_for(1s);
@@ -161,7 +152,7 @@ TEST_P(Wires, a_configuration_whose_frames_are_lost_now_and_then_comes_to_its_en
     ASSERT_TRUE(rig.run_until([&] { return rig.component<Network>("network").operational.last(); }, 10s))
         << rig.component<Network>("network").reason.last().view();
     rig.bus().faults.lose.one_in = 0;
-    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.weave()) << rig.told();
 }
 
 // --- GPIO
@@ -174,19 +165,15 @@ TEST_P(Wires, bouncing_lines_are_one_edge_each) {
     expect_woven(rig, 40);
 }
 
-TEST_P(Wires, a_bouncing_emergency_stop_is_an_emergency_stop) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, a_bouncing_emergency_stop_is_an_emergency_stop) {
     rig.lines().faults(LoomRig::line_index(line::emergency_stop)).bounces = 5;
     rig.plant().inject({.fault = Fault::emergency_stop});
     ASSERT_TRUE(rig.run_until_state("emergency", 5ms));
-    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.weave()) << rig.told();
     expect_no_damage(rig.report());
 }
 
-TEST_P(Wires, lost_edges_are_counted_and_the_levels_read_anew) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, lost_edges_are_counted_and_the_levels_read_anew) {
     // The edge of the emergency stop itself is lost; the next edge of any line shows the gap.
     rig.lines().faults(LoomRig::line_index(line::emergency_stop)).lose_next = 1;
     rig.plant().inject({.fault = Fault::emergency_stop});
@@ -196,16 +183,14 @@ TEST_P(Wires, lost_edges_are_counted_and_the_levels_read_anew) {
     EXPECT_EQ(rig.report().damage.closed_shed_wefts, 0u);
 }
 
-TEST_P(Wires, a_lost_pulse_of_the_weft_detector_stops_the_loom_at_its_angle) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, a_lost_pulse_of_the_weft_detector_stops_the_loom_at_its_angle) {
     rig.lines().faults(LoomRig::line_index(line::weft_detector)).lose_next = 2;
     ASSERT_TRUE(rig.run_until_state("stopped", 1s)) << rig.state();
     EXPECT_EQ(rig.cause(), StopCause::weft);
     const loom::Report report = rig.report();
     ASSERT_EQ(report.stops.size(), 1u);
     EXPECT_LE(std::abs(report.stops[0].error_deg), wires::nominal::stop_tolerance_deg);
-    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.weave()) << rig.told();
     expect_no_damage(rig.report());
 }
 
@@ -218,20 +203,18 @@ TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
             << (active ? "active" : "inactive") << ": " << rig.state();
         EXPECT_EQ(rig.cause(), StopCause::weft);
         rig.lines().release(LoomRig::line_index(line::weft_detector), rig.now());
-        EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+        EXPECT_TRUE(rig.weave()) << rig.told();
     }
 }
 
-TEST_P(Wires, a_drop_wire_that_is_stuck_keeps_the_loom_from_starting) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, a_drop_wire_that_is_stuck_keeps_the_loom_from_starting) {
     rig.lines().stick(LoomRig::line_index(line::drop_wire), true, rig.now());
     ASSERT_TRUE(rig.run_until_state("stopped", 1s));
     EXPECT_EQ(rig.cause(), StopCause::warp);
     rig.run_for(5s); // acknowledged again and again, in vain
     EXPECT_EQ(rig.state(), "stopped");
     rig.lines().release(LoomRig::line_index(line::drop_wire), rig.now());
-    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.weave()) << rig.told();
 }
 
 // --- Modbus
@@ -254,14 +237,12 @@ TEST_P(Wires, an_outage_of_the_utility_unit_of_ten_seconds_is_survived) {
     }
 }
 
-TEST_P(Wires, an_outage_that_lasts_makes_the_loom_safe_because_nobody_knows_the_oil_pressure) {
-    LoomRig rig{GetParam()};
-    ASSERT_TRUE(rig.weave());
+TEST_P(WeavingWires, an_outage_that_lasts_makes_the_loom_safe_because_nobody_knows_the_oil_pressure) {
     rig.utility().inject(modbus::Fault::down);
     ASSERT_TRUE(rig.run_until_state("fault", 20s));
     EXPECT_EQ(rig.reason(), "the oil pressure is lost");
     rig.utility().inject(modbus::Fault::none);
-    EXPECT_TRUE(rig.weave()) << "in state " << rig.state() << ": " << rig.reason();
+    EXPECT_TRUE(rig.weave()) << rig.told();
 }
 
 TEST_P(Wires, slow_answers_and_exceptions_of_the_utility_unit_are_woven_through) {

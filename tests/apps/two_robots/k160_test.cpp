@@ -12,6 +12,21 @@ struct K160 : MachineTest, testing::WithParamInterface<std::uint64_t> {
     bool comes_to(std::string_view wanted, Duration within = 60s) {
         return MachineTest::comes_to("robot", wanted, within);
     }
+    /// From here on, each as it is entered.
+    void note_states() {
+        run.judge_by([this](Time) {
+            if (const auto now = state(); !now.empty() && (entered.empty() || entered.back() != now))
+                entered.emplace_back(now);
+        });
+    }
+    /// Nobody but the test presses a button.
+    bool waits_alone() {
+        plant.leave_alone();
+        plant.press("start", run.now() + 200ms);
+        return comes_to("Waiting");
+    }
+    /// What is believed of the joints beside what they are.
+    [[nodiscard]] Joints error() { return of<JointSensor>("joints").positions.last() - plant.joints(); }
     void runs(std::string_view chain) {
         run.run_for(50ms); // its state has been entered
         ScriptText name;
@@ -19,14 +34,12 @@ struct K160 : MachineTest, testing::WithParamInterface<std::uint64_t> {
         ASSERT_TRUE(of<ChainSwitch>("mode").run(name));
         ASSERT_TRUE(run.run_until([&] { return of<ChainSwitch>("mode").chain.last().view() == chain; }, 1s));
     }
+
+    std::vector<std::string> entered;
 };
 
 TEST_P(K160, goes_from_power_on_through_homing_to_the_breath) {
-    std::vector<std::string> entered;
-    run.judge_by([&](Time) {
-        if (const auto now = state(); !now.empty() && (entered.empty() || entered.back() != now))
-            entered.emplace_back(now);
-    });
+    note_states();
     ASSERT_TRUE(comes_to("Simulating", 120s)) << state();
     run.run_for(10ms);
     const std::vector<std::string> wanted{"Off",    "PoweredOn", "Homing",    "Waiting",
@@ -56,11 +69,7 @@ TEST_P(K160, stands_without_its_states_and_goes_on_with_them_when_they_are_loade
 
     EXPECT_EQ(states.load("k160/body_robot.osd"), "");
     EXPECT_EQ(state(), "Off");
-    std::vector<std::string> entered;
-    run.judge_by([&](Time) {
-        if (const auto now = state(); !now.empty() && (entered.empty() || entered.back() != now))
-            entered.emplace_back(now);
-    });
+    note_states();
     const auto press = [&](std::string_view button, std::string_view until) {
         plant.press(button, run.now() + 200ms);
         return comes_to(until, 60s);
@@ -85,8 +94,7 @@ TEST_P(K160, finds_its_zeros_by_states_that_were_loaded) {
     ASSERT_TRUE(comes_to("Homing", 2s)) << state();
     ASSERT_TRUE(comes_to("Waiting")) << state();
     run.run_for(100ms);
-    const Joints error = of<JointSensor>("joints").positions.last() - plant.joints();
-    EXPECT_LT(error.cwiseAbs().maxCoeff(), 2.0 * Plant::repeatability) << error.transpose();
+    EXPECT_LT(error().cwiseAbs().maxCoeff(), 2.0 * Plant::repeatability) << error().transpose();
     EXPECT_EQ(states.roll_back(), "") << "to the compiled ones";
     EXPECT_EQ(state(), "Off");
     EXPECT_TRUE(plant.brakes_are_on());
@@ -97,8 +105,7 @@ TEST_P(K160, finds_its_zeros_by_states_that_were_loaded) {
 TEST_P(K160, knows_its_joints_within_what_a_switch_repeats) {
     ASSERT_TRUE(comes_to("Waiting")) << state();
     run.run_for(100ms);
-    const Joints error = of<JointSensor>("joints").positions.last() - plant.joints();
-    EXPECT_LT(error.cwiseAbs().maxCoeff(), 2.0 * Plant::repeatability) << error.transpose();
+    EXPECT_LT(error().cwiseAbs().maxCoeff(), 2.0 * Plant::repeatability) << error().transpose();
     EXPECT_LT(of<JointSensor>("joints").positions.last().cwiseAbs().maxCoeff(), 2e-3) << "it is at zero";
 }
 
@@ -126,9 +133,7 @@ TEST_P(K160, stops_looking_for_its_zeros_when_stop_is_pressed) {
 }
 
 TEST_P(K160, does_not_breathe_where_it_is_not_ready) {
-    plant.leave_alone();
-    plant.press("start", run.now() + 200ms);
-    ASSERT_TRUE(comes_to("Waiting"));
+    ASSERT_TRUE(waits_alone());
     plant.press("work", run.now() + 200ms);
     run.run_for(1s);
     EXPECT_EQ(state(), "Waiting");
@@ -136,23 +141,18 @@ TEST_P(K160, does_not_breathe_where_it_is_not_ready) {
 
 // Thesis 3.4.3: PID and feed-forward. The rate that is known beforehand leaves less to the error.
 TEST_P(K160, follows_a_ramp_closer_with_feed_forward_and_both_come_to_the_step) {
-    plant.leave_alone();
-    plant.press("start", run.now() + 200ms);
-    ASSERT_TRUE(comes_to("Waiting"));
+    ASSERT_TRUE(waits_alone());
     const auto worst_on_the_way = [&](std::string_view chain, double to) {
         runs(chain);
         JointPath& path = of<JointPath>("path");
         EXPECT_TRUE(path.go(to, to, -to, to, to, to));
-        double worst = 0.0;
+        double worst = 0.0, now = 0.0;
         for (int i = 0; i < 4000; ++i) {
             run.run_for(2ms);
-            worst = std::max(
-                worst,
-                (path.target.last() - of<JointSensor>("joints").positions.last()).cwiseAbs().maxCoeff());
+            now = (path.target.last() - of<JointSensor>("joints").positions.last()).cwiseAbs().maxCoeff();
+            worst = std::max(worst, now);
         }
-        EXPECT_LT((path.target.last() - of<JointSensor>("joints").positions.last()).cwiseAbs().maxCoeff(),
-                  1e-3)
-            << chain;
+        EXPECT_LT(now, 1e-3) << chain;
         return worst;
     };
     const double by_feed_forward = worst_on_the_way("path", 0.6);
@@ -162,9 +162,7 @@ TEST_P(K160, follows_a_ramp_closer_with_feed_forward_and_both_come_to_the_step) 
 }
 
 TEST_P(K160, never_turns_faster_or_further_than_it_may) {
-    plant.leave_alone();
-    plant.press("start", run.now() + 200ms);
-    ASSERT_TRUE(comes_to("Waiting"));
+    ASSERT_TRUE(waits_alone());
     runs("path");
     ASSERT_TRUE(of<JointPath>("path").go(9, -9, 9, -9, 9, -9)); // far beyond the ends
     run.run_for(30s);

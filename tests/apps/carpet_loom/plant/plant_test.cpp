@@ -36,11 +36,7 @@ std::int64_t sample_of(const can::Frame& encoder) {
     return machine.integer("encoder", "sample");
 }
 
-Settings alone() {
-    Settings settings;
-    settings.operator_present = false;
-    return settings;
-}
+Settings alone() { return {.operator_present = false}; }
 
 TEST(Nodes, boot_beat_and_are_mute_until_they_are_started) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {

@@ -35,7 +35,6 @@ public:
     bool speaks = true;        // send process data
     bool checks_weft = true;   // stop when it is missing
     bool repeats_pattern = false;
-    double wanted_rpm = wires::nominal::speed_rpm;
     std::vector<double> arrivals_deg; // estimated shaft angle of each arrival
     std::vector<double> arrival_speeds_rpm;
     std::uint16_t main_status = 0;
@@ -163,7 +162,7 @@ private:
 
     void send() {
         const bool reset = state == State::prepare && now.time_since_epoch() % 10ms < 5ms;
-        const double rpm = state == State::running && now >= run_at ? wanted_rpm : 0.0;
+        const double rpm = state == State::running && now >= run_at ? wires::nominal::speed_rpm : 0.0;
         plant.receive(
             wire.frame("main_drive_command", {{"controlword", quick ? 0x02 : controlword(main_status, reset)},
                                               {"velocity", static_cast<std::int32_t>(rpm * 10.0)}}),

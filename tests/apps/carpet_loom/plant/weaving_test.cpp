@@ -8,10 +8,18 @@ namespace {
 
 constexpr std::uint64_t seeds = 8;
 
-Settings quick_hands() {
-    Settings settings;
-    settings.operator_reaction = 200ms;
+Settings quick_hands() { return {.operator_reaction = 200ms}; }
+
+/// The same, with one trouble of the script.
+Settings quick_hands(const ScriptedFault& fault) {
+    Settings settings = quick_hands();
+    EXPECT_TRUE(settings.script.push(fault));
     return settings;
+}
+
+/// At speed for the first time, or again.
+bool runs_up(SmallMachine& machine, Duration at_most = 10s) {
+    return machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, at_most);
 }
 
 TEST(RunUp, takes_less_than_a_second_for_every_loom) {
@@ -19,7 +27,7 @@ TEST(RunUp, takes_less_than_a_second_for_every_loom) {
         SmallMachine machine(quick_hands(), seed);
         ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 1.0; }, 10s)) << seed;
         const Time begin = machine.now;
-        ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 2s)) << seed;
+        ASSERT_TRUE(runs_up(machine, 2s)) << seed;
         EXPECT_GT(machine.now - begin, 350ms) << seed;
         EXPECT_LT(machine.now - begin, 850ms) << seed;
     }
@@ -49,9 +57,7 @@ TEST(Brake, differs_from_loom_to_loom) {
     double least = 360.0;
     double most = 0.0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-        Settings settings = quick_hands();
-        ASSERT_TRUE(settings.script.push({.fault = Fault::operator_stop, .at_pick = 20}));
-        SmallMachine machine(settings, seed);
+        SmallMachine machine(quick_hands({.fault = Fault::operator_stop, .at_pick = 20}), seed);
         ASSERT_TRUE(machine.run_while([&] { return machine.plant.report().stops_total < 1; }, 10s));
         least = std::min(least, machine.plant.report().stops[0].distance_deg);
         most = std::max(most, machine.plant.report().stops[0].distance_deg);
@@ -83,9 +89,7 @@ TEST(Weft, arrives_in_its_window) {
 }
 
 TEST(Weft, that_is_missing_and_not_noticed_leaves_an_empty_turn) {
-    Settings settings = quick_hands();
-    ASSERT_TRUE(settings.script.push({.fault = Fault::weft_break, .at_pick = 10}));
-    SmallMachine machine(settings, 1);
+    SmallMachine machine(quick_hands({.fault = Fault::weft_break, .at_pick = 10}), 1);
     machine.checks_weft = false;
     machine.run_until(at_ns(8'000'000'000));
     EXPECT_EQ(machine.plant.report().weft_breaks_injected, 1U);
@@ -94,9 +98,7 @@ TEST(Weft, that_is_missing_and_not_noticed_leaves_an_empty_turn) {
 }
 
 TEST(Weft, missing_is_laid_by_hand_before_the_loom_runs_again) {
-    Settings settings = quick_hands();
-    ASSERT_TRUE(settings.script.push({.fault = Fault::weft_break, .at_pick = 10}));
-    SmallMachine machine(settings, 2);
+    SmallMachine machine(quick_hands({.fault = Fault::weft_break, .at_pick = 10}), 2);
     machine.run_until(at_ns(8'000'000'000));
     EXPECT_EQ(machine.plant.report().picks_by_hand, 1U);
     EXPECT_EQ(machine.plant.report().stops_total, 1U);
@@ -104,9 +106,7 @@ TEST(Weft, missing_is_laid_by_hand_before_the_loom_runs_again) {
 }
 
 TEST(Weft, fails_when_the_feeder_has_run_empty) {
-    Settings settings = quick_hands();
-    ASSERT_TRUE(settings.script.push({.fault = Fault::feeder_empty, .at_pick = 15}));
-    SmallMachine machine(settings, 3);
+    SmallMachine machine(quick_hands({.fault = Fault::feeder_empty, .at_pick = 15}), 3);
     machine.run_until(at_ns(12'000'000'000));
     const Report report = machine.plant.report();
     ASSERT_EQ(report.stops_total, 1U);
@@ -118,14 +118,12 @@ TEST(Weft, fails_when_the_feeder_has_run_empty) {
 
 TEST(WarpBreak, drops_its_wire_until_repaired) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-        Settings settings = quick_hands();
-        ASSERT_TRUE(settings.script.push({.fault = Fault::warp_break, .at_pick = 20}));
-        SmallMachine machine(settings, seed);
+        SmallMachine machine(quick_hands({.fault = Fault::warp_break, .at_pick = 20}), seed);
         ASSERT_TRUE(machine.run_while([&] { return !machine.plant.line(wires::line::drop_wire); }, 10s));
         ASSERT_TRUE(machine.run_while([&] { return machine.plant.report().stops_total == 0; }, 1s));
         EXPECT_EQ(machine.plant.report().stops[0].cause, StopCause::warp);
         EXPECT_TRUE(machine.plant.line(wires::line::drop_wire));
-        ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 5s));
+        ASSERT_TRUE(runs_up(machine, 5s));
         EXPECT_FALSE(machine.plant.line(wires::line::drop_wire));
         EXPECT_EQ(machine.plant.report().warp_breaks_injected, 1U);
     }
@@ -144,7 +142,7 @@ TEST(Tension, is_held_in_its_band_by_a_simple_loop) {
 
 TEST(Tension, that_nobody_holds_is_damage) {
     SmallMachine machine(quick_hands(), 4);
-    ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 10s));
+    ASSERT_TRUE(runs_up(machine));
     machine.holds_tension = false;
     machine.run_until(machine.now + 5s);
     EXPECT_GT(machine.plant.report().damage.tension_high, 0U);
@@ -152,11 +150,10 @@ TEST(Tension, that_nobody_holds_is_damage) {
 
 TEST(EmergencyStop, brings_the_shaft_to_rest_and_is_timed) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-        Settings settings = quick_hands();
-        ASSERT_TRUE(
-            settings.script.push({.fault = Fault::emergency_stop,
-                                  .at = at_ns(5'000'000'000 + 7'777'777 * static_cast<std::int64_t>(seed))}));
-        SmallMachine machine(settings, seed);
+        SmallMachine machine(
+            quick_hands({.fault = Fault::emergency_stop,
+                         .at = at_ns(5'000'000'000 + 7'777'777 * static_cast<std::int64_t>(seed))}),
+            seed);
         machine.run_until(at_ns(6'000'000'000));
         const Report report = machine.plant.report();
         ASSERT_EQ(report.emergency_stops, 1U);
@@ -164,8 +161,7 @@ TEST(EmergencyStop, brings_the_shaft_to_rest_and_is_timed) {
         EXPECT_GT(report.emergency_longest_ms, 7.0);
         EXPECT_LT(report.emergency_longest_ms, 30.0);
         EXPECT_EQ(report.damage.total(), 0U);
-        ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 10s))
-            << "it weaves on";
+        ASSERT_TRUE(runs_up(machine)) << "it weaves on";
     }
 }
 
@@ -180,7 +176,7 @@ TEST(EmergencyStop, sees_a_valve_that_is_driven_after_it) {
 TEST(Damage, counts_wefts_in_a_closed_shed_and_second_wefts) {
     SmallMachine machine(quick_hands(), 6);
     machine.releases = false;
-    ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 10s));
+    ASSERT_TRUE(runs_up(machine));
     const auto release_at = [&](double deg) {
         while (angle_of_position(machine.plant.position_deg()) > deg) machine.run_until(machine.now + 1ms);
         while (angle_of_position(machine.plant.position_deg()) < deg) machine.run_until(machine.now + 1ms);
@@ -198,7 +194,7 @@ TEST(Damage, counts_wefts_in_a_closed_shed_and_second_wefts) {
 
 TEST(Damage, counts_a_shaft_that_coasts) {
     SmallMachine machine(quick_hands(), 7);
-    ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 10s));
+    ASSERT_TRUE(runs_up(machine));
     machine.speaks = false;
     machine.plant.receive(MachineSide{}.frame("main_drive_command", {}), machine.now);
     machine.run_until(machine.now + 80ms);
@@ -218,7 +214,7 @@ TEST(Damage, counts_a_motor_driven_against_the_brake_and_the_drive_trips) {
 
 TEST(SilentMachine, makes_both_drives_stop_the_loom) {
     SmallMachine machine(quick_hands(), 9);
-    ASSERT_TRUE(machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, 10s));
+    ASSERT_TRUE(runs_up(machine));
     machine.speaks = false;
     machine.run_until(machine.now + 90ms);
     EXPECT_GT(machine.plant.speed_rpm(), 590.0);
@@ -243,9 +239,7 @@ TEST(Dobby, takes_every_pattern_and_tells_when_none_was_offered) {
 }
 
 TEST(Operator, ends_the_work_at_the_last_pick) {
-    Settings settings = quick_hands();
-    settings.last_pick = 30;
-    SmallMachine machine(settings, 11);
+    SmallMachine machine({.operator_reaction = 200ms, .last_pick = 30}, 11);
     machine.run_until(at_ns(15'000'000'000));
     EXPECT_GE(machine.plant.picks(), 30U);
     EXPECT_LE(machine.plant.picks(), 33U);
@@ -253,12 +247,11 @@ TEST(Operator, ends_the_work_at_the_last_pick) {
 }
 
 Settings all_troubles() {
-    Settings settings = quick_hands();
-    settings.weft_break_one_in = 20;
-    settings.warp_break_one_in = 30;
-    settings.operator_stop_one_in = 40;
-    settings.emergency_stop_one_in = 60;
-    return settings;
+    return {.weft_break_one_in = 20,
+            .warp_break_one_in = 30,
+            .operator_stop_one_in = 40,
+            .emergency_stop_one_in = 60,
+            .operator_reaction = 200ms};
 }
 
 TEST(SameSeed, gives_the_same_run_and_another_seed_another) {
