@@ -101,17 +101,13 @@ public:
 private:
     using Span = analysis::Span;
 
-    [[nodiscard]] constexpr std::int64_t longest_below(std::size_t index, std::size_t& which) const noexcept {
+    [[nodiscard]] constexpr std::int64_t longest_below(std::size_t index, bool others_only,
+                                                       std::size_t& which) const noexcept {
         std::int64_t longest = 0;
-        for (std::size_t k = index + 1; k < frames_.size(); ++k)
+        for (std::size_t k = index + 1; k < frames_.size(); ++k) {
+            if (others_only && frames_[k].own) continue;
             if (frames_[k].wire_ns > longest) longest = frames_[k].wire_ns, which = k;
-        return longest;
-    }
-    [[nodiscard]] constexpr std::int64_t longest_below_of_others(std::size_t index,
-                                                                 std::size_t& which) const noexcept {
-        std::int64_t longest = 0;
-        for (std::size_t k = index + 1; k < frames_.size(); ++k)
-            if (!frames_[k].own && frames_[k].wire_ns > longest) longest = frames_[k].wire_ns, which = k;
+        }
         return longest;
     }
     /// A less urgent one of ours that was released before the other.
@@ -191,8 +187,7 @@ private:
         const InFlight before = in_flight_below(index);
         if (before.count == 0) return Span{0};
         std::size_t which = 0;
-        const Span first{std::max(longest_below_of_others(last_own_, which), frames_[index].wire_ns) +
-                         before.ns};
+        const Span first{std::max(longest_below(last_own_, true, which), frames_[index].wire_ns) + before.ns};
         return analysis::fixed_point(first, steps, [&](Span window) {
             std::int64_t ours = 0;
             return first + spoilt(window, last_own_) + passing_before(last_own_, true, window, ours);
@@ -204,7 +199,7 @@ private:
         const InFlight before = in_flight_below(index);
         // The one before it of the same identifier may have held up what passes now (push-through).
         std::size_t blocker = index;
-        const std::int64_t below = longest_below_of_others(last_own_, blocker);
+        const std::int64_t below = longest_below(last_own_, true, blocker);
         const std::int64_t blocking = std::max(below, own.wire_ns);
         if (below < own.wire_ns) blocker = index;
         // When all that were in flight are through before more are handed over, somebody less urgent may
@@ -213,10 +208,10 @@ private:
         // With all their stuffing or without it: what they take less of the bus they leave to that gap.
         const std::int64_t behind = (bus_.in_flight - 1) * shortest_own_ns_;
         const bool may_idle = bus_.hand_over_ns > least_time_ns(behind);
-        const std::int64_t gap = may_idle
-                                     ? std::max<std::int64_t>(0, bus_.hand_over_ns - behind +
-                                                                     longest_below_of_others(index, unused))
-                                     : 0;
+        const std::int64_t gap =
+            may_idle
+                ? std::max<std::int64_t>(0, bus_.hand_over_ns - behind + longest_below(index, true, unused))
+                : 0;
         const auto gaps = [&](std::int64_t ours) {
             return (before.count + ours + bus_.in_flight - 1) / bus_.in_flight * Span{gap};
         };
@@ -257,7 +252,7 @@ private:
         const FrameTiming& own = frames_[index];
         std::int64_t steps = analysis_max_steps;
         std::size_t blocker = index;
-        const Span blocking{longest_below(index, blocker)};
+        const Span blocking{longest_below(index, false, blocker)};
         const Span frame{own.wire_ns};
         const Span jitter{own.jitter_ns};
         const auto busy_with = [&](Span window) {

@@ -95,10 +95,7 @@ inline constexpr std::uint8_t secured_sync = 0x20, secured_follow_up = 0x28;
 } // namespace detail
 
 constexpr Frame encode(const ClockRow& row, const ClockFrame& told) noexcept TAPPET_REALTIME {
-    Frame frame;
-    frame.id = row.identifier.id;
-    frame.extended = row.identifier.extended;
-    frame.length = 8;
+    Frame frame{.id = row.identifier.id, .extended = row.identifier.extended, .length = 8};
     const bool is_sync = told.kind == ClockFrame::Kind::sync;
     frame.data[0] = is_sync ? detail::secured_sync : detail::secured_follow_up;
     frame.data[2] = static_cast<std::uint8_t>((row.domain & 15U) << 4 | (told.sequence & 15U));

@@ -3,6 +3,7 @@
 
 #include "drivers/can/frame.hpp"
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/copy_with.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
@@ -74,84 +75,49 @@ struct Signal {
 
     // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).in("rpm").safe(0)
     constexpr Signal as_signed() const noexcept {
-        Signal copy = *this;
-        copy.kind = Kind::signed_integer;
-        return copy;
+        return copy_with(*this, &Signal::kind, Kind::signed_integer);
     }
     /// For a written integer that is a set of bits: bits beyond the width are cut. Other integers saturate.
-    constexpr Signal as_bits() const noexcept {
-        Signal copy = *this;
-        copy.is_bits = true;
-        return copy;
-    }
+    constexpr Signal as_bits() const noexcept { return copy_with(*this, &Signal::is_bits, true); }
     constexpr Signal as_float() const noexcept {
-        Signal copy = *this;
-        copy.kind = bits == 64 ? Kind::float64 : Kind::float32;
-        return copy;
+        return copy_with(*this, &Signal::kind, bits == 64 ? Kind::float64 : Kind::float32);
     }
-    constexpr Signal big_endian() const noexcept {
-        Signal copy = *this;
-        copy.order = Order::motorola;
-        return copy;
-    }
+    constexpr Signal big_endian() const noexcept { return copy_with(*this, &Signal::order, Order::motorola); }
     constexpr Signal times(double new_factor) const noexcept {
-        Signal copy = *this;
-        copy.factor = new_factor;
-        return copy;
+        return copy_with(*this, &Signal::factor, new_factor);
     }
     constexpr Signal plus(double new_offset) const noexcept {
-        Signal copy = *this;
-        copy.offset = new_offset;
-        return copy;
+        return copy_with(*this, &Signal::offset, new_offset);
     }
     constexpr Signal in(std::string_view new_unit) const noexcept {
-        Signal copy = *this;
-        copy.unit = new_unit;
-        return copy;
+        return copy_with(*this, &Signal::unit, new_unit);
     }
     constexpr Signal safe(double value) const noexcept {
-        Signal copy = *this;
-        copy.safe_value = value;
-        copy.safe_name = {};
-        copy.says_safe = true;
-        return copy;
+        return copy_with(*this, &Signal::safe_value, value, &Signal::safe_name, std::string_view{},
+                         &Signal::says_safe, true);
     }
     /// The value that its file calls so, or the list behind named(): safe("Neutral").
     constexpr Signal safe(std::string_view value_name) const noexcept {
-        Signal copy = *this;
-        copy.safe_name = value_name;
-        copy.says_safe = true;
-        return copy;
+        return copy_with(*this, &Signal::safe_name, value_name, &Signal::says_safe, true);
     }
     /// What is sent beyond it becomes its nearest end, except values that have a name.
     constexpr Signal range(double new_least, double new_most) const noexcept {
-        Signal copy = *this;
-        copy.least = new_least;
-        copy.most = new_most;
-        copy.has_range = true;
-        return copy;
+        return copy_with(*this, &Signal::least, new_least, &Signal::most, new_most, &Signal::has_range, true);
     }
     /// In the frame only while its signal `of` has one of these values: when("page", 1, between(4, 7)).
     template <std::convertible_to<Selection>... S>
         requires(sizeof...(S) > 0 && sizeof...(S) <= most_selections)
     constexpr Signal when(std::string_view of, const S&... values) const noexcept {
-        Signal copy = *this;
-        copy.multiplexor = of;
-        copy.selections = {{Selection(values)...}, sizeof...(S)};
-        return copy;
+        return copy_with(*this, &Signal::multiplexor, of, &Signal::selections,
+                         Bounded<Selection, most_selections>{{Selection(values)...}, sizeof...(S)});
     }
     /// Of a constant list that outlives the map.
     constexpr Signal named(std::span<const ValueName> values) const noexcept {
-        Signal copy = *this;
-        copy.names = values;
-        return copy;
+        return copy_with(*this, &Signal::names, values);
     }
     /// Its facet has this name, whatever its file calls it.
     constexpr Signal called(std::string_view facet) const noexcept {
-        Signal copy = *this;
-        copy.in_file = name;
-        copy.name = facet;
-        return copy;
+        return copy_with(*this, &Signal::in_file, name, &Signal::name, facet);
     }
 
     [[nodiscard]] constexpr bool is_selected_by(std::uint64_t raw) const noexcept TAPPET_REALTIME {
@@ -363,6 +329,12 @@ constexpr Raw to_raw_integer(const Signal& s, std::int64_t value) noexcept TAPPE
     return {.bits = static_cast<std::uint64_t>(kept) & mask, .saturated = kept != value};
 }
 
+/// How a refusal of a name ends: what was meant, or else what to do.
+constexpr Sentence or_meant(const Nearest& nearest, std::string_view otherwise) noexcept {
+    return nearest.best().empty() ? Sentence{otherwise}
+                                  : Sentence{"; did you mean \"", nearest.best(), "\"?"};
+}
+
 /// The first value that is called so; null: none.
 constexpr const ValueName* value_called(const Signal& s, std::string_view name) noexcept {
     for (const ValueName& each : s.names)
@@ -390,13 +362,8 @@ constexpr Sentence name_fault(std::string_view frame, const Signal& s, std::stri
                             "\"; name them apart, by VAL_ or by .named(..)"};
     }
     if (value != nullptr) return {};
-    const bool none = nearest.best().empty();
-    return Sentence{who,
-                    "no value \"",
-                    name,
-                    none ? "\"" : "\"; did you mean \"",
-                    nearest.best(),
-                    none ? "; name it by VAL_ in its file, or by .named(..)" : "\"?"};
+    return Sentence{who, "no value \"", name, "\"",
+                    or_meant(nearest, "; name it by VAL_ in its file, or by .named(..)")};
 }
 
 } // namespace tappet::can

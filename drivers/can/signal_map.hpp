@@ -37,6 +37,13 @@ struct FrameRow {
     bool is_proven = false; ///< of another node, whose own proof holds it in time: here it is load only
 };
 
+/// Without contents.
+constexpr Frame frame_of(const FrameRow& row) noexcept TAPPET_REALTIME {
+    Frame frame{.id = row.identifier.id, .extended = row.identifier.extended, .length = row.length};
+    set_format(frame, row.format);
+    return frame;
+}
+
 /// A row together with its signals, before the map flattens them.
 template <std::size_t N> struct FrameWithSignals {
     FrameRow row{};
@@ -44,16 +51,11 @@ template <std::size_t N> struct FrameWithSignals {
 
     /// Instead of safe values: whoever receives this frame is safe without it, by a time-out of its own.
     constexpr FrameWithSignals safe_by_silence() const noexcept {
-        FrameWithSignals copy = *this;
-        copy.row.silence_is_safe = true;
-        return copy;
+        return {copy_with(row, &FrameRow::silence_is_safe, true), signals};
     }
     /// Its facets begin with this name, whatever its file calls it.
     constexpr FrameWithSignals called(std::string_view name) const noexcept {
-        FrameWithSignals copy = *this;
-        copy.row.in_file = row.name;
-        copy.row.name = name;
-        return copy;
+        return {copy_with(row, &FrameRow::in_file, row.name, &FrameRow::name, name), signals};
     }
 };
 
@@ -304,13 +306,8 @@ constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
                                 values.to,   "; correct them"};
         return {};
     }
-    return Sentence{who,
-                    " is selected by \"",
-                    s.multiplexor,
-                    "\", which does not stand before it in its frame",
-                    nearest.best().empty() ? "" : "; did you mean \"",
-                    nearest.best(),
-                    nearest.best().empty() ? "; write it there" : "\"?"};
+    return Sentence{who, " is selected by \"", s.multiplexor,
+                    "\", which does not stand before it in its frame", or_meant(nearest, "; write it there")};
 }
 
 constexpr Sentence length_fault(const FrameRow& frame) noexcept {
@@ -399,11 +396,7 @@ constexpr Frame safe_frame(const SignalMap<F, S>& map, const FrameRow& row, std:
         for (std::size_t at = wanted, up = map.multiplexor_of[at]; up != no_such;
              at = up, up = map.multiplexor_of[at])
             raw[up] = map.signals[at].selections[0].from;
-    Frame frame;
-    frame.id = row.identifier.id;
-    frame.extended = row.identifier.extended;
-    frame.length = row.length;
-    set_format(frame, row.format);
+    Frame frame = frame_of(row);
     for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
         if (!map.holds(row, s, [&](std::size_t m) { return raw[m]; })) continue;
         insert(frame.data, map.places[s], raw[s]);

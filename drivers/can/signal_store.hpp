@@ -55,11 +55,7 @@ public:
     /// is `now`.
     [[nodiscard]] constexpr Frame encode(std::size_t f, Time now) const noexcept TAPPET_REALTIME {
         const FrameRow& row = map_->frames[f];
-        Frame frame;
-        frame.id = row.identifier.id;
-        frame.extended = row.identifier.extended;
-        frame.length = row.length;
-        set_format(frame, row.format);
+        Frame frame = frame_of(row);
         frame.stamp = now;
         for (std::size_t s = row.first; s < row.first + row.signals; ++s)
             if (map_->holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME { return raw_[m]; }))

@@ -159,11 +159,7 @@ Duration TwinBus::error_time() const noexcept TAPPET_REALTIME {
 }
 
 void TwinBus::tell(Twin& end, const BusError& error, Time now) noexcept TAPPET_REALTIME {
-    Frame frame;
-    frame.stamp = now;
-    frame.length = 8;
-    frame.error = error;
-    end.arrive(Twin::Happened::error, frame);
+    end.arrive(Twin::Happened::error, {.length = 8, .stamp = now, .error = error});
 }
 
 void TwinBus::bus_off(Twin& end) noexcept TAPPET_REALTIME {

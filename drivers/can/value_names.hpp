@@ -25,9 +25,7 @@ constexpr Sentence path_fault(const SignalMap<F, S>& map, std::string_view path)
         all[s] = Sentence{map.frames[map.frame_of[s]].name, ".", map.signals[s].name};
         nearest.consider(all[s].view());
     }
-    const bool none = nearest.best().empty();
-    return Sentence{"the map has no signal \"", path, none ? "\"" : "\"; did you mean \"", nearest.best(),
-                    none ? "; write it as frame.signal" : "\"?"};
+    return Sentence{"the map has no signal \"", path, "\"", or_meant(nearest, "; write it as frame.signal")};
 }
 template <std::size_t F, std::size_t S>
 constexpr Sentence value_fault(const SignalMap<F, S>& map, std::string_view path,

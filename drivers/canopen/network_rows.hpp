@@ -5,6 +5,7 @@
 #include "drivers/canopen/object_dictionary.hpp"
 #include "drivers/canopen/protocol.hpp"
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/copy_with.hpp"
 
 #include <initializer_list>
 
@@ -50,10 +51,8 @@ struct NodeRow {
 
     /// It is lost when nothing was heard for so long; when it is not said, three periods and a half.
     constexpr NodeRow heartbeat(Duration every, Duration lost = {}) const noexcept {
-        NodeRow copy = *this;
-        copy.beats = every;
-        copy.lost_after = lost != Duration{} ? lost : every * 7 / 2;
-        return copy;
+        return copy_with(*this, &NodeRow::beats, every, &NodeRow::lost_after,
+                         lost != Duration{} ? lost : every * 7 / 2);
     }
     /// The frame of the signal map holds these objects, in their order.
     constexpr NodeRow pdo(std::string_view frame, Transmission how,
@@ -75,14 +74,10 @@ struct NodeRow {
     }
     /// One of another revision is taken, too.
     constexpr NodeRow of_any_revision() const noexcept {
-        NodeRow copy = *this;
-        copy.any_revision = true;
-        return copy;
+        return copy_with(*this, &NodeRow::any_revision, true);
     }
     constexpr NodeRow answers(Duration within) const noexcept {
-        NodeRow copy = *this;
-        copy.answers_within = within;
-        return copy;
+        return copy_with(*this, &NodeRow::answers_within, within);
     }
 };
 constexpr NodeRow node(std::uint8_t id, std::string_view name, const Dictionary& dictionary) noexcept {
@@ -102,20 +97,13 @@ struct ManagerRow {
     Duration time_every{};          ///< 0: no TIME
 
     constexpr ManagerRow heartbeat(Duration every) const noexcept {
-        ManagerRow copy = *this;
-        copy.beats = every;
-        return copy;
+        return copy_with(*this, &ManagerRow::beats, every);
     }
     constexpr ManagerRow sync(Duration every, std::uint8_t counts_to = 0) const noexcept {
-        ManagerRow copy = *this;
-        copy.sync_every = every;
-        copy.sync_overflow = counts_to;
-        return copy;
+        return copy_with(*this, &ManagerRow::sync_every, every, &ManagerRow::sync_overflow, counts_to);
     }
     constexpr ManagerRow time(Duration every) const noexcept {
-        ManagerRow copy = *this;
-        copy.time_every = every;
-        return copy;
+        return copy_with(*this, &ManagerRow::time_every, every);
     }
 };
 constexpr ManagerRow manager(std::uint8_t id) noexcept { return {.id = id}; }

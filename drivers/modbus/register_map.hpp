@@ -58,9 +58,7 @@ template <std::size_t N> struct RowWithRegisters {
 
     /// Instead of safe values: the server is safe without this row, by a time-out of its own.
     constexpr RowWithRegisters safe_by_silence() const noexcept {
-        RowWithRegisters copy = *this;
-        copy.row.silence_is_safe = true;
-        return copy;
+        return {copy_with(row, &Row::silence_is_safe, true), registers};
     }
 };
 

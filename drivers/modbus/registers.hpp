@@ -1,6 +1,7 @@
 // One value in a Modbus server's tables: which words or bit it takes, and what they mean.
 #pragma once
 
+#include "kernel/base/copy_with.hpp"
 #include "kernel/base/number.hpp"
 
 #include <array>
@@ -52,40 +53,23 @@ struct Register {
 
     // Written as a row: word("pressure", 2).as_signed().times(0.01).in("bar")
     constexpr Register as_signed() const noexcept {
-        Register copy = *this;
-        copy.kind = width() == 2 ? Kind::signed_double : Kind::signed_word;
-        return copy;
+        return copy_with(*this, &Register::kind, width() == 2 ? Kind::signed_double : Kind::signed_word);
     }
-    constexpr Register swapped() const noexcept {
-        Register copy = *this;
-        copy.low_word_first = true;
-        return copy;
-    }
+    constexpr Register swapped() const noexcept { return copy_with(*this, &Register::low_word_first, true); }
     constexpr Register bytes_swapped() const noexcept {
-        Register copy = *this;
-        copy.low_byte_first = true;
-        return copy;
+        return copy_with(*this, &Register::low_byte_first, true);
     }
     constexpr Register times(double new_factor) const noexcept {
-        Register copy = *this;
-        copy.factor = new_factor;
-        return copy;
+        return copy_with(*this, &Register::factor, new_factor);
     }
     constexpr Register plus(double new_offset) const noexcept {
-        Register copy = *this;
-        copy.offset = new_offset;
-        return copy;
+        return copy_with(*this, &Register::offset, new_offset);
     }
     constexpr Register in(std::string_view new_unit) const noexcept {
-        Register copy = *this;
-        copy.unit = new_unit;
-        return copy;
+        return copy_with(*this, &Register::unit, new_unit);
     }
     constexpr Register safe(double value) const noexcept {
-        Register copy = *this;
-        copy.safe_value = value;
-        copy.says_safe = true;
-        return copy;
+        return copy_with(*this, &Register::safe_value, value, &Register::says_safe, true);
     }
 };
 

@@ -103,8 +103,7 @@ private:
         Nearest nearest{name};
         for (const SignalRow& each : net_.of(*message)) nearest.consider(each.shape.name);
         fail(at, "message \"", message->name, "\" has no signal \"", name, "\"",
-             nearest.best().empty() ? "; define it by SG_ in its message" : "; did you mean \"",
-             nearest.best(), nearest.best().empty() ? "" : "\"?");
+             or_meant(nearest, "; define it by SG_ in its message"));
         return nullptr;
     }
     constexpr void check_nodes(std::string_view list) {
@@ -115,8 +114,7 @@ private:
             Nearest nearest{node};
             for_each_name(net_.nodes, [&](std::string_view each) { nearest.consider(each); });
             fail(static_cast<std::size_t>(node.data() - net_.text.data()), "BU_ names no node \"", node, "\"",
-                 nearest.best().empty() ? "; add it there" : "; did you mean \"", nearest.best(),
-                 nearest.best().empty() ? "" : "\"?");
+                 or_meant(nearest, "; add it there"));
         });
     }
     /// Names up to the end of the line, or to what is none.

@@ -66,13 +66,10 @@ private:
     static constexpr std::string_view in_file(const auto& row) noexcept {
         return row.in_file.empty() ? row.name : row.in_file;
     }
-    static constexpr std::size_t depth_of(const SignalRow& signal, const Network& net) noexcept {
-        std::size_t depth = 0;
-        for (std::size_t up = signal.selected_by; up != no_such; up = net.signals[up].selected_by) ++depth;
-        return depth;
-    }
     [[nodiscard]] constexpr std::size_t depth_of(const SignalRow& signal) const noexcept {
-        return depth_of(signal, net_);
+        std::size_t depth = 0;
+        for (std::size_t up = signal.selected_by; up != no_such; up = net_.signals[up].selected_by) ++depth;
+        return depth;
     }
     [[nodiscard]] constexpr std::size_t count(const MessageRow& message) const noexcept {
         std::size_t taken = 0;
@@ -89,9 +86,7 @@ private:
         const std::size_t at =
             net_.nodes.empty() ? 0 : static_cast<std::size_t>(net_.nodes.data() - net_.text.data());
         net_.fail(at, "BU_ names no node \"", node_.name, "\"",
-                  nearest.best().empty() ? "; name one of its nodes, or none: node(\"\", ..)"
-                                         : "; did you mean \"",
-                  nearest.best(), nearest.best().empty() ? "" : "\"?");
+                  or_meant(nearest, "; name one of its nodes, or none: node(\"\", ..)"));
     }
     constexpr void find_message(const FrameRow& row) {
         if (!ok()) return;
@@ -113,8 +108,7 @@ private:
             return;
         }
         net_.fail(0, "it has no message \"", name, "\", which a row of \"", node_.name, "\" names",
-                  nearest.best().empty() ? "; take the row away" : "; did you mean \"", nearest.best(),
-                  nearest.best().empty() ? "" : "\"?");
+                  or_meant(nearest, "; take the row away"));
     }
     constexpr void find_signal(const MessageRow& message, const Signal& row) {
         if (!ok()) return;
@@ -124,9 +118,7 @@ private:
             Nearest nearest{name};
             for (const SignalRow& each : net_.of(message)) nearest.consider(each.shape.name);
             return net_.fail(message.at, "message \"", message.name, "\" has no signal \"", name,
-                             "\", which its row names",
-                             nearest.best().empty() ? "; take it away" : "; did you mean \"", nearest.best(),
-                             nearest.best().empty() ? "" : "\"?");
+                             "\", which its row names", or_meant(nearest, "; take it away"));
         }
         if (row.bits != 0 || row.start != 0 || row.factor != 1 || row.offset != 0 || row.has_range ||
             row.order != Order::intel || row.kind != Kind::unsigned_integer || !row.multiplexor.empty())

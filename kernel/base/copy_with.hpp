@@ -1,0 +1,26 @@
+// A row of a table that says one thing more: copy_with(row, &Row::period, 10ms, &Row::name, "speed").
+#pragma once
+
+#include <type_traits>
+
+namespace tappet {
+
+namespace detail {
+template <class Row>
+constexpr void set_members(Row&) noexcept {}
+template <class Row, class Value, class... More>
+constexpr void set_members(Row& row, Value Row::* member, const std::type_identity_t<Value>& value,
+                           const More&... more) noexcept {
+    row.*member = value;
+    set_members(row, more...);
+}
+} // namespace detail
+
+/// A copy of it, in which these members have these values.
+template <class Row, class... MembersAndValues>
+constexpr Row copy_with(Row row, const MembersAndValues&... these) noexcept {
+    detail::set_members(row, these...);
+    return row;
+}
+
+} // namespace tappet
