@@ -119,4 +119,29 @@ private:
     State state_ = State::active;
 };
 
+/// What a device of either world leaves to its controller.
+class ControlledDevice : public Device {
+public:
+    using Device::send;
+    Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME final {
+        belongs_to_.used();
+        return controller_.accept(frame, keep);
+    }
+    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME final {
+        return controller_.next_timeout();
+    }
+    [[nodiscard]] State state() const noexcept TAPPET_REALTIME final { return controller_.state(); }
+    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME final { return controller_.count; }
+    [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME final {
+        return controller_.longest_response(of);
+    }
+    [[nodiscard]] Confirmation last_confirmed(Identifier of) const noexcept TAPPET_REALTIME final {
+        return controller_.last_confirmed(of);
+    }
+    void purge() noexcept TAPPET_REALTIME final { controller_.purge(); }
+
+protected:
+    Controller controller_{};
+};
+
 } // namespace tappet::can

@@ -83,9 +83,6 @@ struct Confirmation {
 /// background activity. A faulted bus is silent: its device wakes nobody until it is restarted.
 class Device {
 public:
-    Device() = default;
-    Device(const Device&) = delete;
-    Device& operator=(const Device&) = delete;
     virtual ~Device() = default;
 
     /// The next frame that arrived. `frame` is written unless the answer is `none`.
@@ -123,7 +120,7 @@ public:
     virtual void set_listener(Listener ready, void* context) noexcept = 0;
 
 protected:
-    OneActivity belongs_to_; ///< checked by every call that belongs to the activity
+    OneActivity belongs_to_; ///< checked by every call that belongs to the activity; no copy has it
 };
 
 } // namespace tappet::can

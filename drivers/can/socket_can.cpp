@@ -226,11 +226,6 @@ Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME 
     return answer;
 }
 
-Send SocketCan::send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
-    belongs_to_.used();
-    return controller_.accept(frame, keep);
-}
-
 void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
     belongs_to_.used();
     if (controller_.tick(now)) {

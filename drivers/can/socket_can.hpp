@@ -12,7 +12,7 @@
 
 namespace tappet::can {
 
-class SocketCan final : public Device {
+class SocketCan final : public ControlledDevice {
 public:
     SocketCan() = default;
     ~SocketCan() override { close(); }
@@ -27,24 +27,10 @@ public:
     /// Not real-time. Drops what waits and leaves the bus.
     void close() noexcept;
 
-    using Device::send;
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
-    Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
     /// While frames are confirmed at least every 20 ms, and for 200 ms at most.
     bool finish(Time now) noexcept TAPPET_REALTIME override;
-    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
-        return controller_.next_timeout();
-    }
-    [[nodiscard]] State state() const noexcept TAPPET_REALTIME override { return controller_.state(); }
-    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return controller_.count; }
-    [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME override {
-        return controller_.longest_response(of);
-    }
-    [[nodiscard]] Confirmation last_confirmed(Identifier of) const noexcept TAPPET_REALTIME override {
-        return controller_.last_confirmed(of);
-    }
-    void purge() noexcept TAPPET_REALTIME override { controller_.purge(); }
     Restart restart() noexcept override;
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return fd_; }
     void set_listener(Listener, void*) noexcept override {} // the descriptor says it
@@ -79,7 +65,6 @@ private:
     std::uint32_t drops_seen_ = 0;
     Arrivals arrivals_{};
     Batch batch_{};
-    Controller controller_{};
 };
 
 } // namespace tappet::can

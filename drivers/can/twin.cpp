@@ -74,11 +74,6 @@ Receive Twin::judge(const Arrival& arrival, Frame& frame) noexcept TAPPET_REALTI
     return answer;
 }
 
-Send Twin::send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME {
-    belongs_to_.used();
-    return controller_.accept(frame, keep);
-}
-
 void Twin::service(Time now) noexcept TAPPET_REALTIME {
     belongs_to_.used();
     controller_.tick(now);

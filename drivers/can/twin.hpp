@@ -12,7 +12,7 @@
 namespace tappet::can {
 
 /// Its owner uses it from one thread; the bus's thread may be another. Both sides meet in two rings only.
-class Twin final : public Device {
+class Twin final : public ControlledDevice {
 public:
     static constexpr std::size_t inbox = 256; // of the size of Linux's default socket buffer: 278 frames
     static constexpr std::size_t outbox = 256;
@@ -22,24 +22,10 @@ public:
     /// Not real-time, before the bus runs. `interface` is a name for messages only.
     std::expected<void, Sentence> open(const Settings& settings) noexcept;
 
-    using Device::send;
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
-    Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
     /// At once, however many may be in flight: who stops under virtual time waits for no confirmation.
     bool finish(Time now) noexcept TAPPET_REALTIME override;
-    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
-        return controller_.next_timeout();
-    }
-    [[nodiscard]] State state() const noexcept TAPPET_REALTIME override { return controller_.state(); }
-    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return controller_.count; }
-    [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME override {
-        return controller_.longest_response(of);
-    }
-    [[nodiscard]] Confirmation last_confirmed(Identifier of) const noexcept TAPPET_REALTIME override {
-        return controller_.last_confirmed(of);
-    }
-    void purge() noexcept TAPPET_REALTIME override { controller_.purge(); }
     Restart restart() noexcept override;
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
     /// `ready` is called by the bus's thread.
@@ -74,7 +60,6 @@ private:
     void wake() noexcept TAPPET_REALTIME;
 
     Settings settings_{};
-    Controller controller_{};
     std::uint32_t lost_seen_ = 0;
     twin::Ring<Arrival, inbox> inbox_{};
     twin::Ring<Departure, outbox> outbox_{};

@@ -74,9 +74,6 @@ struct Counters {
 /// All calls are real-time and belong to one activity.
 class Device {
 public:
-    Device() = default;
-    Device(const Device&) = delete;
-    Device& operator=(const Device&) = delete;
     virtual ~Device() = default;
 
     /// Fills `edges` from its start with what happened since the last call, oldest first.
@@ -95,7 +92,7 @@ public:
     virtual void set_listener(Listener ready, void* context) noexcept = 0;
 
 protected:
-    OneActivity belongs_to_; ///< checked by every call that belongs to the activity
+    OneActivity belongs_to_; ///< checked by every call that belongs to the activity; no copy has it
 };
 
 } // namespace tappet::gpio

@@ -56,4 +56,33 @@ private:
     std::uint32_t last_ = 0; // the first edge of a request is number 1
 };
 
+/// What the lines of either world do alike: safe values, and the count of what came and what is missing.
+class PlannedLines : public Device {
+public:
+    bool make_safe() noexcept TAPPET_REALTIME final { return write(plan_.outputs, plan_.safe); }
+    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME final { return count_; }
+
+protected:
+    /// These edges were read, the oldest first.
+    EdgeBatch judge(std::span<Edge> edges) noexcept TAPPET_REALTIME {
+        EdgeBatch batch{.count = edges.size()};
+        for (Edge& edge : edges) {
+            edge.missed = sequence_.missed_before(edge.seqno);
+            batch.gap.missed += edge.missed;
+        }
+        count_.edges += batch.count;
+        if (batch.gap.missed == 0) return batch;
+        ++count_.gaps;
+        count_.missed += batch.gap.missed;
+        const Levels now = levels();
+        batch.gap.levels_known = now.known;
+        batch.gap.levels = now.mask;
+        return batch;
+    }
+
+    LinePlan plan_{};
+    EdgeSequence sequence_{};
+    Counters count_{};
+};
+
 } // namespace tappet::gpio

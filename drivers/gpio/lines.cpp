@@ -107,22 +107,9 @@ void Lines::close() noexcept {
 
 EdgeBatch Lines::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
     belongs_to_.used();
-    EdgeBatch batch;
-    if (fd_ < 0) return batch;
-    batch.count = fetch(edges.first(edges.size() < edges_at_once ? edges.size() : edges_at_once));
-    for (Edge& edge : edges.first(batch.count)) {
-        edge.missed = sequence_.missed_before(edge.seqno);
-        batch.gap.missed += edge.missed;
-    }
-    count_.edges += batch.count;
-    if (batch.gap.missed != 0) {
-        ++count_.gaps;
-        count_.missed += batch.gap.missed;
-        const Levels now = levels();
-        batch.gap.levels_known = now.known;
-        batch.gap.levels = now.mask;
-    }
-    return batch;
+    if (fd_ < 0) return {};
+    return judge(
+        edges.first(fetch(edges.first(edges.size() < edges_at_once ? edges.size() : edges_at_once))));
 }
 
 std::size_t Lines::fetch(std::span<Edge> edges) noexcept TAPPET_REALTIME {

@@ -11,7 +11,7 @@ struct gpiod_edge_event_buffer;
 
 namespace tappet::gpio {
 
-class Lines final : public Device {
+class Lines final : public PlannedLines {
 public:
     Lines() = default;
     ~Lines() override { close(); }
@@ -26,8 +26,6 @@ public:
     EdgeBatch read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME override;
     Levels levels() noexcept TAPPET_REALTIME override;
     bool write(Mask mask, Mask values) noexcept TAPPET_REALTIME override;
-    bool make_safe() noexcept TAPPET_REALTIME override { return write(plan_.outputs, plan_.safe); }
-    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return count_; }
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return fd_; }
     void set_listener(Listener, void*) noexcept override {} // the descriptor says it
 
@@ -41,14 +39,11 @@ private:
     [[nodiscard]] std::size_t fetch(std::span<Edge> edges) noexcept TAPPET_REALTIME;
     [[nodiscard]] std::uint32_t index_of(unsigned offset) const noexcept TAPPET_REALTIME;
 
-    LinePlan plan_{};
     std::array<unsigned, most_lines> offsets_{};
     std::size_t lines_ = 0;
     std::unique_ptr<gpiod_line_request, Release> request_{};
     std::unique_ptr<gpiod_edge_event_buffer, Release> buffer_{};
     int fd_ = -1;
-    EdgeSequence sequence_{};
-    Counters count_{};
 };
 
 } // namespace tappet::gpio

@@ -19,24 +19,10 @@ void Twin::set_listener(Listener ready, void* context) noexcept {
 
 EdgeBatch Twin::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
     belongs_to_.used();
-    EdgeBatch batch;
-    if (refuses()) return batch;
-    Edge edge;
-    while (batch.count < edges.size() && edges_.pop(edge)) {
-        edge.missed = sequence_.missed_before(edge.seqno);
-        batch.gap.missed += edge.missed;
-        edges[batch.count] = edge;
-        ++batch.count;
-    }
-    count_.edges += batch.count;
-    if (batch.gap.missed != 0) {
-        ++count_.gaps;
-        count_.missed += batch.gap.missed;
-        const Levels now = levels();
-        batch.gap.levels_known = now.known;
-        batch.gap.levels = now.mask;
-    }
-    return batch;
+    if (refuses()) return {};
+    std::size_t count = 0;
+    while (count < edges.size() && edges_.pop(edges[count])) ++count;
+    return judge(edges.first(count));
 }
 
 Levels Twin::levels() noexcept TAPPET_REALTIME {

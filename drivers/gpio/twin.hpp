@@ -23,7 +23,7 @@ struct LineFaults {
 
 /// The Device's calls belong to the machine's thread, drive(), deliver_until() and the faults to the plant's;
 /// they meet in a ring and two words only. Levels are logical on both sides.
-class Twin final : public Device, public Wires {
+class Twin final : public PlannedLines, public Wires {
 public:
     static constexpr std::size_t event_buffer = 1024; // as large as Linux grants one
 
@@ -35,8 +35,6 @@ public:
     EdgeBatch read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME override;
     Levels levels() noexcept TAPPET_REALTIME override;
     bool write(Mask mask, Mask values) noexcept TAPPET_REALTIME override;
-    bool make_safe() noexcept TAPPET_REALTIME override { return write(plan_.outputs, plan_.safe); }
-    [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return count_; }
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
     /// `ready` is called by the plant's thread.
     void set_listener(Listener ready, void* context) noexcept override;
@@ -100,14 +98,11 @@ private:
     void deliver(const Edge& edge) noexcept TAPPET_REALTIME;
 
     std::span<const Line> lines_{};
-    LinePlan plan_{};
     twin::Ring<Edge, event_buffer> edges_{};
     std::atomic<Mask> inputs_{0};
     std::atomic<Mask> driven_{0};
     std::atomic<std::uint32_t> refusals_{0};
     std::atomic<bool> removed_{false};
-    EdgeSequence sequence_{}; // the machine's
-    Counters count_{};        // the machine's
     // The plant's.
     Random random_;
     std::array<LineFaults, most_lines> faults_{};

@@ -30,9 +30,6 @@ struct Answer {
 /// next request.
 class Transport {
 public:
-    Transport() = default;
-    Transport(const Transport&) = delete;
-    Transport& operator=(const Transport&) = delete;
     virtual ~Transport() = default;
 
     virtual Answer connect() noexcept = 0;
@@ -46,7 +43,7 @@ public:
                          std::span<const std::uint16_t> values) noexcept = 0;
 
 protected:
-    OneActivity belongs_to_; ///< checked by every call that belongs to the activity
+    OneActivity belongs_to_; ///< checked by every call that belongs to the activity; no copy has it
 };
 
 } // namespace tappet::modbus
