@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 
 #include <fcntl.h>
@@ -110,9 +109,7 @@ init::Done make_anew(const std::string& device, const std::function<void()>& mea
                         static_cast<off_t>(number * block_bytes)) == block_bytes;
     }
     done = done && ::fsync(disk) == 0;
-    const int error = errno;
-    if (disk >= 0) ::close(disk);
-    errno = error;
+    init::close_it(disk);
     return done ? init::Done{} : init::failed("write " + device);
 }
 
@@ -194,9 +191,7 @@ init::Done write_through(const std::string& path, int how, std::string_view byte
         bytes.remove_prefix(written ? static_cast<std::size_t>(count) : 0);
     }
     written = written && ::fsync(file) == 0;
-    const int error = errno;
-    if (file >= 0) ::close(file);
-    errno = error;
+    init::close_it(file);
     return written ? init::Done{} : init::failed("write " + path);
 }
 

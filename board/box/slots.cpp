@@ -102,9 +102,7 @@ init::Done empty_slot(const std::string& device) {
         area.replace(i * table_bytes, 4, {static_cast<char>(head[21]), '\xff', '\xff', '\xff'});
     done = done && ::pwrite(disk, area.data(), area.size(), word(14) * sector_bytes) == std::ssize(area) &&
            ::fsync(disk) == 0;
-    const int error = errno;
-    if (disk >= 0) ::close(disk);
-    errno = error;
+    init::close_it(disk);
     return done ? init::Done{} : init::failed("empty " + device);
 }
 

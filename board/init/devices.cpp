@@ -113,9 +113,7 @@ Done load_module(const std::string& path, const std::string& parameters, Signatu
         done = ::syscall(SYS_init_module, module.data(), module.size(), parameters.c_str());
     } else if (const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC); descriptor >= 0) {
         done = ::syscall(SYS_finit_module, descriptor, parameters.c_str(), 0);
-        const int error = errno;
-        ::close(descriptor);
-        errno = error;
+        close_it(descriptor);
     }
     return done == 0 || errno == EEXIST ? Done{} : failed("load module " + path);
 }
@@ -144,9 +142,7 @@ Done set_link(const std::string& name, bool up) {
         request.ifr_flags = static_cast<short>(up ? (flags | IFF_UP) : (flags & ~IFF_UP));
         set = ::ioctl(socket, SIOCSIFFLAGS, &request) == 0;
     }
-    const int error = errno;
-    ::close(socket);
-    errno = error;
+    close_it(socket);
     return set ? Done{} : failed("set interface " + name);
 }
 

@@ -23,6 +23,12 @@ std::unexpected<std::string> failed(const std::string& what) {
     return std::unexpected(what + ": " + std::strerror(errno));
 }
 
+void close_it(int descriptor) {
+    const int error = errno;
+    if (descriptor >= 0) ::close(descriptor);
+    errno = error;
+}
+
 void pause_for(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
 
 void make_folder(const std::string& path) {
@@ -38,9 +44,7 @@ bool write_text(const std::string& path, std::string_view text) {
         return false;
     }
     const ssize_t count = ::write(descriptor, text.data(), text.size());
-    const int error = errno;
-    ::close(descriptor);
-    errno = error;
+    close_it(descriptor);
     return count == static_cast<ssize_t>(text.size());
 }
 
@@ -51,9 +55,7 @@ std::string read_text(const std::string& path) {
     for (ssize_t count = 0; descriptor >= 0 && (count = ::read(descriptor, piece, sizeof piece)) > 0;) {
         text.append(piece, static_cast<std::size_t>(count));
     }
-    if (descriptor >= 0) {
-        ::close(descriptor);
-    }
+    close_it(descriptor);
     return text;
 }
 

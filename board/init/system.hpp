@@ -18,6 +18,8 @@ namespace tappet::init {
 using Done = std::expected<void, std::string>;
 /// With the kernel's last word, errno.
 [[nodiscard]] std::unexpected<std::string> failed(const std::string& what);
+/// If it is open; what went wrong before is left in errno.
+void close_it(int descriptor);
 
 void pause_for(std::chrono::milliseconds time);
 
