@@ -10,6 +10,7 @@
 #include "drivers/can/transmit_queue.hpp"
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/nth.hpp"
 
 #include <algorithm>
 #include <array>
@@ -172,15 +173,9 @@ struct Bus {
         std::array<Facet, signal_count + frame_count + fixed_facets + (protocol.any ? 2 : 0)> list{};
         std::size_t n = 0;
         for (std::size_t s = 0; s < signal_count; ++s) list[n++] = signal_facet(s);
-        for (std::size_t f = 0; f < frame_count; ++f) {
-            Facet facet =
-                tappet::event<&Bus::bus_fault>(FacetNames<map>::received[f].view(), "a frame arrived");
-            facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                return &static_cast<Bus*>(c)->frame_received[i];
-            };
-            facet.index = f;
-            list[n++] = facet;
-        }
+        for (std::size_t f = 0; f < frame_count; ++f)
+            list[n++] =
+                nth_event<&Bus::frame_received>(f, FacetNames<map>::received[f].view(), "a frame arrived");
         for (const Facet& facet : {
                  output<&Bus::is_faulted>("faulted", "", "nothing is sent; written on change",
                                           while_stopped(true)),
@@ -229,30 +224,14 @@ private:
         return map.frames[f].direction == Direction::transmit && map.frames[f].every == Duration::zero();
     }
 
-    template <auto ports>
-    static void* port_at(void* bus, std::size_t i) noexcept {
-        return &(static_cast<Bus*>(bus)->*ports)[i];
-    }
-
     static constexpr Facet signal_facet(std::size_t s) {
         const Signal& signal = map.signals[s];
-        const bool sent = map.frames[map.frame_of[s]].direction == Direction::transmit;
-        Facet facet{.name = FacetNames<map>::signals[s].view(),
-                    .unit = signal.unit,
-                    .doc = sent ? "sent" : "received",
-                    .kind = sent ? FacetKind::input : FacetKind::output,
-                    .required = sent,
-                    .index = s};
-        if (is_integer(signal)) {
-            facet.type = type_id<std::int64_t>;
-            facet.port = &PortAccess::data<std::int64_t>;
-            facet.at = sent ? &port_at<&Bus::integer_in> : &port_at<&Bus::integer_out>;
-        } else {
-            facet.type = type_id<double>;
-            facet.port = &PortAccess::data<double>;
-            facet.at = sent ? &port_at<&Bus::physical_in> : &port_at<&Bus::physical_out>;
-        }
-        return facet;
+        const std::string_view name = FacetNames<map>::signals[s].view();
+        if (map.frames[map.frame_of[s]].direction == Direction::transmit)
+            return is_integer(signal) ? nth_input<&Bus::integer_in>(s, name, signal.unit, "sent")
+                                      : nth_input<&Bus::physical_in>(s, name, signal.unit, "sent");
+        return is_integer(signal) ? nth_output<&Bus::integer_out>(s, name, signal.unit, "received")
+                                  : nth_output<&Bus::physical_out>(s, name, signal.unit, "received");
     }
 
     /// Absolute times: a late cycle does not move the ones after it, and whole periods missed are left out.

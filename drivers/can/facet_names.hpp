@@ -2,24 +2,16 @@
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
-
-#include <array>
+#include "kernel/base/array_of.hpp"
 
 namespace tappet::can {
 
 /// The names of a map's facets, "frame.signal" and "frame.received".
 template <const auto& map> struct FacetNames {
-    static constexpr auto signals = [] {
-        std::array<FacetName, map.signals.size()> names{};
-        for (std::size_t s = 0; s < names.size(); ++s)
-            names[s] = {map.frames[map.frame_of[s]].name, ".", map.signals[s].name};
-        return names;
-    }();
-    static constexpr auto received = [] {
-        std::array<FacetName, map.frames.size()> names{};
-        for (std::size_t f = 0; f < names.size(); ++f) names[f] = {map.frames[f].name, ".received"};
-        return names;
-    }();
+    static constexpr auto signals = array_of<map.signals.size()>(
+        [](std::size_t s) { return FacetName{map.frames[map.frame_of[s]].name, ".", map.signals[s].name}; });
+    static constexpr auto received =
+        array_of<map.frames.size()>([](std::size_t f) { return FacetName{map.frames[f].name, ".received"}; });
 };
 
 } // namespace tappet::can

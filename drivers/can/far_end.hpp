@@ -4,6 +4,7 @@
 #include "drivers/can/device.hpp"
 #include "drivers/can/node_signals.hpp"
 #include "drivers/twin/far_end.hpp"
+#include "kernel/base/array_of.hpp"
 
 #include <array>
 #include <cstdint>
@@ -66,8 +67,6 @@ public:
     using RawFarEnd::RawFarEnd;
 
     [[nodiscard]] bool came(Received frame) const noexcept { return came_[frame.index]; }
-    /// When the frame came last; Time::min() before.
-    [[nodiscard]] Time came_at(Received frame) const noexcept { return came_at_[frame.index]; }
 
     using RawFarEnd::send;
     void send(Sent frame) noexcept { wanted_[frame.index] = true; }
@@ -82,9 +81,7 @@ public:
         Frame frame;
         while (receive(frame)) {
             std::size_t f = no_such;
-            if (store_.decode(frame, f) != Decoded::yes) continue;
-            came_[f] = true;
-            came_at_[f] = frame.stamp == Time{} ? now : frame.stamp; // a plain socket stamps nothing
+            if (store_.decode(frame, f) == Decoded::yes) came_[f] = true;
         }
     }
     void give(Time now) override {
@@ -103,21 +100,11 @@ public:
     }
 
 private:
-    static constexpr auto never_due = [] {
-        std::array<Time, nodes.frames.size()> times{};
-        times.fill(never);
-        return times;
-    }();
-
     std::array<bool, nodes.frames.size()> came_{};
-    std::array<Time, nodes.frames.size()> came_at_ = [] {
-        std::array<Time, nodes.frames.size()> times{};
-        times.fill(Time::min());
-        return times;
-    }();
     std::array<bool, nodes.frames.size()> wanted_{};
     std::array<Duration, nodes.frames.size()> every_{};
-    std::array<Time, nodes.frames.size()> due_ = never_due;
+    std::array<Time, nodes.frames.size()> due_ =
+        array_of<nodes.frames.size()>([](std::size_t) { return never; });
     Time now_{};
 };
 

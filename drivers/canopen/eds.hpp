@@ -8,6 +8,7 @@
 
 #include "drivers/canopen/cp1252.hpp"
 #include "drivers/canopen/number_text.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/source_text.hpp"
 
@@ -427,11 +428,8 @@ template <const auto& Source> inline constexpr EdsReader<eds_room(Source.text)> 
 /// In exactly its room, as a part of the program that uses it.
 template <const auto& Source> struct CheckedDictionary {
     TAPPET_ACCEPTED(eds_read<Source>.fault);
-    static constexpr auto objects = [] {
-        std::array<Object, eds_read<Source>.objects.used> exact{};
-        std::copy_n(eds_read<Source>.objects.begin(), exact.size(), exact.begin());
-        return exact;
-    }();
+    static constexpr auto objects =
+        array_of<eds_read<Source>.objects.used>([](std::size_t i) { return eds_read<Source>.objects[i]; });
     static constexpr Dictionary dictionary{Source.name, eds_read<Source>.product, eds_read<Source>.node,
                                            eds_read<Source>.identity, objects};
 };
@@ -441,8 +439,5 @@ template <const auto& Source> struct CheckedDictionary {
 /// Of a constant SourceText at namespace scope.
 template <const auto& Source>
 inline constexpr const Dictionary& dictionary = detail::CheckedDictionary<Source>::dictionary;
-
-/// What is wrong with the text, for who wants to know and not to stop.
-template <const auto& Source> inline constexpr const Sentence& eds_fault_of = detail::eds_read<Source>.fault;
 
 } // namespace tappet::canopen

@@ -3,33 +3,22 @@
 
 #include "drivers/can/services.hpp"
 #include "drivers/canopen/network_rows.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/component/facet_name.hpp"
 
 namespace tappet::canopen {
 
 constexpr can::Frame nmt_frame(NmtCommand command, std::uint8_t node) noexcept TAPPET_REALTIME {
-    can::Frame frame;
-    frame.id = cob::nmt;
-    frame.length = 2;
-    frame.data = {static_cast<std::uint8_t>(command), node};
-    return frame;
+    return {.id = cob::nmt, .length = 2, .data = {static_cast<std::uint8_t>(command), node}};
 }
 constexpr can::Frame heartbeat_frame(std::uint8_t node, NmtState state) noexcept TAPPET_REALTIME {
-    can::Frame frame;
-    frame.id = cob::heartbeat + node;
-    frame.length = 1;
-    frame.data = {static_cast<std::uint8_t>(state)};
-    return frame;
+    return {.id = cob::heartbeat + node, .length = 1, .data = {static_cast<std::uint8_t>(state)}};
 }
 
 /// `counter` stands in it when `overflow` says that it is counted.
 constexpr can::Frame sync_frame(std::uint8_t overflow, std::uint8_t counter) noexcept TAPPET_REALTIME {
-    can::Frame frame;
-    frame.id = cob::sync;
-    if (overflow == 0) return frame;
-    frame.length = 1;
-    frame.data = {counter};
-    return frame;
+    if (overflow == 0) return {.id = cob::sync};
+    return {.id = cob::sync, .length = 1, .data = {counter}};
 }
 
 /// The least time between two SDO requests to one node, and between two NMT commands: the manager keeps both,
@@ -43,13 +32,8 @@ namespace detail {
 template <const auto& map> struct ServiceNames {
     static constexpr std::array<std::string_view, 4> kinds{".emergency", ".sdo_answer", ".heartbeat",
                                                            ".sdo_request"};
-    static constexpr auto names = [] {
-        std::array<FacetName, kinds.size() * map.nodes.size()> all{};
-        for (std::size_t n = 0; n < map.nodes.size(); ++n)
-            for (std::size_t k = 0; k < kinds.size(); ++k)
-                all[kinds.size() * n + k] = {map.nodes[n].name, kinds[k]};
-        return all;
-    }();
+    static constexpr auto names = array_of<kinds.size() * map.nodes.size()>(
+        [](std::size_t i) { return FacetName{map.nodes[i / kinds.size()].name, kinds[i % kinds.size()]}; });
 };
 
 } // namespace detail

@@ -4,8 +4,10 @@
 
 #include "drivers/canopen/network.hpp"
 #include "drivers/canopen/trouble_text.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/facet_name.hpp"
+#include "kernel/component/nth.hpp"
 #include "kernel/pieces/changed.hpp"
 
 namespace tappet::canopen {
@@ -115,24 +117,10 @@ template <const auto& map> struct Manager {
              })
             list[n++] = facet;
         for (std::size_t i = 0; i < node_count; ++i) {
-            list[n++] = {.name = phase_names[i].view(),
-                         .doc = "how far the node is; written on change",
-                         .kind = FacetKind::output,
-                         .type = type_id<NodePhase>,
-                         .index = i,
-                         .at = [](void* self, std::size_t k) noexcept -> void* {
-                             return &static_cast<Manager*>(self)->phases[k];
-                         },
-                         .port = &PortAccess::data<NodePhase>};
-            list[n++] = {.name = error_names[i].view(),
-                         .doc = "code of its last emergency, 0: none; written on change",
-                         .kind = FacetKind::output,
-                         .type = type_id<std::int64_t>,
-                         .index = i,
-                         .at = [](void* self, std::size_t k) noexcept -> void* {
-                             return &static_cast<Manager*>(self)->errors[k];
-                         },
-                         .port = &PortAccess::data<std::int64_t>};
+            list[n++] = nth_output<&Manager::phases>(i, phase_names[i].view(), "",
+                                                     "how far the node is; written on change");
+            list[n++] = nth_output<&Manager::errors>(
+                i, error_names[i].view(), "", "code of its last emergency, 0: none; written on change");
         }
         return list;
     }
@@ -141,25 +129,15 @@ private:
     static constexpr std::uint16_t no_step = 0xFFFF;
 
     // What of the table a program holds.
-    static constexpr auto nodes = [] {
-        std::array<WatchedNode, node_count> all{};
-        for (std::size_t i = 0; i < node_count; ++i) {
-            const NodeRow& row = map.nodes[i];
-            all[i] = {row.id,    row.name,       row.dictionary.product, row.dictionary.file,
-                      row.beats, row.lost_after, row.answers_within};
-        }
-        return all;
-    }();
-    static constexpr auto steps = [] {
-        std::array<ConfigurationStep, map.steps.used> all{};
-        std::copy_n(map.steps.begin(), all.size(), all.begin());
-        return all;
-    }();
+    static constexpr auto nodes = array_of<node_count>([](std::size_t i) {
+        const NodeRow& row = map.nodes[i];
+        return WatchedNode{row.id,    row.name,       row.dictionary.product, row.dictionary.file,
+                           row.beats, row.lost_after, row.answers_within};
+    });
+    static constexpr auto steps = array_of<map.steps.used>([](std::size_t i) { return map.steps[i]; });
     static constexpr auto first_step = map.first_step;
     static constexpr auto names(std::string_view end) {
-        std::array<FacetName, node_count> all{};
-        for (std::size_t i = 0; i < node_count; ++i) all[i] = {map.nodes[i].name, end};
-        return all;
+        return array_of<node_count>([end](std::size_t i) { return FacetName{map.nodes[i].name, end}; });
     }
     static constexpr auto phase_names = names(".phase");
     static constexpr auto error_names = names(".error");
@@ -232,9 +210,7 @@ private:
         if (!time_of_day.good()) return;
         const Duration since = time_of_day.get() + (now - time_of_day.stamp());
         constexpr Duration day = 24h;
-        can::Frame time;
-        time.id = cob::time;
-        time.length = 6;
+        can::Frame time{.id = cob::time, .length = 6};
         to_bytes(static_cast<std::uint64_t>(since % day / 1ms), std::span{time.data}.first(4));
         to_bytes(static_cast<std::uint64_t>(since / day), std::span{time.data}.subspan(4, 2));
         send(time, now);
@@ -245,10 +221,8 @@ private:
         int left = max_requests_per_cycle;
         for (std::size_t k = 0; k < node_count && left > 0; ++k) {
             turn_ = turn_ + 1 < node_count ? turn_ + 1 : 0;
-            can::Frame frame;
+            can::Frame frame{.id = cob::sdo_request + nodes[turn_].id, .length = 8};
             if (!watches_[turn_].next_request(frame.data, now)) continue;
-            frame.id = cob::sdo_request + nodes[turn_].id;
-            frame.length = 8;
             send(frame, now);
             --left;
         }

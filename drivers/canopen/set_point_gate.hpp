@@ -102,7 +102,6 @@ public:
         return offset_.at(offset_age_);
     }
 
-    [[nodiscard]] bool rests() const noexcept TAPPET_REALTIME { return rests_; }
     /// It was told to come to rest, and has.
     [[nodiscard]] bool stands() const noexcept TAPPET_REALTIME { return rests_ && is_still(); }
     /// The drive shows the mode of the motion, and has its set points.

@@ -1,6 +1,8 @@
 // What a simulated node makes of the frames and of the time.
 #include "drivers/canopen/simulated_node.hpp"
 
+#include "drivers/canopen/frames.hpp"
+
 namespace tappet::canopen {
 namespace {
 
@@ -64,25 +66,17 @@ void SimulatedNode::emit(can::Frame frame, Time due, FrameSink& out) const noexc
     out.send(frame);
 }
 
-void SimulatedNode::beat(NmtState state, Time due, FrameSink& out) const noexcept TAPPET_REALTIME {
-    can::Frame frame;
-    frame.id = cob::heartbeat + id();
-    frame.length = 1;
-    frame.data = {static_cast<std::uint8_t>(state)};
-    emit(frame, due, out);
-}
-
 bool SimulatedNode::tick(Time now, FrameSink& out) noexcept TAPPET_REALTIME {
     if (boots_at_ <= now) {
         const Time at = boots_at_;
         boots_at_ = never;
         state_ = NmtState::pre_operational;
-        beat(NmtState::boot_up, at, out);
+        emit(heartbeat_frame(id(), NmtState::boot_up), at, out);
         now_ = at;
         written(0x1017);
     }
     if (beat_at_ <= now) {
-        beat(state_, beat_at_, out);
+        emit(heartbeat_frame(id(), state_), beat_at_, out);
         beat_at_ += own(std::chrono::milliseconds{get(0x1017)});
     }
     if (master_lost_at_ <= now) {
@@ -103,9 +97,7 @@ bool SimulatedNode::tick(Time now, FrameSink& out) noexcept TAPPET_REALTIME {
 }
 
 can::Frame SimulatedNode::pack(const Pdo& pdo) noexcept TAPPET_REALTIME {
-    can::Frame frame;
-    frame.id = pdo.identifier;
-    frame.length = static_cast<std::uint8_t>((pdo.bits + 7) / 8);
+    can::Frame frame{.id = pdo.identifier, .length = static_cast<std::uint8_t>((pdo.bits + 7) / 8)};
     std::uint64_t whole = 0;
     unsigned at = 0;
     for (const std::uint16_t place : pdo.objects) {
@@ -171,9 +163,7 @@ SimulatedNode::Heard SimulatedNode::manage(const can::Frame& frame, Time now) no
 void SimulatedNode::serve(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME {
     if (is_mute_ || state_ == NmtState::stopped || frame.length != 8) return;
     now_ = now;
-    can::Frame answer;
-    answer.id = cob::sdo_answer + id();
-    answer.length = 8;
+    can::Frame answer{.id = cob::sdo_answer + id(), .length = 8};
     if (server_.serve(frame.data, *this, answer.data)) emit(answer, now, out);
 }
 
@@ -230,12 +220,11 @@ void SimulatedNode::send_emergency(std::uint16_t code, std::uint8_t error_regist
     } else {
         set({0x1003, 0}, 0);
     }
-    can::Frame frame;
-    frame.id = cob::emergency + id();
-    frame.length = 8;
-    frame.data = {static_cast<std::uint8_t>(code & 0xFF), static_cast<std::uint8_t>(code >> 8),
-                  error_register};
-    emit(frame, due, out);
+    emit({.id = cob::emergency + id(),
+          .length = 8,
+          .data = {static_cast<std::uint8_t>(code & 0xFF), static_cast<std::uint8_t>(code >> 8),
+                   error_register}},
+         due, out);
 }
 
 SdoAbort SimulatedNode::may_write(const Object& object, std::uint64_t bits) noexcept TAPPET_REALTIME {

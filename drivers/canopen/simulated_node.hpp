@@ -112,7 +112,6 @@ private:
     void unpack(const Pdo& pdo, std::uint64_t whole) noexcept TAPPET_REALTIME;
     bool take_pdo(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
     void emit(can::Frame frame, Time due, FrameSink& out) const noexcept TAPPET_REALTIME;
-    void beat(NmtState state, Time due, FrameSink& out) const noexcept TAPPET_REALTIME;
     void read_pdo(Pdo& pdo, std::uint16_t communication, Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] can::Frame pack(const Pdo& pdo) noexcept TAPPET_REALTIME;
     SdoAbort may_write(const Object& object, std::uint64_t bits) noexcept TAPPET_REALTIME override;

@@ -3,9 +3,11 @@
 
 #include "drivers/gpio/device.hpp"
 #include "drivers/gpio/line_map.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/facet_name.hpp"
+#include "kernel/component/nth.hpp"
 
 #include <array>
 #include <bit>
@@ -18,19 +20,15 @@ namespace tappet::gpio {
 /// The names of a map's facets: "line", "line.rises", "line.falls", "line.set", "line.clear".
 template <const auto& map> struct LineNames {
     static constexpr auto with(std::string_view ending) {
-        std::array<FacetName, map.rows.size()> names{};
-        for (std::size_t i = 0; i < names.size(); ++i) names[i] = {map.rows[i].line.name, ending};
-        return names;
+        return array_of<map.rows.size()>(
+            [ending](std::size_t i) { return FacetName{map.rows[i].line.name, ending}; });
     }
     static constexpr auto rises = with(".rises");
     static constexpr auto falls = with(".falls");
     static constexpr auto set = with(".set");
     static constexpr auto clear = with(".clear");
-    static constexpr auto plain = [] {
-        std::array<std::string_view, map.rows.size()> names{};
-        for (std::size_t i = 0; i < names.size(); ++i) names[i] = map.rows[i].line.name;
-        return names;
-    }();
+    static constexpr auto plain =
+        array_of<map.rows.size()>([](std::size_t i) { return map.rows[i].line.name; });
 };
 
 /// For each sensor: an output with its level and the edge's time, and the events rises and falls with that
@@ -177,45 +175,13 @@ private:
         using Names = LineNames<map>;
         constexpr std::string_view name = Names::plain[i];
         if constexpr (map.rows[i].line.role == Role::input) {
-            all[n++] = {.name = name,
-                        .doc = "the line's level",
-                        .kind = FacetKind::output,
-                        .type = type_id<bool>,
-                        .at_rest = AtRest::as_it_was,
-                        .index = i,
-                        .at = [](void* c, std::size_t k) noexcept -> void* {
-                            return &static_cast<LinePort*>(c)->level[k];
-                        },
-                        .port = &PortAccess::data<bool>};
-            all[n++] = {.name = Names::rises[i].view(),
-                        .doc = "the line became active, at that time",
-                        .kind = FacetKind::event,
-                        .type = type_id<Arguments<Time>>,
-                        .index = i,
-                        .at = [](void* c, std::size_t k) noexcept -> void* {
-                            return &static_cast<LinePort*>(c)->rises[k];
-                        },
-                        .event = &PortAccess::event<Time>};
-            all[n++] = {.name = Names::falls[i].view(),
-                        .doc = "the line became inactive, at that time",
-                        .kind = FacetKind::event,
-                        .type = type_id<Arguments<Time>>,
-                        .index = i,
-                        .at = [](void* c, std::size_t k) noexcept -> void* {
-                            return &static_cast<LinePort*>(c)->falls[k];
-                        },
-                        .event = &PortAccess::event<Time>};
+            all[n++] = nth_output<&LinePort::level>(i, name, "", "the line's level", as_it_was);
+            all[n++] = nth_event<&LinePort::rises>(i, Names::rises[i].view(),
+                                                   "the line became active, at that time");
+            all[n++] = nth_event<&LinePort::falls>(i, Names::falls[i].view(),
+                                                   "the line became inactive, at that time");
         } else if constexpr (map.rows[i].driven == Driven::by_port) {
-            all[n++] = {.name = name,
-                        .doc = "the level wanted",
-                        .kind = FacetKind::input,
-                        .type = type_id<bool>,
-                        .required = true,
-                        .index = i,
-                        .at = [](void* c, std::size_t k) noexcept -> void* {
-                            return &static_cast<LinePort*>(c)->wanted[k];
-                        },
-                        .port = &PortAccess::data<bool>};
+            all[n++] = nth_input<&LinePort::wanted>(i, name, "", "the level wanted");
         } else {
             all[n++] = operation<&LinePort::template set<i>>(Names::set[i].view(), "makes the line active",
                                                              required);

@@ -5,8 +5,10 @@
 #include "drivers/modbus/session.hpp"
 #include "drivers/modbus/transport.hpp"
 #include "drivers/modbus/trouble_text.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/facet_name.hpp"
+#include "kernel/component/nth.hpp"
 
 #include <array>
 #include <cstdint>
@@ -16,12 +18,8 @@
 namespace tappet::modbus {
 
 template <const auto& map> struct RegisterNames {
-    static constexpr auto all = [] {
-        std::array<FacetName, map.registers.size()> names{};
-        for (std::size_t v = 0; v < names.size(); ++v)
-            names[v] = {map.rows[map.row_of[v]].name, ".", map.registers[v].name};
-        return names;
-    }();
+    static constexpr auto all = array_of<map.registers.size()>(
+        [](std::size_t v) { return FacetName{map.rows[map.row_of[v]].name, ".", map.registers[v].name}; });
 };
 
 /// For each register read an output, stamped when the answer came and written only then, so that its age
@@ -60,11 +58,7 @@ template <const auto& map> struct Client {
         was_lost_ = false;
         told_ = {};
         reason.write({});
-        connected.write(false);
-        outages.write(0);
-        outages_survived.write(0);
-        no_numbers.write(0);
-        out_of_range.write(0);
+        tell_counts();
     }
 
     void work(const Cycle& cycle) {
@@ -76,11 +70,7 @@ template <const auto& map> struct Client {
             // A server may take longer than a time stamp may lie ahead of the cycle.
             read[v].write(value.value, std::min(value.stamp, cycle.now + ahead_at_most));
         }
-        connected.write(session_->connected());
-        outages.write(static_cast<std::int64_t>(session_->counters().outages));
-        outages_survived.write(static_cast<std::int64_t>(session_->counters().outages_survived));
-        no_numbers.write(static_cast<std::int64_t>(session_->counters().no_numbers));
-        out_of_range.write(static_cast<std::int64_t>(session_->counters().saturated));
+        tell_counts();
         tell_trouble();
         if (was_stopped_ && session_->connected()) {
             was_stopped_ = false;
@@ -109,24 +99,9 @@ template <const auto& map> struct Client {
         std::array<Facet, count + 8> list{};
         std::size_t n = 0;
         for (std::size_t v = 0; v < count; ++v) {
-            const bool sent = is_written(v);
-            Facet facet{.name = RegisterNames<map>::all[v].view(),
-                        .unit = map.registers[v].unit,
-                        .doc = sent ? "written to the server" : "read from the server",
-                        .kind = sent ? FacetKind::input : FacetKind::output,
-                        .type = type_id<double>,
-                        .required = sent,
-                        .index = v,
-                        .port = &PortAccess::data<double>};
-            if (sent)
-                facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Client*>(c)->wanted[i];
-                };
-            else
-                facet.at = [](void* c, std::size_t i) noexcept -> void* {
-                    return &static_cast<Client*>(c)->read[i];
-                };
-            list[n++] = facet;
+            const std::string_view name = RegisterNames<map>::all[v].view(), unit = map.registers[v].unit;
+            list[n++] = is_written(v) ? nth_input<&Client::wanted>(v, name, unit, "written to the server")
+                                      : nth_output<&Client::read>(v, name, unit, "read from the server");
         }
         list[n++] = output<&Client::connected>("connected", "", "the server answers", while_stopped(false));
         list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");
@@ -148,6 +123,14 @@ template <const auto& map> struct Client {
 private:
     static constexpr bool is_written(std::size_t v) noexcept { return map.rows[map.row_of[v]].write; }
 
+    void tell_counts() noexcept TAPPET_REALTIME {
+        const Counters& seen = session_->counters();
+        connected.write(session_->connected());
+        outages.write(static_cast<std::int64_t>(seen.outages));
+        outages_survived.write(static_cast<std::int64_t>(seen.outages_survived));
+        no_numbers.write(static_cast<std::int64_t>(seen.no_numbers));
+        out_of_range.write(static_cast<std::int64_t>(seen.saturated));
+    }
     void tell_trouble() noexcept {
         const Trouble trouble = session_->trouble();
         if (trouble == told_) return;
@@ -201,11 +184,7 @@ private:
 
     Transport* transport_ = nullptr;
     std::optional<Session<map.rows.size(), map.registers.size()>> session_{};
-    std::array<Time, count> seen_ = [] {
-        std::array<Time, count> none{};
-        none.fill(Time::min());
-        return none;
-    }();
+    std::array<Time, count> seen_ = array_of<count>([](std::size_t) { return Time::min(); });
     std::array<bool, count> is_set_{};  ///< in the client, since start
     std::array<double, count> taken_{}; ///< so
     bool was_lost_ = false, was_stopped_ = false, stopped_safely_ = true;

@@ -4,6 +4,7 @@
 
 #include "drivers/modbus/register_map.hpp"
 #include "drivers/modbus/transport.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/component/port.hpp"
 
 #include <algorithm>
@@ -129,7 +130,7 @@ public:
         values_[v] = {to_physical(map_->registers[v], encoded.words), now, Quality::good, 0};
         return true;
     }
-    [[nodiscard]] bool connected() const noexcept { return connected_; }
+    [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return connected_; }
     /// Whether the server is lost: it answered once, or was tried, and does not answer now.
     [[nodiscard]] bool outage() const noexcept { return outage_; }
     /// What is wrong now: why the server is lost, or else the first row that it refuses.
@@ -139,7 +140,7 @@ public:
             if (exception_[r] != 0) return {r, Outcome::exception, exception_[r]};
         return {};
     }
-    [[nodiscard]] Counters counters() const noexcept { return count_; }
+    [[nodiscard]] const Counters& counters() const noexcept TAPPET_REALTIME { return count_; }
     /// Rises with every answer: what stands for "something arrived".
     [[nodiscard]] std::uint64_t generation() const noexcept { return count_.answers; }
 
@@ -287,11 +288,7 @@ private:
     Trouble lost_by_{};
     std::array<std::uint8_t, R> exception_{}; ///< of each row's last answer; 0: none
     std::array<Time, R> due_at_{};
-    std::array<Time, R> changed_at_ = [] {
-        std::array<Time, R> none{};
-        none.fill(never);
-        return none;
-    }();
+    std::array<Time, R> changed_at_ = array_of<R>([](std::size_t) { return never; });
     std::array<Value, V> values_{};
     std::array<Words, V> words_{};
     /// Whether the server has a value. After an outage nobody knows: it may have restarted (`was`).

@@ -486,7 +486,6 @@ private:
     can::Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
     alignas(64) std::array<std::byte, Rows::storage_bytes> storage_{};
-    Event<> any_event{}; ///< names the type of those in `lost`
     std::array<Peer, node_count> peers_{};
     std::array<RowState, row_count> state_{};
     std::array<Time, frame_count> due_{};

@@ -3,6 +3,7 @@
 
 #include "drivers/system/node_rows.hpp"
 #include "kernel/component/component.hpp"
+#include "kernel/component/nth.hpp"
 
 namespace tappet::systems {
 
@@ -46,42 +47,34 @@ struct LinkFacets {
 
     static constexpr Facet port_facet(std::size_t p) {
         const PortPlace& port = Rows::ports[p];
-        Facet facet{.name = Rows::port_names[p].view(),
-                    .unit = port.facet->unit,
-                    .doc = port.is_input ? "told to other nodes" : "as another node tells it",
-                    .kind = port.is_input ? FacetKind::input : FacetKind::output,
-                    .type = port.facet->type,
-                    .at_rest = AtRest::as_it_was,
-                    .index = p,
-                    .at = [](void* self, std::size_t i) noexcept -> void* {
-                        return static_cast<Link*>(self)->storage_.data() + Rows::ports[i].at;
-                    },
-                    .port = port.facet->port};
-        return facet;
+        return {.name = Rows::port_names[p].view(),
+                .unit = port.facet->unit,
+                .doc = port.is_input ? "told to other nodes" : "as another node tells it",
+                .kind = port.is_input ? FacetKind::input : FacetKind::output,
+                .type = port.facet->type,
+                .at_rest = AtRest::as_it_was,
+                .index = p,
+                .at = [](void* self, std::size_t i) noexcept -> void* {
+                    return static_cast<Link*>(self)->storage_.data() + Rows::ports[i].at;
+                },
+                .port = port.facet->port};
     }
     static constexpr std::size_t add_row(std::size_t i, std::span<Facet> into) {
         const Facet& from = Rows::facet_from(i);
-        Facet facet{.name = Rows::row_names[i].view(), .index = i};
+        Facet facet{.name = Rows::row_names[i].view(), .type = from.type, .index = i};
         if (Rows::sends_events(i)) {
             facet.doc = "goes to another node";
             facet.kind = FacetKind::wait;
-            facet.type = from.type;
             facet.at = [](void* self, std::size_t k) noexcept -> void* {
                 return static_cast<EventWaitState*>(&static_cast<Link*>(self)->emitted[k]);
             };
             into[0] = facet;
-            into[1] =
-                tappet::event<&Link::any_event>(Rows::loss_names[i].view(), "nobody has answered in time");
-            into[1].at = [](void* self, std::size_t k) noexcept -> void* {
-                return &static_cast<Link*>(self)->lost[k];
-            };
-            into[1].index = i;
+            into[1] = nth_event<&Link::lost>(i, Rows::loss_names[i].view(), "nobody has answered in time");
             return 2;
         }
         if (!Rows::is_command(i)) {
             facet.doc = "comes from another node";
             facet.kind = FacetKind::event;
-            facet.type = from.type;
             facet.at = [](void* self, std::size_t k) noexcept -> void* {
                 return static_cast<Link*>(self)->storage_.data() + Rows::rows[k].event_at;
             };
@@ -89,7 +82,6 @@ struct LinkFacets {
         } else if (Rows::serves_command(i)) {
             facet.doc = "sent by another node";
             facet.kind = FacetKind::command_call;
-            facet.type = from.type;
             facet.at = [](void* self, std::size_t k) noexcept -> void* {
                 return &static_cast<Link*>(self)->calls[k];
             };
@@ -97,7 +89,6 @@ struct LinkFacets {
         } else {
             facet.doc = "done by another node";
             facet.kind = FacetKind::command;
-            facet.type = from.type;
             facet.command = &commands[i];
         }
         into[0] = facet;
@@ -131,16 +122,9 @@ struct LinkFacets {
         }
         for (std::size_t node = 0; node < node_count; ++node)
             if (node != Link::this_node)
-                list[k++] = {.name = Rows::presence_names[node].view(),
-                             .doc = "it is heard; written on change",
-                             .kind = FacetKind::output,
-                             .type = type_id<bool>,
-                             .at_rest = AtRest::says_false,
-                             .index = node,
-                             .at = [](void* self, std::size_t i) noexcept -> void* {
-                                 return &static_cast<Link*>(self)->is_there[i];
-                             },
-                             .port = &PortAccess::data<bool>};
+                list[k++] =
+                    nth_output<&Link::is_there>(node, Rows::presence_names[node].view(), "",
+                                                "it is heard; written on change", while_stopped(false));
         for (std::size_t p = 0; p < Rows::port_count; ++p) list[k++] = port_facet(p);
         for (std::size_t i = 0; i < row_count; ++i)
             if (Rows::crossing(i).kind != CrossingKind::data) k += add_row(i, std::span{list}.subspan(k));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/system/wire_analysis.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/component/facet_name.hpp"
 #include "kernel/system/promises.hpp"
 
@@ -217,14 +218,10 @@ public:
 
     // ---- names: what is told by its path in the machine, what comes by the other node's
 
-    static constexpr auto port_names = [] {
-        std::array<FacetName, port_count> names{};
-        for (std::size_t p = 0; p < port_count; ++p) {
-            const std::string_view path = system.crossings[ports[p].crossing].data.from;
-            names[p] = {ports[p].is_input ? in_node(path) : path};
-        }
-        return names;
-    }();
+    static constexpr auto port_names = array_of<port_count>([](std::size_t p) {
+        const std::string_view path = system.crossings[ports[p].crossing].data.from;
+        return FacetName{ports[p].is_input ? in_node(path) : path};
+    });
     /// Of an event or a command: "station.out>drill.station.in" where it leaves, "saw.station.out>station.in"
     /// where it comes.
     static constexpr FacetName row_name(std::size_t i, std::string_view end) {
@@ -233,22 +230,11 @@ public:
         return {is_from_here(i) ? in_node(row.from()) : row.from(), ">",
                 is_from_here(i) ? row.to() : in_node(row.to()), end};
     }
-    static constexpr auto row_names = [] {
-        std::array<FacetName, row_count> names{};
-        for (std::size_t i = 0; i < row_count; ++i) names[i] = row_name(i, "");
-        return names;
-    }();
-    static constexpr auto loss_names = [] {
-        std::array<FacetName, row_count> names{};
-        for (std::size_t i = 0; i < row_count; ++i) names[i] = row_name(i, " lost");
-        return names;
-    }();
-    static constexpr auto presence_names = [] {
-        std::array<FacetName, system.nodes.size()> names{};
-        for (std::size_t node = 0; node < names.size(); ++node)
-            names[node] = {system.nodes[node].name, ".is_there"};
-        return names;
-    }();
+    static constexpr auto row_names = array_of<row_count>([](std::size_t i) { return row_name(i, ""); });
+    static constexpr auto loss_names =
+        array_of<row_count>([](std::size_t i) { return row_name(i, " lost"); });
+    static constexpr auto presence_names = array_of<system.nodes.size()>(
+        [](std::size_t node) { return FacetName{system.nodes[node].name, ".is_there"}; });
     /// How many facets the events and commands have.
     static constexpr std::size_t facet_count = [] {
         std::size_t count = 0;

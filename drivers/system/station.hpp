@@ -32,19 +32,17 @@ struct StationRows {
         return false;
     }
     using FrameName = Text<96>;
-    static constexpr auto frame_names = [] {
-        std::array<FrameName, frame_count> names{};
-        for (std::size_t f = 0; f < frame_count; ++f) {
-            const WireFrame& frame = plan.frames[f];
-            constexpr std::string_view what[] = {"beat of ",  "data of ", "",          "answer to ",
-                                                 "reply to ", "taken: ",  "clock of ", "clock of "};
-            names[f].append(what[static_cast<std::size_t>(frame.kind)]);
-            names[f].append(frame.crossing == nowhere           ? system.nodes[frame.node].name
-                            : frame.kind == WireFrameKind::data ? system.crossings[frame.crossing].from()
-                                                                : system.crossings[frame.crossing].to());
-        }
-        return names;
-    }();
+    static constexpr auto frame_names = array_of<frame_count>([](std::size_t f) {
+        const WireFrame& frame = plan.frames[f];
+        constexpr std::string_view what[] = {"beat of ",  "data of ", "",          "answer to ",
+                                             "reply to ", "taken: ",  "clock of ", "clock of "};
+        FrameName name;
+        name.append(what[static_cast<std::size_t>(frame.kind)]);
+        name.append(frame.crossing == nowhere           ? system.nodes[frame.node].name
+                    : frame.kind == WireFrameKind::data ? system.crossings[frame.crossing].from()
+                                                        : system.crossings[frame.crossing].to());
+        return name;
+    });
     /// A node that is alone on the wire has nobody who acknowledges: it tries again until somebody is there,
     /// some half an hour; then it needs hands.
     static constexpr std::uint32_t restarts = 1000;
@@ -54,13 +52,12 @@ struct StationRows {
 
     using SignalName = Text<64>;
     /// Of a value as its path, with '_'.
-    static constexpr auto value_names = [] {
-        std::array<SignalName, system.crossings.size()> names{};
-        for (std::size_t x = 0; x < names.size(); ++x)
-            for (const char each : system.crossings[x].from())
-                names[x].append(each == '.' ? std::string_view{"_"} : std::string_view{&each, 1});
-        return names;
-    }();
+    static constexpr auto value_names = array_of<system.crossings.size()>([](std::size_t x) {
+        SignalName name;
+        for (const char each : system.crossings[x].from())
+            name.append(each == '.' ? std::string_view{"_"} : std::string_view{&each, 1});
+        return name;
+    });
     static constexpr can::Signal field(std::string_view name, std::size_t start, std::size_t bits) {
         return can::signal(name, static_cast<std::uint16_t>(start), static_cast<std::uint8_t>(bits));
     }
@@ -209,27 +206,12 @@ struct StationRows {
                           clock_known = path("known", "_clock"),
                           clock_exchanges = path("exchanges", "_clock"), ahead = path("ahead", ""),
                           exchanges = path("exchanges", ""), knows_time = path("knows_time", "");
-    static constexpr auto port_paths = [] {
-        std::array<Path, Rows::port_count> all{};
-        for (std::size_t p = 0; p < all.size(); ++p) all[p] = path(Rows::port_names[p].view(), "");
-        return all;
-    }();
-    static constexpr auto row_paths = [] {
-        std::array<Path, Rows::row_count> all{};
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::row_names[i].view(), "");
-        return all;
-    }();
-    static constexpr auto loss_paths = [] {
-        std::array<Path, Rows::row_count> all{};
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = path(Rows::loss_names[i].view(), "");
-        return all;
-    }();
-    static constexpr auto presence_paths = [] {
-        std::array<Path, system.nodes.size()> all{};
-        for (std::size_t node = 0; node < all.size(); ++node)
-            all[node] = path(Rows::presence_names[node].view(), "");
-        return all;
-    }();
+    template <std::size_t N>
+    static constexpr auto paths(const std::array<FacetName, N>& facets) {
+        return array_of<N>([&](std::size_t i) { return path(facets[i].view(), ""); });
+    }
+    static constexpr auto port_paths = paths(Rows::port_names), row_paths = paths(Rows::row_names),
+                          loss_paths = paths(Rows::loss_names), presence_paths = paths(Rows::presence_names);
 
     static constexpr std::string_view port_path(std::size_t x) {
         for (std::size_t p = 0; p < Rows::port_count; ++p)
