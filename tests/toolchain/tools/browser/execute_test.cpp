@@ -18,7 +18,6 @@ class Execute : public Lines {
 protected:
     void SetUp() override {
         Lines::SetUp();
-        talker.reset();
         interpreter().longest.set(24h); // of the machine's time, which flies
         time = std::thread{[this] {
             while (!is_over) {
