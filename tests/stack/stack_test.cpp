@@ -23,8 +23,8 @@ const Rules rules{
         {"waking", {"os::Waiter::", "wake_chain", "EventWaitState::wake"}},
         {"a restart, which blocks", {"can::SocketCan::restart"}, 1, "describe<tappet::can::Restarter"},
         {"ports, properties, filters, devices and signs of life",
-         {"PortAccess::", "tappet::Output<", "tappet::Input<", "limits_detail::", "can::SocketCan::", "can::Device::", "gpio::Lines::", "modbus::LibmodbusTransport::", "detail::MemberOf",
-          "detail::PropertyAccess", "detail::BagMember", "detail::command_call_of", "::interface()::{lambda", "::signal_facet(", "::port_at<", "::add_line<",
+         {"PortAccess::", "tappet::Output<", "tappet::Input<", "limits_detail::", "can::SocketCan::", "can::ControlledDevice::", "can::Device::", "gpio::Lines::", "gpio::PlannedLines::", "modbus::LibmodbusTransport::", "detail::MemberOf",
+          "detail::PropertyAccess", "detail::BagMember", "detail::command_call_of", "::interface()::{lambda", "detail::Several<", "::add_line<",
           "::cycles_of(", "::rests(", "::is_part_expected(", "::is_engine_expected("}},
         {"posting; values as texts",
          {"detail::post<", "EventWaitState::receive", "(anonymous namespace)::ValueReader::", "(anonymous namespace)::ValueWriter::",
@@ -50,7 +50,7 @@ const Rules rules{
              "__throw_", "__cxa_", "_Unwind_", "__libc_fatal", "pthread_exit"},
     // Called by the main thread: arming, opening devices, the end; and by the guardian.
     .outside = {"::analyse_traffic(", "::longest_seen(", "os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "ExtraSection::", "Limits<", "Control<", "RealWorld::", "MakersThread::", "Activity::enter(", "MachineInstance",
-                "tappet::Hardware<", "os::Guard::try_apart<", "::GuardedProcess::", "tappet::end_safely(", "BrowserService::answer_for_nobody", "run_firmware(", "Probe::wake(", "Probe::load(", "os::build_id()", "cpf::is_blank"},
+                "tappet::Hardware<", "os::Guard::try_apart<", "tappet::write_safe_registers(", "::GuardedProcess::", "tappet::end_safely(", "BrowserService::answer_for_nobody", "run_firmware(", "Probe::wake(", "Probe::load(", "os::build_id()", "cpf::is_blank"},
     .stated = {
         {picked_at_start, 256, "bytes copied or compared: libc picks the function for the processor, none has a frame to speak of"},
         {"tappet::compile_loaded(", script_stack_bytes, "as tests/kernel/script measures it on hostile texts; the table's check asks for it"},
