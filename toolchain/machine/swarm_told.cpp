@@ -21,6 +21,14 @@ SwarmWires::Numbers between(double one, double other, double step) {
     return {std::min(one, other), std::max(one, other), step};
 }
 
+/// What a force hid when its writer stopped: nobody wants it, and its frame may be safe by silence.
+bool is_abandoned(const Facet& input, const void* place) {
+    return input.type == type_id<double> ? static_cast<const Input<double>*>(place)->is_abandoned()
+           : input.type == type_id<std::int64_t>
+               ? static_cast<const Input<std::int64_t>*>(place)->is_abandoned()
+               : false;
+}
+
 } // namespace
 
 SwarmWires::Numbers SwarmWires::numbers_of(const can::Signal& signal) {
@@ -69,8 +77,9 @@ void SwarmWires::find_together() {
 /// What its input gives its driver; none: nothing yet.
 double SwarmWires::said(const Output& output) const {
     const Facet& facet = facet_at(machine_.table, output.facets.front());
-    const PortPlaces places = facet.port->places(instance_->place_of(output.facets.front()), true);
-    if (!*places.forced && *places.writes == 0) return none;
+    const void* const input = instance_->place_of(output.facets.front());
+    const PortPlaces places = facet.port->places(input, true);
+    if (!*places.forced && (*places.writes == 0 || is_abandoned(facet, input))) return none;
     const void* const value = *places.forced ? places.forced_value : places.value;
     if (facet.type->kind == ValueKind::real) {
         double number = 0;
