@@ -119,7 +119,7 @@ private:
     State state_ = State::active;
 };
 
-/// What a device of either world leaves to its controller.
+/// A real device and a simulated one answer these calls by their controller.
 class ControlledDevice : public Device {
 public:
     using Device::send;

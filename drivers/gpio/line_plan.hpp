@@ -56,7 +56,7 @@ private:
     std::uint32_t last_ = 0; // the first edge of a request is number 1
 };
 
-/// What the lines of either world do alike: safe values, and the count of what came and what is missing.
+/// Real lines and simulated ones write their safe values and count their edges in the same way.
 class PlannedLines : public Device {
 public:
     bool make_safe() noexcept TAPPET_REALTIME final { return write(plan_.outputs, plan_.safe); }

@@ -296,7 +296,7 @@ private:
         into = value_of(flow);
         return flow;
     }
-    /// What is of an earlier life than `least` is stale.
+    /// A value of an earlier life than `least` is stale.
     Flow look(Life least) noexcept TAPPET_REALTIME {
         const std::uint64_t seen = seen_;
         static_cast<void>(fetch());

@@ -12,10 +12,10 @@ namespace tappet {
 inline constexpr Time before_all{-std::chrono::hours{24 * 365 * 100}};
 /// A cycle may be long, and what arrives during it has a later time than the cycle's.
 inline constexpr Duration ahead_at_most = 1s;
-/// What arrives while a cycle runs is true a little after its begin.
+/// A value may arrive while a cycle runs: then its time lies so much after the begin of the cycle at most.
 inline constexpr Duration arrives_within = 1ms;
-/// Of a value that somebody writes in a cycle at `now`: what lies further ahead, or before all, is the time
-/// of no clock of this machine. Nobody knows when such a value was true.
+/// The time of a value that is written in the cycle at `now`. A time further ahead than ahead_at_most, or
+/// before all, comes from no clock of this machine: nobody knows when such a value was true.
 constexpr Time judged_stamp(Time stamp, Time now) noexcept TAPPET_REALTIME {
     // Both at once, in four instructions: what is ahead wraps round to more than an age can be.
     const auto number = [](auto time) { return static_cast<std::uint64_t>(time.count()); };

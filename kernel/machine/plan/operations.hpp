@@ -33,8 +33,8 @@ constexpr bool is_command_row(const MachineView& m, const TableIndexView& r, std
 
 namespace detail {
 
-/// What the mailboxes at one receiver hold, and how many there are: of the senders in order of their urgency;
-/// after them all stand the requests, since what only watches the machine delays nobody's message.
+/// Counts the mailboxes of one receiver and takes their room. The senders' come first, the most urgent one's
+/// before the others. The mailbox of requests is the last: who only watches the machine delays no message.
 template <class Box>
 constexpr void plan_mail(const MachineView& m, const TableIndexView& r, PlacesOf<Box>& boxes,
                          std::span<MailPlan> mail, MailPlan& requests, std::size_t receiver, Layout& layout) {
