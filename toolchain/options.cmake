@@ -23,6 +23,12 @@ else()
     target_compile_options(tappet_options INTERFACE -march=x86-64)
 endif()
 
+# A frame larger than a page touches each of its pages in turn, so that none steps over the page that guards a stack.
+target_compile_options(tappet_options INTERFACE -fstack-clash-protection)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64 AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(tappet_options INTERFACE "SHELL:--param stack-clash-protection-guard-size=12")
+endif()
+
 # A machine is checked in constant expressions; the compilers' own limits are meant for smaller ones.
 target_compile_options(
     tappet_options

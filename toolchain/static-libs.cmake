@@ -146,6 +146,6 @@ target_include_directories(
     PRIVATE "${tappet_modbus_source}/src")
 target_compile_options(
     tappet_libmodbus
-    PRIVATE -w -O2 -D_GNU_SOURCE -DHAVE_CONFIG_H -include "${CMAKE_CURRENT_LIST_DIR}/libmodbus/config.h"
+    PRIVATE -w -O2 -fstack-clash-protection -D_GNU_SOURCE -DHAVE_CONFIG_H -include "${CMAKE_CURRENT_LIST_DIR}/libmodbus/config.h"
             "-I${CMAKE_CURRENT_LIST_DIR}/libmodbus")
 add_library(tappet::libmodbus ALIAS tappet_libmodbus)

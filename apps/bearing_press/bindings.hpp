@@ -1,13 +1,14 @@
 // Where the press's devices and lines stand on each board.
 #pragma once
 
+#include "drivers/gpio/kind.hpp"
 #include "kernel/machine/table/binding.hpp"
 
 namespace bearing_press::bindings {
 
 using namespace tappet;
 
-inline constexpr BoundDevice panel =
+inline constexpr auto panel =
     wired("panel-io", "io", line("start", 0), line("stop", 1), line("up", 2), line("down", 3),
           line("home", 4), line("upper_end", 5), line("lower_end", 6), line("lamp", 7));
 

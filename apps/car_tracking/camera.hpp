@@ -16,7 +16,7 @@ namespace tappet::car_tracking {
 /// All real-time, in a periodic activity. Its commands come from one peer at a time: what does not fit what
 /// it is doing is rejected.
 struct Camera {
-    static constexpr std::string_view device_kind = "camera";
+    static constexpr DeviceKind device_kind{.name = "camera"};
 
     Output<Image> image;
     Output<Aim> aim;

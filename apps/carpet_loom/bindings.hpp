@@ -1,13 +1,15 @@
 // Where the carpet loom's devices and lines stand on each board, and which processor runs which activity.
 #pragma once
 
+#include "drivers/gpio/kind.hpp"
+#include "drivers/modbus/kind.hpp"
 #include "kernel/machine/table/binding.hpp"
 
 namespace tappet::carpet::bindings {
 
 namespace detail {
 
-constexpr BoundDevice loom_io(std::string_view at) {
+constexpr auto loom_io(std::string_view at) {
     return wired("loom-io", at, line("emergency_stop", 0), line("drop_wire", 1), line("weft_detector", 2),
                  line("button_start", 3), line("button_stop", 4), line("button_acknowledge", 5),
                  line("weft_release", 8), line("brake", 9), line("lamp_run", 10), line("lamp_stop", 11),

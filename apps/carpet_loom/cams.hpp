@@ -19,7 +19,7 @@ inline constexpr auto cams = cam_table(700_rpm,
     cam("beat_up",        at(0_deg)),
     cam("offer_pattern",  at(20_deg)),
     cam("weft_release",   window(detail::deg(wires::nominal::weft_release_deg), 200_deg),
-                          dead_time(std::chrono::microseconds{wires::nominal::weft_release_dead_us}, 0us), min_speed(30_rpm)),
+                          dead_time(wires::nominal::weft_release_dead, 0us), min_speed(30_rpm)),
     cam("arrival_window", window(detail::deg(wires::nominal::weft_window_begin_deg), detail::deg(wires::nominal::weft_window_end_deg))));
 // clang-format on
 

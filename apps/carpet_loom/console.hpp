@@ -3,6 +3,7 @@
 #pragma once
 
 #include "apps/carpet_loom/loom_state.hpp"
+#include "drivers/can/frame.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/os/terminal.hpp"
 
@@ -41,7 +42,7 @@ struct Console {
                       " stop_error=",
                       whole(stop_error_deg.get() * 10.0),
                       "ddeg bus=",
-                      bus_state.get(),
+                      to_text(static_cast<can::State>(bus_state.get())),
                       " frames_lost=",
                       frames_lost.get(),
                       " edges_lost=",

@@ -170,7 +170,7 @@ struct MainShaft {
 
 private:
     enum class Phase : std::uint8_t { free, wanted, braking, foreign };
-    static constexpr double brake_dead_s = 1e-6 * static_cast<double>(wires::nominal::brake_dead_us);
+    static constexpr double brake_dead_s = to_seconds(wires::nominal::brake_dead);
     // What a brake of this loom can need at nominal speed; what is learned stays between them.
     static constexpr double least_distance_deg = 30.0;
     static constexpr double most_distance_deg = 180.0;

@@ -11,29 +11,21 @@ namespace tappet::carpet {
 
 namespace wires = loom::wires;
 
-namespace detail {
-
-constexpr can::Rate cyclic(std::int64_t period_us) {
-    return can::every(std::chrono::microseconds{period_us});
-}
-
-} // namespace detail
-
 // clang-format off
 inline constexpr auto can_signals = can::signal_map(
-    can::receive(can::standard(wires::cob::main_drive_status), "main_drive", can::bytes(6), detail::cyclic(wires::drive_status_period_us),
+    can::receive(can::standard(wires::cob::main_drive_status), "main_drive", can::bytes(6), can::every(wires::drive_status_period),
         can::signal("statusword", 0, 16),
         can::signal("velocity", 16, 32).as_signed().times(0.1).in("rpm")),
-    can::receive(can::standard(wires::cob::let_off_drive_status), "let_off", can::bytes(6), detail::cyclic(wires::drive_status_period_us),
+    can::receive(can::standard(wires::cob::let_off_drive_status), "let_off", can::bytes(6), can::every(wires::drive_status_period),
         can::signal("statusword", 0, 16),
         can::signal("velocity", 16, 32).as_signed().times(0.001).in("rpm")),
-    can::receive(can::standard(wires::cob::encoder_position), "encoder", can::bytes(4), detail::cyclic(wires::encoder_period_us),
+    can::receive(can::standard(wires::cob::encoder_position), "encoder", can::bytes(4), can::every(wires::encoder_period),
         can::signal("position", 0, 16),
         can::signal("sample", 16, 16)),
-    can::receive(can::standard(wires::cob::load_cell_tension), "load_cell", can::bytes(3), detail::cyclic(wires::load_cell_period_us),
+    can::receive(can::standard(wires::cob::load_cell_tension), "load_cell", can::bytes(3), can::every(wires::load_cell_period),
         can::signal("tension", 0, 16).as_signed().times(0.1).in("N"),
         can::signal("status", 16, 8)),
-    can::receive(can::standard(wires::cob::feeder_status), "feeder", can::bytes(3), detail::cyclic(wires::feeder_status_period_us),
+    can::receive(can::standard(wires::cob::feeder_status), "feeder", can::bytes(3), can::every(wires::feeder_status_period),
         can::signal("status", 0, 8),
         can::signal("windings", 8, 16)),
     can::receive(can::standard(wires::cob::dobby_status), "dobby", can::bytes(5), can::on_demand(10ms),
@@ -67,12 +59,12 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::actuator("yarn_cutter", gpio::safe(false)));
 
 inline constexpr auto utility_registers = modbus::register_map(
-    modbus::read("unit", modbus::input_registers(0, wires::modbus::input_register::count), modbus::every(250ms),
-        modbus::word("temperature", wires::modbus::input_register::room_temperature).as_signed().times(0.1).in("degC"),
-        modbus::word("humidity", wires::modbus::input_register::humidity).times(0.1).in("%"),
-        modbus::word("oil_pressure", wires::modbus::input_register::oil_pressure).times(0.01).in("bar"),
-        modbus::word("oil_temperature", wires::modbus::input_register::oil_temperature).as_signed().times(0.1).in("degC")),
-    modbus::write("pump", modbus::coils(wires::modbus::coil::lubrication_pump, 1), modbus::every(1s), modbus::stale_after(5s),
+    modbus::read("unit", modbus::input_registers(0, 4), modbus::every(250ms),
+        modbus::word("temperature", 0).as_signed().times(0.1).in("degC"),
+        modbus::word("humidity", 1).times(0.1).in("%"),
+        modbus::word("oil_pressure", 2).times(0.01).in("bar"),
+        modbus::word("oil_temperature", 3).as_signed().times(0.1).in("degC")),
+    modbus::write("pump", modbus::coils(0, 1), modbus::every(1s), modbus::stale_after(5s),
         modbus::bit("on", 0).safe(false)));
 // clang-format on
 

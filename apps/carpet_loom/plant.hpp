@@ -36,7 +36,7 @@ public:
     }
     void told() override;
     [[nodiscard]] Sentence fault() const override;
-    void report(JsonText& json) const override;
+    void report(JsonText& json) const override { loom::write_json(loom().report(), json); }
     [[nodiscard]] std::uint64_t digest() const override { return loom().report().digest; }
 
     /// So many picks, and it stands.

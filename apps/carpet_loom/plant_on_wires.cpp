@@ -27,21 +27,29 @@ constexpr Input inputs[] = {
     {"weft_detector", line::weft_detector},   {"button_start", line::button_start},
     {"button_stop", line::button_stop},       {"button_acknowledge", line::button_acknowledge}};
 
+/// Holding registers that the unit has beyond what the machine reads and writes; the other such thing is its
+/// discrete input, oil level low.
+struct Setting {
+    std::uint16_t first, least, most;
+};
+constexpr std::size_t humidity_set_point = 0;     // 0.1 %
+constexpr Setting settings[] = {{650, 300, 900},  // humidity_set_point
+                                {120, 10, 3600}}; // lubrication interval, s
+
 } // namespace
 
 void Plant::begin() {
     if (settings_.picks_after_told != 0) loom().end_at(0); // weaves on until told
-    // What the unit has beyond what the machine reads and writes.
-    namespace at = loom::wires::modbus;
     modbus::ServerTables& tables = utility_.tables();
-    tables.have(modbus::Table::discrete_inputs, at::discrete_input::count);
-    tables.have(modbus::Table::holding_registers, at::holding_register::count);
+    tables.have(modbus::Table::discrete_inputs, 1);
+    tables.have(modbus::Table::holding_registers, std::size(settings));
+    for (std::size_t i = 0; i < std::size(settings); ++i)
+        tables.set(modbus::Table::holding_registers, i, settings[i].first);
     tables.accept_only([](modbus::Table table, std::size_t address, std::uint16_t value) noexcept {
         return table != modbus::Table::holding_registers ||
-               loom::Climate::check_holding_register(static_cast<std::uint16_t>(address), value).has_value();
+               (address < std::size(settings) && value >= settings[address].least &&
+                value <= settings[address].most);
     });
-    for (std::uint16_t i = 0; i < at::holding_register::count; ++i)
-        tables.set(modbus::Table::holding_registers, i, loom().climate().holding_register(i).value_or(0));
 }
 
 void Plant::told() {
@@ -108,17 +116,16 @@ void Plant::give_lines(Time now) {
 }
 
 void Plant::exchange_registers() {
-    namespace at = loom::wires::modbus;
-    using modbus::Table;
     modbus::ServerTables& tables = utility_.tables();
     loom::Climate& climate = loom().climate();
     if (climate.steps() == exchanged_.steps && tables.changes() == exchanged_.changes) return;
-    for (std::uint16_t i = 0; i < at::input_register::count; ++i)
-        if (const auto value = climate.input_register(i)) tables.set(Table::input_registers, i, *value);
-    tables.set(Table::discrete_inputs, 0, climate.discrete_input(0).value_or(false) ? 1 : 0);
-    for (std::uint16_t i = 0; i < at::holding_register::count; ++i)
-        static_cast<void>(climate.write_holding_register(i, tables.get(Table::holding_registers, i)));
-    static_cast<void>(climate.write_coil(at::coil::lubrication_pump, utility_.get("pump.on") != 0.0));
+    utility_.set("unit.temperature", climate.temperature_c());
+    utility_.set("unit.humidity", climate.humidity_percent());
+    utility_.set("unit.oil_pressure", climate.oil_bar());
+    utility_.set("unit.oil_temperature", climate.oil_c());
+    tables.set(modbus::Table::discrete_inputs, 0, climate.oil_level_low() ? 1 : 0);
+    climate.want_humidity(0.1 * tables.get(modbus::Table::holding_registers, humidity_set_point));
+    climate.set_pump(utility_.get("pump.on") != 0.0);
     exchanged_ = {climate.steps(), tables.changes()};
 }
 
@@ -132,14 +139,6 @@ bool Plant::take_option(std::string_view option, std::string_view value, Sentenc
 Sentence Plant::fault() const {
     if (settings_.last_pick == 0 || is_done()) return {};
     return Sentence{"the picks were not woven in time"};
-}
-
-void Plant::report(JsonText& json) const {
-    std::string text(64 * 1024, '\0');
-    const std::size_t length = loom::write_json(loom().report(), text);
-    const std::string_view fields{text.data(), length};
-    const std::size_t begin = fields.find('{') + 1, end = fields.rfind('}');
-    if (length != 0) json.fragment(fields.substr(begin, end - begin));
 }
 
 } // namespace tappet::carpet

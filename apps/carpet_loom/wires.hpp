@@ -1,7 +1,8 @@
-// The wires between the carpet loom's machine and the loom itself: what stands on each CAN identifier, GPIO
-// line and Modbus register, and the loom's nominal figures. The machine's maps and the plant read the same
-// numbers.
+// The wires between the carpet loom's machine and the loom itself: what stands on each CAN identifier and
+// GPIO line, and the loom's nominal figures. The machine's maps and the plant read the same numbers.
 #pragma once
+
+#include "kernel/base/time.hpp"
 
 #include <cstdint>
 
@@ -38,13 +39,12 @@ inline constexpr std::uint32_t feeder_status = 0x185;     // {status u8, winding
 inline constexpr std::uint32_t dobby_status = 0x186;      // {pick number taken u32, level u8}; on change
 } // namespace cob
 
-inline constexpr std::int64_t encoder_period_us = 1'000; // from the encoder's own clock
-inline constexpr std::int64_t load_cell_period_us = 1'000;
-inline constexpr std::int64_t drive_status_period_us = 2'000;
-inline constexpr std::int64_t feeder_status_period_us = 10'000;
-inline constexpr std::int64_t heartbeat_period_us = 100'000;
-inline constexpr std::int64_t drive_command_timeout_us =
-    100'000; // an enabled drive stops itself after this silence
+inline constexpr Duration encoder_period = 1ms; // from the encoder's own clock
+inline constexpr Duration load_cell_period = 1ms;
+inline constexpr Duration drive_status_period = 2ms;
+inline constexpr Duration feeder_status_period = 10ms;
+inline constexpr Duration heartbeat_period = 100ms;
+inline constexpr Duration drive_command_timeout = 100ms; // an enabled drive stops itself after this silence
 
 inline constexpr int encoder_codes_per_turn = 4096;
 inline constexpr int main_velocity_per_rpm = 10;
@@ -72,7 +72,7 @@ namespace line {
 // Inputs of the machine.
 inline constexpr unsigned emergency_stop = 0; // 1 = pressed (the opened circuit, inverted at the wire)
 inline constexpr unsigned drop_wire = 1; // 1 = a drop wire has fallen; stays until the operator repaired it
-inline constexpr unsigned weft_detector = 2; // a pulse of weft_pulse_us when a weft arrives
+inline constexpr unsigned weft_detector = 2; // a pulse of weft_pulse when a weft arrives
 inline constexpr unsigned button_start = 3;
 inline constexpr unsigned button_stop = 4;
 inline constexpr unsigned button_acknowledge = 5;
@@ -89,33 +89,7 @@ inline constexpr unsigned output_count = 6;
 inline constexpr unsigned chip_lines = 14;
 } // namespace line
 
-inline constexpr std::int64_t weft_pulse_us = 3'000;
-
-// --- Modbus server of the climate and lubrication unit
-
-namespace modbus {
-inline constexpr int unit = 1;
-namespace input_register {
-inline constexpr std::uint16_t room_temperature = 0; // 0.1 degC
-inline constexpr std::uint16_t humidity = 1;         // 0.1 %
-inline constexpr std::uint16_t oil_pressure = 2;     // 0.01 bar
-inline constexpr std::uint16_t oil_temperature = 3;  // 0.1 degC
-inline constexpr std::uint16_t count = 4;
-} // namespace input_register
-namespace holding_register {
-inline constexpr std::uint16_t humidity_set_point = 0;   // 0.1 %, 300..900
-inline constexpr std::uint16_t lubrication_interval = 1; // s, 10..3600
-inline constexpr std::uint16_t count = 2;
-} // namespace holding_register
-namespace coil {
-inline constexpr std::uint16_t lubrication_pump = 0;
-inline constexpr std::uint16_t count = 1;
-} // namespace coil
-namespace discrete_input {
-inline constexpr std::uint16_t oil_level_low = 0;
-inline constexpr std::uint16_t count = 1;
-} // namespace discrete_input
-} // namespace modbus
+inline constexpr Duration weft_pulse = 3ms;
 
 // --- Nominal figures of the loom: what its maker's data sheet tells the machine
 
@@ -129,8 +103,8 @@ inline constexpr double stop_deg = 310.0; // harnesses level, least warp tension
 inline constexpr double stop_tolerance_deg = 10.0;
 inline constexpr double shed_open_deg = 60.0;
 inline constexpr double shed_closed_deg = 300.0;
-inline constexpr std::int64_t weft_release_dead_us = 2'500;
-inline constexpr std::int64_t brake_dead_us = 8'000;
+inline constexpr Duration weft_release_dead = 2500us;
+inline constexpr Duration brake_dead = 8ms;
 inline constexpr double brake_distance_deg = 49.0; // from the line's edge to standstill, at speed_rpm
 inline constexpr double tension_n = 300.0;
 inline constexpr double tension_band_n = 30.0;

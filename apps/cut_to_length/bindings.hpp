@@ -1,15 +1,15 @@
 // Where the cutter's devices and lines stand on each board.
 #pragma once
 
+#include "drivers/gpio/kind.hpp"
 #include "kernel/machine/table/binding.hpp"
 
 namespace cut_to_length::bindings {
 
 using namespace tappet;
 
-inline constexpr BoundDevice buttons_and_knife =
-    wired("line-io", "io", line("start", 0), line("stop", 1), line("emergency_stop", 2), line("knife", 4),
-          line("lamp", 5));
+inline constexpr auto buttons_and_knife = wired("line-io", "io", line("start", 0), line("stop", 1),
+                                                line("emergency_stop", 2), line("knife", 4), line("lamp", 5));
 
 inline constexpr Binding bench = binding(wired("feed-can", "can0"), buttons_and_knife);
 

@@ -1,17 +1,18 @@
 // Where each machine's wires stand: on the bench, on which all five are in one box, and on a box of its own.
 #pragma once
 
+#include "drivers/gpio/kind.hpp"
 #include "kernel/machine/table/binding.hpp"
 
 namespace woodworking {
 
-inline constexpr tappet::BoundDevice lane_on_bench = tappet::wired("lane", "can2"),
-                                     lane_wire = tappet::wired("lane", "can0"),
-                                     belt_can = tappet::wired("belt-can", "can1"),
-                                     belt_io = tappet::wired("belt-io", "io", tappet::line("acknowledge", 0),
-                                                             tappet::line("lamp", 1));
+inline constexpr auto lane_on_bench = tappet::wired("lane", "can2");
+inline constexpr auto lane_wire = tappet::wired("lane", "can0");
+inline constexpr auto belt_can = tappet::wired("belt-can", "can1");
+inline constexpr auto belt_io =
+    tappet::wired("belt-io", "io", tappet::line("acknowledge", 0), tappet::line("lamp", 1));
 /// A station has two lines, on the bench behind those of the ones before it.
-constexpr tappet::BoundDevice station_io(std::string_view device, unsigned station) {
+constexpr auto station_io(std::string_view device, unsigned station) {
     return tappet::wired(device, "io", tappet::line("board", 2 + 2 * station),
                          tappet::line("tool", 3 + 2 * station));
 }

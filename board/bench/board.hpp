@@ -3,6 +3,8 @@
 // devices up that its machine is bound to.
 #pragma once
 
+#include "drivers/can/kind.hpp"
+#include "drivers/gpio/kind.hpp"
 #include "kernel/machine/table/board.hpp"
 
 namespace tappet::board {

@@ -2,6 +2,8 @@
 // of version 8.1, two CAN controllers, a GPIO chip of 32 lines, an Ethernet port and a serial port.
 #pragma once
 
+#include "drivers/can/kind.hpp"
+#include "drivers/gpio/kind.hpp"
 #include "kernel/machine/table/board.hpp"
 
 namespace tappet::board {

@@ -2,6 +2,8 @@
 // controller, 16 to 32 digital lines on an isolated GPIO chip, two Ethernet ports and a serial port.
 #pragma once
 
+#include "drivers/can/kind.hpp"
+#include "drivers/gpio/kind.hpp"
 #include "kernel/machine/table/board.hpp"
 
 namespace tappet::board {

@@ -26,14 +26,17 @@ public:
     constexpr Time of(Time stamp, Time wall, Time now) noexcept TAPPET_REALTIME {
         const Duration change = (wall - now) - distance_;
         distance_ += change;
-        const bool was_set = change > most_drift || change < -most_drift;
-        last_ = std::max(last_, was_set ? now : std::min(now, now - (wall - stamp)));
+        was_set_ = change > most_drift || change < -most_drift;
+        last_ = std::max(last_, was_set_ ? now : std::min(now, now - (wall - stamp)));
         return last_;
     }
+    /// The last answer is when it was read, for want of a better one.
+    [[nodiscard]] constexpr bool was_set() const noexcept TAPPET_REALTIME { return was_set_; }
 
 private:
     Duration distance_{};
     Time last_ = Time::min();
+    bool was_set_ = false;
 };
 
 } // namespace tappet::can

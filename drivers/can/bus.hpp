@@ -45,12 +45,13 @@ struct Bus {
     static constexpr std::size_t frame_count = map.frames.size();
     static_assert(AllFrames<map, protocol>::transmit.size() <= TransmitQueue::capacity,
                   "what is sent at one time fits the queue");
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr Identifiers device_map = AllFrames<map, protocol>::value;
     static constexpr Sentence analyse_traffic(const DeviceUse& use, std::span<TrafficRow> into) {
         const ProvenRates proven{protocol.bit_rate, protocol.data_bit_rate};
-        if (const Sentence fault = bit_rate_fault(proven, use); !fault.empty()) return fault;
-        return bus_traffic(AllFrames<map, protocol>::traffic, use, into);
+        const BusFacts bus = bus_facts(use.facts);
+        if (const Sentence fault = bit_rate_fault(proven, bus); !fault.empty()) return fault;
+        return bus_traffic(AllFrames<map, protocol>::traffic, bus, use.response, into);
     }
     static Duration longest_seen(const void* bus, std::string_view frame) {
         return static_cast<const Bus*>(bus)->longest_response(frame);
@@ -89,9 +90,7 @@ struct Bus {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
         if (device_ == nullptr) return setup.no_device();
-        if (const int handle = device_->wait_handle(); handle < 0)
-            device_->set_listener(&os::Waiter::wake_thunk, waiter_);
-        else if (!waiter_->watch(handle))
+        if (!device_->wakes(*waiter_))
             return Sentence{"component \"", setup.component,
                             "\": its activity watches too many devices; give it fewer drivers"};
         return {};
@@ -414,11 +413,7 @@ private:
     /// What waited, what arrived and what was demanded while nobody served the bus.
     void forget_stopped_time() noexcept TAPPET_REALTIME {
         device_->purge();
-        Frame ignored;
-        for (int n = 0; n < max_passes; ++n) {
-            const Receive got = device_->receive(ignored);
-            if (got.what == Received::none && got.lost == 0) break;
-        }
+        device_->drop_arrivals();
         forget_demands();
     }
     void forget_demands() noexcept TAPPET_REALTIME {

@@ -4,6 +4,7 @@
 
 #include "drivers/can/bus_analysis.hpp"
 #include "drivers/can/frame_time.hpp"
+#include "drivers/can/kind.hpp"
 #include "drivers/can/signal_map.hpp"
 #include "drivers/can/transmitter.hpp"
 #include "kernel/component/device_traffic.hpp"
@@ -53,13 +54,13 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
 struct ProvenRates {
     std::uint32_t nominal = 0, data = 0;
 };
-constexpr Sentence bit_rate_fault(const ProvenRates& proven, const DeviceUse& use) {
-    if (proven.nominal != 0 && proven.nominal != use.bit_rate)
-        return Sentence{"it runs at ", use.bit_rate, " bit/s, but what crosses it was proven for ",
+constexpr Sentence bit_rate_fault(const ProvenRates& proven, const BusFacts& bus) {
+    if (proven.nominal != 0 && proven.nominal != bus.bit_rate)
+        return Sentence{"it runs at ", bus.bit_rate, " bit/s, but what crosses it was proven for ",
                         proven.nominal, "; correct one of them"};
-    if (proven.data != 0 && proven.data != use.data_bit_rate)
+    if (proven.data != 0 && proven.data != bus.data_bit_rate)
         return Sentence{"its data phase runs at ",
-                        use.data_bit_rate,
+                        bus.data_bit_rate,
                         " bit/s, but what crosses it was proven for ",
                         proven.data,
                         "; write bit_rate(",
@@ -70,19 +71,20 @@ constexpr Sentence bit_rate_fault(const ProvenRates& proven, const DeviceUse& us
     return {};
 }
 
-/// Of the frames of a map without a fault, and of what else crosses its bus.
+/// Of the frames of a map without a fault, and of what else crosses its bus. `response`: of the activity that
+/// drives it.
 template <std::size_t F>
-constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const DeviceUse& use,
-                               std::span<TrafficRow> rows) {
+constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const BusFacts& bus,
+                               Duration response, std::span<TrafficRow> rows) {
     if (F > BusAnalysis::most_frames)
         return Sentence{"its map has ", F, " frames, more than ", BusAnalysis::most_frames,
                         " that the analysis takes; make it two buses"};
     for (const FrameRow& row : crossing)
-        if (row.format != Format::classical && use.data_bit_rate == 0)
+        if (row.format != Format::classical && bus.data_bit_rate == 0)
             return Sentence{"frame \"", row.name,
                             "\" is CAN FD, and no bit rate of CAN FD's data phase is said; add it to the "
                             "device's row, bit_rate(",
-                            use.bit_rate, ", 2'000'000), or make the frame a classical one, bytes(8)"};
+                            bus.bit_rate, ", 2'000'000), or make the frame a classical one, bytes(8)"};
     constexpr Settings sending;
     std::array<std::size_t, F> by_rank{};
     std::array<FrameTiming, F> frames{};
@@ -98,9 +100,9 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
         const bool own = row.direction == Direction::transmit;
         const std::int64_t apart = row.apart.count();
         frames[i] = {
-            frame_time_ns(row.format, row.identifier.extended, row.length, {use.bit_rate, use.data_bit_rate}),
+            frame_time_ns(row.format, row.identifier.extended, row.length, {bus.bit_rate, bus.data_bit_rate}),
             apart,
-            own ? use.response.count() : row.jitter.count(),
+            own ? response.count() : row.jitter.count(),
             own ? std::min(apart, sending.max_age.count()) : apart,
             own,
             own && row.every > Duration::zero()};
@@ -109,14 +111,14 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
     Duration shortest_sent = Duration::max();
     for (const FrameTiming& frame : frames)
         if (frame.own) shortest_sent = std::min(shortest_sent, Duration{frame.wire_ns});
-    const BusAnalysis bus{frames,
-                          {(1'000'000'000 + use.bit_rate - 1) / use.bit_rate,
-                           frames_in_flight(use.response, shortest_sent), use.response.count(), use.errors,
-                           use.errors_every.count()}};
+    const BusAnalysis analysis{frames,
+                               {(1'000'000'000 + bus.bit_rate - 1) / bus.bit_rate,
+                                frames_in_flight(response, shortest_sent), response.count(), bus.errors,
+                                bus.errors_every.count()}};
     Sentence fault;
     for (std::size_t i = 0; i < F; ++i) {
         const FrameRow& row = crossing[by_rank[i]];
-        const FrameResponse found = bus.of(i);
+        const FrameResponse found = analysis.of(i);
         if (i < rows.size())
             rows[i] = {row.name,
                        frames[i].own,
@@ -133,7 +135,7 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
                              "\" may still wait when the next one follows, ",
                              detail::us(row.apart.count()),
                              " later; ",
-                             detail::largest_part(found, of, use.bit_rate)};
+                             detail::largest_part(found, of, bus.bit_rate)};
         else if (!found.response.bounded)
             fault = Sentence{"frame \"",
                              row.name,
@@ -141,7 +143,7 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
                              "fill the bus, which all frames together load by ",
                              load_ppm / 10'000,
                              " % at ",
-                             use.bit_rate,
+                             bus.bit_rate,
                              " bit/s; send less often, or run the bus faster"};
         else
             fault = Sentence{"frame \"",
@@ -151,7 +153,7 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const De
                              " but is due within ",
                              detail::us(frames[i].deadline_ns),
                              "; ",
-                             detail::largest_part(found, of, use.bit_rate)};
+                             detail::largest_part(found, of, bus.bit_rate)};
     }
     return fault;
 }

@@ -18,7 +18,7 @@ namespace tappet::can {
 /// The first SYNC comes one period after its start, when nobody waits any more for a FUP of its last start.
 template <const auto& row> struct ClockTeller {
     TAPPET_ACCEPTED(clock_fault(row));
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr bool shares_device = true;
 
     Output<std::int64_t> told{}, given_up{};
@@ -27,7 +27,9 @@ template <const auto& row> struct ClockTeller {
     Sentence configure(Setup& setup) {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
-        return device_ == nullptr ? setup.no_device() : Sentence{};
+        if (device_ == nullptr) return setup.no_device();
+        device_->wake_when_confirmed();
+        return {};
     }
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         told.write(0);

@@ -28,15 +28,17 @@ public:
         return transmitter_.push(frame, keep, count);
     }
     /// Takes a finished restart into use, notices missing acknowledgements, drops what is too old.
-    /// True when a restart was taken into use.
-    bool tick(Time now) noexcept TAPPET_REALTIME {
+    /// True when a restart was taken into use. `more_waits`: confirmations that nobody read yet, perhaps;
+    /// then one has twice the time.
+    bool tick(Time now, bool more_waits = false) noexcept TAPPET_REALTIME {
         const bool restarted = recovery.taken_up();
         if (restarted) {
             transmitter_.restarted(now, count);
             state_ = State::active;
             ++count.restarts;
         }
-        if (!faulted(state_) && transmitter_.unacknowledged(now)) fault(State::unacknowledged);
+        if (!faulted(state_) && transmitter_.unacknowledged(now, more_waits ? 2 : 1))
+            fault(State::unacknowledged);
         return restarted;
     }
     /// The frame to hand over now, or nothing.
@@ -48,11 +50,12 @@ public:
         return !faulted(state_) && transmitter_.take_waiting(frame);
     }
     void handed_over(Time now) noexcept TAPPET_REALTIME { transmitter_.handed_over(now); }
-    void confirmed(Time now) noexcept TAPPET_REALTIME {
+    /// `is_exact`: the time is the confirmation's, not that of its reading.
+    void confirmed(Time now, bool is_exact = true) noexcept TAPPET_REALTIME {
         const Transmitter::Flight sent = transmitter_.confirmed(now, count);
         const std::size_t which = index_of(sent.identifier);
         if (sent.made == Time{} || which >= longest_.size()) return;
-        longest_[which] = std::max(longest_[which], now - sent.made);
+        if (is_exact) longest_[which] = std::max(longest_[which], now - sent.made);
         last_[which] = {sent.made, now};
     }
     [[nodiscard]] Duration longest_response(Identifier of) const noexcept TAPPET_REALTIME {
@@ -92,6 +95,15 @@ public:
     [[nodiscard]] bool all_is_sent() const noexcept TAPPET_REALTIME {
         return !faulted(state_) && transmitter_.waiting() == 0 && transmitter_.in_flight() == 0;
     }
+    [[nodiscard]] std::size_t waiting() const noexcept TAPPET_REALTIME { return transmitter_.waiting(); }
+    /// At least one of `parts` equal parts of the limit is in flight: 1 means all, 2 means half.
+    [[nodiscard]] bool is_filled(std::size_t parts) const noexcept TAPPET_REALTIME {
+        return transmitter_.is_filled(parts);
+    }
+    [[nodiscard]] Duration confirm_within() const noexcept TAPPET_REALTIME {
+        return transmitter_.confirm_within();
+    }
+    [[nodiscard]] std::size_t in_flight() const noexcept TAPPET_REALTIME { return transmitter_.in_flight(); }
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_; }
     [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME {
         return faulted(state_) ? never : transmitter_.next_timeout();
@@ -127,7 +139,7 @@ public:
         belongs_to_.used();
         return controller_.accept(frame, keep);
     }
-    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME final {
+    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
         return controller_.next_timeout();
     }
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME final { return controller_.state(); }

@@ -3,8 +3,11 @@
 #pragma once
 
 #include "drivers/can/frame.hpp"
+#include "drivers/can/kind.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/component/one_activity.hpp"
+#include "kernel/component/wire_counters.hpp"
+#include "kernel/os/waiter.hpp"
 
 #include <cstdint>
 #include <span>
@@ -57,6 +60,14 @@ struct Counters {
     std::uint64_t faults = 0;        ///< bus-off, unacknowledged, down
     std::uint64_t restarts = 0;
     bool operator==(const Counters&) const = default;
+
+    void tell(WireCounters& into) const noexcept {
+        into.add("can_frames_lost", lost_in_kernel);
+        into.add("can_faults", faults);
+        into.add("can_restarts", restarts);
+        into.add("can_impostors", impostors);
+        into.add("can_malformed", malformed);
+    }
 };
 
 struct Settings {
@@ -87,6 +98,15 @@ public:
 
     /// The next frame that arrived. `frame` is written unless the answer is `none`.
     virtual Receive receive(Frame& frame) noexcept TAPPET_REALTIME = 0;
+    /// All that has arrived is forgotten.
+    virtual void drop_arrivals() noexcept TAPPET_REALTIME {
+        constexpr int most = 4096; // the kernel's buffer holds fewer
+        Frame ignored;
+        for (int n = 0; n < most; ++n) {
+            const Receive got = receive(ignored);
+            if (got.what == Received::none && got.lost == 0) return;
+        }
+    }
     /// Accepts a frame whose contents were made at frame.stamp.
     virtual Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME = 0;
     Send send(const Frame& frame) noexcept TAPPET_REALTIME { return send(frame, Keep::latest); }
@@ -94,8 +114,8 @@ public:
     /// restarts.
     virtual void service(Time now) noexcept TAPPET_REALTIME = 0;
     /// The owner's last call before it rests: what waits goes out now, since nobody serves the device after
-    /// this. Takes some milliseconds at most for each frame. What arrives meanwhile is dropped. False: not
-    /// all went out, or nobody acknowledged it.
+    /// this. Takes some milliseconds at most for each frame. What arrives meanwhile is dropped: not for who
+    /// shares the device. False: not all went out, or nobody acknowledged it.
     virtual bool finish(Time now) noexcept TAPPET_REALTIME = 0;
     /// When service() has something to do even if nothing arrives: the next time-out of a frame, or never.
     [[nodiscard]] virtual Time next_service() const noexcept TAPPET_REALTIME = 0;
@@ -114,10 +134,12 @@ public:
     /// Not real-time. Brings a faulted controller back, with everything it still held dropped.
     virtual Restart restart() noexcept = 0;
 
-    /// The descriptor to wait on; -1 for a twin, which calls its listener instead.
-    [[nodiscard]] virtual int wait_handle() const noexcept TAPPET_REALTIME = 0;
-    using Listener = void (*)(void*) noexcept TAPPET_REALTIME;
-    virtual void set_listener(Listener ready, void* context) noexcept = 0;
+    /// From now on what arrives wakes `waiter`, which outlives the device. So does a confirmation that others
+    /// wait for; what else is confirmed is told with what comes next. Not real-time. False: the waiter
+    /// watches too many devices.
+    [[nodiscard]] virtual bool wakes(os::Waiter& waiter) noexcept = 0;
+    /// Each confirmation wakes, too. Not real-time.
+    virtual void wake_when_confirmed() noexcept {}
 
 protected:
     OneActivity belongs_to_; ///< checked by every call that belongs to the activity; no copy has it

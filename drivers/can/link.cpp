@@ -106,8 +106,10 @@ std::expected<Link, Sentence> find_link(std::string_view interface) {
                      " type vcan, or load its controller's driver) or name another in the board"}};
     Netlink netlink;
     if (const int error = netlink.ask(what, RTM_GETLINK, 0))
-        return std::unexpected{Sentence{who, " cannot be asked for its settings: ", strerrordesc_np(error),
-                                        "; the kernel must offer rtnetlink"}};
+        return std::unexpected{Sentence{
+            who, " cannot be asked for its settings: ", strerrordesc_np(error),
+            error == EMSGSIZE ? "; it has too many alternative names, remove some (ip link property del)"
+                              : "; the kernel must offer rtnetlink"}};
     return read_link(interface, netlink.data());
 }
 

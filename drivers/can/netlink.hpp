@@ -35,7 +35,9 @@ public:
 private:
     int fd_;
     std::uint32_t sequence_ = 0;
-    std::array<std::byte, 16384> buffer_{};
+    /// An answer about one interface has less than 2 KiB. Not more room, because it lies on the stack of the
+    /// activity that restarts a bus.
+    std::array<std::byte, 4096> buffer_{};
     std::size_t length_ = 0;
 };
 

@@ -14,7 +14,7 @@ namespace tappet::can {
 /// bus that fails again and again needs hands, not restarts, and whoever starts it again had a look.
 /// The device's own bound holds as well, from the machine's start.
 struct Restarter {
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr bool shares_device = true;
 
     Property<std::int64_t> attempts{3};

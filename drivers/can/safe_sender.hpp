@@ -16,7 +16,6 @@ namespace tappet::can {
 /// A socket of its own: the machine's has little room, which may be full of what it sent last. Not real-time.
 class SafeSender {
 public:
-    static constexpr Duration look_every = 5ms;
     /// A frame that was lost. Several wire times of the longest frame at 10 kbit/s.
     static constexpr Duration repeat_after = 50ms;
     static constexpr std::size_t most_frames = 64; // a bit for each

@@ -4,6 +4,7 @@
 
 #include "drivers/can/wire.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <linux/can.h>
@@ -22,7 +23,7 @@ namespace {
 Time to_time(const timespec& t) noexcept TAPPET_REALTIME {
     return at_ns(std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec);
 }
-Time read(clockid_t clock) noexcept TAPPET_REALTIME {
+Time read_clock(clockid_t clock) noexcept TAPPET_REALTIME {
     timespec t{};
     TAPPET_ESCAPE("the vDSO reads the clock without entering the kernel", ::clock_gettime(clock, &t));
     return to_time(t);
@@ -93,13 +94,7 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings, const Li
     close();
     const std::string_view name = settings.interface;
     if (auto good = fit(link, name, settings); !good) return good;
-    fd_ = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
-    if (fd_ < 0)
-        return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
     link_ = link;
-    drops_seen_ = 0;
-    batch_ = {};
-    arrivals_.begin(read(CLOCK_REALTIME), read(CLOCK_MONOTONIC));
     controller_.configure(settings, link.state);
     found_ = Sentence{"CAN interface \"", name, "\" "};
     if (link.is_virtual)
@@ -108,21 +103,22 @@ std::expected<void, Sentence> SocketCan::open(const Settings& settings, const Li
         found_.add("runs at ").add(link.bit_rate).add(" bit/s");
     if (!link.is_virtual && link.takes_fd()) found_.add(", CAN FD at ").add(link.data_bit_rate).add(" bit/s");
     if (!link.is_virtual) found_.add(", error ").add(to_text(link.state));
-    auto done = set_options(settings);
-    if (done) {
-        sockaddr_can address{};
-        address.can_family = AF_CAN;
-        address.can_ifindex = link_.index;
-        if (::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-            done = std::unexpected{failure(name, "cannot be bound to", "is it up and a CAN interface?")};
-    }
+    auto done = open(arrives_, settings, settings.receive);
+    if (done) done = open(sends_, settings, settings.transmit);
     if (!done) close();
     return done;
 }
 
-std::expected<void, Sentence> SocketCan::set_options(const Settings& settings) {
+std::expected<void, Sentence> SocketCan::open(Socket& socket, const Settings& settings,
+                                              std::span<const Identifier> identifiers) {
+    const std::string_view name = settings.interface;
+    const bool sends = &socket == &sends_;
+    socket.arrivals.begin(read_clock(CLOCK_REALTIME), read_clock(CLOCK_MONOTONIC));
+    socket.fd = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
+    if (socket.fd < 0)
+        return std::unexpected{failure(name, "no raw socket", "load can and can_raw, run with CAP_NET_RAW")};
     const auto set = [&](int level, int option, const void* value, std::size_t size) {
-        return ::setsockopt(fd_, level, option, value, static_cast<socklen_t>(size)) == 0;
+        return ::setsockopt(socket.fd, level, option, value, static_cast<socklen_t>(size)) == 0;
     };
     const auto set_int = [&](int level, int option, int value) {
         return set(level, option, &value, sizeof value);
@@ -130,78 +126,132 @@ std::expected<void, Sentence> SocketCan::set_options(const Settings& settings) {
 
     std::array<can_filter, CAN_RAW_FILTER_MAX> filters{};
     std::size_t used = 0;
-    for (const auto list : {settings.receive, settings.transmit}) // ours come back as confirmations
-        for (const Identifier& one : list) {
-            if (!valid(one) || used == filters.size())
-                return std::unexpected{Sentence{"CAN interface \"", settings.interface, "\": identifier ",
-                                                one.id,
-                                                valid(one) ? " is one too many: 512 fit" : " is out of range",
-                                                "; correct the signal map"}};
+    for (const Identifier& one : identifiers) {
+        if (!valid(one) || used == filters.size())
+            return std::unexpected{Sentence{"CAN interface \"", name, "\": identifier ", one.id,
+                                            valid(one) ? " is one too many: 512 fit" : " is out of range",
+                                            "; correct the signal map"}};
+        if (sends || std::ranges::find(settings.transmit, one) == settings.transmit.end()) // ours come there
             filters[used++] = wire::exactly(one);
-        }
+    }
     // No filter at all would mean "everything" to no filter call, and "nothing" to an empty one: the latter
     // is wanted.
     bool ok =
         set(SOL_CAN_RAW, CAN_RAW_FILTER, used == 0 ? nullptr : filters.data(), used * sizeof(can_filter));
-    ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, static_cast<int>(wire::error_mask));
-    ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, 1);
+    ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, sends ? 0 : static_cast<int>(wire::error_mask));
+    ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, sends ? 1 : 0); // as confirmations
     ok = ok && (!settings.takes_fd || set_int(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1));
     ok = ok && set_int(SOL_SOCKET, SO_RXQ_OVFL, 1);
     ok = ok &&
          set_int(SOL_SOCKET, SO_SNDBUF, 0); // the kernel raises it to its least: EAGAIN comes before ENOBUFS
     if (!ok)
-        return std::unexpected{
-            failure(settings.interface, "a socket option is refused", "is the kernel 5.10 or newer?")};
+        return std::unexpected{failure(name, "a socket option is refused", "is the kernel 5.10 or newer?")};
     // Without these the machine still works: frames count as arrived when read, and the buffer is Linux's
     // default. Stamps are the kernel's, not the controller's: what CAN drivers count by has no clock that
     // Linux relates to its own (none has a PTP clock), and runs away from it with the controller's crystal.
     set_int(SOL_SOCKET, SO_TIMESTAMPING, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE);
     if (!set_int(SOL_SOCKET, SO_RCVBUFFORCE, settings.receive_buffer_bytes))
         set_int(SOL_SOCKET, SO_RCVBUF, settings.receive_buffer_bytes);
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = link_.index;
+    if (::bind(socket.fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        return std::unexpected{failure(name, "cannot be bound to", "is it up and a CAN interface?")};
     return {};
 }
 
 void SocketCan::close() noexcept {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
+    for (Socket* each : {&arrives_, &sends_}) {
+        if (each->fd >= 0) ::close(each->fd);
+        *each = {};
+    }
+    nothing_arrives_ = more_confirmed_ = false;
+    lost_there_ = 0;
     controller_.purge();
+}
+
+bool SocketCan::wakes(os::Waiter& waiter) noexcept {
+    waiter_ = &waiter;
+    return waiter.watch(arrives_.fd) && waiter.watch(sends_.fd);
+}
+
+bool SocketCan::read(Socket& from) noexcept TAPPET_REALTIME {
+    Batch& batch = from.batch;
+    if (!batch.is_empty()) return true;
+    // The kernel had no more: that is known without asking it again.
+    if (std::exchange(batch.is_last, false)) return false;
+    // An error is told once, in place of what waits behind it.
+    for (int tries = 0; tries < 2; ++tries) {
+        TAPPET_ESCAPE("the driver's own read, which does not block", batch.read_from(from.fd));
+        if (!batch.is_empty()) return true;
+        const int error = batch.error;
+        const bool gone = error == ENETDOWN || error == ENODEV || error == ENXIO;
+        if (gone && controller_.recovery.running()) controller_.fault(State::down);
+        if (error == EAGAIN) break;
+    }
+    batch.is_last = false;
+    nothing_arrives_ = nothing_arrives_ || &from == &arrives_;
+    return false;
 }
 
 Receive SocketCan::receive(Frame& frame) noexcept TAPPET_REALTIME {
     belongs_to_.used();
-    if (fd_ < 0) return {};
-    // A confirmation, an impostor's or a malformed frame is no answer, so reading goes on; as many as can be
-    // in flight suffice, and the bound keeps a flood from holding the caller. Nothing stays in the batch
-    // then: no descriptor would tell of it.
-    for (std::uint32_t i = 0; i <= most_in_flight || !batch_.is_empty(); ++i) {
-        if (batch_.is_empty()) {
-            // The kernel had no more: that is known without asking it again.
-            if (std::exchange(batch_.is_last, false)) return {};
-            TAPPET_ESCAPE("the driver's own read, which does not block", batch_.read_from(fd_));
-            const int error = batch_.error;
-            const bool gone = error == ENETDOWN || error == ENODEV || error == ENXIO;
-            if (gone && controller_.recovery.running()) controller_.fault(State::down);
-            if (batch_.is_empty()) {
-                batch_.is_last = false;
-                return {};
-            }
-        }
-        const std::size_t at = batch_.next++;
-        const Receive answer = judge(Raw{batch_.frames[at], batch_.messages[at]}, frame);
+    if (!is_open()) return {};
+    // A malformed frame is no answer, so reading goes on; the bound keeps a flood of them from holding the
+    // caller. Nothing stays in the batch then: no descriptor would tell of it.
+    for (std::uint32_t i = 0; i <= most_in_flight || !arrives_.batch.is_empty(); ++i) {
+        if (!read(arrives_)) return {.lost = std::exchange(lost_there_, 0)};
+        const std::size_t at = arrives_.batch.next++;
+        Receive answer = judge(Raw{arrives_.batch.frames[at], arrives_.batch.messages[at]}, arrives_, frame);
+        answer.lost += std::exchange(lost_there_, 0);
         if (answer.what != Received::none || answer.lost != 0) return answer;
     }
     return {};
 }
 
-Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME {
+// What is said of the bus is heard all the same, and what is sent was confirmed. Both sockets, because others
+// may have filled that of what is sent meanwhile, and then no confirmation finds room.
+void SocketCan::drop_arrivals() noexcept TAPPET_REALTIME {
+    belongs_to_.used();
+    constexpr int most = 1024; // batches: the kernel's buffer holds fewer
+    Frame ignored;
+    for (int n = 0; n < most && is_open(); ++n) {
+        for (Batch& batch = arrives_.batch; !batch.is_empty();) {
+            const std::size_t at = batch.next++;
+            static_cast<void>(judge(Raw{batch.frames[at], batch.messages[at]}, arrives_, ignored));
+        }
+        if (n == 0) arrives_.batch.is_last = false; // it was when that was read
+        if (!read(arrives_)) break;
+    }
+    if (is_open()) sends_.batch.is_last = false;
+    for (int n = 0; n < most && is_open(); ++n) {
+        take_confirmations();
+        if (!more_confirmed_) break;
+    }
+    lost_there_ = 0;
+}
+
+void SocketCan::take_confirmations() noexcept TAPPET_REALTIME {
+    nothing_arrives_ = more_confirmed_ = false;
+    Frame ignored;
+    for (std::uint32_t i = 0; i <= most_in_flight || !sends_.batch.is_empty(); ++i) {
+        if (!read(sends_)) return;
+        const std::size_t at = sends_.batch.next++;
+        lost_there_ += judge(Raw{sends_.batch.frames[at], sends_.batch.messages[at]}, sends_, ignored).lost;
+    }
+    more_confirmed_ = !std::exchange(sends_.batch.is_last, false);
+}
+
+Receive SocketCan::judge(const Raw& raw, Socket& from, Frame& frame) noexcept TAPPET_REALTIME {
     Receive answer;
     if (raw.drops_known) { // the kernel's count is cumulative and may wrap
-        answer.lost = raw.drops - drops_seen_;
-        drops_seen_ = raw.drops;
+        answer.lost = raw.drops - from.drops_seen;
+        from.drops_seen = raw.drops;
         controller_.count.lost_in_kernel += answer.lost;
     }
-    const Time now = read(CLOCK_MONOTONIC);
-    const Time arrived = raw.stamped ? arrivals_.of(to_time(raw.stamp), read(CLOCK_REALTIME), now) : now;
+    const Time now = read_clock(CLOCK_MONOTONIC);
+    const Time arrived =
+        raw.stamped ? from.arrivals.of(to_time(raw.stamp), read_clock(CLOCK_REALTIME), now) : now;
     Frame candidate;
     if (!wire::decode(raw.frame, raw.bytes, controller_.state(), candidate)) {
         ++controller_.count.malformed;
@@ -212,8 +262,8 @@ Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME 
         controller_.report(candidate.error);
         answer.what = Received::error_frame;
     } else if ((raw.flags & MSG_CONFIRM) != 0) {
-        controller_.confirmed(arrived);
-        hand_over(arrived);
+        controller_.confirmed(arrived, !from.arrivals.was_set());
+        hand_over(now); // what leaves now has the time of now, whenever its room was made
         return answer;
     } else if (controller_.ours(candidate)) {
         ++controller_.count.impostors;
@@ -228,24 +278,43 @@ Receive SocketCan::judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME 
 
 void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
     belongs_to_.used();
-    if (controller_.tick(now)) {
-        int told = 0; // the interface was down in between, and the socket remembers it as an error
-        socklen_t size = sizeof told;
-        TAPPET_ESCAPE("reads a field of the socket", ::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &told, &size));
+    if (!is_open()) return;
+    // Several confirmations are read in one call. They are read in any case before one counts as missing.
+    const bool looks = nothing_arrives_ || more_confirmed_ || now >= next_look_ || controller_.is_filled(2) ||
+                       (wakes_when_confirmed_ && controller_.in_flight() != 0);
+    const bool is_due = controller_.next_timeout() <= now;
+    if (is_due) take_confirmations();
+    if (controller_.tick(now, more_confirmed_)) {
+        for (const Socket* each : {&arrives_, &sends_}) {
+            int told = 0; // the interface was down in between, and the socket remembers it as an error
+            socklen_t size = sizeof told;
+            TAPPET_ESCAPE("reads a field of the socket",
+                          ::getsockopt(each->fd, SOL_SOCKET, SO_ERROR, &told, &size));
+        }
     }
     hand_over(now);
+    if ((looks || controller_.waiting() != 0) && !is_due) take_confirmations(); // what may be sent has left
+    next_look_ = controller_.in_flight() == 0 || faulted(controller_.state()) ? never
+                 : looks || is_due || next_look_ == never ? now + controller_.confirm_within() / looks_at_one
+                                                          : next_look_;
+    if (waiter_ == nullptr) return;
+    // While nothing is in flight, what comes there is none of ours, and would fill the socket.
+    const bool waits = more_confirmed_ || controller_.in_flight() == 0 || controller_.waiting() != 0 ||
+                       controller_.is_filled(1);
+    waiter_->heed(sends_.fd, waits || wakes_when_confirmed_);
 }
 
 bool SocketCan::finish(Time now) noexcept TAPPET_REALTIME {
     constexpr Duration longest_pause = 20ms, longest = 200ms;
-    const Time begin = read(CLOCK_MONOTONIC);
+    const Time begin = read_clock(CLOCK_MONOTONIC);
     std::uint64_t sent = controller_.count.sent;
     Frame ignored;
     service(now);
     for (Time at = begin, last = begin; !controller_.all_is_sent() && !faulted(controller_.state()) &&
                                         at - last < longest_pause && at - begin < longest;
-         at = read(CLOCK_MONOTONIC)) {
+         at = read_clock(CLOCK_MONOTONIC)) {
         static_cast<void>(receive(ignored));
+        take_confirmations();
         hand_over(now);
         if (controller_.count.sent != sent) last = at;
         sent = controller_.count.sent;
@@ -254,7 +323,7 @@ bool SocketCan::finish(Time now) noexcept TAPPET_REALTIME {
 }
 
 void SocketCan::hand_over(Time now) noexcept TAPPET_REALTIME {
-    for (std::uint32_t i = 0; i < most_in_flight && fd_ >= 0; ++i) {
+    for (std::uint32_t i = 0; i < most_in_flight && is_open(); ++i) {
         const Frame* frame = controller_.next(now);
         if (frame == nullptr) return;
         canfd_frame raw;
@@ -262,7 +331,8 @@ void SocketCan::hand_over(Time now) noexcept TAPPET_REALTIME {
         const std::size_t bytes = wire::bytes_of(*frame);
         ssize_t written = 0;
         int error = 0;
-        TAPPET_ESCAPE("the driver's own write, which does not block", written = ::write(fd_, &raw, bytes);
+        TAPPET_ESCAPE("the driver's own write, which does not block",
+                      written = ::write(sends_.fd, &raw, bytes);
                       error = errno);
         if (written == static_cast<ssize_t>(bytes)) {
             controller_.handed_over(now);

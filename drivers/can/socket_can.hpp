@@ -1,10 +1,12 @@
-// The CAN controller behind a Linux network interface (SocketCAN, a raw socket).
+// The CAN controller behind a Linux network interface (SocketCAN): a raw socket for what arrives, and one for
+// what is sent and its confirmations, which wake nobody who does not wait for them.
 #pragma once
 
 #include "drivers/can/arrival.hpp"
 #include "drivers/can/controller.hpp"
 #include "drivers/can/link.hpp"
 
+#include <algorithm>
 #include <array>
 #include <expected>
 #include <linux/can.h>
@@ -26,16 +28,25 @@ public:
     [[nodiscard]] const Sentence& found() const noexcept { return found_; }
     /// Not real-time. Drops what waits and leaves the bus.
     void close() noexcept;
+    [[nodiscard]] bool is_open() const noexcept { return arrives_.fd >= 0; }
 
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
+    void drop_arrivals() noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
     /// While frames are confirmed at least every 20 ms, and for 200 ms at most.
     bool finish(Time now) noexcept TAPPET_REALTIME override;
+    [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
+        return std::min(controller_.next_timeout(), next_look_);
+    }
     Restart restart() noexcept override;
-    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return fd_; }
-    void set_listener(Listener, void*) noexcept override {} // the descriptor says it
+    [[nodiscard]] bool wakes(os::Waiter& waiter) noexcept override;
+    void wake_when_confirmed() noexcept override { wakes_when_confirmed_ = true; }
 
 private:
+    /// How many times it looks for a confirmation before that is late. At 1 Mbit/s at most 120 frames of
+    /// others arrive between two looks. They fit into the socket's buffer even if nobody may enlarge it.
+    static constexpr int looks_at_one = 4;
+
     /// What one system call brought, in its order; read by receive() one after the other.
     struct Batch {
         static constexpr std::size_t size = 8;
@@ -54,17 +65,30 @@ private:
         void read_from(int fd) noexcept;
         [[nodiscard]] bool is_empty() const noexcept TAPPET_REALTIME { return next == filled; }
     };
+    struct Socket {
+        int fd = -1;
+        std::uint32_t drops_seen = 0;
+        Arrivals arrivals{};
+        Batch batch{};
+    };
     struct Raw;
-    Receive judge(const Raw& raw, Frame& frame) noexcept TAPPET_REALTIME;
+    /// False: nothing waits there.
+    bool read(Socket& from) noexcept TAPPET_REALTIME;
+    Receive judge(const Raw& raw, Socket& from, Frame& frame) noexcept TAPPET_REALTIME;
+    void take_confirmations() noexcept TAPPET_REALTIME;
     void hand_over(Time now) noexcept TAPPET_REALTIME;
-    std::expected<void, Sentence> set_options(const Settings& settings);
+    std::expected<void, Sentence> open(Socket& socket, const Settings& settings,
+                                       std::span<const Identifier> identifiers);
 
-    int fd_ = -1;
+    Socket arrives_{}, sends_{};
+    os::Waiter* waiter_ = nullptr;
+    bool wakes_when_confirmed_ = false;
+    bool nothing_arrives_ = false; ///< who was woken was so by what is sent, or by an impostor
+    bool more_confirmed_ = false;  ///< behind what was read there
+    std::uint32_t lost_there_ = 0; ///< not told yet
+    Time next_look_ = never;
     Link link_{};
     Sentence found_{};
-    std::uint32_t drops_seen_ = 0;
-    Arrivals arrivals_{};
-    Batch batch_{};
 };
 
 } // namespace tappet::can

@@ -81,8 +81,8 @@ public:
         --in_flight_.used;
         return sent;
     }
-    [[nodiscard]] constexpr bool unacknowledged(Time now) const noexcept TAPPET_REALTIME {
-        return !in_flight_.empty() && now - in_flight_[0].handed_over > confirm_within_;
+    [[nodiscard]] constexpr bool unacknowledged(Time now, int times = 1) const noexcept TAPPET_REALTIME {
+        return !in_flight_.empty() && now - in_flight_[0].handed_over > times * confirm_within_;
     }
     [[nodiscard]] constexpr Time next_timeout() const noexcept TAPPET_REALTIME {
         return in_flight_.empty() ? never : in_flight_[0].handed_over + confirm_within_ + 1ns;
@@ -96,6 +96,12 @@ public:
         restarted_at_ = now_ = now;
     }
     [[nodiscard]] constexpr std::size_t waiting() const noexcept TAPPET_REALTIME { return queue_.size(); }
+    [[nodiscard]] constexpr bool is_filled(std::size_t parts) const noexcept TAPPET_REALTIME {
+        return parts * in_flight_.size() >= in_flight_limit_;
+    }
+    [[nodiscard]] constexpr Duration confirm_within() const noexcept TAPPET_REALTIME {
+        return confirm_within_;
+    }
     [[nodiscard]] constexpr std::size_t in_flight() const noexcept TAPPET_REALTIME {
         return in_flight_.size();
     }

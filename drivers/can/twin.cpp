@@ -18,11 +18,6 @@ std::expected<void, Sentence> Twin::open(const Settings& settings) noexcept {
     return {};
 }
 
-void Twin::set_listener(Listener ready, void* context) noexcept {
-    ready_ = ready;
-    context_ = context;
-}
-
 bool Twin::wants(const Frame& frame) const noexcept TAPPET_REALTIME {
     if (frame.remote || (frame.fd && !settings_.takes_fd)) return false;
     for (const auto list : {settings_.receive, settings_.transmit})
@@ -147,7 +142,7 @@ const Twin::Departure* Twin::head() noexcept TAPPET_REALTIME {
 }
 
 void Twin::wake() noexcept TAPPET_REALTIME {
-    if (arrived_ && ready_ != nullptr) ready_(context_);
+    if (arrived_ && waiter_ != nullptr) waiter_->wake();
     arrived_ = false;
 }
 

@@ -27,9 +27,11 @@ public:
     /// At once, however many may be in flight: who stops under virtual time waits for no confirmation.
     bool finish(Time now) noexcept TAPPET_REALTIME override;
     Restart restart() noexcept override;
-    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
-    /// `ready` is called by the bus's thread.
-    void set_listener(Listener ready, void* context) noexcept override;
+    /// By the bus's thread.
+    [[nodiscard]] bool wakes(os::Waiter& waiter) noexcept override {
+        waiter_ = &waiter;
+        return true;
+    }
 
     /// Something has arrived that its owner has not taken; a confirmation lets it send more.
     [[nodiscard]] bool has_arrivals() const noexcept TAPPET_REALTIME { return inbox_.front() != nullptr; }
@@ -71,8 +73,7 @@ private:
     bool arrived_ = false;   // the bus's: the listener is to be called
     bool starved_ = false;   // the bus's: it was told that nobody acknowledges
     bool muted_ = false;     // the bus's: nobody hears what it sends
-    Listener ready_ = nullptr;
-    void* context_ = nullptr;
+    os::Waiter* waiter_ = nullptr;
 };
 
 } // namespace tappet::can

@@ -1,9 +1,11 @@
 // Digital lines as drivers' components see them; the kernel's character device and the twin stand behind it.
 #pragma once
 
+#include "drivers/gpio/kind.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/component/one_activity.hpp"
+#include "kernel/component/wire_counters.hpp"
 
 #include <cstdint>
 #include <span>
@@ -69,6 +71,8 @@ struct Counters {
     std::uint64_t writes = 0;
     std::uint64_t failures = 0; ///< calls the kernel refused: the chip is gone
     bool operator==(const Counters&) const = default;
+
+    void tell(WireCounters& into) const noexcept { into.add("gpio_edges_lost", missed); }
 };
 
 /// All calls are real-time and belong to one activity.

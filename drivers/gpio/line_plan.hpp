@@ -4,9 +4,13 @@
 #include "drivers/gpio/device.hpp"
 #include "kernel/base/text.hpp"
 
+#include <array>
 #include <expected>
 
 namespace tappet::gpio {
+
+/// The lines of one chip as they are requested; they stay where they are while the chip is open.
+using PlacedLines = std::array<Line, most_lines>;
 
 struct LinePlan {
     Mask outputs = 0;

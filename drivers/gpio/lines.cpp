@@ -3,6 +3,7 @@
 
 #include "drivers/gpio/chip.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -108,8 +109,10 @@ void Lines::close() noexcept {
 EdgeBatch Lines::read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME {
     belongs_to_.used();
     if (fd_ < 0) return {};
-    return judge(
-        edges.first(fetch(edges.first(edges.size() < edges_at_once ? edges.size() : edges_at_once))));
+    std::size_t filled = 0;
+    for (std::size_t read = edges_at_once; read == edges_at_once && filled < edges.size(); filled += read)
+        read = fetch(edges.subspan(filled, std::min(edges_at_once, edges.size() - filled)));
+    return judge(edges.first(filled));
 }
 
 std::size_t Lines::fetch(std::span<Edge> edges) noexcept TAPPET_REALTIME {

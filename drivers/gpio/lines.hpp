@@ -34,7 +34,7 @@ private:
         void operator()(gpiod_line_request* request) const noexcept;
         void operator()(gpiod_edge_event_buffer* buffer) const noexcept;
     };
-    static constexpr std::size_t edges_at_once = 64;
+    static constexpr std::size_t edges_at_once = 8; ///< libgpiod zeroes the room for all in each read
 
     [[nodiscard]] std::size_t fetch(std::span<Edge> edges) noexcept TAPPET_REALTIME;
     [[nodiscard]] std::uint32_t index_of(unsigned offset) const noexcept TAPPET_REALTIME;

@@ -30,7 +30,7 @@ template <const auto& map> struct RegisterNames {
 template <const auto& map> struct Client {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.registers.size();
-    static constexpr std::string_view device_kind = "modbus";
+    static constexpr const DeviceKind& device_kind = modbus::device_kind;
     static constexpr SafeWrites device_map = map.safe_writes();
 
     std::array<Output<double>, count> read{};

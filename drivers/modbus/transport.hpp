@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include "drivers/modbus/kind.hpp"
 #include "drivers/modbus/registers.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/component/one_activity.hpp"

@@ -2,20 +2,15 @@
 // it and the plant.
 #pragma once
 
-#include "drivers/can/twin.hpp"
-#include "drivers/can/twin_bus.hpp"
-#include "drivers/gpio/twin.hpp"
 #include "drivers/hardware/devices.hpp"
-#include "drivers/hardware/open.hpp"
-#include "drivers/modbus/twin.hpp"
 #include "drivers/plant/can_log.hpp"
+#include "drivers/plant/kinds.hpp"
 #include "drivers/plant/plant.hpp"
-#include "drivers/udp/twin.hpp"
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace tappet {
@@ -74,44 +69,30 @@ public:
     [[nodiscard]] modbus::Twin& server(std::string_view device);
 
 private:
-    struct Bus {
-        std::string_view name;
-        can::TwinBus bus;
-        can::Settings settings{};
-        std::span<const can::Frame> safe{};
-        can::Twin machine{}, plant{};
+    // What a twin is given stays where it is.
+    template <class... Kind>
+    using Lists = std::tuple<std::vector<std::unique_ptr<Kind>>...>;
+    /// What is recorded of a bus, and replayed on it.
+    struct Log {
+        explicit Log(can::SimulatedBus& of) : bus{of} {}
+        can::SimulatedBus& bus;
         std::unique_ptr<can::TwinBus::Tap> tap{};
         std::unique_ptr<CanRecorder> recorder{};
         std::unique_ptr<CanReplay> replay{};
-        void drain_tap(Time now, const Look& look);
-        Bus(std::string_view of, std::uint64_t seed) : name{of}, bus{seed} {}
+        void begin();
+        void drain(Time now, const Look& look);
     };
     struct Replay {
         std::string bus, file;
         Duration begins_at;
     };
-    struct Chip {
-        std::string_view name;
-        PlacedLines lines{};
-        gpio::Mask seen = 0;
-        gpio::Twin twin;
-        Chip(std::string_view of, std::uint64_t seed) : name{of}, twin{seed} {}
-    };
-    struct Server {
-        std::string_view name;
-        const modbus::SafeWrites* safe;
-        std::uint32_t seen = 0;
-        modbus::Twin twin;
-        Server(const ComponentRow& row, Duration answer_within)
-            : name{row.device},
-              safe{static_cast<const modbus::SafeWrites*>(row.type->device_map)},
-              twin{answer_within} {}
-    };
-
-    std::expected<void, Sentence> add_bus(const ComponentRow& row);
+    template <class Kind>
+    std::expected<void, Sentence> add(const ComponentRow& row, std::vector<ProvidedDevice>& plants_ends);
+    template <class Kind>
+    [[nodiscard]] Kind& named(std::string_view device);
+    [[nodiscard]] auto& buses() { return std::get<std::vector<std::unique_ptr<can::SimulatedBus>>>(kinds_); }
     Sentence open_logs();
-    [[nodiscard]] Time next_on_buses();
-    std::expected<void, Sentence> add_chip(const ComponentRow& row);
+    [[nodiscard]] Time next_on_wires();
 
     Plant& plant_;
     std::uint64_t seed_;
@@ -120,11 +101,8 @@ private:
     std::vector<Replay> replays_{};
     Look look_{};
     Time next_{};
-    // What a twin is given stays where it is.
-    std::vector<std::unique_ptr<Bus>> buses_{};
-    std::vector<std::unique_ptr<Chip>> chips_{};
-    std::vector<std::unique_ptr<Server>> servers_{};
-    std::vector<std::unique_ptr<udp::Twin>> ports_{};
+    SimulatedKinds<Lists> kinds_{};
+    std::vector<Log> logs_{}; // one for each bus
     std::vector<ProvidedDevice> lent_{};
     std::vector<ProvidedDevice> provided_{};
 };

@@ -41,7 +41,7 @@ struct Link {
     Link(const Link&) = delete;
     Link& operator=(const Link&) = delete;
 
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr bool shares_device = true;
 
     BufferInput<can::Frame> received{};
@@ -99,7 +99,7 @@ struct Link {
         Room payload{};
         put_beat(shape, payload, {.runs = false, .epoch = epoch_});
         send(Rows::beat_frame, payload, cycle.now);
-        device_->finish(cycle.now);
+        device_->service(cycle.now); // the bus goes on, and what arrives is its own
     }
 
     /// For tests and summaries.

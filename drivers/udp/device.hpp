@@ -2,6 +2,7 @@
 // machines that ask each other.
 #pragma once
 
+#include "drivers/udp/kind.hpp"
 #include "kernel/base/realtime.hpp"
 
 #include <cstddef>

@@ -11,7 +11,7 @@ namespace tappet::udp {
 /// Answers whoever asks for this machine's time: component<udp::ClockAnswers>("time", device("time-port")),
 /// bound to where the box listens. Real-time.
 struct ClockAnswers {
-    static constexpr std::string_view device_kind = "udp";
+    static constexpr const DeviceKind& device_kind = udp::device_kind;
     static constexpr Longest device_map{.bytes = clock_packet::bytes};
 
     Output<std::int64_t> answers, invalid;
@@ -58,7 +58,7 @@ private:
 /// and its answer seen in one of the own, so that `error` is about a period of the slower of the two.
 /// Real-time.
 struct PeerClock {
-    static constexpr std::string_view device_kind = "udp";
+    static constexpr const DeviceKind& device_kind = udp::device_kind;
     static constexpr Longest device_map{.bytes = clock_packet::bytes, .asks = true};
 
     Output<Duration> ahead, error;

@@ -96,8 +96,8 @@ void Activity::run_once() noexcept {
 
 bool Activity::sleep_until(Time time) noexcept TAPPET_REALTIME {
     engine_->sleeps_until(time);
-    const bool woken = engine_->heeds_devices() ? engine_->waiter().wait(time)
-                                                : engine_->waiter().wait_without_devices(time);
+    engine_->heed_devices_of_running();
+    const bool woken = engine_->waiter().wait(time);
     if (!woken) engine_->stamps().renew(); // a stamp that lags the clock would take the time for not come
     return woken;
 }

@@ -26,10 +26,12 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     cycle_.period = plan.period;
     has_deadline_ = plan.real_time && plan.deadline > Duration::zero();
     least_excess_ = has_deadline_ ? Duration::zero() : Duration::max();
-    const bool is_simple = plan.timers.empty() && plan.guarded.empty() &&
-                           (plan.periodic || plan.at_most_per <= Duration::zero()) && recorded_ == nullptr &&
-                           recorder_ == nullptr;
-    serves_ = !is_simple ? Serves::everything : plan.behaviours.empty() ? Serves::steps : Serves::behaviours;
+    watches_wakes_ = !plan.periodic && plan.at_most_per > Duration::zero();
+    const bool is_simple =
+        plan.timers.empty() && plan.guarded.empty() && recorded_ == nullptr && recorder_ == nullptr;
+    // An activity that rows wake also keeps their times.
+    const bool only_steps = plan.behaviours.empty() && plan.periodic;
+    serves_ = !is_simple ? Serves::everything : only_steps ? Serves::steps : Serves::behaviours;
     for (EnginePart& part : plan_.parts) {
         part.step = part.type->step;
         close_outputs(part, Stops::of_one_that_stood);
@@ -75,15 +77,29 @@ static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's funct
     next_release_ += lost * plan_.period;
 }
 
+// Sporadic activities promised at most n wakes in a window: the analysis believed it, so a breach is counted.
+[[gnu::always_inline]] inline void Engine::watch_wakes() noexcept TAPPET_REALTIME {
+    const auto n = static_cast<std::uint64_t>(plan_.at_most_n);
+    Time& oldest = wakes_[oldest_wake_];
+    if (wake_count_ >= n && cycle_.now - oldest < plan_.at_most_per) ++statistics_.wakes_too_many;
+    oldest = cycle_.now;
+    oldest_wake_ = oldest_wake_ + 1 == n ? 0 : oldest_wake_ + 1;
+    ++wake_count_;
+}
+
 template <Engine::Serves serves>
 void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     constexpr bool everything = serves == Serves::everything, causes = serves != Serves::steps;
+    // Not the end of the cycle before, where its thread went straight on: who was preempted behind that would
+    // count it as late.
     const Time now = stamps_.now();
     cycle_.now = lap_ = now;
     Duration used{};
+    bool measures = false;
     auto expired = Expired::none;
     if constexpr (everything) {
-        if (measures_processor_) used = used_processor();
+        if (measures_processor_) measures = measures_cycle();
+        if (measures) used = used_processor();
         if (!plan_.periodic) expired = look_at_expired();
     }
     const bool due = plan_.periodic ? now >= next_release_ : woken || expired == Expired::stale;
@@ -102,8 +118,9 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     if constexpr (everything) {
         tape_ = recorded_ != nullptr && recorded_->is_on() ? recorded_ : nullptr;
         if (tape_ != nullptr) tape_->begin();
-        if (due || expired == Expired::none) watch_wakes(); // a look at what is as good as it was is no wake
     }
+    if (watches_wakes_ && (due || expired == Expired::none)) // a look at what is as good as it was is no wake
+        watch_wakes();
     if (ends_at_ == never) { // who asks for a start while the activity ends is refused when it has stopped
         if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
         if (awaiting_ != 0) start_awaiting();
@@ -123,7 +140,7 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     if constexpr (everything) {
         watch_inputs();
         if (recorder_ != nullptr) record_values(due);
-        if (measures_processor_) note_processor(used);
+        if (measures) note_processor(used);
     }
     ++statistics_.cycles;
     const Duration response = lap_ - cycle_.release;
@@ -183,7 +200,7 @@ bool Engine::run_commands() noexcept TAPPET_REALTIME {
             note_state(part, commands_.take_up(slot));
         });
     const bool ended = commands_.follow([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
-        turn_to(part);
+        if (slot.has_completion()) turn_to(part); // else nothing of it runs any more
         const CommandState state = slot.follow();
         if (!in_flight(state)) note_state(part, state);
         return !in_flight(state);
@@ -221,8 +238,7 @@ void Engine::run_behaviours(bool all) noexcept TAPPET_REALTIME {
     for (const Behaviour& each : plan_.behaviours) {
         if (each.programs == nullptr || !is_running(plan_.parts[each.part].state)) continue;
         if (!all && each.next(each.self) > cycle_.now) continue;
-        timed(each.part, FunctionKind::behaviour,
-              [&]() noexcept TAPPET_REALTIME { each.programs(each.self, cycle_.now); });
+        if (each.programs(each.self, cycle_.now)) end_of(function(each.part, FunctionKind::behaviour));
     }
     for (const Behaviour& each : plan_.behaviours) {
         if (!is_running(plan_.parts[each.part].state)) continue;
@@ -268,27 +284,31 @@ Duration Engine::used_processor() const noexcept TAPPET_REALTIME {
     return clock_->is_virtual() ? clock_->now() - Time{} : os::processor_time_of_this_thread();
 }
 
-void Engine::note_processor(Duration before) noexcept TAPPET_REALTIME {
+bool Engine::measures_cycle() noexcept TAPPET_REALTIME {
     // As the analysis counts: what comes together is one job, and the next one comes a time of at_most later.
-    if (plan_.periodic || claim_began_ == Time::min() || cycle_.now - claim_began_ >= plan_.at_most_per) {
-        claim_began_ = cycle_.now;
-        claim_used_ = {};
+    if (!plan_.periodic && claim_began_ != Time::min() && cycle_.now - claim_began_ < plan_.at_most_per)
+        return measures_claim_;
+    claim_began_ = cycle_.now;
+    claim_used_ = {};
+    measures_claim_ = next_measured_ != 0 || left_out_ == 0;
+    if (!measures_claim_) {
+        --left_out_;
+        return false;
     }
+    if (next_measured_ != 0) --next_measured_;
+    // By chance: what comes at regular times would be measured each time, or never.
+    left_out_ = static_cast<std::uint32_t>(chance_.below(2 * measured_one_of - 1));
+    ++statistics_.measured_claims;
+    return true;
+}
+
+void Engine::note_processor(Duration before) noexcept TAPPET_REALTIME {
     const Duration used_before = claim_used_;
     claim_used_ += used_processor() - before;
     statistics_.most_processor = std::max(statistics_.most_processor, claim_used_);
-    if (claim_used_ > plan_.claim() && used_before <= plan_.claim()) ++statistics_.over_claim;
-}
-
-// Sporadic activities promised at most n wakes in a window: the analysis believed it, so a breach is counted.
-void Engine::watch_wakes() noexcept TAPPET_REALTIME {
-    if (plan_.periodic || plan_.at_most_per <= Duration::zero()) return;
-    const auto n = static_cast<std::uint64_t>(plan_.at_most_n);
-    Time& oldest = wakes_[oldest_wake_];
-    if (wake_count_ >= n && cycle_.now - oldest < plan_.at_most_per) ++statistics_.wakes_too_many;
-    oldest = cycle_.now;
-    oldest_wake_ = oldest_wake_ + 1 == n ? 0 : oldest_wake_ + 1;
-    ++wake_count_;
+    if (claim_used_ <= plan_.claim() || used_before > plan_.claim()) return;
+    claim_exceeded_by_ = claim_used_ - plan_.claim();
+    ++statistics_.over_claim;
 }
 
 void Engine::note_excess(const FunctionTiming& function, Duration took) noexcept TAPPET_REALTIME {

@@ -7,6 +7,7 @@
 #include "kernel/activity/cycle_tape.hpp"
 #include "kernel/activity/timing.hpp"
 #include "kernel/base/digest.hpp"
+#include "kernel/base/random.hpp"
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/life.hpp"
@@ -27,7 +28,8 @@ struct Behaviour {
     void* self = nullptr;
     std::uint32_t part = 0; ///< of the component it drives
     void (*start)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
-    void (*programs)(void* self, Time) noexcept TAPPET_REALTIME = nullptr; ///< null: it has none
+    /// Null, or false: it has none.
+    bool (*programs)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     /// After all programs. False: nothing was there to run or to ask.
     bool (*step)(void* self, Time) noexcept TAPPET_REALTIME = nullptr;
     void (*stop)(void* self, Time) noexcept TAPPET_REALTIME = nullptr; ///< asks for its end
@@ -141,10 +143,13 @@ struct EngineStatistics {
     Duration longest_response{};
     Duration longest_lateness{}; ///< from release to the beginning
     Duration longest_busy{};     ///< from the beginning to the end, preemption included
-    /// The most of the thread's processor time for one EnginePlan::claim(). Measured in every cycle from the
-    /// one on that is busy for longer than its budget, or comes too often; until then the claim is kept.
+    /// The most of the thread's processor time for one EnginePlan::claim(). Measured from the cycle on that
+    /// is busy for longer than its budget, or comes too often; until then the claim is kept. A claim is of a
+    /// period, or of a time of at_most: Engine::measured_at_first of them are measured, then by chance one of
+    /// Engine::measured_one_of.
     Duration most_processor{};
-    std::uint64_t over_claim = 0; ///< periods, or times of at_most, that were measured to take more
+    std::uint64_t over_claim = 0; ///< claims that were measured to take more
+    std::uint64_t measured_claims = 0;
     std::array<Miss, 8> recent_misses{};
 };
 
@@ -238,8 +243,8 @@ public:
         return plan_.parts.size() == 1 && plan_.parts.front().type->loop != nullptr ? &plan_.parts.front()
                                                                                     : nullptr;
     }
-    /// All drivers among its components run: whoever waits for it listens to its devices.
-    [[nodiscard]] bool heeds_devices() const noexcept TAPPET_REALTIME;
+    /// What its running drivers watch ends waits of its thread, and nothing that a stopped one does.
+    void heed_devices_of_running() noexcept TAPPET_REALTIME;
     /// The first part whose last stop() did not reach its device; the number of parts: there is none. Any
     /// thread.
     [[nodiscard]] std::size_t left_unsafe() const noexcept TAPPET_REALTIME;
@@ -275,6 +280,16 @@ public:
     [[nodiscard]] const Time* now_address() const noexcept { return &cycle_.now; }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return cycle_.now; }
     [[nodiscard]] const EngineStatistics& statistics() const noexcept TAPPET_REALTIME { return statistics_; }
+    /// Reading the thread's processor time enters the kernel, so that not every claim is measured.
+    static constexpr std::uint32_t measured_at_first = 64, measured_one_of = 61;
+    /// If it measures: as at first, from the next cycle on. In its thread.
+    void measure_as_at_first() noexcept TAPPET_REALTIME {
+        next_measured_ = measured_at_first;
+        if (!measures_claim_) claim_began_ = Time::min(); // one that is not measured tells nothing
+    }
+    /// By how much the last claim that was measured to take more had exceeded it, at the end of the cycle in
+    /// which it did. In its thread.
+    [[nodiscard]] Duration claim_exceeded_by() const noexcept TAPPET_REALTIME { return claim_exceeded_by_; }
     /// Of what happened here in virtual time: every message, timer and transition with its time. Equal in two
     /// runs that did the same. Under real time no two runs are alike, and nothing is noted.
     [[nodiscard]] const Digest& digest() const noexcept TAPPET_REALTIME { return digest_; }
@@ -386,6 +401,7 @@ private:
     void record_values(bool stepped) noexcept TAPPET_REALTIME;
     void watch_wakes() noexcept TAPPET_REALTIME;
     [[nodiscard]] Duration used_processor() const noexcept TAPPET_REALTIME;
+    [[nodiscard]] bool measures_cycle() noexcept TAPPET_REALTIME;
     void note_processor(Duration used) noexcept TAPPET_REALTIME;
     void note_excess(const FunctionTiming& function, Duration took) noexcept TAPPET_REALTIME;
     void note_miss(Duration response) noexcept TAPPET_REALTIME;
@@ -395,7 +411,7 @@ private:
     enum class Serves : std::uint8_t {
         steps,
         behaviours, ///< and steps
-        everything  ///< also timers, guarded inputs, wakes to watch, processor time, a tape or a recorder
+        everything  ///< also timers, guarded inputs, processor time, a tape or a recorder
     };
     void cycle(bool woken) noexcept TAPPET_REALTIME {
         switch (serves_) {
@@ -412,9 +428,15 @@ private:
 
     EnginePlan plan_{};
     bool has_deadline_ = false;
+    bool watches_wakes_ = false;
     Serves serves_ = Serves::everything;
     bool measures_processor_ = false;
-    Time claim_began_ = Time::min(); ///< the time of at_most that is measured
+    bool measures_claim_ = false;                     ///< the one of this cycle
+    std::uint32_t next_measured_ = measured_at_first; ///< claims that are measured next
+    std::uint32_t left_out_ = 0;                      ///< claims that are not measured, until the next one is
+    Random chance_{measured_one_of};
+    Duration claim_exceeded_by_{};
+    Time claim_began_ = Time::min(); ///< a time of at_most
     Duration claim_used_{};
     os::Clock* clock_ = nullptr;
     os::Stamps stamps_{};

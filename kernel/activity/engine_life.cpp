@@ -449,11 +449,13 @@ std::size_t Engine::left_unsafe() const noexcept TAPPET_REALTIME {
     return i;
 }
 
-bool Engine::heeds_devices() const noexcept TAPPET_REALTIME {
-    for (const EnginePart& part : plan_.parts)
-        if (!part.type->device_kind.empty() && !part.type->shares_device && !is_running(part.state))
-            return false;
-    return true;
+void Engine::heed_devices_of_running() noexcept TAPPET_REALTIME {
+    std::uint32_t at = 0;
+    for (const EnginePart& part : plan_.parts) {
+        if (part.type->device_kind != nullptr && !part.type->shares_device)
+            waiter_.serve(at, is_running(part.state));
+        ++at;
+    }
 }
 
 } // namespace tappet

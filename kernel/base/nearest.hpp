@@ -2,6 +2,8 @@
 // can say it.
 #pragma once
 
+#include "kernel/base/text.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -96,5 +98,16 @@ private:
     std::size_t folded_ =
         0; // its distance in lower case; 0 at first, so that a distance over the limit loses
 };
+
+namespace detail {
+
+constexpr void add_suggestion(Sentence& text, const Nearest& nearest, std::string_view otherwise) {
+    if (nearest.best().empty())
+        text.add("; ").add(otherwise);
+    else
+        text.add("; did you mean \"").add(nearest.best()).add("\"?");
+}
+
+} // namespace detail
 
 } // namespace tappet

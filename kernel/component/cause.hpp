@@ -63,7 +63,8 @@ struct ReactionTimes {
     std::array<std::uint32_t, bins> histogram{};
 
     void add(Duration took) noexcept TAPPET_REALTIME {
-        const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(took.count(), 0) / 1000);
+        took = std::max(took, Duration::zero()); // what set it off arrived after the last stamp
+        const auto us = static_cast<std::uint64_t>(took.count() / 1000);
         ++histogram[std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(us)), bins - 1)];
         ++count;
         total += took;

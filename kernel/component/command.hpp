@@ -67,8 +67,12 @@ struct CommandOperations {
     std::size_t result_bytes = 0; ///< packed after the arguments
     /// False: it is rejected, or its component does not run.
     bool (*begin)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
+    /// Null: it is done when its action has run.
     CommandProgress (*progress)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
 
+    [[nodiscard]] CommandProgress ask(GatedComponent& at, std::byte* values) const noexcept TAPPET_REALTIME {
+        return progress == nullptr ? CommandProgress::done : progress(at, values);
+    }
     [[nodiscard]] constexpr std::size_t value_bytes() const noexcept { return argument_bytes + result_bytes; }
 };
 
@@ -180,9 +184,13 @@ public:
             reject();
         return accepted;
     }
+    /// Its completion is a function of the component.
+    [[nodiscard]] bool has_completion() const noexcept TAPPET_REALTIME {
+        return route_.command->progress != nullptr;
+    }
     /// Asks the completion condition. Returns how it stands.
     [[nodiscard]] CommandState follow() noexcept TAPPET_REALTIME {
-        switch (route_.command->progress(*route_.receiver, values_)) {
+        switch (route_.command->ask(*route_.receiver, values_)) {
         case CommandProgress::executing:
             state_.store(CommandState::executing, std::memory_order_release); // command.execute
             return CommandState::executing;
@@ -406,7 +414,6 @@ struct CommandOf {
     using Begin = std::conditional_t<blocks, BlockingCommand<Action>, CommandFunction<Action>>;
     using Follow = CommandFunction<Completion>;
     static constexpr bool begin_is_good = Begin::is_good && std::is_same_v<typename Begin::Returned, bool>;
-    /// Without a completion it is done when its action has run.
     static constexpr bool is_instant = std::is_same_v<decltype(Completion), std::nullptr_t>;
     static constexpr bool follow_is_good =
         is_instant ||
@@ -420,9 +427,7 @@ struct CommandOf {
         return false;
     }
     static CommandProgress progress(void* component, std::byte* values) noexcept TAPPET_REALTIME {
-        if constexpr (is_instant)
-            return CommandProgress::done;
-        else if constexpr (!follow_is_good)
+        if constexpr (!follow_is_good || is_instant)
             return CommandProgress::failed;
         else if constexpr (std::is_same_v<typename Follow::Returned, bool>)
             return Follow::run(component, values) ? CommandProgress::done : CommandProgress::executing;
@@ -434,7 +439,8 @@ struct CommandOf {
                                                   Begin::Pack::input_bytes,
                                                   Begin::Pack::result_bytes,
                                                   &GatedCommand<&begin, &progress>::begin,
-                                                  &GatedCommand<&begin, &progress>::progress};
+                                                  is_instant ? nullptr
+                                                             : &GatedCommand<&begin, &progress>::progress};
 };
 
 } // namespace detail

@@ -42,7 +42,7 @@ struct ComponentType {
     std::size_t size = 0;
     std::size_t align = 0;
     std::span<const Facet> facets{};
-    std::string_view device_kind{};                   ///< of the device it drives, "" for none
+    const DeviceKind* device_kind = nullptr;          ///< of the device it drives, null for none
     std::span<const std::string_view> device_lines{}; ///< the lines it wants of that device, by logical name
     /// What is wrong with what stands on that device; the table's check says it.
     std::string_view device_fault{};
@@ -101,7 +101,7 @@ constexpr ComponentType describe() {
     type.facets = facets_of<T>;
     type.construct = [](void* memory) { new (memory) T{}; };
     if constexpr (requires { T::device_fault; }) type.device_fault = T::device_fault;
-    if constexpr (requires { T::device_kind; }) type.device_kind = T::device_kind;
+    if constexpr (requires { T::device_kind; }) type.device_kind = &T::device_kind;
     if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
     if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;
     if constexpr (requires { T::device_traffic; }) type.device_traffic = T::device_traffic;

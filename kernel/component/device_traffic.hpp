@@ -2,22 +2,19 @@
 // summaries.
 #pragma once
 
-#include "kernel/base/text.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/component/device_kind.hpp"
 
 #include <span>
 #include <string_view>
 
 namespace tappet {
 
-/// The device as the board has it, and how it is driven. Rates of nought: nobody says them.
+/// The device as the board has it, and how it is driven.
 struct DeviceUse {
-    std::string_view device{};       ///< as the board calls it
-    std::uint32_t bit_rate = 0;      ///< bit/s
-    std::uint32_t data_bit_rate = 0; ///< bit/s, of frames that switch to it
-    unsigned errors = 0;             ///< on the wire: so many at once,
-    Duration errors_every{};         ///< and one more after each of these times
-    Duration response{};             ///< the worst one of the activity that runs its driver
+    std::string_view device{};     ///< as the board calls it
+    std::span<const Fact> facts{}; ///< what the board says of it
+    Duration response{};           ///< the worst one of the activity that runs its driver
 };
 
 /// What a driver may name; so few, that a row for each fits onto a stack.

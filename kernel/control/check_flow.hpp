@@ -99,7 +99,7 @@ constexpr Sentence refuse_path(const ControlView& c, const ConnectionRow& row, c
 }
 
 constexpr bool is_driver(const MachineView& m, std::size_t component) noexcept {
-    return !m.components[component].type->device_kind.empty();
+    return m.components[component].type->device_kind != nullptr;
 }
 
 /// One end has a role at least.

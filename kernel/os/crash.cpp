@@ -2,6 +2,8 @@
 // Signal handlers that call nothing but what a handler may.
 #include "kernel/os/crash.hpp"
 
+#include "kernel/os/memory.hpp"
+
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
@@ -37,6 +39,12 @@ constinit Told told{};
 // One for all threads: who crashes second finds the first one's note, and sleeps. Should it overwrite what
 // the first one stands on, the kernel ends the process, which whoever acts learns as well.
 alignas(64) constinit std::array<std::byte, 32 * 1024> own_stack{};
+
+/// The stack of the calling thread: its guard's addresses, and its size.
+struct OwnStack {
+    std::uint64_t guard = 0, guard_end = 0, bytes = 0;
+};
+constinit thread_local OwnStack own{};
 
 #if defined(__x86_64__)
 std::uint64_t instruction_of(const ucontext_t& context) noexcept {
@@ -108,8 +116,13 @@ void take(int number, siginfo_t* facts, void* context) noexcept {
         note.address = facts->si_code <= 0 ? 0 : // another process, or abort()
                            reinterpret_cast<std::uint64_t>(facts->si_addr);
         note.instruction = instruction_of(*static_cast<const ucontext_t*>(context));
+        // A wild pointer may lead there as well: the stack's own pointer tells. A leaf may use 128 bytes
+        // below it.
+        const std::uint64_t stack = stack_of(*static_cast<const ucontext_t*>(context));
+        if (note.address >= own.guard && note.address < own.guard_end && stack < own.guard_end + 128)
+            note.stack_bytes = own.bytes;
         prctl(PR_GET_NAME, note.thread_name.data());
-        note_returns(note, stack_of(*static_cast<const ucontext_t*>(context)));
+        note_returns(note, stack);
         note.state.store(2, std::memory_order_release);
         const std::uint64_t one = 1;
         [[maybe_unused]] const auto n = write(told.descriptor, &one, sizeof one);
@@ -137,11 +150,19 @@ std::string_view signal_name(int number) noexcept {
 Sentence CrashNote::describe() const {
     Sentence text{signal_name(signal), " at instruction ", Hexadecimal{instruction}.view()};
     if (address != 0) text.add(" for address ").add(Hexadecimal{address}.view());
-    return text.add(" in thread \"").add(std::string_view{thread_name.data()}).add("\"");
+    text.add(" in thread \"").add(std::string_view{thread_name.data()}).add("\"");
+    if (stack_bytes != 0)
+        text.add(", whose stack of ")
+            .add(stack_bytes)
+            .add(" bytes is used up; an activity's row gives it more by stack(...)");
+    return text;
 }
 
-void take_crashes_on_own_stack() noexcept {
+void take_crashes_on_own_stack(std::span<std::byte> of_thread) noexcept {
     if (told.note == nullptr) return; // a sanitizer has a stack for its own handlers
+    const std::span guard = stack_guard(of_thread);
+    const auto begin = reinterpret_cast<std::uint64_t>(guard.data());
+    own = {begin, begin + guard.size(), of_thread.size()};
     stack_t stack{};
     stack.ss_sp = own_stack.data();
     stack.ss_size = own_stack.size();

@@ -7,7 +7,9 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace tappet::os {
 
@@ -18,6 +20,7 @@ struct CrashNote {
     std::int32_t thread = 0;
     std::uint64_t address = 0;     ///< of the memory that was wanted; of ABRT nothing
     std::uint64_t instruction = 0; ///< where the thread stood
+    std::uint64_t stack_bytes = 0; ///< of its stack, which was used up; 0: it was not that
     std::array<char, 16> thread_name{};
     /// Where the calls on its stack return to, the innermost first, 0 after the last. Found by looking for
     /// what follows a call: some may be left over from calls that had returned.
@@ -36,8 +39,8 @@ struct CrashNote {
 /// thread sleeps: whoever was told ends the process. After `patience_ms` nobody did, and the signal ends it.
 /// Handlers run on a stack of their own. Not real-time.
 void on_crash(CrashNote& note, int told, int patience_ms) noexcept;
-/// The calling thread's handlers run on that stack: each thread says so at its begin. Without on_crash() it
-/// is unused.
-void take_crashes_on_own_stack() noexcept;
+/// The calling thread's handlers run on that stack: each thread says so at its begin, and what its own is.
+/// Without on_crash() it is unused.
+void take_crashes_on_own_stack(std::span<std::byte> stack = {}) noexcept;
 
 } // namespace tappet::os

@@ -10,6 +10,7 @@
 
 #include <alloca.h>
 #include <fcntl.h>
+#include <sys/auxv.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -53,7 +54,8 @@ void unlock_memory() noexcept {
 
 bool memory_is_locked() noexcept TAPPET_REALTIME { return locked.load(std::memory_order_acquire); }
 
-std::size_t page_bytes() noexcept { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
+// Not sysconf: its stack has no size that tests/stack could add up.
+std::size_t page_bytes() noexcept { return getauxval(AT_PAGESZ); }
 
 void touch(std::span<std::byte> range) noexcept {
     const std::size_t page = page_bytes();
@@ -66,13 +68,35 @@ void touch_stack(std::size_t bytes) noexcept {
     if (bytes > 0) touch_below(bytes);
 }
 
+namespace {
+
+/// Bytes of it up to the end of its guard.
+std::size_t end_of_guard(std::span<const std::byte> stack) noexcept {
+    const std::size_t page = page_bytes();
+    const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(stack.data()) % page) % page;
+    const std::size_t end = before + stack_guard_bytes(stack.size());
+    return end <= stack.size() ? end : 0;
+}
+
+} // namespace
+
+std::size_t stack_guard_bytes(std::size_t stack_bytes) noexcept {
+    constexpr std::size_t wide = 16 * 1024;
+    return stack_bytes < 4 * wide ? page_bytes() : std::max(wide, page_bytes());
+}
+
+std::span<std::byte> stack_guard(std::span<std::byte> stack) noexcept {
+    const std::size_t end = end_of_guard(stack), bytes = stack_guard_bytes(stack.size());
+    return end == 0 ? stack.first(0) : stack.subspan(end - bytes, bytes);
+}
+
 void paint_stack(std::span<std::byte> stack) noexcept {
     for (std::size_t i = 0; i + sizeof paint <= stack.size(); i += sizeof paint)
         std::memcpy(stack.data() + i, &paint, sizeof paint);
 }
 
 std::size_t stack_high_water_bytes(std::span<const std::byte> stack) noexcept {
-    std::size_t unused = 0;
+    std::size_t unused = end_of_guard(stack);
     while (unused + sizeof paint <= stack.size() &&
            std::memcmp(stack.data() + unused, &paint, sizeof paint) == 0)
         unused += sizeof paint;

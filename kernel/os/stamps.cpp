@@ -71,12 +71,12 @@ bool prove_processor_counter(std::string_view root) noexcept {
 }
 
 Time Stamps::look_at_clock() noexcept TAPPET_REALTIME {
-    const std::uint64_t before = ticks();
-    close_window(before);
+    close_window();
     ns_per_tick_ = proven_ns_per_tick.load(std::memory_order_relaxed); // no step: nothing else hangs on it
+    if (ns_per_tick_ == 0) return std::max(clock_->now(), floor_);
+    const std::uint64_t before = ticks();
     const Time now = clock_->now();
     if (now < floor_) return floor_;
-    if (ns_per_tick_ == 0) return now;
     const std::uint64_t after = ticks();
     floor_ = now;
     if (after - before > (std::uint64_t{1} << fraction_bits) || in_ns(after - before) > most_between)

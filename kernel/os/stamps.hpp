@@ -30,14 +30,16 @@ public:
     }
 
     /// The next one is a reading of the clock: after a wait for a time, which has come then.
-    void renew() noexcept TAPPET_REALTIME { close_window(ticks()); }
+    void renew() noexcept TAPPET_REALTIME { close_window(); }
 
     [[nodiscard]] Time now() noexcept TAPPET_REALTIME {
         if (clock_->is_virtual()) return clock_->now();
-        const std::uint64_t passed = ticks() - anchor_ticks_;
-        if (passed >= ticks_of_window_) [[unlikely]]
-            return look_at_clock();
-        return anchor_ + in_ns(passed);
+        if (ticks_of_window_ != 0) [[likely]] {
+            const std::uint64_t passed = ticks() - anchor_ticks_;
+            if (passed < ticks_of_window_) [[likely]]
+                return anchor_ + in_ns(passed);
+        }
+        return look_at_clock();
     }
 
 private:
@@ -54,9 +56,9 @@ private:
         return Duration{static_cast<std::int64_t>(count * ns_per_tick_ >> fraction_bits)};
     }
     /// No stamp that was taken is after `floor_`.
-    void close_window(std::uint64_t now) noexcept TAPPET_REALTIME {
+    void close_window() noexcept TAPPET_REALTIME {
         if (ticks_of_window_ == 0) return;
-        const std::uint64_t passed = now - anchor_ticks_;
+        const std::uint64_t passed = ticks() - anchor_ticks_;
         floor_ = anchor_ + in_ns(passed < ticks_of_window_ ? passed : ticks_of_window_);
         ticks_of_window_ = 0;
     }

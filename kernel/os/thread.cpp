@@ -3,6 +3,7 @@
 
 #include "kernel/os/clock.hpp"
 #include "kernel/os/crash.hpp"
+#include "kernel/os/memory.hpp"
 #include "kernel/os/sleep.hpp"
 
 #include <cerrno>
@@ -10,6 +11,7 @@
 #include <initializer_list>
 #include <sched.h>
 #include <signal.h>
+#include <sys/mman.h>
 
 namespace tappet::os {
 
@@ -20,7 +22,7 @@ void* enter(void* context) noexcept {
     char name[16] = {};
     std::memcpy(name, plan.name.data(), std::min<std::size_t>(plan.name.size(), sizeof name - 1));
     pthread_setname_np(pthread_self(), name);
-    take_crashes_on_own_stack();
+    take_crashes_on_own_stack(plan.stack);
     plan.body(plan.context);
     return nullptr;
 }
@@ -54,6 +56,7 @@ Sentence refusal(const ThreadPlan& plan, int error) {
 } // namespace
 
 std::expected<void, Sentence> Thread::start(const ThreadPlan& plan) {
+    plan_ = plan; // the thread reads it, and some are made in the call
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     int error =
@@ -73,23 +76,38 @@ std::expected<void, Sentence> Thread::start(const ThreadPlan& plan) {
             pthread_attr_setaffinity_np(&attributes, sizeof set, &set);
         }
         if (error == 0) error = block_signals(attributes);
-        if (error == 0) error = pthread_create(&handle_, &attributes, enter, const_cast<ThreadPlan*>(&plan));
+        guard_ = stack_guard(plan.stack);
+        if (error == 0 && !guard_.empty() && mprotect(guard_.data(), guard_.size(), PROT_NONE) != 0)
+            error = errno;
+        if (error == 0) error = pthread_create(&handle_, &attributes, enter, &plan_);
     }
     pthread_attr_destroy(&attributes);
-    if (error != 0) return std::unexpected(refusal(plan, error));
+    if (error != 0) {
+        open_guard();
+        return std::unexpected(refusal(plan, error));
+    }
     started_ = true;
     return {};
+}
+
+void Thread::open_guard() noexcept {
+    if (!guard_.empty()) mprotect(guard_.data(), guard_.size(), PROT_READ | PROT_WRITE);
+    guard_ = {};
 }
 
 void Thread::join() noexcept {
     if (!started_) return;
     pthread_join(handle_, nullptr);
+    open_guard();
     started_ = false;
 }
 
+// Its stack may be touched and painted for another one: there is no other use of a machine whose thread
+// hangs.
 void Thread::abandon() noexcept {
     if (!started_) return;
     pthread_detach(handle_);
+    open_guard();
     started_ = false;
 }
 
@@ -102,6 +120,7 @@ bool Thread::join_within(int milliseconds) noexcept {
         if (Clock::monotonic() >= end) return false;
         sleep_for(1ms);
     }
+    open_guard();
     started_ = false;
     return true;
 }

@@ -16,7 +16,7 @@ struct ThreadPlan {
     std::string_view name;        ///< at most 15 characters are shown by the kernel
     int fifo_priority = 0;        ///< 1..99 SCHED_FIFO; 0 is SCHED_OTHER; or that of its starter
     int processor = -1;           ///< -1: any
-    std::span<std::byte> stack{}; ///< 16 kB at least, aligned to 64
+    std::span<std::byte> stack{}; ///< 16 kB at least, aligned to 64; its stack_guard() is closed meanwhile
     void (*body)(void*) noexcept = nullptr;
     void* context = nullptr;
     static constexpr int as_its_starter = -1;
@@ -30,7 +30,7 @@ public:
     Thread& operator=(const Thread&) = delete;
     ~Thread() { join(); }
 
-    /// An error says what was refused and what cures it. `plan` must outlive the thread.
+    /// An error says what was refused and what cures it. What the plan leads to outlives the thread.
     std::expected<void, Sentence> start(const ThreadPlan& plan);
     /// True when it ended; waits for it.
     void join() noexcept;
@@ -41,7 +41,11 @@ public:
     [[nodiscard]] bool running() const noexcept { return started_; }
 
 private:
+    void open_guard() noexcept;
+
+    ThreadPlan plan_{};
     pthread_t handle_{};
+    std::span<std::byte> guard_{};
     bool started_ = false;
 };
 

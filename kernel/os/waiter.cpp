@@ -29,7 +29,23 @@ Waiter::~Waiter() {
 
 bool Waiter::watch(int descriptor) noexcept {
     if (wake_descriptor_ < 0) wake_descriptor_ = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-    return wake_descriptor_ >= 0 && devices_.push(descriptor);
+    if (wake_descriptor_ < 0 || devices_.full()) return false;
+    drivers_[devices_.size()] = driver_;
+    return devices_.push(descriptor);
+}
+
+void Waiter::serve(std::uint32_t driver, bool is_served) noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+        if (drivers_[i] != driver) continue;
+        unserved_ = is_served ? unserved_ & ~(1u << i) : unserved_ | 1u << i;
+    }
+}
+
+void Waiter::heed(int descriptor, bool wanted) noexcept TAPPET_REALTIME {
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+        if (devices_[i] != descriptor) continue;
+        unheeded_ = wanted ? unheeded_ & ~(1u << i) : unheeded_ | 1u << i;
+    }
 }
 
 void Waiter::wake() noexcept TAPPET_REALTIME {
@@ -71,14 +87,15 @@ void Waiter::leave_out_hung(pollfd* polled, std::size_t count) noexcept TAPPET_R
     for (std::size_t i = 0; i < count; ++i) {
         const bool still = (polled[i].revents & hang_up) != 0;
         if (!still) hung_ &= ~(1u << i);
-        if (still && (hung_ >> i & 1u) != 0) polled[i].fd = -1; // which poll passes over
+        if (still && (hung_ >> i & 1u) != 0) polled[i].fd = -1;
         polled[i].revents = 0;
     }
 }
 
 bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME {
     pollfd polled[max_devices + 1] = {};
-    for (std::size_t i = 0; i < count; ++i) polled[i] = {devices_[i], POLLIN, 0};
+    for (std::size_t i = 0; i < count; ++i)
+        polled[i] = {((unheeded_ | unserved_) >> i & 1u) != 0 ? -1 : devices_[i], POLLIN, 0}; // passed over
     if (hung_ != 0) leave_out_hung(polled, count);
     polled[count] = {wake_descriptor_, POLLIN, 0};
     std::uint32_t expected = idle;

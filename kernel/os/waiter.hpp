@@ -6,6 +6,7 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 
@@ -17,7 +18,7 @@ namespace tappet::os {
 /// before the wait makes the wait return at once.
 class Waiter {
 public:
-    static constexpr std::size_t max_devices = 8;
+    static constexpr std::size_t max_devices = 16;
 
     Waiter() = default;
     Waiter(const Waiter&) = delete;
@@ -28,6 +29,14 @@ public:
     /// many. One that hangs up or has an error ends a wait once, and none after it until its driver has taken
     /// the error: a chip that was removed would make its activity spin at its priority.
     [[nodiscard]] bool watch(int descriptor) noexcept;
+    /// Those watched from here on are this driver's, a number below 64. Not real-time.
+    void watch_for(std::uint32_t driver) noexcept { driver_ = driver; }
+    /// Whether what a driver watches ends waits; until this is said it does. While nobody takes from a
+    /// device, a thread that returned for each of its frames would spin, at a real-time priority for ever.
+    /// Its own thread. Real-time.
+    void serve(std::uint32_t driver, bool is_served) noexcept TAPPET_REALTIME;
+    /// Whether a watched one ends waits; from watch() on it does. Its own thread. Real-time.
+    void heed(int descriptor, bool wanted) noexcept TAPPET_REALTIME;
 
     /// Wakes the waiting thread, or the next wait. Real-time, from any thread.
     void wake() noexcept TAPPET_REALTIME;
@@ -52,8 +61,7 @@ public:
     /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is
     /// ready.
     bool wait(Time until) noexcept TAPPET_REALTIME;
-    /// Sleeps until `until` or a wake, whatever the devices have to say: while nobody takes from them, a
-    /// thread that returned for each of them would spin, at a real-time priority for ever. True when woken.
+    /// Sleeps until `until` or a wake, whatever the devices have to say. True when woken.
     bool wait_without_devices(Time until) noexcept TAPPET_REALTIME;
     void wait_for_wake() noexcept TAPPET_REALTIME { static_cast<void>(wait_without_devices(never)); }
 
@@ -67,7 +75,10 @@ private:
 
     alignas(64) std::atomic<std::uint32_t> state_{idle};
     Bounded<int, max_devices> devices_{};
-    std::uint32_t hung_ = 0;   // a bit for each device: told, and not taken since
+    std::uint32_t hung_ = 0; // a bit for each device: told, and not taken since
+    std::uint32_t unheeded_ = 0, unserved_ = 0;
+    std::array<std::uint32_t, max_devices> drivers_{}; // whose each device is
+    std::uint32_t driver_ = 0;
     int wake_descriptor_ = -1; // an eventfd, made when the first device is watched
 };
 

@@ -51,8 +51,9 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         }
         return all;
     }();
-    // Its nodes lead on and never back: a node is asked for once.
-    static constexpr bool is_straight(const Piece& piece) {
+    // Its nodes lead on and never back: a node is asked for once. Not constexpr, because g++ then asked it at
+    // run time, at each turn of a loop.
+    static consteval bool is_straight(const Piece& piece) {
         const auto is_back = [&piece](NodeIndex from, NodeIndex to) {
             return to <= from && to >= piece.first;
         };
@@ -64,7 +65,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         }
         return true;
     }
-    static constexpr bool is_whole(const ProgramRow& program) {
+    static consteval bool is_whole(const ProgramRow& program) {
         return std::size_t{program.last} - program.first <= piece_nodes &&
                is_straight({program.first, program.last});
     }
@@ -136,7 +137,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         bool asks_for_position = false;       ///< the context's
         std::uint32_t statements = unbounded; ///< at most so many
     };
-    static constexpr auto facts = [] {
+    static constexpr auto facts = []() consteval {
         std::array<Facts, tables.programs.size() + 1> all{};
         for (std::size_t i = 0; i < tables.programs.size(); ++i) {
             const ProgramRow& row = tables.programs[i];

@@ -98,7 +98,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
         return in.facet == nullptr && in.link == 0xffff && (in.to != no_data || is_silent);
     }
     // A program may wait there, or ask when it was entered.
-    static constexpr bool stands(const NodeRow& row) {
+    static consteval bool stands(const NodeRow& row) {
         bool open = false, timed = false, waits = row.yields;
         for (std::size_t i = row.first_arc; i < std::size_t{row.first_arc} + row.arcs; ++i) {
             const ArcRow& arc = tables.arcs[i];

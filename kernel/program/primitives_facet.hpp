@@ -131,7 +131,7 @@ inline ActionResult command_progress(ProgramContext& context, const Instruction&
                                      const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     // The values are the program's own, and the completion writes its results there.
     const CommandProgress progress =
-        in.facet->command->progress(*link_of(context, in).component, const_cast<std::byte*>(a));
+        in.facet->command->ask(*link_of(context, in).component, const_cast<std::byte*>(a));
     store_value(to, progress == CommandProgress::done);
     return progress == CommandProgress::failed ? ActionResult::failed : ActionResult::done;
 }

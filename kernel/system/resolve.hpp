@@ -225,6 +225,9 @@ constexpr Sentence check_nodes(const SystemView& s) {
         if (find_component(row.table, s.wire.name) != nowhere)
             return Sentence{"node \"", row.name, "\" has a component \"", s.wire.name,
                             "\", which is the wire's name; rename one of them"};
+    if (!s.wire.foreign.empty())
+        return Sentence{"wire \"", s.wire.name, "\": ", s.wire.foreign,
+                        "(...) says nothing of a wire; remove it"};
     if (s.wire.rate.bits_per_second == 0)
         return Sentence{"wire \"", s.wire.name, "\" has no bit rate; add bit_rate(500'000)"};
     if (s.wire.is_fd() && s.wire.rate.in_data_phase < s.wire.rate.bits_per_second)

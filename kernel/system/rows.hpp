@@ -81,11 +81,23 @@ struct Drift {
 /// what it may.
 constexpr Drift drift(double most) noexcept { return {most}; }
 
+/// bit/s of a wire, as bit_rate() says them.
+struct WireRate {
+    std::uint32_t bits_per_second = 0;
+    std::uint32_t in_data_phase = 0; ///< of CAN FD frames that switch; 0: classical CAN only
+};
+/// What is to be expected of a wire at its worst, as bus_errors() says it.
+struct WireErrors {
+    unsigned at_once = 1;
+    Duration every = 100ms;
+};
+
 /// The wire between the nodes: classical CAN, or CAN FD where its bit rate has a second number.
 struct WireRow {
     std::string_view name{}; ///< of the device in each node's binding, and of what stands on it there
-    BitRate rate{};
-    BusErrors errors{};
+    WireRate rate{};
+    WireErrors errors{};
+    std::string_view foreign{}; ///< a word that is said of it and for other devices
     Duration beats = 20ms;
     Duration silent_after = 70ms;
     Service service{};
@@ -128,8 +140,16 @@ constexpr void apply(WireRow& row, FirstIdentifier option) noexcept {
     row.first_identifier = option.number;
     row.states_first = true;
 }
-constexpr void apply(WireRow& row, BitRate rate) noexcept { row.rate = rate; }
-constexpr void apply(WireRow& row, BusErrors errors) noexcept { row.errors = errors; }
+/// In the words of the bus that it is, which its driver declares.
+constexpr void apply(WireRow& row, const Fact& fact) noexcept {
+    const auto& numbers = fact.numbers;
+    if (fact.word->name == "bit_rate")
+        row.rate = {static_cast<std::uint32_t>(numbers[0]), static_cast<std::uint32_t>(numbers[1])};
+    else if (fact.word->name == "bus_errors")
+        row.errors = {static_cast<unsigned>(numbers[0]), Duration{numbers[1]}};
+    else
+        row.foreign = fact.word->name;
+}
 constexpr void apply(WireRow& row, Beats option) noexcept { row.beats = option.every; }
 constexpr void apply(WireRow& row, SilentAfter option) noexcept { row.silent_after = option.time; }
 constexpr void apply(WireRow& row, Service option) noexcept { row.service = option; }

@@ -51,7 +51,7 @@ struct Asked {
 };
 
 struct Drive {
-    static constexpr std::string_view device_kind = "test.drive";
+    static constexpr DeviceKind device_kind{.name = "test.drive"};
     Input<double> driven;
     Output<double> place;
     void step(const Cycle&) noexcept TAPPET_REALTIME { place.write(driven.get()); }

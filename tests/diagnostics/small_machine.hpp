@@ -2,6 +2,9 @@
 // one, each row of tests/diagnostics/rows a row.
 #pragma once
 
+#include "drivers/can/kind.hpp"
+#include "drivers/gpio/kind.hpp"
+#include "drivers/modbus/kind.hpp"
 #include "kernel/machine/firmware.hpp"
 
 namespace small {
@@ -9,7 +12,7 @@ namespace small {
 using namespace tappet;
 
 struct Encoder {
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     Output<double> angle;
     Output<int> turns;
     BufferOutput<int> samples;
@@ -106,7 +109,7 @@ struct Weft {
 };
 
 struct Climate {
-    static constexpr std::string_view device_kind = "modbus";
+    static constexpr const DeviceKind& device_kind = modbus::device_kind;
     Output<double> humidity;
     void work(const Cycle&) {}
     void log() noexcept TAPPET_REALTIME {}
@@ -117,7 +120,7 @@ struct Climate {
 };
 
 struct Lamps {
-    static constexpr std::string_view device_kind = "gpio";
+    static constexpr const DeviceKind& device_kind = gpio::device_kind;
     static constexpr std::array<std::string_view, 2> lines{"red", "green"};
     static constexpr std::span<const std::string_view> device_lines() { return lines; }
     void red() noexcept TAPPET_REALTIME {}

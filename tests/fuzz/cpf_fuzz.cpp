@@ -2,7 +2,7 @@
 // then writes and reads back unchanged; it never reads outside its text and never ends.
 #include "kernel/services/configuration/cpf.hpp"
 #include "tests/fuzz/input.hpp"
-#include "tests/kernel/services/configuration/every_property.hpp"
+#include "tests/kernel/component/every_property.hpp"
 
 #include <array>
 

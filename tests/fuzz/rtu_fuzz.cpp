@@ -15,7 +15,7 @@ using namespace tappet;
 using namespace tappet::modbus;
 using namespace tappet::fuzz;
 
-constexpr Duration answer_within = 10ms, silence = 1750us;
+constexpr Duration patience = 10ms, silence = 1750us;
 constexpr auto map = register_map(
     read("inputs", input_registers(10, 3), every(20ms), word("a", 0), float_word("b", 1)),
     read("contacts", discrete_inputs(4, 11), every(30ms), bit("first", 0), bit("last", 10)),
@@ -58,10 +58,10 @@ private:
     /// True: nothing was taken of it, so nothing more is to be judged.
     bool judge(const Answer& answer, Time began) {
         const Line& at = *line;
-        demand(at.now - began <= 2 * answer_within + 10us && at.asked_at >= quiet_until_);
+        demand(at.now - began <= 2 * patience + 10us && at.asked_at >= quiet_until_);
         const bool is_exception = answer.outcome == Outcome::exception;
         const bool is_answered = answer.outcome == Outcome::ok || is_exception;
-        quiet_until_ = at.now + (is_answered ? silence : answer_within);
+        quiet_until_ = at.now + (is_answered ? silence : patience);
         if (!is_answered) return true;
         demand(at.first_taken_at >= at.asked_at && at.taken.size() >= 5 && at.taken[0] == at.asked[0]);
         demand(at.taken[1] == (at.asked[1] | (is_exception ? 0x80 : 0)));
@@ -81,9 +81,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const std::string terminal = a_terminal();
     Line here{.script = {{data, size}}, .now = Time{1s}};
     LibmodbusTransport transport;
-    demand(
-        transport.open({.line = Serial{terminal, 115200, 'N', 1}, .unit = 17, .answer_within = answer_within})
-            .has_value());
+    demand(transport.open({.line = Serial{terminal, 115200, 'N', 1}, .unit = 17, .answer_within = patience})
+               .has_value());
     line = &here;
     {
         Judged judged{transport};

@@ -63,7 +63,7 @@ const std::vector<Row> house{
     // contain another machine.
     {"apps",              {"board", "drivers/plant", "drivers/system", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/system_run.hpp", "toolchain/machine/bench/plant_program.hpp", "toolchain/command_line.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
     // A plant meets its machine at frames, lines and registers only.
-    {"apps/carpet_loom/plant", {"kernel/base", "apps/carpet_loom/wires.hpp", "apps/carpet_loom/maps.hpp", "apps/carpet_loom/network.hpp", "drivers/canopen"}},
+    {"apps/carpet_loom/plant", {"kernel/base", "kernel/services/json.hpp", "apps/carpet_loom/wires.hpp", "apps/carpet_loom/maps.hpp", "apps/carpet_loom/network.hpp", "drivers/canopen"}},
 
     // A browser meets a machine at its memory and its socket only.
     {"toolchain/tools/browser", {"kernel/base", "kernel/machine/map/layout.hpp", "kernel/machine/map/black_box.hpp", "kernel/machine/map/view.hpp",
@@ -77,7 +77,7 @@ const std::vector<Row> house{
     {"toolchain/tools/image", {"toolchain", "toolchain/tools/bench", "board/box"}},
     {"toolchain/tools/front", {"toolchain", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp", "toolchain/tools/image/options.hpp"}},
     {"toolchain/tools/pages", {"drivers/plant", "drivers/system", "kernel/pieces", "drivers/instruments", "drivers/canopen", "toolchain/tools/browser", "kernel/control"}},
-    {"apps/carpet_loom/demo", {"apps", "toolchain", "toolchain/tools/bench"}},
+    {"apps/carpet_loom/demo", {"apps", "toolchain", "toolchain/tools/bench", "toolchain/tools/browser"}},
     {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages", "toolchain/tools/image"}},
 };
 // clang-format on

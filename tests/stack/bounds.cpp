@@ -28,11 +28,12 @@ std::optional<std::int64_t> number(std::string_view text) {
 }
 
 /// Not values.hpp of waitfree: that keeps what all paths agree on and forgets the frame that an alignment
-/// begins in; here the deepest path counts. The stack below where the function was entered, and the registers
-/// that keep an earlier stack pointer.
+/// begins in; here the deepest path counts. The stack below where the function was entered, the registers
+/// that keep another stack pointer, and the depth that the stack pointer was just compared with.
 struct Height {
     std::int64_t used = 0;
     std::map<std::string, std::int64_t, std::less<>> kept{};
+    std::optional<std::int64_t> compared{};
 };
 
 /// "[rsp+0x10]": the register and the distance.
@@ -58,6 +59,10 @@ bool execute(const Instruction& one, Height& height) {
         height.used = found->second - by;
         return true;
     };
+    const auto compared = std::exchange(height.compared, {});
+    if (one.is("cmp") && to == "rsp" && height.kept.contains(from))
+        height.compared = height.kept.find(from)->second;
+    if (one.is("jne")) height.compared = compared;
     if (one.is("push") || one.is("pushf")) {
         height.used += word;
         return true;
@@ -69,6 +74,14 @@ bool execute(const Instruction& one, Height& height) {
         return true;
     }
     if (to != "rsp") {
+        if (const auto place = address(from); one.is("lea") && place && place->first == "rsp") {
+            height.kept[std::string{to}] = height.used - place->second;
+            return true;
+        }
+        if (const auto by = number(from); one.is("sub") && by && height.kept.contains(to)) {
+            height.kept[std::string{to}] += *by;
+            return true;
+        }
         if (!one.is("cmp") && !one.is("test")) height.kept.erase(std::string{to});
         return true;
     }
@@ -167,6 +180,13 @@ Bounds::Frame Bounds::frame_of(const Function& function) const {
             else if (one.is_jump() && one.target == waitfree::none && one.symbol.empty() && depth == 0)
                 frame.calls.push_back({0, {}});
             if (one.is_call() && ends) continue;
+            // The loop that touches a large frame page by page, down to the depth that ends it.
+            if (height.compared && one.is("jne") && one.target < at && *height.compared >= height.used) {
+                height.used = *height.compared;
+                frame.deepest = std::max(frame.deepest, static_cast<std::size_t>(height.used));
+                next.emplace_back(at + 1, height);
+                continue;
+            }
             for (const std::size_t each : function.successors(at)) next.emplace_back(each, height);
         }
     };
@@ -202,14 +222,16 @@ std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
         fault(name, "its code is not seen");
         return 0;
     }
-    if (std::ranges::find(path_, name) != path_.end()) {
+    if (const auto above = std::ranges::find(path_, name); above != path_.end()) {
         if (std::ranges::none_of(rules_.recurring,
                                  [&](const Recursion& each) { return text.starts_with(each.name); }))
             fault(name, "a recursion");
+        cut_at_ = std::min(cut_at_, static_cast<std::size_t>(above - path_.begin()));
         return 0;
     }
     const Frame& own = frame(name);
     if (!own.fault.empty()) fault(name, own.fault);
+    const std::size_t cut_before = std::exchange(cut_at_, nowhere), at = path_.size();
     path_.push_back(name);
     Need most{own.deepest, {}};
     const auto weigh = [&most](std::size_t bytes, const std::pair<std::string, std::size_t>& next) {
@@ -230,7 +252,11 @@ std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
     path_.pop_back();
     for (const Recursion& each : rules_.recurring)
         if (text.starts_with(each.name)) most.bytes *= each.times;
-    return (needs_[{name, layer}] = most).bytes;
+    ways_[{name, layer}] = most;
+    // What was cut off above is a part of another's need, and holds nowhere else.
+    if (cut_at_ >= at) needs_[{name, layer}] = most;
+    cut_at_ = std::min(cut_before, cut_at_ < at ? cut_at_ : nowhere);
+    return most.bytes;
 }
 
 /// What a call through a pointer out of this layer needs: each lower layer comes as often as it says.
@@ -238,6 +264,7 @@ const Bounds::Need& Bounds::need_below(std::size_t layer) {
     if (const auto known = below_.find(layer); known != below_.end()) return known->second;
     Need most;
     const auto path = std::exchange(path_, {});
+    const std::size_t cut_before = std::exchange(cut_at_, nowhere);
     for (std::size_t lower = 0; lower < layer; ++lower) {
         const auto& [what, of, times, only] = rules_.layers[lower];
         if (!only.empty() && std::ranges::find(allowed_, only) == allowed_.end()) continue;
@@ -248,11 +275,13 @@ const Bounds::Need& Bounds::need_below(std::size_t layer) {
                 most = {bytes, {name, lower}};
     }
     path_ = path;
+    cut_at_ = cut_before;
     return below_[layer] = most;
 }
 
 std::size_t Bounds::of(std::string_view root, Names allowed) {
     needs_.clear();
+    ways_.clear();
     below_.clear();
     allowed_ = std::move(allowed);
     const std::size_t top = rules_.layers.size() - 1;
@@ -277,10 +306,10 @@ std::size_t Bounds::of(std::string_view root, Names allowed) {
 std::string Bounds::path() const {
     std::string text;
     for (auto at = root_; !at.first.empty();) {
-        const auto need = needs_.find(at);
-        text += "    " + (need == needs_.end() ? std::string{"?"} : std::to_string(need->second.bytes)) +
-                " " + demangled(at.first) + "\n";
-        at = need == needs_.end() ? decltype(at){} : need->second.next;
+        const auto need = ways_.find(at);
+        text += "    " + (need == ways_.end() ? std::string{"?"} : std::to_string(need->second.bytes)) + " " +
+                demangled(at.first) + "\n";
+        at = need == ways_.end() ? decltype(at){} : need->second.next;
     }
     return text;
 }

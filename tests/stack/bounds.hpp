@@ -109,9 +109,13 @@ private:
     const Rules& rules_;
     std::map<std::string, Frame> frames_;
     std::map<std::pair<std::string, std::size_t>, Need> needs_;
+    std::map<std::pair<std::string, std::size_t>, Need>
+        ways_; // as those, and what was cut off by a recursion
     std::map<std::size_t, Need> below_;
     std::pair<std::string, std::size_t> root_{};
     std::vector<std::string> path_;
+    static constexpr std::size_t nowhere = ~std::size_t{0};
+    std::size_t cut_at_ = nowhere; // the place in path_ that a recursion came back to
     std::set<std::string> faults_;
     std::vector<std::vector<std::string>> of_layer_;
     Names allowed_{};

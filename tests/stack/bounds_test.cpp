@@ -44,6 +44,33 @@ TEST(Bounds, add_up_frames_and_return_addresses_along_the_deepest_path) {
     EXPECT_EQ(bounds.path(), "    304 root\n    256 leaf\n");
 }
 
+TEST(Bounds, count_a_large_frame_whose_pages_are_touched_in_a_loop) {
+    const Image program = image(R"(
+0000000000001000 <root>:
+    1000:	lea    r11,[rsp-0x5000]
+    1008:	sub    rsp,0x1000
+    100f:	or     QWORD PTR [rsp],0x0
+    1014:	cmp    rsp,r11
+    1017:	jne    1008 <root+0x8>
+    1019:	sub    rsp,0x40
+    101d:	call   2000 <leaf>
+    1022:	add    rsp,0x5040
+    1029:	ret
+0000000000002000 <leaf>:
+    2000:	mov    r11,rsp
+    2003:	sub    r11,0x3000
+    200a:	sub    rsp,0x1000
+    2011:	mov    QWORD PTR [rsp],0x0
+    2019:	cmp    rsp,r11
+    201c:	jne    200a <leaf+0xa>
+    201e:	add    rsp,0x3000
+    2025:	ret
+)");
+    Bounds bounds{program, layers};
+    EXPECT_EQ(bounds.of("root", {}), 0x5000u + 0x40 + 8 + 0x3000) << "as g++ writes it, and clang";
+    EXPECT_THAT(bounds.faults(), IsEmpty());
+}
+
 TEST(Bounds, take_what_is_stated_and_end_where_a_call_does_not_come_back) {
     const Image program = image(R"(
 0000000000001000 <root>:
@@ -61,6 +88,33 @@ TEST(Bounds, take_what_is_stated_and_end_where_a_call_does_not_come_back) {
     Bounds bounds{program, layers};
     EXPECT_EQ(bounds.of("root", {}), 8u + 100);
     EXPECT_THAT(bounds.faults(), IsEmpty()) << "what comes after the call is never reached";
+}
+
+TEST(Bounds, count_two_that_call_each_other_from_either_end) {
+    const Image program = image(R"(
+0000000000001000 <root>:
+    1000:	call   2000 <even>
+    1005:	sub    rsp,0x4000
+    100c:	call   3000 <odd>
+    1011:	add    rsp,0x4000
+    1018:	ret
+0000000000002000 <even>:
+    2000:	sub    rsp,0x10
+    2004:	call   3000 <odd>
+    2009:	add    rsp,0x10
+    200d:	ret
+0000000000003000 <odd>:
+    3000:	sub    rsp,0x100
+    3007:	call   2000 <even>
+    300c:	add    rsp,0x100
+    3013:	ret
+)");
+    Rules twice = layers;
+    twice.recurring = {{"even", 2, "by hand"}, {"odd", 3, "by hand"}};
+    Bounds bounds{program, twice};
+    EXPECT_GE(bounds.of("root", {}), 0x4000u + 8 + 2 * (0x10 + 8) + 3 * (0x100 + 8))
+        << "both as often as stated";
+    EXPECT_THAT(bounds.faults(), IsEmpty());
 }
 
 TEST(Bounds, follow_pointers_into_lower_layers_only) {

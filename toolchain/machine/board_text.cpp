@@ -58,12 +58,11 @@ void describe_board(const AcceptedMachine& machine, void* to, void (*line)(void*
     for (const std::string_view each : board.image.later_modules) say("later-module ", each);
     for (const BoundDevice& bound : machine.binding->devices)
         if (const BoardDevice* device = checks::find_named(board.devices, bound.at); device != nullptr) {
-            const std::size_t value =
-                device->kind == "can" ? device->bit_rate.bits_per_second : device->lines;
-            if (device->bit_rate.in_data_phase != 0)
-                say(device->kind, " ", device->address, " ", value, " ", device->bit_rate.in_data_phase);
-            else
-                say(device->kind, " ", device->address, " ", value);
+            Sentence text{device->kind, " ", device->address};
+            for (const Fact& fact : device->facts)
+                for (const std::int64_t number : fact.numbers)
+                    if (fact.word->is_for_box && number != 0) text.add(" ").add(number);
+            say(text);
         }
     for (const BoardNetwork& each : board.image.networks) say("network ", each.name, " ", each.address);
     if (board.image.interrupt_priority != 0) say("interrupts ", board.image.interrupt_priority);

@@ -31,7 +31,8 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
         json.field("budget_us", static_cast<double>(engine.plan().budget.count()) * 1e-3)
             .field("claim_us", static_cast<double>(engine.plan().claim().count()) * 1e-3);
         json.field("most_processor_us", static_cast<double>(seen.most_processor.count()) * 1e-3)
-            .field("over_claim", seen.over_claim);
+            .field("over_claim", seen.over_claim)
+            .field("measured_claims", seen.measured_claims);
         json.field("wakes_too_many", seen.wakes_too_many)
             .field("stack_bytes", instance.machine().plan.activities[a].stack_bytes)
             .field("stack_used_bytes", instance.observation().stack_high_water_bytes(a));
@@ -162,12 +163,7 @@ std::size_t write_summary(MachineInstance& instance, const RunFacts& facts, std:
         .field("realtime", facts.realtime)
         .field("machine_seed", facts.seed)
         .field("stop_reason", facts.stop_reason.view());
-    json.field("can_frames_lost", facts.wires.can_frames_lost)
-        .field("can_faults", facts.wires.can_faults)
-        .field("can_restarts", facts.wires.can_restarts);
-    json.field("can_impostors", facts.wires.can_impostors)
-        .field("can_malformed", facts.wires.can_malformed)
-        .field("gpio_edges_lost", facts.wires.gpio_edges_lost);
+    for (const WireCounter& each : facts.wires.each) json.field(each.name, each.count);
     write_counters(json, instance);
     write_traffic(json, instance);
     write_slots(json, instance);

@@ -27,7 +27,7 @@ SwarmPorts::SwarmPorts(const AcceptedMachine& machine) : machine_{machine} {
             if (facet.at_rest >= tappet::AtRest::says_false)
                 at_rest_.push_back({{c, f}, facet.at_rest == tappet::AtRest::says_true});
             if (facet.type->kind == ValueKind::real)
-                reals_.push_back({{c, f}, is_input, !is_input && !rows[c].type->device_kind.empty()});
+                reals_.push_back({{c, f}, is_input, !is_input && rows[c].type->device_kind != nullptr});
         }
     }
 }

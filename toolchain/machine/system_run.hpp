@@ -45,8 +45,7 @@ public:
         TAPPET_REALTIME override;
     void purge() noexcept TAPPET_REALTIME override { twin_.purge(); }
     can::Restart restart() noexcept override { return twin_.restart(); }
-    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
-    void set_listener(Listener ready, void* context) noexcept override { twin_.set_listener(ready, context); }
+    [[nodiscard]] bool wakes(os::Waiter& waiter) noexcept override { return twin_.wakes(waiter); }
 
     std::uint32_t omits_one_in = 0, doubles_one_in = 0;
     /// What arrives and what is confirmed is stamped up to so much later than it was through.

@@ -1,4 +1,4 @@
-// The table and the faults, both read from the merged summary and from nothing else.
+// One summary of two; the table and the faults, both read from it and from nothing else.
 #include "apps/carpet_loom/demo/verdict.hpp"
 
 #include <nlohmann/json.hpp>
@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace tappet::demo {
 
@@ -20,7 +21,9 @@ template <class... Values> std::string format(const char* pattern, Values... val
 }
 
 std::string text(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
-unsigned long long count(const Json& json, const char* key) { return json.at(key).get<unsigned long long>(); }
+unsigned long long count(const Json& json, const char* key) {
+    return json.at(key).get_ref<const Json::number_unsigned_t&>(); // a negative one is none
+}
 double number(const Json& json, const char* key) { return json.at(key).get<double>(); }
 
 /// Braked by the machine towards the stop angle; an emergency stop ends wherever it can.
@@ -92,6 +95,14 @@ std::string table_of(const Json& run) {
     return table;
 }
 
+constexpr std::pair<const char*, const char*> must_be_none[] = {
+    {"can_frames_lost", "CAN frames were lost"},
+    {"gpio_edges_lost", "GPIO edges were lost"},
+    {"emissions_lost", "emissions of events were lost"},
+    {"heap_allocations_after_arming", "heap allocations after arming"},
+    {"page_faults_after_arming", "page faults in real-time threads after arming"},
+    {"deadline_misses", "deadlines were missed"}};
+
 std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
     std::vector<std::string> faults;
     if (!run.at("realtime").get<bool>()) faults.push_back("the kernel was not real-time");
@@ -122,15 +133,8 @@ std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
             faults.push_back(format("one script that misbehaves was loaded, and %llu were taken back",
                                     count(weave, "roll_backs")));
     }
-    const auto none = [&](const Json& from, const char* key, const char* what) {
-        if (const auto found = count(from, key); found != 0) faults.push_back(format("%llu %s", found, what));
-    };
-    none(run, "can_frames_lost", "CAN frames were lost");
-    none(run, "gpio_edges_lost", "GPIO edges were lost");
-    none(run, "emissions_lost", "emissions of events were lost");
-    none(run, "heap_allocations_after_arming", "heap allocations after arming");
-    none(run, "page_faults_after_arming", "page faults in real-time threads after arming");
-    none(run, "deadline_misses", "deadlines were missed");
+    for (const auto& [key, what] : must_be_none)
+        if (const auto found = count(run, key); found != 0) faults.push_back(format("%llu %s", found, what));
     for (const Json& activity : run.at("activities"))
         if (const auto over = count(activity, "over_claim"); over != 0)
             faults.push_back(
@@ -138,15 +142,36 @@ std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
                        "up to %.0f us of %.0f",
                        text(activity, "name").c_str(), over, number(activity, "most_processor_us"),
                        number(activity, "claim_us")));
-    none(run.at("damage"), "total", "times the loom or its cloth took damage");
+    if (const auto damage = count(run.at("damage"), "total"); damage != 0)
+        faults.push_back(format("%llu times the loom or its cloth took damage", damage));
     return faults;
+}
+
+Json merged(std::string_view machine, std::string_view plant) {
+    Json run = Json::parse(machine), rest = Json::parse(plant);
+    Json activities = run.at("activities");
+    run.erase("activities");
+    for (const char* key : {"seed", "picks", "picks_per_minute", "weft_breaks_injected",
+                            "warp_breaks_injected", "stops", "cam_error_deg", "damage", "patterns"}) {
+        run[key] = rest.at(key);
+        rest.erase(key);
+    }
+    run["activities"] = std::move(activities);
+    run["plant"] = std::move(rest);
+    return run;
 }
 
 } // namespace
 
-Verdict judge(std::string_view merged, std::int64_t picks_wanted) {
-    const Json run = Json::parse(merged);
-    return {table_of(run), faults_of(run, picks_wanted)};
+std::expected<Verdict, std::string> judge(std::string_view machine, std::string_view plant,
+                                          std::int64_t picks_wanted) {
+    try {
+        const Json run = merged(machine, plant);
+        return Verdict{run.dump(2) + "\n", table_of(run), faults_of(run, picks_wanted)};
+    } catch (const Json::exception& error) {
+        return std::unexpected(std::string{"what firmware and plant counted is not as it should be: "} +
+                               error.what());
+    }
 }
 
 } // namespace tappet::demo

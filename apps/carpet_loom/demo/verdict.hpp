@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,11 +19,16 @@ inline constexpr const char* new_weave = "twill.osd";
 inline constexpr std::uint64_t pattern_of_new_weave = 4369;
 
 struct Verdict {
+    std::string summary;             // of both, as one JSON object
     std::string table;               // lines of plain text
     std::vector<std::string> faults; // sentences; empty when all is well
 };
 
-/// `merged` is what merge() made.
-[[nodiscard]] Verdict judge(std::string_view merged, std::int64_t picks_wanted);
+/// Of the firmware's summary and the plant's report. In their summary all keys of the machine stay where they
+/// are; of the plant those that judge the machine (stops, cam errors, picks, injected breaks, damage) stand
+/// beside them, and the rest of its bookkeeping lies under "plant". The error: what is no JSON, or lacks a
+/// key, or has one of another type.
+[[nodiscard]] std::expected<Verdict, std::string> judge(std::string_view machine, std::string_view plant,
+                                                        std::int64_t picks_wanted);
 
 } // namespace tappet::demo

@@ -1,198 +1,66 @@
-// Drawing: text with ANSI colours, and nothing that needs a library of the terminal.
+// A row for each word that the console says and the last stops below; one line a second otherwise.
 #include "apps/carpet_loom/demo/view.hpp"
 
-#include "apps/carpet_loom/wires.hpp"
-#include "drivers/can/frame.hpp"
-
 #include <algorithm>
-#include <array>
-#include <cstdarg>
 #include <cstdio>
+#include <span>
 
 namespace tappet::demo {
 
-namespace nominal = loom::wires::nominal;
-
 namespace {
 
-constexpr std::size_t most_width = 100;
-constexpr std::size_t stops_shown = 5;
-constexpr std::size_t messages_shown = 2;
-constexpr int bar_cells = 36;
-
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-    std::array<char, 512> text{};
-    va_list values;
-    va_start(values, pattern);
-    std::vsnprintf(text.data(), text.size(), pattern, values);
-    va_end(values);
-    return text.data();
+void put(const std::string& line) {
+    std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
 }
-
-std::string in_colour(const char* code, const std::string& text) {
-    return std::string{"\x1b["} + code + "m" + text + "\x1b[0m";
-}
-std::string dim(const std::string& text) { return in_colour("2", text); }
-std::string yellow(const std::string& text) { return in_colour("33", text); }
-
-std::string of_state(const std::string& state) {
-    const std::string word = format("%-10s", state.c_str());
-    if (state == "weave") return in_colour("1;32", word);
-    if (state == "stopped" || state == "emergency" || state == "fault" || state == "safe")
-        return in_colour("1;31", word);
-    return in_colour("1;33", word);
-}
-
-/// Nothing lost is nothing to look at.
-std::string counted(std::int64_t number, const char* what) {
-    const std::string text = format("%lld %s", static_cast<long long>(number), what);
-    return number == 0 ? text : red(text);
-}
-
-const char* bus_name(std::int64_t state) {
-    switch (static_cast<can::State>(state)) {
-    case can::State::active: return "active";
-    case can::State::warning: return "warning";
-    case can::State::passive: return "passive";
-    case can::State::unacknowledged: return "unacknowledged";
-    case can::State::bus_off: return "bus-off";
-    case can::State::down: return "down";
-    }
-    return "unknown";
-}
-
-bool bus_good(std::int64_t state) {
-    return state >= 0 && state <= 255 && !can::faulted(static_cast<can::State>(state));
-}
-
-int cell_of(double value, double least, double most) {
-    const double part = std::clamp((value - least) / (most - least), 0.0, 1.0);
-    return static_cast<int>(part * (bar_cells - 1) + 0.5);
-}
-
-/// A scale with marks on it and the value's dot.
-std::string scale(double value, double least, double most, std::initializer_list<double> marks) {
-    std::array<const char*, bar_cells> cells{};
-    cells.fill("─");
-    for (const double mark : marks) cells[static_cast<std::size_t>(cell_of(mark, least, most))] = "┼";
-    cells[static_cast<std::size_t>(cell_of(value, least, most))] = "\x1b[0;1;36m●\x1b[0;2m";
-    std::string text = "\x1b[2m├";
-    for (const char* cell : cells) text += cell;
-    return text + "┤\x1b[0m";
-}
-
-std::string progress(std::int64_t done, std::int64_t wanted) {
-    const int filled =
-        cell_of(static_cast<double>(done), 0.0, static_cast<double>(std::max<std::int64_t>(wanted, 1))) +
-        (done > 0 ? 1 : 0);
-    std::string text;
-    for (int cell = 0; cell < bar_cells; ++cell) text += cell < filled ? "█" : "░";
-    return text;
-}
-
-std::string responses(const Timing& timing, bool coloured) {
-    if (timing.responses.empty()) return "not yet measured";
-    std::string text;
-    for (const Response& response : timing.responses) {
-        const std::string word =
-            format("%s %lld/%lld", response.activity.c_str(), static_cast<long long>(response.worst_us),
-                   static_cast<long long>(response.deadline_us));
-        text += (text.empty() ? "" : "  ") +
-                (coloured && response.worst_us > response.deadline_us ? red(word) : word);
-    }
-    return text + " us";
-}
-
-std::string cut(const std::string& text) {
-    return text.size() <= most_width - 4 ? text : text.substr(0, most_width - 7) + "...";
-}
-
-const char* how(const SeenStop& stop) { return stop.at_stop_angle ? "at the stop angle" : "where it was"; }
 
 } // namespace
 
-std::string red(const std::string& text) { return in_colour("1;31", text); }
-std::string green(const std::string& text) { return in_colour("1;32", text); }
-
-std::vector<std::string> screen(const Story& story, const Frame& frame) {
-    const Status& now = story.status();
-    std::vector<std::string> lines;
-    const std::string clocks = format("%.1f s of the loom's time, %.0f s of ours",
-                                      static_cast<double>(now.time_ms) * 1e-3, frame.wall_s);
-    lines.push_back(in_colour("1", "carpet loom") + " on the bench      " + dim(clocks));
-    if (!story.begun()) {
-        lines.push_back(yellow("booting the emulated box"));
-    } else {
-        lines.push_back(of_state(now.state) +
-                        format(" %4lld rpm      picks ", static_cast<long long>(now.speed_rpm)) +
-                        progress(now.picks, frame.picks_wanted) +
-                        format(" %lld of %lld", static_cast<long long>(now.picks),
-                               static_cast<long long>(frame.picks_wanted)));
-        lines.push_back(format("shaft     %4lld deg      ", static_cast<long long>(now.angle_deg)) + " 0° " +
-                        scale(static_cast<double>(now.angle_deg), 0.0, 360.0, {nominal::stop_deg}) +
-                        format(" ┼ stop angle %.0f°", nominal::stop_deg));
-        const double band = nominal::tension_band_n;
-        const bool tense = static_cast<double>(now.tension_n) < nominal::tension_n - band ||
-                           static_cast<double>(now.tension_n) > nominal::tension_n + band;
-        const std::string tension = format("%4lld N", static_cast<long long>(now.tension_n));
-        lines.push_back("warp      " + (tense ? yellow(tension) : tension) + "           " +
-                        scale(static_cast<double>(now.tension_n), nominal::tension_n - 3.0 * band,
-                              nominal::tension_n + 3.0 * band,
-                              {nominal::tension_n - band, nominal::tension_n + band}) +
-                        format(" ┼ band %.0f ± %.0f N", nominal::tension_n, band));
-        const std::string bus = std::string{"CAN "} + bus_name(now.bus_state);
-        lines.push_back("wires     " + (bus_good(now.bus_state) ? bus : red(bus)) + ", " +
-                        counted(now.frames_lost, "frames lost") + "   GPIO " +
-                        counted(now.edges_lost, "edges lost") +
-                        format("   Modbus %lld outages", static_cast<long long>(now.outages)));
-        lines.push_back(format("oil       %.2f bar", now.oil_bar));
-        const std::string misses = counted(story.timing().misses, "deadlines missed");
-        lines.push_back("worst     " + responses(story.timing(), true) +
-                        (story.timing().responses.empty() ? "" : "   " + misses));
-        lines.push_back(format("stops     %zu", story.stops().size()));
+browser::WatchPicture picture_of(const Story& story, std::int64_t picks_wanted, double wall_s) {
+    browser::WatchPicture picture;
+    picture.title = "carpet loom on the bench  pick " + std::to_string(story.number("picks")) + " of " +
+                    std::to_string(picks_wanted) + "  " + std::to_string(static_cast<int>(wall_s)) +
+                    " s of ours";
+    picture.status = !story.messages().empty() ? story.messages().back()
+                     : story.status().empty()  ? "booting the emulated box"
+                                               : "^C ends";
+    for (const auto& [name, value] : story.status()) {
+        const std::size_t digits = value.find_first_not_of("-0123456789");
+        const std::size_t end = digits == 0 ? value.size() : std::min(digits, value.size());
+        picture.rows.push_back({.name = name, .value = value.substr(0, end), .unit = value.substr(end)});
     }
-    const auto& stops = story.stops();
-    for (std::size_t i = stops.size() > stops_shown ? stops.size() - stops_shown : 0; i < stops.size(); ++i) {
-        const SeenStop& stop = stops[i];
-        const std::string error = stop.at_stop_angle ? format("%+5.1f", stop.error_deg) : "     ";
-        lines.push_back(format("  pick %4lld  %-9s  %5.1f°  ", static_cast<long long>(stop.after_pick),
-                               stop.cause.c_str(), stop.angle_deg) +
-                        error + "  " + dim(how(stop)));
-    }
-    const auto& messages = story.messages();
-    for (std::size_t i = messages.size() > messages_shown ? messages.size() - messages_shown : 0;
-         i < messages.size(); ++i)
-        lines.push_back(dim("  " + cut(messages[i])));
-    return lines;
+    if (!story.timing().empty()) picture.rows.push_back({.name = "worst response", .value = story.timing()});
+    constexpr std::size_t shown = 5; // a terminal of 24 lines has room for them
+    for (const auto& [stop, where] : std::span{story.stops()}.last(std::min(shown, story.stops().size())))
+        picture.rows.push_back({.name = stop, .value = where});
+    return picture;
 }
 
-std::string plain_line(const Story& story, const Frame& frame) {
-    const Status& now = story.status();
-    std::int64_t worst = 0;
-    std::int64_t of = 0;
-    std::string activity = "none";
-    for (const Response& response : story.timing().responses)
-        if (of == 0 || response.worst_us * of > worst * response.deadline_us)
-            worst = response.worst_us, of = response.deadline_us, activity = response.activity;
-    return format("%6.1f s  %-9s %4lld rpm %4lld deg  picks %lld/%lld  warp %lld N  stops %zu  CAN %s, %lld "
-                  "lost  edges lost %lld  outages %lld",
-                  static_cast<double>(now.time_ms) * 1e-3, now.state.c_str(),
-                  static_cast<long long>(now.speed_rpm), static_cast<long long>(now.angle_deg),
-                  static_cast<long long>(now.picks), static_cast<long long>(frame.picks_wanted),
-                  static_cast<long long>(now.tension_n), story.stops().size(), bus_name(now.bus_state),
-                  static_cast<long long>(now.frames_lost), static_cast<long long>(now.edges_lost),
-                  static_cast<long long>(now.outages)) +
-           (of == 0 ? std::string{}
-                    : format("  worst %s %lld/%lld us, %lld misses", activity.c_str(),
-                             static_cast<long long>(worst), static_cast<long long>(of),
-                             static_cast<long long>(story.timing().misses)));
+View::View(bool plain, std::int64_t picks_wanted) : picks_wanted_{picks_wanted} {
+    if (!plain && browser::Screen::possible())
+        screen_.emplace();
+    else
+        put("booting the emulated box");
 }
 
-std::string plain_stop(const SeenStop& stop) {
-    const std::string where =
-        format("          stop after pick %lld, cause %s, at %.1f deg",
-               static_cast<long long>(stop.after_pick), stop.cause.c_str(), stop.angle_deg);
-    return stop.at_stop_angle ? where + format(", error %+.1f deg", stop.error_deg) : where;
+void View::tick(const Story& story) {
+    const auto now = Steady::now();
+    if (!screen_ || now - drawn_at_ < std::chrono::milliseconds{100}) return;
+    drawn_at_ = now;
+    const double wall_s = std::chrono::duration<double>(now - begun_).count();
+    screen_->show(draw(picture_of(story, picks_wanted_, wall_s), screen_->size(), true));
+}
+
+void View::show(const Story& story, Story::Kind news) {
+    if (screen_) return tick(story);
+    if (news == Story::Kind::message && !story.messages().empty()) put("  " + story.messages().back());
+    for (; stops_told_ < story.stops().size(); ++stops_told_)
+        put("  " + story.stops()[stops_told_].first + ", " + story.stops()[stops_told_].second);
+    if (news != Story::Kind::status || story.number("t") < next_plain_ms_) return;
+    next_plain_ms_ = story.number("t") + 1000;
+    std::string line;
+    for (const auto& [name, value] : story.status()) line += name + "=" + value + " ";
+    put(line + story.timing());
 }
 
 } // namespace tappet::demo

@@ -1,28 +1,37 @@
-// How the run looks in a terminal: one screen that is drawn again and again, or one plain line now and then.
+// How the run looks: the browser's watch picture where there is a terminal, the box's own lines elsewhere.
 #pragma once
 
 #include "apps/carpet_loom/demo/story.hpp"
+#include "toolchain/tools/browser/screen.hpp"
 
-#include <string>
-#include <vector>
+#include <chrono>
+#include <optional>
 
 namespace tappet::demo {
 
-/// What the loom's lines do not say.
-struct Frame {
-    std::int64_t picks_wanted = 0;
-    double wall_s = 0.0;
+[[nodiscard]] browser::WatchPicture picture_of(const Story& story, std::int64_t picks_wanted, double wall_s);
+
+class View {
+public:
+    /// `plain`: lines also on a terminal.
+    View(bool plain, std::int64_t picks_wanted);
+
+    /// After each line of the box.
+    void show(const Story& story, Story::Kind news);
+    /// Between them: the clock goes on. Draws at most ten times a second.
+    void tick(const Story& story);
+    /// The terminal is as it was.
+    void finish() { screen_.reset(); }
+    [[nodiscard]] bool draws() const { return screen_.has_value(); }
+
+private:
+    using Steady = std::chrono::steady_clock;
+
+    std::optional<browser::Screen> screen_;
+    std::int64_t picks_wanted_;
+    Steady::time_point begun_ = Steady::now(), drawn_at_{};
+    std::size_t stops_told_ = 0;
+    std::int64_t next_plain_ms_ = 0;
 };
-
-/// The screen's lines with colours, none wider than 100 characters.
-[[nodiscard]] std::vector<std::string> screen(const Story& story, const Frame& frame);
-
-/// One line without colours or characters beyond ASCII.
-[[nodiscard]] std::string plain_line(const Story& story, const Frame& frame);
-[[nodiscard]] std::string plain_stop(const SeenStop& stop);
-
-/// ANSI colours, for those who print words of their own beside the screen.
-[[nodiscard]] std::string red(const std::string& text);
-[[nodiscard]] std::string green(const std::string& text);
 
 } // namespace tappet::demo

@@ -6,8 +6,6 @@
 namespace tappet::loom {
 namespace {
 
-constexpr Duration command_timeout = std::chrono::microseconds{wires::drive_command_timeout_us};
-
 constexpr std::int64_t profile_velocity = 3;
 
 } // namespace
@@ -36,7 +34,7 @@ void Drive::supervise(bool standing, bool at_target, bool at_limit, Time now, Wi
     at_target_ = at_target;
     at_limit_ = at_limit;
     const bool energised = drive_.is_enabled() || state() == DriveState::switched_on;
-    if (energised && now - last_command_ > command_timeout)
+    if (energised && now - last_command_ > wires::drive_command_timeout)
         trip(wires::emergency_code::command_lost, now, wire);
     if (state() != DriveState::not_ready || node_.alive()) drive_.settle(standing);
 }

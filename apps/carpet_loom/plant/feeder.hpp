@@ -34,8 +34,7 @@ public:
     /// Every status period: winds by the commanded speed, then tells.
     void send_status(Wire& out) noexcept TAPPET_REALTIME {
         if (!empty_ && windings_ < drum) {
-            wound_ +=
-                per_minute_ * static_cast<std::uint32_t>(wires::feeder_status_period_us / 1000); // 1/60000
+            wound_ += per_minute_ * static_cast<std::uint32_t>(wires::feeder_status_period / 1ms); // 1/60000
             const std::uint32_t whole = wound_ / 60'000;
             wound_ -= whole * 60'000;
             windings_ = std::min(drum, windings_ + whole);

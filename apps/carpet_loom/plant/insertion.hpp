@@ -18,8 +18,7 @@ class Insertion {
 public:
     explicit Insertion(Random& random) noexcept TAPPET_REALTIME {
         const double dead = 0.9 + 0.2 * random.unit();
-        dead_ =
-            Duration{round_to_int(dead * static_cast<double>(wires::nominal::weft_release_dead_us) * 1000.0)};
+        dead_ = Duration{round_to_int(dead * static_cast<double>(wires::nominal::weft_release_dead.count()))};
         yarn_deg_ = -3.0 + 6.0 * random.unit();
     }
 
@@ -27,7 +26,7 @@ public:
         if (on == line_) return;
         line_ = on;
         if (on) {
-            measure_at_ = now + std::chrono::microseconds{wires::nominal::weft_release_dead_us};
+            measure_at_ = now + wires::nominal::weft_release_dead;
             open_at_ = now + dead_;
         } else { // a pulse shorter than the dead time moves nothing
             if (now < open_at_) measure_at_ = never;

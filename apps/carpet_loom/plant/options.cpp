@@ -2,6 +2,7 @@
 #include "apps/carpet_loom/plant/options.hpp"
 
 #include "apps/carpet_loom/wires.hpp"
+#include "kernel/base/value_bytes.hpp"
 
 #include <array>
 #include <charconv>
@@ -30,16 +31,10 @@ std::optional<std::uint64_t> number(std::string_view text) {
     return value;
 }
 
-/// "20s", "500ms" or "200us".
 std::optional<Duration> duration(std::string_view text) {
-    for (const auto& [unit, size] :
-         {std::pair<std::string_view, Duration>{"ms", 1ms}, {"us", 1us}, {"s", 1s}}) {
-        if (!text.ends_with(unit)) continue;
-        const auto count = number(text.substr(0, text.size() - unit.size()));
-        if (!count || *count > 1'000'000'000) return std::nullopt;
-        return static_cast<std::int64_t>(*count) * size;
-    }
-    return std::nullopt;
+    std::int64_t ns = 0;
+    if (!parse_duration(text, ns).empty() || ns < 0) return std::nullopt;
+    return Duration{ns};
 }
 
 /// WHEN[/DURATION][:NODE], WHEN a number of picks or a time.

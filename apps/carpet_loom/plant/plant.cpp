@@ -134,8 +134,7 @@ void Plant::run_timers(Time now) noexcept TAPPET_REALTIME {
         insertion_.arrive();
         const double angle = position_deg_at(now) - turn_deg_;
         if (angle > wires::nominal::shed_closed_deg) ++report_.damage.late_wefts;
-        contacts_[wires::line::weft_detector].set(true, now, random_, edges_,
-                                                  now + std::chrono::microseconds{wires::weft_pulse_us});
+        contacts_[wires::line::weft_detector].set(true, now, random_, edges_, now + wires::weft_pulse);
     }
     for (Contact& contact : contacts_)
         if (contact.next() <= now) contact.tick(now, random_, edges_);

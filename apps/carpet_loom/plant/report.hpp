@@ -3,11 +3,11 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/realtime.hpp"
+#include "kernel/services/json.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace tappet::loom {
 
@@ -107,8 +107,7 @@ struct Report {
     std::uint64_t digest = 0;
 };
 
-/// As one JSON object with a closing newline. The number of characters written; 0 when the buffer is too
-/// small (64 kB hold every report).
-[[nodiscard]] std::size_t write_json(const Report& report, std::span<char> buffer) noexcept;
+/// As fields of an object that is open.
+void write_json(const Report& report, JsonText& json);
 
 } // namespace tappet::loom

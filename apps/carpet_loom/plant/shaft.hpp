@@ -14,7 +14,7 @@ class Brake {
 public:
     Brake(double wear_per_stop, Random& random) noexcept TAPPET_REALTIME : wear_per_stop_(wear_per_stop) {
         const double dead = 0.9 + 0.2 * random.unit();
-        dead_ = Duration{round_to_int(dead * static_cast<double>(wires::nominal::brake_dead_us) * 1000.0)};
+        dead_ = Duration{round_to_int(dead * static_cast<double>(wires::nominal::brake_dead.count()))};
         full_torque_nm_ *= 0.9 + 0.2 * random.unit();
     }
     void set(bool on, Time now) noexcept TAPPET_REALTIME {

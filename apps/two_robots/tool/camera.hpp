@@ -15,7 +15,7 @@ namespace two_robots {
 /// its way was not exposed later. A camera that restarts counts anew: it is believed when several packets in
 /// turn are late by all that is known. Real-time.
 struct LedCamera {
-    static constexpr std::string_view device_kind = "udp";
+    static constexpr const DeviceKind& device_kind = udp::device_kind;
     static constexpr udp::Longest device_map{led_packet::most};
     static_assert(led_packet::most <= udp::most_bytes, "the twin has no room for it");
 

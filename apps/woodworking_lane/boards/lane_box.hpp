@@ -10,7 +10,7 @@ inline constexpr Board lane_box = [] {
     Board box = ipc_x86_64;
     box.name = "lane-box";
     for (BoardDevice& device : box.devices)
-        if (device.name == "can0") device.bit_rate = bit_rate(500'000);
+        if (device.name == "can0") device.say(bit_rate(500'000));
     return box;
 }();
 

@@ -77,9 +77,9 @@ constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, con
     for (std::size_t c = 0; c < m.components.size(); ++c) {
         if (!m.components[c].type->sees_machine || r.activity[c] == nowhere) continue;
         const ActivityRow& activity = m.activities[r.activity[c]];
-        if (activity.stack < compiling_stack_bytes)
+        if (activity.stack_bytes() < compiling_stack_bytes)
             return of_behaviour(row, ": scripts are compiled in activity \"", activity.name,
-                                "\", whose stack of ", activity.stack, " bytes is under ",
+                                "\", whose stack of ", activity.stack_bytes(), " bytes is under ",
                                 compiling_stack_bytes, "; enlarge its stack(...)");
     }
     if (slot.angle.empty()) return {};

@@ -64,7 +64,7 @@ constexpr Sentence check_recorders(const MachineView& m) {
 
 /// A stopped driver must not go on saying that its device is well.
 constexpr Sentence check_says_at_rest(const ComponentRow& row) {
-    if (row.type->device_kind.empty()) return {};
+    if (row.type->device_kind == nullptr) return {};
     for (const Facet& each : row.type->facets)
         if (each.kind == FacetKind::output && each.type == type_id<bool> && each.at_rest == AtRest::unsaid)
             return of_component(row.name, " is a driver, and its output \"", each.name,
@@ -77,7 +77,7 @@ constexpr Sentence check_says_at_rest(const ComponentRow& row) {
 constexpr Sentence check_says_stopped_safely(const ComponentRow& row) {
     if (row.type->device_map == nullptr || row.type->stop == nullptr || row.type->stopped_safely != nullptr)
         return {};
-    return of_component(row.name, " drives a ", row.type->device_kind,
+    return of_component(row.name, " drives a ", row.type->device_kind->name,
                         " device and does not say whether its stop() reached it; write bool stopped_safely() "
                         "const noexcept TAPPET_REALTIME, true where nothing is driven");
 }
@@ -96,10 +96,10 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
         if (Sentence fault = check_bags(row); !fault.empty()) return fault;
         if (Sentence fault = check_properties_file(m, row); !fault.empty()) return fault;
-        if (!row.type->device_kind.empty() && row.device.empty())
-            return of_component(row.name, " drives a ", row.type->device_kind,
+        if (row.type->device_kind != nullptr && row.device.empty())
+            return of_component(row.name, " drives a ", row.type->device_kind->name,
                                 " device but its row names none; add device(\"...\")");
-        if (row.type->device_kind.empty() && !row.device.empty())
+        if (row.type->device_kind == nullptr && !row.device.empty())
             return of_component(row.name, " drives no device; remove device(\"", row.device, "\")");
         if (Sentence fault = check_says_at_rest(row); !fault.empty()) return fault;
         if (Sentence fault = check_says_stopped_safely(row); !fault.empty()) return fault;
@@ -175,7 +175,7 @@ constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
     if (row.trigger == Trigger::on_device) {
         const std::size_t driver = find_component(m, row.device);
         if (driver == nowhere) return unknown_to_activity(m, row, row.device);
-        if (m.components[driver].type->device_kind.empty())
+        if (m.components[driver].type->device_kind == nullptr)
             return of_activity(row.name, ": component \"", row.device,
                                "\" drives no device to wake it; name a driver in on_device(...)");
         bool runs_it = false;
@@ -191,12 +191,12 @@ constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
         if (row.budget_each == Duration::zero())
             return of_activity(row.name, " has no budget; add budget(...), or not_real_time");
     }
-    if (row.stack < 16 * 1024)
-        return of_activity(row.name, ": its stack of ", row.stack,
+    if (row.stack_bytes() < 16 * 1024)
+        return of_activity(row.name, ": its stack of ", row.stack_bytes(),
                            " bytes is under 16384; enlarge stack(...)");
-    if (row.stack > most_stack_bytes)
-        return of_activity(row.name, ": its stack of ", row.stack, " bytes is over ", most_stack_bytes,
-                           "; write a smaller stack(...)");
+    if (row.stack_bytes() > most_stack_bytes)
+        return of_activity(row.name, ": its stack of ", row.stack_bytes(), " bytes is over ",
+                           most_stack_bytes, "; write a smaller stack(...)");
     return {};
 }
 

@@ -22,9 +22,9 @@ constexpr Sentence check_interpreter(const MachineView& m, const TableIndexView&
                                 "\" does already; remove one of them");
         first = c;
         const ActivityRow& activity = m.activities[r.activity[c]];
-        if (activity.stack < compiling_stack_bytes)
+        if (activity.stack_bytes() < compiling_stack_bytes)
             return of_component(row.name, " compiles lines in activity \"", activity.name,
-                                "\", whose stack of ", activity.stack, " bytes is under ",
+                                "\", whose stack of ", activity.stack_bytes(), " bytes is under ",
                                 compiling_stack_bytes, "; enlarge its stack(...)");
         if (m.components.size() > max_line_components)
             return of_component(row.name, " executes lines that name at most ", max_line_components,

@@ -6,7 +6,8 @@
 
 namespace tappet::checks {
 
-/// How the component drives its device; without a name: that device has no rate, or its driver no deadline.
+/// How the component drives its device; without a name: it is reached by an address, or its driver has no
+/// deadline.
 /// `worst_ns`: the response of each activity.
 constexpr DeviceUse use_of_device(const MachineView& m, const Board& board, const Binding& binding,
                                   const TableIndexView& r, std::span<const std::int64_t> worst_ns,
@@ -16,13 +17,8 @@ constexpr DeviceUse use_of_device(const MachineView& m, const Board& board, cons
     if (row.type->device_traffic.rows == 0 || !m.activities[activity].real_time) return {};
     const BoundDevice* bound = find_named(binding.devices, row.device);
     const BoardDevice* device = bound == nullptr ? nullptr : find_named(board.devices, bound->at);
-    if (device == nullptr || device->bit_rate.bits_per_second == 0) return {};
-    return {device->name,
-            device->bit_rate.bits_per_second,
-            device->bit_rate.in_data_phase,
-            device->errors.at_once,
-            device->errors.every,
-            Duration{worst_ns[activity]}};
+    if (device == nullptr) return {};
+    return {device->name, device->facts, Duration{worst_ns[activity]}};
 }
 
 /// Once the worst responses of the activities are known.

@@ -36,7 +36,7 @@ constexpr Sentence check_wakes(const MachineView& m, const TableIndexView& r) {
         for (const auto& name : row.runs) {
             const std::size_t c = find_component(m, r.by_name, name);
             const ComponentType& type = *m.components[c].type;
-            has_driver |= !type.device_kind.empty();
+            has_driver |= type.device_kind != nullptr;
             if (stepped == nowhere && (type.step != nullptr || type.work != nullptr)) stepped = c;
         }
         if (stepped == nowhere || has_driver) continue;

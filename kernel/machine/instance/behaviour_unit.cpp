@@ -104,6 +104,7 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
         part.type = &unit.types[row.type];
         const BehaviourCode native = row.type < code.size() ? code[row.type] : BehaviourCode{};
         if (part.type->is_program()) part.program = beside.first + program++;
+        has_programs_ = has_programs_ || part.program != nullptr;
         part.binding.beside = beside;
         if (row.children != 0) part.binding.machines = &machines[row.first_child];
         const std::size_t bytes = part.type->tables.layout.size;

@@ -58,7 +58,8 @@ bool BehaviourUnit::has_worked() noexcept TAPPET_REALTIME {
     return std::exchange(has_worked_, false);
 }
 
-void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
+bool BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
+    if (!has_programs_) return false;
     limit_work(now);
     for (UnitPart& part : parts_) {
         if (part.program == nullptr) continue;
@@ -67,6 +68,7 @@ void BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
         if (ran && is_at_rest(part)) await_rest(part); // whoever commanded it looks
     }
     limit_.until = never;
+    return true;
 }
 
 bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {

@@ -54,11 +54,13 @@ std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevi
         if (const Sentence refusal = configure_properties(c); !refusal.empty())
             return std::unexpected(refusal);
         if (row.type->configure == nullptr) continue;
+        os::Waiter& waiter = instance_.engines()[machine_.index.activity[c]].waiter();
+        waiter.watch_for(machine_.plan.part_of[c]);
         Setup setup{row.name,
                     row.device,
                     devices,
                     &instance_.clock(),
-                    &instance_.engines()[machine_.index.activity[c]].waiter(),
+                    &waiter,
                     life_sign_of(row.watched),
                     row.type->sees_machine ? &instance_ : nullptr,
                     row.type->records_cycles ? instance_.at<scope::Directory>(machine_.plan.scope_at)

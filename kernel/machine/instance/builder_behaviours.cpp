@@ -83,7 +83,7 @@ Sentence MachineBuilder::place_unit(std::size_t b, Behaviour& behaviour) {
     behaviour.start = [](void* self, Time now) noexcept TAPPET_REALTIME { unit_at(self).start(now); };
     if (unit->has_programs())
         behaviour.programs = [](void* self, Time now) noexcept
-            TAPPET_REALTIME { unit_at(self).step_programs(now); };
+            TAPPET_REALTIME { return unit_at(self).step_programs(now); };
     behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME {
         const bool worked = unit_at(self).step(now);
         unit_at(self).report_errors();
@@ -134,7 +134,7 @@ void MachineBuilder::place_slot(std::size_t b, Behaviour& behaviour) {
     behaviour.self = slot;
     behaviour.start = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).start(now); };
     behaviour.programs = [](void* self, Time now) noexcept
-        TAPPET_REALTIME { slot_at(self).step_programs(now); };
+        TAPPET_REALTIME { return slot_at(self).step_programs(now); };
     behaviour.step = [](void* self, Time now) noexcept TAPPET_REALTIME { return slot_at(self).step(now); };
     behaviour.stop = [](void* self, Time now) noexcept TAPPET_REALTIME { slot_at(self).stop(now); };
     behaviour.has_ended = [](const void* self) noexcept TAPPET_REALTIME {

@@ -101,7 +101,9 @@ Sentence MachineObservation::describe_budget(std::size_t activity) const {
         .add(plan.claim().count() / 1000)
         .add(" us, which was too little ")
         .add(seen.over_claim)
-        .add(seen.over_claim == 1 ? " time" : " times")
+        .add(" of ")
+        .add(seen.measured_claims)
+        .add(" times that were measured")
         .add("; write budget(")
         .add((needed_ns + 999) / 1000)
         .add("us) or more, or shorten what it does");

@@ -103,8 +103,10 @@ inline constexpr auto engine_figures = std::to_array<EngineFigure>({
      offsetof(EngineStatistics, longest_busy)},
     {"most_processor", "", "processor time for one claim of its row; 0: it was never in doubt",
      type_id<Duration>, offsetof(EngineStatistics, most_processor)},
-    {"over_claim", "", "how often it took more than its row claims", type_id<std::uint64_t>,
+    {"over_claim", "", "how often it was measured to take more than its row claims", type_id<std::uint64_t>,
      offsetof(EngineStatistics, over_claim)},
+    {"measured_claims", "", "how often that was measured", type_id<std::uint64_t>,
+     offsetof(EngineStatistics, measured_claims)},
 });
 static_assert(std::is_standard_layout_v<EngineStatistics>);
 

@@ -168,7 +168,7 @@ constexpr void make_plan(const MachineView& m, const Board& board, const Binding
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& plan = p.activities[a];
         const ActivityRow& row = m.activities[a];
-        plan.stack_bytes = (std::max(row.stack, detail::least_stack_bytes) + page - 1) / page * page;
+        plan.stack_bytes = (std::max(row.stack_bytes(), detail::least_stack_bytes) + page - 1) / page * page;
         plan.stack_at = layout.take(plan.stack_bytes, page);
         plan.priority = row.real_time ? board.highest_priority - static_cast<int>(r.rank[a]) : 0;
         plan.processor = checks::processor_of(board, binding, row.name);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tappet {
 
@@ -79,9 +80,11 @@ void BehaviourSlot::stop(Time now) noexcept TAPPET_REALTIME {
     exchange();
 }
 
-void BehaviourSlot::step_programs(Time now) noexcept TAPPET_REALTIME {
-    if (BehaviourUnit* unit = active(); unit != nullptr) unit->step_programs(now);
+bool BehaviourSlot::step_programs(Time now) noexcept TAPPET_REALTIME {
+    BehaviourUnit* const unit = active();
+    const bool worked = unit != nullptr && unit->step_programs(now);
     exchange();
+    return worked;
 }
 
 bool BehaviourSlot::step(Time now) noexcept TAPPET_REALTIME {
@@ -133,10 +136,29 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     if (runs_) unit->start(now);
 }
 
+namespace {
+
+/// Both in which a slot's behaviour is at work.
+struct Timings {
+    const FunctionTiming &reactions, &behaviour;
+    Timings(const Engine& engine, std::size_t part) noexcept TAPPET_REALTIME
+        : reactions{of(engine, part, FunctionKind::reactions)},
+          behaviour{of(engine, part, FunctionKind::behaviour)} {}
+    static const FunctionTiming& of(const Engine& engine, std::size_t part, FunctionKind kind) noexcept
+        TAPPET_REALTIME {
+        return engine.plan().functions[part * functions_per_part + static_cast<std::size_t>(kind)];
+    }
+};
+
+} // namespace
+
 std::uint64_t BehaviourSlot::misses() const noexcept TAPPET_REALTIME {
-    const auto functions = place_.engine->plan().functions.subspan(place_.part * functions_per_part);
-    return functions[static_cast<std::size_t>(FunctionKind::reactions)].blamed +
-           functions[static_cast<std::size_t>(FunctionKind::behaviour)].blamed;
+    const Timings of{*place_.engine, place_.part};
+    return of.reactions.blamed + of.behaviour.blamed;
+}
+Duration BehaviourSlot::time_taken() const noexcept TAPPET_REALTIME {
+    const Timings of{*place_.engine, place_.part};
+    return of.reactions.total + of.behaviour.total;
 }
 
 void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
@@ -147,15 +169,22 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
     }
     if (unit.failed_part() != nullptr) return take_back(RollBack::error, now);
     if (unit.left_over()) return take_back(RollBack::left_over, now);
+    place_.engine->measure_as_at_first();
+    const std::uint64_t over_claim = place_.engine->statistics().over_claim;
+    const Duration taken_now = time_taken() - std::exchange(taken_before_, time_taken());
+    // Reactions of the cycle before were there at its judgement, its behaviour's step is seen now.
+    const Duration taken = taken_now + std::exchange(taken_last_, taken_now);
     // What the cycle of the hand-over took was the old one's end, too: time is judged from the next one on.
     if (bases_left_ != 0) {
         --bases_left_;
         misses_before_ = misses();
-        over_claim_before_ = place_.engine->statistics().over_claim;
+        over_claim_before_ = over_claim;
+        kept_its_claim_ = over_claim == 0;
     } else if (misses() != misses_before_) {
         return take_back(RollBack::late, now);
-    } else if (over_claim_before_ == 0 && place_.engine->statistics().over_claim != 0) {
-        // Of an activity that kept its claim until now.
+    } else if (over_claim != std::exchange(over_claim_before_, over_claim) && kept_its_claim_ &&
+               taken >= place_.engine->claim_exceeded_by()) {
+        // Of an activity that kept its claim until now, and would have kept it without this one.
         return take_back(RollBack::too_much, now);
     }
     // Who was asked for nothing has shown nothing: a loom that stands does not try a weave.

@@ -127,7 +127,7 @@ public:
     /// As a message: carries out the change.
     static void obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME;
     void start(Time now) noexcept TAPPET_REALTIME;
-    void step_programs(Time now) noexcept TAPPET_REALTIME;
+    bool step_programs(Time now) noexcept TAPPET_REALTIME;
     bool step(Time now) noexcept TAPPET_REALTIME;
     void stop(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
@@ -164,6 +164,7 @@ private:
     void judge(Time now) noexcept TAPPET_REALTIME;
     /// Deadlines missed by the component's reactions and its behaviour.
     [[nodiscard]] std::uint64_t misses() const noexcept TAPPET_REALTIME;
+    [[nodiscard]] Duration time_taken() const noexcept TAPPET_REALTIME;
     void take_back(RollBack why, Time now) noexcept TAPPET_REALTIME;
     void connect(bool on) noexcept TAPPET_REALTIME;
     void set(SlotPhase phase) noexcept TAPPET_REALTIME { phase_.store(phase, std::memory_order_release); }
@@ -191,6 +192,9 @@ private:
     std::uint32_t bases_left_ = 0;        ///< the next two lines are of now for so many steps
     std::uint64_t misses_before_ = 0;     ///< the trial
     std::uint64_t over_claim_before_ = 0; ///< of the activity
+    bool kept_its_claim_ = false;         ///< the activity, as far as that was measured
+    Duration taken_before_{},
+        taken_last_{}; ///< by this slot's functions: in all, and from one look to the next
     double last_angle_ = -1;
     RollBack why_ = RollBack::none;
     std::uint32_t roll_backs_ = 0;

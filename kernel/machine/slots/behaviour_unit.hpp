@@ -71,11 +71,7 @@ public:
     [[nodiscard]] bool hears(std::size_t event) const noexcept TAPPET_REALTIME;
     /// None of its commands is on its way: its memory may be used anew.
     [[nodiscard]] bool is_quiet() const noexcept TAPPET_REALTIME;
-    [[nodiscard]] bool has_programs() const noexcept {
-        for (const UnitPart& part : parts_)
-            if (part.program != nullptr) return true;
-        return false;
-    }
+    [[nodiscard]] bool has_programs() const noexcept { return has_programs_; }
     void trace(StateMachineExecution::Trace hook, void* context) noexcept;
 
     // Real-time, in the component's engine.
@@ -83,8 +79,9 @@ public:
     /// Its roots start; their children when they are told to. One that is still on its way to the final state
     /// first comes to its end: what makes the component safe is not broken off.
     void start(Time now) noexcept TAPPET_REALTIME;
-    /// The programs alone; their engine does so before it steps any state machine (thesis fig. 5.21).
-    void step_programs(Time now) noexcept TAPPET_REALTIME;
+    /// The programs alone; their engine does so before it steps any state machine (thesis fig. 5.21). False:
+    /// there is none.
+    bool step_programs(Time now) noexcept TAPPET_REALTIME;
     /// The state machines.
     bool step(Time now) noexcept TAPPET_REALTIME;
     /// Into the final states; those that cannot go at once follow in the next steps.
@@ -147,6 +144,7 @@ private:
     bool reported_ = false;
     bool has_worked_ = false; // before limit_ began anew, or by an event
     bool may_begin_ = false;
+    bool has_programs_ = false;
     StateMachineExecution::Trace trace_ = nullptr;
     void* trace_context_ = nullptr;
     std::span<const UnitRoute> routes_{}; // [event * instances + instance]

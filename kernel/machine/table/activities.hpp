@@ -6,6 +6,7 @@
 #include "kernel/base/time.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace tappet {
@@ -18,7 +19,6 @@ enum class WhenLate : std::uint8_t { count, stop };
 
 struct ActivityRow {
     static constexpr std::size_t max_runs = 64;
-    static constexpr std::size_t default_stack_bytes = 64 * 1024;
     std::string_view name{};
     Trigger trigger = Trigger::background;
     Duration period{};          ///< of every; of background: how often it looks
@@ -30,7 +30,7 @@ struct ActivityRow {
     Duration budget_each{};     ///< processor time of one cycle, synchronous reactions included
     bool real_time = true;
     WhenLate when_late = WhenLate::count;
-    std::size_t stack = default_stack_bytes;
+    std::optional<std::size_t> stack{}; ///< see stack_bytes()
     Bounded<std::string_view, max_runs> runs{};
     bool too_many_runs = false;
     bool has_trigger = false;
@@ -41,6 +41,10 @@ struct ActivityRow {
     }
     [[nodiscard]] constexpr Duration deadline() const noexcept {
         return deadline_after.count() != 0 ? deadline_after : shortest_period();
+    }
+    /// Real-time functions need less: they call no library that takes much stack.
+    [[nodiscard]] constexpr std::size_t stack_bytes() const noexcept {
+        return stack.value_or(real_time ? 32 * 1024 : 64 * 1024);
     }
     [[nodiscard]] constexpr bool periodic() const noexcept {
         return trigger == Trigger::every || trigger == Trigger::background;
@@ -90,8 +94,9 @@ constexpr RowOptionOnce<ActivityRow, Duration> deadline(Duration after) noexcept
 struct NotRealTime {};
 /// May block; runs below every real-time activity, without budget or deadline.
 inline constexpr NotRealTime not_real_time{};
-/// Of its thread; 64 KiB unless stated, 16 KiB at least.
-constexpr RowOption<ActivityRow, std::size_t> stack(std::size_t bytes) noexcept {
+/// The stack of its thread, at least 16 KiB. Without this row option it is 32 KiB, and 64 KiB if the activity
+/// is not_real_time. Its lowest page is a guard: a thread that runs into it stops the machine.
+constexpr RowOption<ActivityRow, std::optional<std::size_t>> stack(std::size_t bytes) noexcept {
     return {&ActivityRow::stack, bytes};
 }
 /// A missed deadline stops the machine; without this it is counted and reported.

@@ -3,43 +3,27 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
-#include "kernel/base/time.hpp"
+#include "kernel/component/device_kind.hpp"
 
+#include <array>
+#include <concepts>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace tappet {
 
-/// A line of a GPIO chip: the name in the machine's line map, the offset on this board's chip.
-struct BoundLine {
-    std::string_view name{};
-    unsigned offset = 0;
-};
-
-/// The address of a Modbus server: 1 to 247, over TCP also 255.
-struct ServerUnit {
-    int number = 1;
-};
-
-/// How long a Modbus client waits for an answer.
-struct AnswerWithin {
-    Duration time{};
-};
-
-/// What a serial line is set to.
-struct SerialLine {
-    int baud = 19200;
-    char parity = 'E'; ///< 'N', 'E' or 'O'
-    int stop_bits = 1;
-};
-
 struct BoundDevice {
-    std::string_view name{}; ///< logical: what the machine's table says
-    std::string_view at{};   ///< the board's device; of a Modbus server on Ethernet its "192.168.7.2:502"
-    Bounded<BoundLine, 64> lines{};
-    ServerUnit unit{};
-    SerialLine serial{};
-    AnswerWithin answer{std::chrono::milliseconds{300}};
+    std::string_view name{};          ///< logical: what the machine's table says
+    std::string_view at{};            ///< the board's device, or an address: "192.168.7.2:502"
+    std::size_t first = 0, count = 0; ///< of the binding's facts; see Binding::facts_of
+};
+
+/// A row of a binding, before it has its place there.
+template <std::size_t words>
+struct Wired {
+    std::string_view name{}, at{};
+    std::array<Fact, words> facts{};
 };
 
 /// The processor that an activity is bound to.
@@ -57,59 +41,59 @@ struct Proof {
 
 struct Binding {
     Bounded<BoundDevice, 16> devices{};
+    Bounded<Fact, 256> facts{}; ///< of all devices, one behind the other
     Bounded<Placement, 64> placement{};
     Proof proof{};
     bool too_many = false; ///< more rows than there is room for: the check refuses it
+
+    [[nodiscard]] constexpr std::span<const Fact> facts_of(const BoundDevice& device) const noexcept {
+        return std::span{facts.items}.subspan(device.first, device.count);
+    }
+    template <std::size_t words> constexpr void add(const Wired<words>& row) {
+        too_many |= !devices.push({row.name, row.at, facts.size(), words});
+        for (const Fact& each : row.facts) too_many |= !facts.push(each);
+    }
+    constexpr void add(const Binding& other) {
+        const std::size_t before = facts.size();
+        for (const Fact& each : other.facts) too_many |= !facts.push(each);
+        for (BoundDevice each : other.devices) {
+            each.first += before;
+            too_many |= !devices.push(each);
+        }
+        for (const Placement& each : other.placement) add(each);
+        if (!other.proof.output.empty()) proof = other.proof;
+        too_many |= other.too_many;
+    }
+    constexpr void add(const Placement& row) { too_many |= !placement.push(row); }
+    constexpr void add(const Proof& row) { proof = row; }
 };
 
 /// Of a machine without devices, whose activities all run on the board's default processor; and of any
 /// machine on a simulated board.
 inline constexpr Binding unbound{};
 
-/// A line of the map, and its offset on the chip.
-constexpr BoundLine line(std::string_view name, unsigned offset) noexcept { return {name, offset}; }
-/// The address of a Modbus server: 1 to 247, over TCP also 255.
-constexpr ServerUnit unit(int number) noexcept { return {number}; }
-/// How long a Modbus client waits for an answer; 300 ms unless stated.
-constexpr AnswerWithin answer_within(Duration time) noexcept { return {time}; }
-/// Baud, parity ('N', 'E' or 'O') and stop bits of a serial line.
-constexpr SerialLine serial_line(int baud, char parity, int stop_bits) noexcept {
-    return {baud, parity, stop_bits};
-}
 /// The processor of an activity; the board's default unless stated.
 constexpr Placement place(std::string_view activity, int processor) noexcept { return {activity, processor}; }
 
 /// proven_by("weft.picks_woven", 100): a new version stays on its box after that.
 constexpr Proof proven_by(std::string_view output, std::int64_t count) noexcept { return {output, count}; }
 
-namespace detail {
-
-constexpr bool add(BoundDevice& device, const BoundLine& line) { return device.lines.push(line); }
-constexpr bool add(BoundDevice& device, ServerUnit unit) { return device.unit = unit, true; }
-constexpr bool add(BoundDevice& device, AnswerWithin answer) { return device.answer = answer, true; }
-constexpr bool add(BoundDevice& device, SerialLine serial) { return device.serial = serial, true; }
-constexpr bool add(Binding& binding, const BoundDevice& device) { return binding.devices.push(device); }
-constexpr bool add(Binding& binding, const Placement& place) { return binding.placement.push(place); }
-constexpr bool add(Binding& binding, const Proof& proof) { return binding.proof = proof, true; }
-
-} // namespace detail
-
 /// wired("loom-can", "can0")
 /// wired("loom-io", "io", line("brake", 9), ...)
 /// wired("loom-utility", "192.168.7.2:502", unit(1), answer_within(300ms))
 /// wired("loom-utility", "serial1", unit(1), serial_line(19'200, 'E', 1))
-template <class... Facts>
-constexpr BoundDevice wired(std::string_view name, std::string_view at, const Facts&... facts) {
-    BoundDevice device{.name = name, .at = at};
-    (static_cast<void>(detail::add(device, facts)), ...);
-    return device;
+/// The words stand in the driver's kind.hpp, drivers/gpio/kind.hpp.
+template <std::same_as<Fact>... Facts>
+constexpr Wired<sizeof...(Facts)> wired(std::string_view name, std::string_view at, const Facts&... facts) {
+    return {name, at, {facts...}};
 }
 
 /// binding(wired(...), ..., place("can", 3), ..., proven_by("weft.picks_woven", 100))
+/// binding(bench, place("can", 1)): all that another one says, and more.
 template <class... Rows>
 constexpr Binding binding(const Rows&... rows) {
     Binding binding;
-    ((binding.too_many |= !detail::add(binding, rows)), ...);
+    (binding.add(rows), ...);
     return binding;
 }
 

@@ -4,39 +4,31 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/component/device_kind.hpp"
 #include "kernel/component/role.hpp"
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 namespace tappet {
 
-/// What a CAN bus of the box is wired and terminated for, in bit/s.
-struct BitRate {
-    std::uint32_t bits_per_second = 0;
-    std::uint32_t in_data_phase = 0; ///< of CAN FD frames that switch; 0: classical CAN only
-};
-
-/// What is to be expected of a CAN bus at its worst: so many errors at once, and one more after each of these
-/// times. Each costs an error frame and the frame that it spoilt.
-struct BusErrors {
-    unsigned at_once = 1;
-    Duration every = 100ms;
-};
-
-/// How many lines a GPIO chip has for wires.
-struct LineCount {
-    unsigned lines = 0;
-};
-
 struct BoardDevice {
     std::string_view name{};    ///< as on the housing: what a binding says
     std::string_view kind{};    ///< "can", "gpio", "serial", or what a driver of one's own drives
     std::string_view address{}; ///< where Linux has it: "can0", "/dev/gpiochip0", "/dev/ttyS1"
-    unsigned lines = 0;         ///< of a "gpio" device, which must say it
-    BitRate bit_rate{};         ///< of a "can" device, which must say it
-    BusErrors errors{};         ///< of a "can" device
+    Bounded<Fact, 4> facts{};   ///< in the words of that kind, which its driver declares
+
+    /// Of a board that is another one but for a word: in place of what that one says with it.
+    constexpr void say(const Fact& fact) noexcept {
+        for (Fact& each : facts)
+            if (each.word == fact.word) {
+                each = fact;
+                return;
+            }
+        static_cast<void>(facts.push(fact));
+    }
 };
 
 /// Whoever is this user, or in this group, has this role at least.
@@ -121,35 +113,17 @@ struct Board {
     static constexpr Duration stop_grace = 20ms;
 };
 
-namespace detail {
-
-constexpr void add(BoardDevice& device, LineCount count) { device.lines = count.lines; }
-constexpr void add(BoardDevice& device, BitRate rate) { device.bit_rate = rate; }
-constexpr void add(BoardDevice& device, BusErrors errors) { device.errors = errors; }
-
-} // namespace detail
-
 /// board_device("can0", "can", "can0", bit_rate(500'000)),
 /// board_device("io", "gpio", "/dev/gpiochip0", lines(32))
-template <class... Facts>
+/// The words stand in the driver's kind.hpp, drivers/can/kind.hpp; four at most.
+template <std::same_as<Fact>... Facts>
 constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address,
                                    const Facts&... facts) {
-    BoardDevice device;
-    device.name = name;
-    device.kind = kind;
-    device.address = address;
-    (detail::add(device, facts), ...);
+    static_assert(sizeof...(Facts) <= 4, "a device of a board has four words at most");
+    BoardDevice device{.name = name, .kind = kind, .address = address};
+    (static_cast<void>(device.facts.push(facts)), ...);
     return device;
 }
-
-/// How many lines a GPIO chip has for wires.
-constexpr LineCount lines(unsigned count) noexcept { return {count}; }
-/// What the bus is wired and terminated for, in bit/s; the second of CAN FD's data phase.
-constexpr BitRate bit_rate(std::uint32_t bits_per_second, std::uint32_t in_data_phase = 0) noexcept {
-    return {bits_per_second, in_data_phase};
-}
-/// How many errors on the wire the response times of its frames allow for; without this row one in 100 ms.
-constexpr BusErrors bus_errors(unsigned at_once, Duration every) noexcept { return {at_once, every}; }
 
 namespace detail {
 

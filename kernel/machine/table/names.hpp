@@ -95,17 +95,6 @@ constexpr std::size_t activity_of(const MachineView& m, std::string_view compone
     return nowhere;
 }
 
-namespace detail {
-
-constexpr void add_suggestion(Sentence& text, const Nearest& nearest, std::string_view otherwise) {
-    if (nearest.best().empty())
-        text.add("; ").add(otherwise);
-    else
-        text.add("; did you mean \"").add(nearest.best()).add("\"?");
-}
-
-} // namespace detail
-
 constexpr Sentence unknown_component(const MachineView& m, std::string_view name) {
     Nearest nearest{name};
     for (const auto& row : m.components) nearest.consider(row.name);

@@ -6,8 +6,6 @@
 
 namespace tappet {
 
-using browsing::Verb;
-
 Sentence BrowserService::configure(Setup& setup) {
     machine_ = setup.machine;
     own_activity_ = activity_of(machine_->machine().table, setup.component);
@@ -112,35 +110,11 @@ BrowserService::Verdict BrowserService::check_role(const Client& client, std::st
 }
 
 BrowserService::Verdict BrowserService::answer(Client& client, const Request& request) {
-    switch (request.verb->verb) {
-    case Verb::hello: return hello(client, request);
-    case Verb::map: return map(client, request);
-    case Verb::get: return get(client, request);
-    case Verb::forced: return forced(client, request);
-    case Verb::counters: return counters(client, request);
-    case Verb::set: return set(client, request);
-    case Verb::force: return force(client, request);
-    case Verb::release: return release(client, request);
-    case Verb::call: return call(client, request);
-    case Verb::send: return send(client, request);
-    case Verb::start: return change_life(client, request, LifeChange::start);
-    case Verb::stop: return change_life(client, request, LifeChange::stop);
-    case Verb::restart: return change_life(client, request, LifeChange::restart);
-    case Verb::subscribe: return subscribe(client, request);
-    case Verb::unsubscribe: return unsubscribe(client, request);
-    case Verb::save: return save(client, request);
-    case Verb::behaviours: return behaviours(client, request);
-    case Verb::why: return why(client, request);
-    case Verb::behave: return behave(client, request);
-    case Verb::script: return script(client, request);
-    case Verb::load: return load(client, request);
-    case Verb::unload: return unload(client, request, BehaviourSlot::Change::unload);
-    case Verb::roll_back: return unload(client, request, BehaviourSlot::Change::roll_back);
-    case Verb::execute: return execute(client, request);
-    case Verb::break_off: return break_off(client, request);
-    }
-    return {Refusal::unsupported,
-            Sentence{"this machine does not serve \"", request.verb->name, "\"; use another request"}};
+#define TAPPET_X(name, ...) &BrowserService::serve_##name,
+    constexpr std::array<Serve BrowserService::*, browsing::verbs.size()> serve{TAPPET_REQUESTS(TAPPET_X)};
+#undef TAPPET_X
+    const auto row = static_cast<std::size_t>(request.verb - browsing::verbs.data());
+    return (this->*serve[row])(client, request);
 }
 
 /// One line: what, when, who, and what was asked, without characters that a terminal would obey.

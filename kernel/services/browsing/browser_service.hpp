@@ -70,10 +70,19 @@ private:
         std::size_t arguments = 0; ///< where they stand in seen_bytes_
     };
 
+    using Serve = Verdict(Client&, const Request&);
+    /// True: what the place waits for is over, and its client was answered.
+    using Look = bool(Pending&);
+#define TAPPET_X(name, ...) Serve serve_##name;
+    TAPPET_REQUESTS(TAPPET_X)
+#undef TAPPET_X
+    Look look_at_facet, look_at_change, look_at_command, look_at_life, look_at_behave, look_at_why,
+        look_at_line, look_at_saving;
+
+    Serve answer;
     void accept();
     void hear(Client& client);
     void handle(Client& client, std::string_view packet, bool cut);
-    Verdict answer(Client& client, const Request& request);
     void note(const Client& client, std::string_view what, std::string_view packet, const Verdict& verdict);
     /// The reply is the answer: nothing is refused.
     Verdict finish(Client& client, Reply& reply) noexcept;
@@ -86,9 +95,9 @@ private:
     // What waits for an answer; requests_pending.cpp
     [[nodiscard]] Pending* free_place(Role role) noexcept;
     static Verdict no_place() noexcept;
-    Verdict await(Pending& place, const browsing::Asker& asker, bool (BrowserService::*look)(Pending&));
+    Verdict await(Pending& place, const browsing::Asker& asker, Look BrowserService::* look);
     Verdict await_engine(Pending& place, const browsing::Asker& asker, std::size_t component,
-                         const Message& call, bool (BrowserService::*look)(Pending&));
+                         const Message& call, Look BrowserService::* look);
     void follow_pending();
     [[nodiscard]] Client* who_waits(const Pending& place) noexcept;
     bool answer_good(const Pending& place) noexcept;
@@ -96,36 +105,20 @@ private:
     void note_end(const Pending& place, std::string_view how, std::string_view why) const noexcept;
 
     // What is read; requests_read.cpp
-    Verdict hello(Client& client, const Request& request);
-    Verdict map(Client& client, const Request& request);
-    Verdict get(Client& client, const Request& request);
-    Verdict forced(Client& client, const Request& request);
-    Verdict counters(Client& client, const Request& request);
     void put_value(Reply& reply, End end, std::string_view name);
 
     // What is changed; requests_change.cpp
-    Verdict set(Client& client, const Request& request);
-    Verdict force(Client& client, const Request& request);
-    Verdict release(Client& client, const Request& request);
-    Verdict call(Client& client, const Request& request);
     [[nodiscard]] static Verdict check_role(const Client& client, std::string_view what, Role least);
     [[nodiscard]] Verdict read_arguments(const Facet& facet, const Request& request,
                                          std::span<std::byte> into);
     browsing::FacetCall& prepare(Pending& place, End end) const noexcept;
     Verdict reach(Pending& place, const browsing::Asker& asker, End end, Message::Run act);
     [[nodiscard]] Verdict check_alive(std::size_t component) noexcept;
-    bool look_at_facet(Pending& place);
-    bool look_at_change(Pending& place);
 
     // Commands and lives; requests_follow.cpp
-    Verdict send(Client& client, const Request& request);
-    bool look_at_command(Pending& place);
     Verdict change_life(Client& client, const Request& request, LifeChange change);
-    bool look_at_life(Pending& place);
 
     // Events; requests_stream.cpp
-    Verdict subscribe(Client& client, const Request& request);
-    Verdict unsubscribe(Client& client, const Request& request);
     static void observe(void* self, std::size_t index, const std::byte* arguments, Time now) noexcept
         TAPPET_REALTIME;
     void tell_events();
@@ -145,14 +138,9 @@ private:
         std::size_t characters = 0;
         Time since{};
     };
-    Verdict behaviours(Client& client, const Request& request);
-    Verdict behave(Client& client, const Request& request);
-    Verdict script(Client& client, const Request& request);
-    Verdict load(Client& client, const Request& request);
-    Verdict unload(Client& client, const Request& request, BehaviourSlot::Change change);
+    Verdict empty_slot(Client& client, const Request& request, BehaviourSlot::Change change);
     Verdict change_slot(Client& client, const Request& request, BehaviourSlot& slot,
                         BehaviourSlot::Change change, const SlotMoment& moment);
-    bool look_at_behave(Pending& place);
     [[nodiscard]] BehaviourUnit* unit_of(std::size_t row) noexcept;
     Sentence find_behaviour(std::string_view name, FoundBehaviour& found) noexcept;
     Sentence find_slot(std::string_view name, BehaviourSlot*& slot) noexcept;
@@ -172,20 +160,11 @@ private:
     void put_slot(Reply& reply, const BehaviourSlot& slot);
 
     // Why one does not come to a state; requests_why.cpp
-    Verdict why(Client& client, const Request& request);
     Sentence find_state(std::string_view name, browsing::WhyOrder& order);
-    bool look_at_why(Pending& place);
 
     // Lines of the script language; requests_line.cpp
-    Verdict execute(Client& client, const Request& request);
-    Verdict break_off(Client& client, const Request& request);
-    bool look_at_line(Pending& place);
     [[nodiscard]] browsing::FollowedLine find_interpreter_of_lines() noexcept;
     static Verdict no_interpreter() noexcept;
-
-    // Properties to their files; requests_save.cpp
-    Verdict save(Client& client, const Request& request);
-    bool look_at_saving(Pending& place);
 
     static constexpr int reading_attempts = 1000;
     static constexpr std::size_t value_alignment = 16;

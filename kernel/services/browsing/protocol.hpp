@@ -58,79 +58,61 @@ inline constexpr std::string_view socket_suffix = ".socket";
 using tappet::Role;
 using tappet::to_text;
 
-enum class Verb : std::uint8_t {
-    hello,
-    map,
-    get,
-    subscribe,
-    unsubscribe,
-    forced,
-    counters,
-    call,
-    send,
-    set,
-    force,
-    release,
-    save,
-    start,
-    stop,
-    restart,
-    behaviours,
-    why,
-    behave,
-    script,
-    load,
-    unload,
-    roll_back,
-    execute,
-    break_off
-};
+// clang-format off
+/// A request is one row here and its function, BrowserService::serve_NAME, in the requests_*.cpp of its sort.
+/// Name; the least role that may ask for it; the fewest and the most arguments, and how they are spelled; what
+/// stands in the reply beside id and ok. What follows makes it a command of tappet-browse too: which names it
+/// takes (Takes of commands.hpp), its help, and its usage where people spell it otherwise.
+#define TAPPET_REQUESTS(X) \
+    X(hello,       observer,         0, 0,         "", \
+      R"("protocol": 1, "machine": "...", "board": "...", "world": "...", "role": "...", "build_id": "...", "time_ns": T)") \
+    X(map,         observer,         0, 0,         "", \
+      R"("bytes": n, and one file descriptor (SCM_RIGHTS), to be mapped read-only: kernel/machine/map/layout.hpp)") \
+    X(get,         observer,         1, browsing::max_words, " NAME...", \
+      R"("values": [{"name": "...", "value": .., "flow": "fresh|stale|never_written", "forced": true|false, "time_ns": T}])") \
+    X(subscribe,   observer,         1, 1,         " EVENT", "") \
+    X(unsubscribe, observer,         1, 1,         " EVENT", "") \
+    X(forced,      observer,         0, 0,         "", R"("forced": ["NAME", ..])") \
+    X(counters,    observer,         0, 0,         "", \
+      R"("stacks": [{"activity": "...", "bytes": n, "used_bytes": n, as deep as it went}], "held_back": [{"row": "...", "times": n, by rows of limits}])") \
+    X(call,        machine_operator, 1, browsing::max_words, " METHOD [ARGUMENT...]", R"("result": .. unless it returns nothing)", \
+      callable, "a method or an operation, answered at once (operator)") \
+    X(send,        machine_operator, 1, browsing::max_words, " COMMAND [ARGUMENT...]", R"("state": "sent"; packets with its states follow)", \
+      command, "a command; --follow: told until it has come to its end (operator)", "send COMMAND [ARGUMENT...] [--follow]") \
+    X(set,         engineer,         2, browsing::max_words, " NAME VALUE [NAME VALUE...]", R"("set": n: all of one component and in one transaction, or none)", \
+      property, "properties of one component, all at once or none (engineer)", "set PROPERTY VALUE [PROPERTY VALUE...]") \
+    X(force,       engineer,         2, 2,         " PORT VALUE", "", port, "a port has this value whatever is written to it (engineer)") \
+    X(release,     engineer,         1, 1,         " PORT", "", port, "ends what force began (engineer)") \
+    X(save,        engineer,         0, 1,         " [COMPONENT]", R"("files": n, of so many components)", component, "writes properties to their files (engineer)") \
+    X(start,       engineer,         1, 1,         " COMPONENT|activity:NAME", "", component_or_activity, "starts what was stopped (engineer)", "start COMPONENT|ACTIVITY") \
+    X(stop,        engineer,         1, 1,         " COMPONENT|activity:NAME", "", component_or_activity, "stops it; it leaves safe values (engineer)", "stop COMPONENT|ACTIVITY") \
+    X(restart,     engineer,         1, 1,         " COMPONENT|activity:NAME", "", component_or_activity, "stops and starts it (engineer)", "restart COMPONENT|ACTIVITY") \
+    X(behaviours,  observer,         0, 1,         " [NAME|SLOT]", \
+      R"("behaviours": [{"name": "component.instance", "kind": "machine|program", "status": "...", "state": "a/b", "line": n}], "slots": [{"slot": "component", "phase": "empty|steady|waiting|handing_over|trial", "script": "...", "loads": n, "roll_backs": n, "news": "..."}]; of one also "variables", "transitions", "left_over", "fault")") \
+    X(why,         observer,         1, 1,         " COMPONENT.STATE", \
+      R"("name": "component.instance", "status": "...", "state": "a/b", "wanted": "a/c", "is_final": true|false, "path": ["STATE", .. from leaf to leaf], "ways": [{"from": "b", "to": "c", "event": "...", "reason": "when it is taken", "answer": "open|too_early|guard|precondition|arguments|failed|elsewhere", "left_ns": n, "state": "of the precondition", "because": "...", "detail": "..."}])", \
+      nothing, "why its state machine is not in that state: the transitions that lead nearer, the events they await, the guards that refuse and their reasons") \
+    X(behave,      engineer,         2, 3,         " start|stop|pause|step|reset|deactivate|reactive|request NAME [STATE]", "") \
+    X(script,      engineer,         3, 3,         " SLOT OFFSET TEXT", R"("bytes": n, of the script so far)") \
+    X(load,        engineer,         2, 3,         " SLOT FILE [now|EVENT|DEGREES]", "") \
+    X(unload,      engineer,         1, 1,         " SLOT", "") \
+    X(roll_back,   engineer,         1, 1,         " SLOT", "") \
+    X(execute,     observer,         1, 1,         " \"LINE\"", R"("state": "sent"; a packet with its end follows)") \
+    X(break_off,   machine_operator, 0, 0,         "", "")
+// clang-format on
 
+/// What the machine knows of a request before it serves it.
 struct VerbRow {
-    Verb verb;
     std::string_view name;
-    Role role; ///< the least that may ask for it
+    Role role;
     std::string_view usage;
     std::size_t fewest; ///< arguments
     std::size_t most;
-    std::string_view answer; ///< what stands in the reply beside id and ok
 };
 
-// clang-format off
-inline constexpr auto verbs = std::to_array<VerbRow>({
-    {Verb::hello,       "hello",       Role::observer,         "hello",                            0, 0,
-     R"("protocol": 1, "machine": "...", "board": "...", "world": "...", "role": "...", "build_id": "...", "time_ns": T)"},
-    {Verb::map,         "map",         Role::observer,         "map",                              0, 0,
-     R"("bytes": n, and one file descriptor (SCM_RIGHTS), to be mapped read-only: kernel/machine/map/layout.hpp)"},
-    {Verb::get,         "get",         Role::observer,         "get NAME...",                      1, max_words,
-     R"("values": [{"name": "...", "value": .., "flow": "fresh|stale|never_written", "forced": true|false, "time_ns": T}])"},
-    {Verb::subscribe,   "subscribe",   Role::observer,         "subscribe EVENT",                  1, 1, ""},
-    {Verb::unsubscribe, "unsubscribe", Role::observer,         "unsubscribe EVENT",                1, 1, ""},
-    {Verb::forced,      "forced",      Role::observer,         "forced",                           0, 0, R"("forced": ["NAME", ..])"},
-    {Verb::counters,    "counters",    Role::observer,         "counters",                         0, 0,
-     R"("stacks": [{"activity": "...", "bytes": n, "used_bytes": n, as deep as it went}], "held_back": [{"row": "...", "times": n, by rows of limits}])"},
-    {Verb::call,        "call",        Role::machine_operator, "call METHOD [ARGUMENT...]",        1, max_words, R"("result": .. unless it returns nothing)"},
-    {Verb::send,        "send",        Role::machine_operator, "send COMMAND [ARGUMENT...]",       1, max_words, R"("state": "sent"; packets with its states follow)"},
-    {Verb::set,         "set",         Role::engineer,         "set NAME VALUE [NAME VALUE...]",   2, max_words, R"("set": n: all of one component and in one transaction, or none)"},
-    {Verb::force,       "force",       Role::engineer,         "force PORT VALUE",                 2, 2, ""},
-    {Verb::release,     "release",     Role::engineer,         "release PORT",                     1, 1, ""},
-    {Verb::save,        "save",        Role::engineer,         "save [COMPONENT]",                 0, 1, R"("files": n, of so many components)"},
-    {Verb::start,       "start",       Role::engineer,         "start COMPONENT|activity:NAME",         1, 1, ""},
-    {Verb::stop,        "stop",        Role::engineer,         "stop COMPONENT|activity:NAME",          1, 1, ""},
-    {Verb::restart,     "restart",     Role::engineer,         "restart COMPONENT|activity:NAME",       1, 1, ""},
-    {Verb::behaviours,  "behaviours",  Role::observer,         "behaviours [NAME|SLOT]",           0, 1,
-     R"("behaviours": [{"name": "component.instance", "kind": "machine|program", "status": "...", "state": "a/b", "line": n}], "slots": [{"slot": "component", "phase": "empty|steady|waiting|handing_over|trial", "script": "...", "loads": n, "roll_backs": n, "news": "..."}]; of one also "variables", "transitions", "left_over", "fault")"},
-    {Verb::why,         "why",         Role::observer,         "why COMPONENT.STATE",              1, 1,
-     R"("name": "component.instance", "status": "...", "state": "a/b", "wanted": "a/c", "is_final": true|false, "path": ["STATE", .. from leaf to leaf], "ways": [{"from": "b", "to": "c", "event": "...", "reason": "when it is taken", "answer": "open|too_early|guard|precondition|arguments|failed|elsewhere", "left_ns": n, "state": "of the precondition", "because": "...", "detail": "..."}])"},
-    {Verb::behave,      "behave",      Role::engineer,         "behave start|stop|pause|step|reset|deactivate|reactive|request NAME [STATE]", 2, 3, ""},
-    {Verb::script,      "script",      Role::engineer,         "script SLOT OFFSET TEXT",          3, 3, R"("bytes": n, of the script so far)"},
-    {Verb::load,        "load",        Role::engineer,         "load SLOT FILE [now|EVENT|DEGREES]", 2, 3, ""},
-    {Verb::unload,      "unload",      Role::engineer,         "unload SLOT",                      1, 1, ""},
-    {Verb::roll_back,   "roll_back",   Role::engineer,         "roll_back SLOT",                   1, 1, ""},
-    {Verb::execute,     "execute",     Role::observer,         "execute \"LINE\"",                 1, 1, R"("state": "sent"; a packet with its end follows)"},
-    {Verb::break_off,   "break_off",   Role::machine_operator, "break_off",                        0, 0, ""},
-});
-// clang-format on
+#define TAPPET_X(name, role, fewest, most, arguments, ...) {#name, Role::role, #name arguments, fewest, most},
+inline constexpr auto verbs = std::to_array<VerbRow>({TAPPET_REQUESTS(TAPPET_X)});
+#undef TAPPET_X
 
 /// Why a request was refused; the sentence says more.
 enum class Refusal : std::uint8_t {

@@ -143,7 +143,7 @@ void BrowserService::put_slot(Reply& reply, const BehaviourSlot& slot) {
     json.close('}');
 }
 
-BrowserService::Verdict BrowserService::behaviours(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_behaviours(Client& client, const Request& request) {
     Reply reply{request.number, true};
     const bool one = !request.arguments.empty();
     FoundBehaviour wanted;
@@ -170,7 +170,7 @@ BrowserService::Verdict BrowserService::behaviours(Client& client, const Request
     return finish(client, reply);
 }
 
-BrowserService::Verdict BrowserService::behave(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_behave(Client& client, const Request& request) {
     BehaviourOrder order;
     if (!browsing::parse(request.arguments[0], order.action))
         return {Refusal::bad_request,
@@ -220,7 +220,7 @@ bool BrowserService::look_at_behave(Pending& place) {
 
 // ---- slots
 
-BrowserService::Verdict BrowserService::script(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_script(Client& client, const Request& request) {
     BehaviourSlot* slot = nullptr;
     if (const Sentence unknown = find_slot(request.arguments[0], slot); !unknown.empty())
         return {Refusal::unknown, unknown};
@@ -257,7 +257,7 @@ BrowserService::Verdict BrowserService::script(Client& client, const Request& re
     return finish(client, reply);
 }
 
-BrowserService::Verdict BrowserService::load(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_load(Client& client, const Request& request) {
     BehaviourSlot* slot = nullptr;
     if (const Sentence unknown = find_slot(request.arguments[0], slot); !unknown.empty())
         return {Refusal::unknown, unknown};
@@ -291,12 +291,20 @@ BrowserService::Verdict BrowserService::change_slot(Client& client, const Reques
     return finish(client, reply);
 }
 
-BrowserService::Verdict BrowserService::unload(Client& client, const Request& request,
-                                               BehaviourSlot::Change change) {
+BrowserService::Verdict BrowserService::empty_slot(Client& client, const Request& request,
+                                                   BehaviourSlot::Change change) {
     BehaviourSlot* slot = nullptr;
     if (const Sentence unknown = find_slot(request.arguments[0], slot); !unknown.empty())
         return {Refusal::unknown, unknown};
     return change_slot(client, request, *slot, change, {});
+}
+
+BrowserService::Verdict BrowserService::serve_unload(Client& client, const Request& request) {
+    return empty_slot(client, request, BehaviourSlot::Change::unload);
+}
+
+BrowserService::Verdict BrowserService::serve_roll_back(Client& client, const Request& request) {
+    return empty_slot(client, request, BehaviourSlot::Change::roll_back);
 }
 
 } // namespace tappet

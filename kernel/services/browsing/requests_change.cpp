@@ -104,7 +104,7 @@ BrowserService::Verdict BrowserService::reach(Pending& place, const browsing::As
     return await_engine(place, asker, end.component, call, &BrowserService::look_at_facet);
 }
 
-BrowserService::Verdict BrowserService::force(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_force(Client& client, const Request& request) {
     End end;
     const MachineView& table = machine_->machine().table;
     if (const Sentence fault = find_port(table, request.arguments[0], end); !fault.empty())
@@ -120,11 +120,11 @@ BrowserService::Verdict BrowserService::force(Client& client, const Request& req
         return {Refusal::bad_value, Sentence{"\"", request.arguments[0], "\": ", fault}};
     // It keeps what it sent last: where nothing was written, a release would leave it so.
     call.drives =
-        is_input(facet_at(table, end)) && !table.components[end.component].type->device_kind.empty();
+        is_input(facet_at(table, end)) && table.components[end.component].type->device_kind != nullptr;
     return reach(*place, asker(client, request), end, &force_port);
 }
 
-BrowserService::Verdict BrowserService::release(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_release(Client& client, const Request& request) {
     End end;
     if (const Sentence fault = find_port(machine_->machine().table, request.arguments[0], end);
         !fault.empty())
@@ -160,7 +160,7 @@ BrowserService::Verdict BrowserService::read_arguments(const Facet& facet, const
     return {};
 }
 
-BrowserService::Verdict BrowserService::call(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_call(Client& client, const Request& request) {
     End end;
     const MachineView& table = machine_->machine().table;
     const Sentence unknown =
@@ -210,7 +210,7 @@ bool BrowserService::look_at_facet(Pending& place) {
     return true;
 }
 
-BrowserService::Verdict BrowserService::set(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_set(Client& client, const Request& request) {
     const AcceptedMachine& machine = machine_->machine();
     if (request.arguments.size() % 2 != 0)
         return {Refusal::bad_request,

@@ -12,7 +12,7 @@ namespace tappet {
 using browsing::FollowedCommand;
 using browsing::FollowedLife;
 
-BrowserService::Verdict BrowserService::send(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_send(Client& client, const Request& request) {
     End end;
     const MachineView& table = machine_->machine().table;
     const Sentence unknown = browsing::find_facet(table, request.arguments[0], {FacetKind::command}, end);
@@ -94,6 +94,18 @@ BrowserService::Verdict BrowserService::change_life(Client& client, const Reques
                                   : machine_->life().ask_activity(target.activity, change);
     place->work.emplace<FollowedLife>(target.component, activity, ticket, change);
     return await(*place, asker(client, request), &BrowserService::look_at_life);
+}
+
+BrowserService::Verdict BrowserService::serve_start(Client& client, const Request& request) {
+    return change_life(client, request, LifeChange::start);
+}
+
+BrowserService::Verdict BrowserService::serve_stop(Client& client, const Request& request) {
+    return change_life(client, request, LifeChange::stop);
+}
+
+BrowserService::Verdict BrowserService::serve_restart(Client& client, const Request& request) {
+    return change_life(client, request, LifeChange::restart);
 }
 
 bool BrowserService::look_at_life(Pending& place) {

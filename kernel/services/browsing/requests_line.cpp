@@ -23,7 +23,7 @@ BrowserService::Verdict BrowserService::no_interpreter() noexcept {
                      "its table, or load a script into a slot"}};
 }
 
-BrowserService::Verdict BrowserService::execute(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_execute(Client& client, const Request& request) {
     const FollowedLine line = find_interpreter_of_lines();
     if (line.functions == nullptr) return no_interpreter();
     if (for_nobody_.data() != nullptr)
@@ -80,7 +80,7 @@ bool BrowserService::look_at_line(Pending& place) {
     return true;
 }
 
-BrowserService::Verdict BrowserService::break_off(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_break_off(Client& client, const Request& request) {
     const FollowedLine line = find_interpreter_of_lines();
     if (line.functions == nullptr) return no_interpreter();
     switch (line.functions->break_off(line.interpreter, client.role)) {

@@ -19,7 +19,7 @@ BrowserService::Verdict BrowserService::no_place() noexcept {
 }
 
 BrowserService::Verdict BrowserService::await(Pending& place, const Asker& asker,
-                                              bool (BrowserService::*look)(Pending&)) {
+                                              Look BrowserService::* look) {
     place.asker = asker;
     place.look = look;
     place.is_told = false;
@@ -28,7 +28,7 @@ BrowserService::Verdict BrowserService::await(Pending& place, const Asker& asker
 
 BrowserService::Verdict BrowserService::await_engine(Pending& place, const Asker& asker,
                                                      std::size_t component, const Message& call,
-                                                     bool (BrowserService::*look)(Pending&)) {
+                                                     Look BrowserService::* look) {
     const AcceptedMachine& machine = machine_->machine();
     if (Verdict alive = check_alive(component); !alive.good()) return alive;
     Message message = call;

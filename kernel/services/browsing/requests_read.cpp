@@ -6,7 +6,7 @@
 
 namespace tappet {
 
-BrowserService::Verdict BrowserService::hello(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_hello(Client& client, const Request& request) {
     const auto& header =
         *reinterpret_cast<const map::Header*>(machine_->observation().shared_memory().data());
     const AcceptedMachine& machine = machine_->machine();
@@ -22,14 +22,14 @@ BrowserService::Verdict BrowserService::hello(Client& client, const Request& req
     return finish(client, reply);
 }
 
-BrowserService::Verdict BrowserService::map(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_map(Client& client, const Request& request) {
     Reply reply{request.number, true};
     reply.json().field("bytes", machine_->observation().shared_memory().size());
     connections_.send(client, reply.finish(), machine_->observation().shared_descriptor());
     return {};
 }
 
-BrowserService::Verdict BrowserService::counters(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_counters(Client& client, const Request& request) {
     Reply reply{request.number, true};
     JsonText& json = reply.json();
     const MachineObservation& seen = machine_->observation();
@@ -51,7 +51,7 @@ BrowserService::Verdict BrowserService::counters(Client& client, const Request& 
     return finish(client, reply);
 }
 
-BrowserService::Verdict BrowserService::get(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_get(Client& client, const Request& request) {
     Reply reply{request.number, true};
     reply.json().key("values").open('[');
     for (const std::string_view name : request.arguments) {
@@ -115,7 +115,7 @@ void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
     json.close('}');
 }
 
-BrowserService::Verdict BrowserService::forced(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_forced(Client& client, const Request& request) {
     Reply reply{request.number, true};
     reply.json().key("forced").open('[');
     const auto view = map::View::open(machine_->observation().shared_memory());

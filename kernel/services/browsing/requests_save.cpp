@@ -5,7 +5,7 @@
 
 namespace tappet {
 
-BrowserService::Verdict BrowserService::save(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_save(Client& client, const Request& request) {
     for (const Pending& each : pending_)
         if (each.look == &BrowserService::look_at_saving)
             return {Refusal::not_now, Sentence{"properties are being saved; ask again"}};

@@ -8,7 +8,7 @@
 
 namespace tappet {
 
-BrowserService::Verdict BrowserService::subscribe(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_subscribe(Client& client, const Request& request) {
     End event;
     const MachineView& table = machine_->machine().table;
     const Sentence unknown = browsing::find_facet(table, request.arguments[0], {FacetKind::event}, event);
@@ -36,7 +36,7 @@ BrowserService::Verdict BrowserService::subscribe(Client& client, const Request&
     return finish(client, reply);
 }
 
-BrowserService::Verdict BrowserService::unsubscribe(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_unsubscribe(Client& client, const Request& request) {
     End event;
     const MachineView& table = machine_->machine().table;
     const Sentence unknown = browsing::find_facet(table, request.arguments[0], {FacetKind::event}, event);

@@ -105,7 +105,7 @@ Sentence BrowserService::find_state(std::string_view name, WhyOrder& order) {
     return text.add("; did you mean \"").add(best).add("\"?");
 }
 
-BrowserService::Verdict BrowserService::why(Client& client, const Request& request) {
+BrowserService::Verdict BrowserService::serve_why(Client& client, const Request& request) {
     WhyOrder order;
     if (const Sentence unknown = find_state(request.arguments[0], order); !unknown.empty())
         return {Refusal::unknown, unknown};

@@ -108,8 +108,9 @@ TEST_P(SafeStates, what_fails_stops_the_loom_which_weaves_again_when_it_is_repai
         EXPECT_LE(rig.now() - failed, row.at_most);
         EXPECT_EQ(rig.reason(), row.reason);
         EXPECT_EQ(rig.cause(), StopCause::fault);
-        if (row.reason == "a CAN node is silent")
+        if (row.reason == "a CAN node is silent") {
             EXPECT_EQ(rig.component<Network>("network").silent_node.last(), row.fault.node);
+        }
         expect_safe(rig);
         EXPECT_EQ(rig.report().damage.ran_dry, 0u);
         expect_weaves_again(rig);

@@ -1,6 +1,7 @@
 // Where the device of this machine is reached on the bench.
 #pragma once
 
+#include "drivers/modbus/kind.hpp"
 #include "kernel/machine/table/binding.hpp"
 
 namespace tappet::modbus_line::bindings {

@@ -1,4 +1,5 @@
 // Components: their rows, the functions of their life, and the devices that the board has for them.
+#include "drivers/udp/kind.hpp"
 #include "kernel/machine/instance/line_functions.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
 #include "tests/diagnostics/small_machine.hpp"
@@ -27,16 +28,16 @@ struct Unnamed {
 };
 
 struct Restarter {
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr bool shares_device = true;
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 struct Camera {
-    static constexpr std::string_view device_kind = "udp";
+    static constexpr const DeviceKind& device_kind = udp::device_kind;
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 struct Trusted {
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     Output<bool> connected, level;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
@@ -45,15 +46,16 @@ struct Trusted {
     }
 };
 struct Unsure {
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr int device_map = 0;
     void stop(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 struct SlowBus {
-    static constexpr std::string_view device_kind = "can";
+    static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr Sentence analyse(const DeviceUse& use, std::span<TrafficRow>) {
-        return Sentence{"no frame comes through at ", use.bit_rate, " bit/s; run it faster"};
+        return Sentence{"no frame comes through at ", can::bus_facts(use.facts).bit_rate,
+                        " bit/s; run it faster"};
     }
     static constexpr DeviceTraffic device_traffic{1, &analyse, nullptr};
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
@@ -282,7 +284,7 @@ Table loom_on_an_old_box() {
     return m;
 }
 
-void rebind(Table& m, const BoundDevice& panel) {
+void rebind(Table& m, const auto& panel) {
     m.binding = binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2:502"), panel);
 }
 /// The climate's server stands elsewhere.
@@ -319,11 +321,10 @@ constexpr Fault board_faults[] = {
     {"datagram_address",
      [](Table& m) {
          m.add(component<Camera>("camera", device("camera-link")), "hall");
-         static_cast<void>(m.binding.devices.push(wired("camera-link", "5005")));
+         m.binding.add(wired("camera-link", "5005"));
      },
      R"(loom: component "camera": binding to board "old box", wired("camera-link"): the board has no device "5005"; write the box's address and the port as 192.168.7.1:5005, or 0.0.0.0:5005)"},
-    {"device_bound_for_nobody",
-     [](Table& m) { static_cast<void>(m.binding.devices.push(wired("spare", "serial1"))); },
+    {"device_bound_for_nobody", [](Table& m) { m.binding.add(wired("spare", "serial1")); },
      R"(loom: binding to board "old box", wired("spare"): no component of the machine drives it; correct the name or remove the row)"},
     {"device_bound_twice",
      [](Table& m) {
@@ -338,7 +339,7 @@ constexpr Fault board_faults[] = {
          m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
                         runs("encoder", "spare")));
          static_cast<void>(m.board.devices.push(board_device("can1", "can", "can0", bit_rate(500'000))));
-         static_cast<void>(m.binding.devices.push(wired("spare-can", "can1")));
+         m.binding.add(wired("spare-can", "can1"));
      },
      R"(loom: binding to board "old box", wired("spare-can"): wired("main_encoder") has the same name or the same device of the board; correct one)"},
     {"lines_of_a_bus",
@@ -347,6 +348,20 @@ constexpr Fault board_faults[] = {
                              wired("panel", "io", line("red", 4), line("green", 5)));
      },
      R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): line("red") is for a gpio device, and this is a can device; remove it)"},
+    {"word_of_another_kind",
+     [](Table& m) {
+         m.binding = binding(wired("main_encoder", "can0", unit(3)), wired("hall", "192.168.7.2:502"),
+                             wired("panel", "io", line("red", 4), line("green", 5)));
+     },
+     R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): unit(...) is for a modbus device, and this is a can device; remove it)"},
+    {"word_twice", [](Table& m) { rebind_hall(m, "192.168.7.2:502", unit(3), unit(4)); },
+     R"(loom: component "climate": binding to board "old box", wired("hall"): unit(...) stands there twice; remove one)"},
+    {"board_word_of_another_kind",
+     [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0", bit_rate(500'000)); },
+     R"(loom: board "old box", device "io": bit_rate(...) is for a can device, and this is a gpio device; remove it)"},
+    {"board_word_twice",
+     [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0", lines(8), lines(16)); },
+     R"(loom: board "old box", device "io": lines(...) stands there twice; remove one)"},
     {"server_unit", [](Table& m) { rebind_hall(m, "192.168.7.2:502", unit(300)); },
      R"(loom: component "climate": binding to board "old box", wired("hall"): unit(300) is no server; write 1 to 247, over TCP also 255)"},
     {"server_that_may_never_answer", [](Table& m) { rebind_hall(m, "192.168.7.2:502", answer_within(0ms)); },
@@ -359,7 +374,7 @@ constexpr Fault board_faults[] = {
      [](Table& m) { m.binding = binding(wired("panel", "io", line("red", 4), line("green", 5))); },
      R"(loom: component "encoder": the binding to board "old box" does not say where device "main_encoder" stands; add wired("...", "a device of the board") to it)"},
     {"binding_too_long", [](Table& m) { m.binding.too_many = true; },
-     R"(loom: binding to board "old box": it has more rows than a binding holds: 16 devices, 64 placements; raise the bound in kernel/machine/table/binding.hpp)"},
+     R"(loom: binding to board "old box": it has more rows than a binding holds: 16 devices, 256 words of them, 64 placements; raise the bound in kernel/machine/table/binding.hpp)"},
     {"proof_unknown", [](Table& m) { m.binding.proof = proven_by("encoder.angel", 100); },
      R"(loom: binding to board "old box", proven_by("encoder.angel"): component "encoder" has no output "angel"; did you mean "angle"?)"},
     {"proof_that_counts_nothing", [](Table& m) { m.binding.proof = proven_by("encoder.angle", 100); },
@@ -379,7 +394,7 @@ constexpr Fault board_faults[] = {
          m.put(activity("field", on_device("encoder"), at_most(1, 1ms), deadline(300us), budget(30us),
                         runs("encoder", "slow")));
          static_cast<void>(m.board.devices.push(board_device("can1", "can", "can1", bit_rate(10'000))));
-         static_cast<void>(m.binding.devices.push(wired("slow-can", "can1")));
+         m.binding.add(wired("slow-can", "can1"));
      },
      R"(loom: component "slow": board "old box", device "can1": no frame comes through at 10000 bit/s; run it faster)"},
     {"board_gpio_lines", [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0"); },

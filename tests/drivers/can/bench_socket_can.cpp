@@ -2,11 +2,8 @@
 // interface can0.
 #include "board/init/devices.hpp"
 #include "drivers/can/safe_sender.hpp"
-#include "tests/drivers/can/bench_frames.hpp"
+#include "tests/drivers/can/bench_bus.hpp"
 #include "tests/drivers/can/hex.hpp"
-#include "tests/drivers/foreign.hpp"
-
-#include <gtest/gtest.h>
 
 #include <cstring>
 #include <malloc.h>
@@ -16,27 +13,6 @@
 
 namespace tappet::can {
 namespace {
-
-constexpr std::array receives{standard(0x123), extended(0x18FF0102)};
-constexpr auto& sends = from_200<65>;
-
-Frame frame(std::uint32_t id, Time made = now()) {
-    return {.id = id, .length = 2, .data = {0xAB, 0xCD}, .stamp = made};
-}
-
-struct Dump : Foreign {
-    Dump() : Foreign{"candump -L can0"} { std::this_thread::sleep_for(200ms); }
-};
-
-struct RealCan : testing::Test {
-    Settings settings{.interface = "can0", .receive = receives, .transmit = sends, .bit_rate = 500'000};
-    SocketCan can;
-    void open() {
-        const auto opened = can.open(settings);
-        ASSERT_TRUE(opened) << opened.error().view();
-    }
-    std::vector<Frame> run_for(Duration how_long) { return heard_by(can, how_long); }
-};
 
 TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
     open();
@@ -133,8 +109,6 @@ TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_c
         EXPECT_EQ(dump.output().find(never_sent), std::string::npos) << never_sent;
 }
 
-void set_up(bool up) { ASSERT_TRUE(init::set_link("can0", up)); }
-
 TEST_F(RealCan, notices_an_interface_that_goes_down_and_costs_nothing_meanwhile) {
     open();
     set_up(false);
@@ -176,6 +150,16 @@ TEST_F(RealCan, is_not_woken_by_a_storm_of_bus_errors) {
     for (int i = 0; i < 20; ++i) ASSERT_EQ(run_foreign("cansend can0 20000088#0000000000000000"), 0);
     run_for(10ms);
     EXPECT_EQ(can.counters().error_frames, 0u);
+}
+
+TEST_F(RealCan, takes_its_own_frame_for_a_confirmation_though_it_would_receive_that_identifier_too) {
+    static constexpr std::array both{standard(0x123), standard(0x201)};
+    settings.receive = both;
+    open();
+    EXPECT_EQ(can.send(frame(0x201)), Send::queued);
+    EXPECT_TRUE(run_for(10ms).empty());
+    EXPECT_EQ(can.counters().sent, 1u);
+    EXPECT_EQ(can.counters().impostors, 0u);
 }
 
 TEST_F(RealCan, counts_an_impostor) {

@@ -6,8 +6,12 @@
 namespace tappet::can {
 namespace {
 
-constexpr DeviceUse at(std::uint32_t bit_rate, unsigned errors = 0, Duration response = 0us) {
-    return {"can0", bit_rate, 0, errors, 100ms, response};
+struct BusUse {
+    BusFacts bus;
+    Duration response;
+};
+constexpr BusUse at(std::uint32_t bit_rate, unsigned errors = 0, Duration response = 0us) {
+    return {{bit_rate, 0, errors, 100ms}, response};
 }
 constexpr auto heard(std::uint32_t id, std::string_view name, std::uint8_t length, Duration period,
                      Duration jitter = {}) {
@@ -16,10 +20,10 @@ constexpr auto heard(std::uint32_t id, std::string_view name, std::uint8_t lengt
 constexpr auto sent(std::uint32_t id, std::string_view name, std::uint8_t length, Rate rate) {
     return transmit(standard(id), name, bytes(length), rate, signal("a", 0, 8).safe(0));
 }
-template <class... Rows> std::string refusal(const DeviceUse& use, const Rows&... rows) {
+template <class... Rows> std::string refusal(const BusUse& use, const Rows&... rows) {
     const auto map = signal_map(rows...);
     EXPECT_EQ(map.fault.view(), "");
-    return std::string{bus_traffic(map.frames, use, {}).view()};
+    return std::string{bus_traffic(map.frames, use.bus, use.response, {}).view()};
 }
 
 TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
@@ -30,7 +34,7 @@ TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
     constexpr auto good = signal_map(heard(0x300, "slow", 8, 100ms), sent(0x201, "command", 6, every(2ms)),
                                      heard(0x181, "status", 6, 2ms));
     std::array<TrafficRow, 3> rows{};
-    EXPECT_EQ(bus_traffic(good.frames, at(500'000), rows).view(), "");
+    EXPECT_EQ(bus_traffic(good.frames, at(500'000).bus, 0us, rows).view(), "");
     EXPECT_EQ(rows[0].name, "status");
     EXPECT_FALSE(rows[0].sent);
     EXPECT_EQ(rows[0].worst, 230us + 270us);
@@ -97,15 +101,15 @@ TEST(BusTraffic, of_can_fd_is_proven_by_both_rates) {
         receive(standard(0x182), "slow", fd_bytes(64).in_one_rate(), every(10ms), signal("a", 0, 8)),
         receive(standard(0x183), "old", bytes(8), every(10ms), signal("a", 0, 8)));
     std::array<TrafficRow, 3> rows{};
-    EXPECT_EQ(bus_traffic(map.frames, {"can0", 500'000, 2'000'000, 0, 100ms, 0us}, rows).view(), "");
+    EXPECT_EQ(bus_traffic(map.frames, {500'000, 2'000'000, 0, 100ms}, 0us, rows).view(), "");
     EXPECT_EQ(rows[0].wire_time, 403us);
     EXPECT_EQ(rows[0].worst, 1420us + 403us);
     EXPECT_EQ(rows[1].wire_time, 1420us);
     EXPECT_EQ(rows[2].wire_time, 270us);
     const auto often = receive(standard(0x181), "fast", fd_bytes(64), every(700us), signal("a", 0, 8));
-    EXPECT_EQ(refusal({"can0", 250'000, 2'000'000, 0, 100ms, 0us}, often), "") << "128 us and 339 us";
+    EXPECT_EQ(refusal({{250'000, 2'000'000, 0, 100ms}, 0us}, often), "") << "128 us and 339 us";
     EXPECT_EQ(
-        refusal({"can0", 500'000, 1'000'000, 0, 100ms, 0us}, often),
+        refusal({{500'000, 1'000'000, 0, 100ms}, 0us}, often),
         "frame \"fast\" may never come through: what is more urgent, and itself, fill the bus, which all "
         "frames together load by 106 % at 500000 bit/s; send less often, or run the bus faster");
 }

@@ -14,15 +14,15 @@ TEST(ClockRows, are_part_of_what_the_bus_is_proven_for) {
     EXPECT_EQ(TellingBus::device_traffic.rows, 2u);
     EXPECT_EQ(ToldBus::device_traffic.rows, 2u);
     std::array<TrafficRow, 2> rows{};
-    const DeviceUse slow{.device = "can", .bit_rate = 125'000, .errors_every = 1s, .response = 500us};
+    constexpr std::array at_125_kbit{bit_rate(125'000), bus_errors(0, 1s)};
+    constexpr std::array at_1_kbit{bit_rate(1'000)};
+    const DeviceUse slow{"can", at_125_kbit, 500us};
     EXPECT_EQ(TellingBus::analyse_traffic(slow, rows).view(), "");
     EXPECT_TRUE(rows[0].sent);
     EXPECT_EQ(rows[0].wire_time, 1080us) << "8 bytes, 135 bits";
     EXPECT_EQ(ToldBus::analyse_traffic(slow, rows).view(), "");
     EXPECT_FALSE(rows[1].sent);
-    DeviceUse slower = slow;
-    slower.bit_rate = 1'000;
-    EXPECT_FALSE(TellingBus::analyse_traffic(slower, rows).empty()) << "they fill the bus";
+    EXPECT_FALSE(TellingBus::analyse_traffic({"can", at_1_kbit, 500us}, rows).empty()) << "they fill the bus";
 }
 
 /// The teller's clock is 1000 s ahead, and its stamps are exact.

@@ -124,23 +124,6 @@ TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_
     EXPECT_EQ(axis->target_velocity.last(), 3);
 }
 
-TEST_F(AxisWithoutPower, stays_where_it_was_turned_without_power) {
-    servo.faults.knows_no_halt_in_cyclic = true;
-    power();
-    follow_positions();
-    client->oscillates = true;
-    run(200ms);
-    client->oscillates = false;
-    client->power_off.emit();
-    ASSERT_TRUE(until([&] { return servo.turn(5.45); }));
-    run(50ms);
-    const double there = servo.position();
-    power();
-    run(500ms);
-    EXPECT_EQ(servo.position(), there);
-    EXPECT_NEAR(axis->target_position.last(), there, 1e-3);
-}
-
 TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
     EXPECT_TRUE(does(client->superimpose, 1.0, 10.0, 500.0));
     EXPECT_NEAR(servo.position(), 1, 1e-3) << "from a stand: a relative motion";

@@ -119,22 +119,6 @@ TEST_F(Axis, takes_no_motion_while_it_is_stopped) {
     EXPECT_TRUE(axis.move_at(30));
 }
 
-TEST_F(AxisWithoutPower, finds_its_home_and_does_not_take_an_old_one_for_it) {
-    servo.set_home(7);
-    power();
-    ASSERT_TRUE(axis.home());
-    EXPECT_EQ(axis.state(), AxisMode::homing);
-    EXPECT_TRUE(reaches(AxisMode::standstill));
-    EXPECT_NEAR(servo.position(), 0, 1e-9);
-    ASSERT_TRUE(axis.move_to(3, 50));
-    ASSERT_TRUE(reaches(AxisMode::standstill));
-    ASSERT_TRUE(axis.home());
-    run(5);
-    EXPECT_EQ(axis.state(), AxisMode::homing) << "bits 12 and 10 are of the homing before";
-    EXPECT_TRUE(reaches(AxisMode::standstill));
-    EXPECT_NEAR(servo.position(), 0, 1e-9);
-}
-
 TEST_F(AxisWithoutPower, stops_by_a_homing_that_failed) {
     servo.faults.fails_homing = true;
     power();

@@ -80,25 +80,6 @@ TEST_F(PlaningMachine, has_values_that_lie_behind_the_eighth_byte_in_and_out) {
     EXPECT_LT(bus.longest_response("recipe"), 10ms);
 }
 
-TEST_F(PlaningMachine, is_proven_by_both_bit_rates) {
-    std::array<TrafficRow, 3> rows{};
-    const DeviceUse use{"can0", 500'000, 2'000'000, 1, 100ms, 500us};
-    EXPECT_EQ(can::Bus<signals>::analyse_traffic(use, rows).view(), "");
-    EXPECT_EQ(rows[0].wire_time, 403us);
-    EXPECT_EQ(rows[2].wire_time, 620us);
-    for (const TrafficRow& row : rows) EXPECT_LE(row.worst, row.deadline) << row.name;
-}
-
-TEST_F(PlaningMachine, takes_no_frame_of_another_format) {
-    run(20ms);
-    can::Frame wrong{.id = 0x182, .length = 1, .stamp = clock.now()};
-    set_format(wrong, can::Format::flexible);
-    EXPECT_TRUE(plant.can.RawFarEnd::send(wrong));
-    EXPECT_EQ(plant.can.refused(), 0u);
-    run(20ms);
-    EXPECT_EQ(bus.wrong_lengths.last(), 1);
-}
-
 TEST_F(PlaningMachine, counts_frames_that_the_bus_cut_short) {
     run(20ms);
     devices.bus("wire").faults.only = can::standard(0x181);

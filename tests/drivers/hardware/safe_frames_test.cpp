@@ -1,7 +1,8 @@
 // The guardian's frames on CAN. This file stands in for the kernel: frames wait in a queue, and its bus
 // confirms each frame to the socket that sent it.
 #include "drivers/can/link.hpp"
-#include "drivers/hardware/open.hpp"
+#include "drivers/can/safe_sender.hpp"
+#include "drivers/hardware/opened.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/sleep.hpp"
 
@@ -117,12 +118,24 @@ void sleep_for(Duration time) noexcept { kernel.pass(time); }
 
 namespace {
 
+/// A bus of which there is no more than what makes it safe.
+struct SafeBus : RealDevice {
+    can::SafeSender sender{};
+    std::expected<void, Sentence> open(const DevicePlace&) override { return {}; }
+    ProvidedDevice provided(std::string_view) noexcept override { return {}; }
+    void begin_safe_frames() noexcept override { sender.begin(); }
+    void send_safe_frames() noexcept override { sender.send(can::SafeSender::Purpose::earnest); }
+    std::size_t safe_frames_left() noexcept override { return sender.left(); }
+};
+
 TEST(SafeFrames, are_all_sent_once_more_when_they_are_asked_for_again) {
     std::array<can::Frame, 2> frames{};
     frames[0].id = 0x201;
     frames[1].id = 0x202;
-    std::array<can::SafeSender, 1> buses;
-    ASSERT_TRUE(buses[0].open("can0", frames));
+    SafeBus bus;
+    ASSERT_TRUE(bus.sender.open("can0", frames));
+    std::array<OpenedDevice, 1> buses{};
+    buses[0].device = &bus;
     const std::vector<canid_t> all{0x201, 0x202};
     for (int n = 0; n < 2; ++n) {
         EXPECT_EQ(send_safe_frames(buses, 1h), 0u);
@@ -195,17 +208,19 @@ struct QueuedFrames : testing::Test {
             frames[i].id = static_cast<canid_t>(0x200 + i);
             ids.push_back(frames[i].id);
         }
-        EXPECT_TRUE(buses[0].open("can0", std::span{frames}.first(count)));
+        EXPECT_TRUE(bus.sender.open("can0", std::span{frames}.first(count)));
     }
     std::array<can::Frame, can::SafeSender::most_frames> frames{};
     std::vector<canid_t> ids{};
-    std::array<can::SafeSender, 1> buses{};
+    SafeBus bus{};
 };
 
 TEST_F(QueuedFrames, each_leave_once_though_the_bus_is_slow) {
     open(can::SafeSender::most_frames);
     for (const Duration wire_time : {540us, 1080us, 2700us, 5400us}) { // from 250 to 25 kbit/s
         kernel.wire_time = wire_time;
+        std::array<OpenedDevice, 1> buses{};
+        buses[0].device = &bus;
         EXPECT_EQ(send_safe_frames(buses, 500ms), 0u);
         EXPECT_EQ(std::exchange(kernel.sent, {}), ids);
     }
@@ -214,12 +229,12 @@ TEST_F(QueuedFrames, each_leave_once_though_the_bus_is_slow) {
 struct TwoFrames : QueuedFrames {
     TwoFrames() {
         open(2);
-        buses[0].begin();
+        bus.sender.begin();
     }
     std::size_t look(std::size_t confirms) {
-        buses[0].send(can::SafeSender::Purpose::earnest);
+        bus.sender.send(can::SafeSender::Purpose::earnest);
         kernel.confirms = confirms;
-        return buses[0].left();
+        return bus.sender.left();
     }
 };
 

@@ -1,5 +1,6 @@
 // What a guardian writes to Modbus servers of which some are dead: the live ones wait for none of them.
-#include "drivers/hardware/open.hpp"
+#include "drivers/hardware/opened.hpp"
+#include "drivers/modbus/real_server.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/sleep.hpp"
 #include "tests/drivers/modbus/raw_server.hpp"
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <optional>
 #include <set>
+#include <string>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -25,20 +27,24 @@ constexpr std::array<modbus::SafeWrite, 2> requests{
     modbus::SafeWrite{{modbus::Table::holding_registers, 3, 1}, 0},
     modbus::SafeWrite{{modbus::Table::holding_registers, 9, 1}, 0}};
 
-/// Servers over Ethernet, and one transport to each.
+/// Servers over Ethernet, and the device of each.
 template <std::size_t count>
 struct Servers {
+    modbus::SafeWrites safe;
     std::array<std::optional<RawServer>, count> raw{};
-    std::array<modbus::LibmodbusTransport, count> transports{};
-    std::array<SafeServer, count> to{};
+    std::array<std::string, count> addresses{};
+    std::array<modbus::RealServer, count> devices{};
+    std::array<OpenedDevice, count> to{};
 
-    explicit Servers(Duration answer_within, std::span<const modbus::SafeWrite> wanted = requests) {
+    explicit Servers(Duration answer_after, std::span<const modbus::SafeWrite> wanted = requests)
+        : safe{wanted, safe_word, {}, {}} {
+        const std::array bound{answer_within(answer_after)};
         for (std::size_t i = 0; i < count; ++i) {
             raw[i].emplace(RawServer::Line::tcp);
-            EXPECT_TRUE(transports[i].open(
-                {.line = modbus::Tcp{"127.0.0.1", raw[i]->port()}, .answer_within = answer_within}));
-            to[i].server = &transports[i];
-            to[i].writes = {wanted, safe_word};
+            addresses[i] = "127.0.0.1:" + std::to_string(raw[i]->port());
+            EXPECT_TRUE(devices[i].open(
+                {.address = addresses[i], .is_on_board = false, .bound = bound, .map = &safe}));
+            to[i].device = &devices[i];
         }
     }
     void all_are_silent_but(std::size_t place, Manner manner = Manner::right) {
@@ -48,7 +54,7 @@ struct Servers {
 
 TEST(SafeRegisters, reach_every_server_that_answers) {
     Servers<4> all{30s}; // no host is so busy
-    EXPECT_EQ(write_safe_registers(all.to, 1h, {}), 0u);
+    EXPECT_EQ(make_safe_requests(all.to, 1h, {}), 0u);
     for (const auto& server : all.raw) {
         const modbus::Bytes request = server->last_request();
         ASSERT_GE(request.size(), 15u);
@@ -67,7 +73,7 @@ TEST(SafeRegisters, reach_a_slow_server_beside_silent_ones) {
         const Time begin = os::Clock::monotonic();
         int kicks = 0;
         EXPECT_EQ(
-            write_safe_registers(all.to, 4s, {&kicks, [](void* of) noexcept { ++*static_cast<int*>(of); }}),
+            make_safe_requests(all.to, 4s, {&kicks, [](void* of) noexcept { ++*static_cast<int*>(of); }}),
             3u);
         EXPECT_LT(os::Clock::monotonic() - begin, 6s) << "all of them wait at the same time";
         EXPECT_TRUE(all.to[place].is_safe) << "as server " << place;
@@ -79,7 +85,7 @@ TEST(SafeRegisters, are_given_up_when_their_time_is_over) {
     Servers<2> all{6s};
     all.all_are_silent_but(1);
     const Time begin = os::Clock::monotonic();
-    EXPECT_EQ(write_safe_registers(all.to, 500ms, {}), 1u);
+    EXPECT_EQ(make_safe_requests(all.to, 500ms, {}), 1u);
     EXPECT_LT(os::Clock::monotonic() - begin, 6s) << "no server is waited for beyond it";
     EXPECT_TRUE(all.to[1].is_safe);
 }
@@ -87,7 +93,7 @@ TEST(SafeRegisters, are_given_up_when_their_time_is_over) {
 TEST(SafeRegisters, that_a_server_refuses_keep_none_behind_them_from_it) {
     Servers<1> all{30s};
     all.raw[0]->manner = Manner::exception;
-    EXPECT_EQ(write_safe_registers(all.to, 500ms, {}), 1u);
+    EXPECT_EQ(make_safe_requests(all.to, 500ms, {}), 1u);
     EXPECT_GE(all.raw[0]->requests(), 2);
     EXPECT_LT(all.raw[0]->requests(), 50) << "it rests between them";
 }
@@ -107,7 +113,7 @@ bool are_safe_without_threads() {
     setrlimit(RLIMIT_AS, &full);
     int kicks = 0;
     const std::size_t left =
-        write_safe_registers(all.to, 4s, {&kicks, [](void* of) noexcept { ++*static_cast<int*>(of); }});
+        make_safe_requests(all.to, 4s, {&kicks, [](void* of) noexcept { ++*static_cast<int*>(of); }});
     return left == 0 && kicks >= 4;
 }
 
@@ -122,14 +128,14 @@ TEST(SafeRegistersDeathTest, reach_servers_without_a_thread) {
 TEST(SilentLine, takes_no_longer_than_all_servers_may) {
     RawServer serial{RawServer::Line::serial};
     serial.manner = Manner::silent;
-    modbus::LibmodbusTransport transport;
-    EXPECT_TRUE(
-        transport.open({.line = modbus::Serial{serial.terminal(), 115200, 'N', 1}, .answer_within = 2s}));
-    std::array<SafeServer, 1> to{};
-    to[0].server = &transport;
-    to[0].writes = {requests, safe_word};
+    const std::array bound{serial_line(115200, 'N', 1), answer_within(2s)};
+    const modbus::SafeWrites safe{requests, safe_word, {}, {}};
+    modbus::RealServer device;
+    EXPECT_TRUE(device.open({.address = serial.terminal(), .bound = bound, .map = &safe}));
+    std::array<OpenedDevice, 1> to{};
+    to[0].device = &device;
     const Time begin = os::Clock::monotonic();
-    EXPECT_EQ(write_safe_registers(to, 3s, {}), 1u);
+    EXPECT_EQ(make_safe_requests(to, 3s, {}), 1u);
     // Without a bound on the line's own rest it would be another second.
     EXPECT_LT(os::Clock::monotonic() - begin, 3600ms);
 }
@@ -141,7 +147,7 @@ TEST(Restarted, server_is_told_all_again) {
     server.on_request([&server](int number, const modbus::Bytes&) {
         server.manner = number == 2 ? Manner::close : Manner::right;
     });
-    EXPECT_EQ(write_safe_registers(all.to, 30s, {}), 0u);
+    EXPECT_EQ(make_safe_requests(all.to, 30s, {}), 0u);
     EXPECT_EQ(server.last_request()[9], 3) << "its first one, once more";
 }
 
@@ -157,7 +163,7 @@ TEST(Restarted, server_is_told_all_though_it_never_stands_for_long) {
         server.manner = number % 2 == 0 ? Manner::close : Manner::right;
         if (number % 2 == 1) told.insert(request[9]);
     });
-    EXPECT_EQ(write_safe_registers(all.to, 4s, {}), 1u) << "not on one connection";
+    EXPECT_EQ(make_safe_requests(all.to, 4s, {}), 1u) << "not on one connection";
     EXPECT_EQ(told.size(), many.size());
 }
 
@@ -168,7 +174,7 @@ TEST(BusyServer, is_asked_again_when_a_request_is_lost) {
     server.on_request([&server](int number, const modbus::Bytes&) {
         server.manner = number == 1 ? Manner::silent : Manner::right;
     });
-    EXPECT_EQ(write_safe_registers(all.to, 2s, {}), 0u);
+    EXPECT_EQ(make_safe_requests(all.to, 2s, {}), 0u);
 }
 
 /// It refuses everything, or closes each connection, for 2 s.
@@ -180,7 +186,7 @@ TEST(BusyServer, is_asked_until_it_is_ready) {
         server.on_request([&server, ready, busy](int, const modbus::Bytes&) {
             server.manner = os::Clock::monotonic() < ready ? busy : Manner::right;
         });
-        EXPECT_EQ(write_safe_registers(all.to, 30s, {}), 0u);
+        EXPECT_EQ(make_safe_requests(all.to, 30s, {}), 0u);
     }
 }
 

@@ -63,7 +63,7 @@ private:
     static constexpr auto& plan = systems::plan_of<system>;
     static SystemView at_rate(std::uint32_t rate) {
         SystemView view = system.view();
-        view.wire.rate = bit_rate(rate);
+        view.wire.rate = {rate, 0};
         return view;
     }
     /// As many as it takes; all frames of the node in turns.

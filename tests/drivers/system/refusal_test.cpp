@@ -1,4 +1,5 @@
 // What a system's table may not say: one sentence each, which names the row, what is wrong and the cure.
+#include "drivers/gpio/kind.hpp"
 #include "tests/drivers/system/pair.hpp"
 
 #include <gtest/gtest.h>
@@ -23,6 +24,19 @@ template <class... Rows>
 std::string refusal(const Rows&... rows) {
     return refusal(both_nodes, good_wire, crossings(rows...));
 }
+const std::string of_level = "lane: crossing \"a.giver.level\" -> \"b.taker.level\"";
+const std::string of_sent = "lane: crossing \"a.giver.sent\" -> \"b.taker.take\"";
+
+/// The two crossings that most faults are planted in.
+template <class... Words>
+constexpr auto level(const Words&... words) {
+    return across(data("a.giver.level", "b.taker.level"), words...);
+}
+template <class... Words>
+constexpr auto sent(const Words&... words) {
+    return across(when("a.giver.sent", tell("b.taker.take")), words...);
+}
+
 TEST(SystemRefusals, a_good_one_is_accepted) {
     EXPECT_EQ(refusal(level_row, sent_row, doubled_row, presence("b", "a.giver.other_is_there")), "");
 }
@@ -36,6 +50,8 @@ TEST(SystemRefusals, of_nodes_and_wire) {
               "lane: node \"a.b\": a node's name is not empty and has no dot; rename it");
     EXPECT_EQ(refusal(both_nodes, wire("wire"), crossings(level_row)),
               "lane: wire \"wire\" has no bit rate; add bit_rate(500'000)");
+    EXPECT_EQ(refusal(both_nodes, wire("wire", bit_rate(500'000), lines(8)), crossings(level_row)),
+              "lane: wire \"wire\": lines(...) says nothing of a wire; remove it");
     EXPECT_EQ(refusal(both_nodes, wire("giver", bit_rate(500'000)), crossings(level_row)),
               "lane: node \"a\" has a component \"giver\", which is the wire's name; rename one of them");
     EXPECT_EQ(refusal(both_nodes, wire("wire", bit_rate(500'000), beats(20ms), silent_after(30ms)),
@@ -61,29 +77,23 @@ TEST(SystemRefusals, of_names) {
         refusal(presence("a", "b.taker.level")),
         "lane: presence of \"a\" -> \"b.taker.level\": \"b.taker.level\" is no input of type bool; name one");
     EXPECT_EQ(refusal(level_row, level_row),
-              "lane: crossing \"a.giver.level\" -> \"b.taker.level\" is told by the same number as "
-              "\"a.giver.level\" -> \"b.taker.level\", or stands twice; remove it, or rename a node");
+              of_level + " is told by the same number as \"a.giver.level\" -> \"b.taker.level\", or stands "
+                         "twice; remove it, or rename a node");
 }
 
 TEST(SystemRefusals, of_values) {
-    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"))),
-              "lane: crossing \"a.giver.level\" -> \"b.taker.level\" does not say how often it is told; add "
-              "every(10ms)");
-    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"), every(10ms))),
-              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": its value takes 65 bits with the one "
-              "that says whether it is valid, and a frame has 52 for values; tell it in fewer: in_bits(32, "
-              "0.001) of a number, or a part of a record");
-    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"), every(10ms), in_bits(24, 0))),
-              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": in_bits takes 1 to 56 bits and a "
-              "finite step above 0");
-    EXPECT_EQ(refusal(across(data("a.giver.level", "b.taker.level"), every(10ms),
-                             in_bits(24, std::numeric_limits<double>::infinity()))),
-              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": in_bits takes 1 to 56 bits and a "
-              "finite step above 0");
+    EXPECT_EQ(refusal(level()), of_level + " does not say how often it is told; add every(10ms)");
+    EXPECT_EQ(refusal(level(every(10ms))),
+              of_level +
+                  ": its value takes 65 bits with the one that says whether it is valid, and a frame has 52 "
+                  "for values; tell it in fewer: in_bits(32, 0.001) of a number, or a part of a record");
+    EXPECT_EQ(refusal(level(every(10ms), in_bits(24, 0))),
+              of_level + ": in_bits takes 1 to 56 bits and a finite step above 0");
+    EXPECT_EQ(refusal(level(every(10ms), in_bits(24, std::numeric_limits<double>::infinity()))),
+              of_level + ": in_bits takes 1 to 56 bits and a finite step above 0");
     EXPECT_EQ(refusal(across(buffer<4>("a.giver.level", "b.taker.level"), every(10ms))),
-              "lane: crossing \"a.giver.level\" -> \"b.taker.level\": a buffer does not cross a wire: emit "
-              "an event for each value, which crosses with when(\"...\", tell(\"...\")), or tell the last "
-              "one by data(...)");
+              of_level + ": a buffer does not cross a wire: emit an event for each value, which crosses with "
+                         "when(\"...\", tell(\"...\")), or tell the last one by data(...)");
     EXPECT_EQ(refusal(across(data("b.taker.level", "a.giver.level"), every(10ms))),
               "lane: crossing \"b.taker.level\" -> \"a.giver.level\": connection \"b.taker.level\" -> "
               "\"a.giver.level\" runs from an input to an output; exchange the two");
@@ -95,29 +105,24 @@ TEST(SystemRefusals, of_values) {
 
 TEST(SystemRefusals, of_events_and_commands) {
     EXPECT_EQ(refusal(across(when("a.giver.sent", call("b.taker.take")), at_most(1, 40ms), within(30ms))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": call(...) runs in the emitter, which is "
-              "another machine's; write tell(...)");
-    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), within(30ms))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" does not say how often it may happen; add "
-              "at_most(1, 100ms)");
-    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(3, 40ms), within(30ms))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" says at_most(3, ...): one is under way at "
-              "a time; write at_most(1, ...) with the least time between two");
-    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" does not say by when it must be served; "
-              "add within(20ms)");
-    EXPECT_EQ(
-        refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 20ms), within(30ms))),
-        "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" may follow after 20000 us, while the one before "
-        "it may still be under way for 30000 us; say within(...) no longer than at_most(1, ...)");
-    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 6ms), within(6ms))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\" is to be served within 6000 us, but 11000 "
-              "us of that are the deadlines of the activities that serve the wire and the operation; shorten "
-              "those, or say a longer within(...)");
-    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms),
-                             if_lost("b.taker.take"))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": if_lost(\"b.taker.take\") names no "
-              "operation without arguments of the emitter's node; name one");
+              of_sent + ": call(...) runs in the emitter, which is another machine's; write tell(...)");
+    EXPECT_EQ(refusal(sent(within(30ms))),
+              of_sent + " does not say how often it may happen; add at_most(1, 100ms)");
+    EXPECT_EQ(refusal(sent(at_most(3, 40ms), within(30ms))),
+              of_sent + " says at_most(3, ...): one is under way at a time; write at_most(1, ...) with the "
+                        "least time between two");
+    EXPECT_EQ(refusal(sent(at_most(1, 40ms))),
+              of_sent + " does not say by when it must be served; add within(20ms)");
+    EXPECT_EQ(refusal(sent(at_most(1, 20ms), within(30ms))),
+              of_sent + " may follow after 20000 us, while the one before it may still be under way for "
+                        "30000 us; say within(...) no longer than at_most(1, ...)");
+    EXPECT_EQ(refusal(sent(at_most(1, 6ms), within(6ms))),
+              of_sent +
+                  " is to be served within 6000 us, but 11000 us of that are the deadlines of the activities "
+                  "that serve the wire and the operation; shorten those, or say a longer within(...)");
+    EXPECT_EQ(refusal(sent(at_most(1, 40ms), within(30ms), if_lost("b.taker.take"))),
+              of_sent + ": if_lost(\"b.taker.take\") names no operation without arguments of the emitter's "
+                        "node; name one");
     EXPECT_EQ(refusal(across(uses("a.giver.doubled", "b.taker.take"), at_most(1, 100ms), within(20ms))),
               "lane: crossing \"a.giver.doubled\" -> \"b.taker.take\": \"b.taker.take\" is an operation, not "
               "a command");
@@ -127,18 +132,14 @@ TEST(SystemRefusals, of_events_and_commands) {
 }
 
 TEST(SystemRefusals, of_what_a_stranger_would_try) {
-    EXPECT_EQ(refusal(across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(30ms),
-                             in_bits(60))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": in_bits takes 1 to 56 bits and a finite "
-              "step above 0");
+    EXPECT_EQ(refusal(sent(at_most(1, 40ms), within(30ms), in_bits(60))),
+              of_sent + ": in_bits takes 1 to 56 bits and a finite step above 0");
     EXPECT_EQ(refusal(presence("b", "a.giver.other_is_there", stale_after(50ms))),
               "lane: presence of \"b\" -> \"a.giver.other_is_there\" says stale_after(...): it is written on "
               "change and grows false, not old; remove that");
-    EXPECT_EQ(
-        refusal(across(data("a.giver.level", "b.taker.level"), every(10ms), in_bits(24, 0.1), within(5ms))),
-        "lane: crossing \"a.giver.level\" -> \"b.taker.level\" is to be there within 5000 us, but 11000 us "
-        "of that are its every(...) and the deadline by which the wire is served; shorten those, or say a "
-        "longer within(...)");
+    EXPECT_EQ(refusal(level(every(10ms), in_bits(24, 0.1), within(5ms))),
+              of_level + " is to be there within 5000 us, but 11000 us of that are its every(...) and the "
+                         "deadline by which the wire is served; shorten those, or say a longer within(...)");
     EXPECT_EQ(refusal(both_nodes, wire("wire", bit_rate(500'000), beats(20ms), silent_after(41ms)),
                       crossings(level_row)),
               "lane: wire \"wire\": one lost beat must not make a node silent, and with that the next one "
@@ -173,17 +174,12 @@ TEST(SystemRefusals, of_promises_and_of_a_wire_that_is_too_slow) {
         "lane: the beat of node \"a\": a frame of it may never come through wire \"wire\", which all frames "
         "together load by 240 % at 10000 bit/s; tell less, or less often, or run the wire faster");
     constexpr auto slow = wire("wire", bit_rate(125'000), beats(20ms), silent_after(70ms));
-    EXPECT_EQ(refusal(both_nodes, slow,
-                      crossings(level_row, across(when("a.giver.sent", tell("b.taker.take")),
-                                                  at_most(1, 40ms), within(12ms)))),
-              "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": a frame of it may still wait for wire "
-              "\"wire\" when the next one follows, 6000 us later; tell less, or less often, run the wire "
-              "faster, or give it more time");
-    EXPECT_EQ(
-        refusal(level_row,
-                across(when("a.giver.sent", tell("b.taker.take")), at_most(1, 40ms), within(12ms))),
-        "lane: crossing \"a.giver.sent\" -> \"b.taker.take\": a frame of it may take 2832 us on wire "
-        "\"wire\" and has 1000 us; tell less, or less often, run the wire faster, or give it more time");
+    EXPECT_EQ(refusal(both_nodes, slow, crossings(level_row, sent(at_most(1, 40ms), within(12ms)))),
+              of_sent + ": a frame of it may still wait for wire \"wire\" when the next one follows, 6000 us "
+                        "later; tell less, or less often, run the wire faster, or give it more time");
+    EXPECT_EQ(refusal(level_row, sent(at_most(1, 40ms), within(12ms))),
+              of_sent + ": a frame of it may take 2832 us on wire \"wire\" and has 1000 us; tell less, or "
+                        "less often, run the wire faster, or give it more time");
 }
 
 } // namespace

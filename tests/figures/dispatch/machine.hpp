@@ -61,7 +61,7 @@ struct Sender {
     }
 };
 
-/// The machine, configured and started, in virtual time: every engine is run by who measures.
+/// The machine, configured and started: every engine is run by who measures.
 struct Measured {
     Emitter* emitter = nullptr;
     std::array<Sender*, senders> sender{};
@@ -69,6 +69,7 @@ struct Measured {
     Engine* far = nullptr;     ///< of the listeners; it is woken
     Engine* clocked = nullptr; ///< of one more listener; it is periodic
 };
-Measured& measured();
+Measured& measured(); ///< in virtual time
+Measured& measured_with_stamps();
 
 } // namespace tappet::figures

@@ -54,7 +54,7 @@ struct Crowd {
     std::vector<FunctionTiming> functions;
     std::vector<Engine> engines;
 
-    Crowd(os::Clock::Kind kind, std::size_t components, std::size_t each)
+    Crowd(os::Clock::Kind kind, std::size_t components, std::size_t each, const EnginePlan& row = {})
         : clock{kind},
           idle(components),
           parts(components),
@@ -66,7 +66,7 @@ struct Crowd {
         }
         for (std::size_t e = 0; e < engines.size(); ++e) {
             const std::size_t first = e * each, count = std::min(each, components - first);
-            EnginePlan plan;
+            EnginePlan plan = row;
             plan.name = "crowd";
             plan.activity = static_cast<std::uint32_t>(e);
             plan.deadline = 1s;
@@ -105,8 +105,9 @@ void call_crowd(std::size_t times) {
 }
 
 /// One of them in real time, woken instead of waiting for its period.
+template <const EnginePlan& row>
 void step_with_stamps(std::size_t times) {
-    static Crowd crowd{os::Clock::Kind::real, 1, 1};
+    static Crowd crowd{os::Clock::Kind::real, 1, 1, row};
     Engine& engine = crowd.engines.front();
     const RunsActivity here{engine.plan().activity};
     for (std::size_t i = 0; i < times; ++i) {
@@ -115,6 +116,14 @@ void step_with_stamps(std::size_t times) {
         engine.run(true);
     }
 }
+constexpr EnginePlan plan_of(Duration budget, Duration at_most_per) {
+    EnginePlan plan;
+    plan.budget = budget;
+    plan.at_most_n = 4;
+    plan.at_most_per = at_most_per;
+    return plan;
+}
+constexpr EnginePlan plain = plan_of(0ns, 0ns), promised = plan_of(0ns, 1ms), over_budget = plan_of(1ns, 1us);
 
 constexpr auto without = os::Clock::Kind::virtual_time;
 constexpr auto with = os::Clock::Kind::real;
@@ -135,17 +144,22 @@ Group crowd_of(std::string name) {
 } // namespace
 
 void add_steps(std::vector<Group>& groups) {
-    groups.push_back({"dispatch.step.empty",
-                      "a complete engine step of one component without pending work",
-                      "thesis 5.3",
-                      64,
-                      {{"step, time stamps excluded", Standing::ours, &step_without_stamps},
-                       {"step, with its two time stamps", Standing::ours, &step_with_stamps},
-                       {"two calls through a function pointer", Standing::floor, &two_calls},
-                       {"two readings of the clock", Standing::floor, &read_clock<2>}}});
+    constexpr const char* with_stamps = "step, with its two time stamps";
+    groups.push_back(
+        {"dispatch.step.empty",
+         "a complete engine step of one component without pending work",
+         "thesis 5.3",
+         64,
+         {{"step, time stamps excluded", Standing::ours, &step_without_stamps},
+          {with_stamps, Standing::ours, &step_with_stamps<plain>},
+          {"step, with its two time stamps and at_most", Standing::ours, &step_with_stamps<promised>},
+          {"step, with its two time stamps, after one over its budget", Standing::ours,
+           &step_with_stamps<over_budget>},
+          {"two calls through a function pointer", Standing::floor, &two_calls},
+          {"two readings of the clock", Standing::floor, &read_clock<2>}}});
     groups.back().goals.push_back(
         {"empty cycle with its time stamps <= 0.3 x two readings of the clock (13 ns where they take 44)",
-         "step, with its two time stamps",
+         with_stamps,
          0.3,
          {"two readings of the clock"}});
     groups.back().goals.push_back(

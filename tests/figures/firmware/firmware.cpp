@@ -56,8 +56,10 @@ void tell(const nlohmann::json& summary, Result& result) {
                               {{"resident", Standing::ours, single(resident)},
                                {"static: the machine with its stacks", Standing::ours,
                                 single(number("static_memory_bytes") / megabyte)}}});
-    result.goals.push_back(
-        {"firmware of the loom: resident memory <= 4 MB", 4, resident, "MB", "firmware.memory: resident"});
+    result.goals.push_back({"firmware of the loom: resident memory <= 3.5 MB", 3.5, resident, "MB",
+                            "firmware.memory: resident"});
+    result.goals.push_back({"firmware of the loom: static memory <= 1.5 MB", 1.5,
+                            number("static_memory_bytes") / megabyte, "MB", "firmware.memory: static"});
     if (summary.contains("start_to_armed_ms")) {
         const double armed = number("start_to_armed_ms");
         result.figures.push_back({"firmware.start",
@@ -103,7 +105,7 @@ int main(int argc, char** argv) {
           {"station of the woodworking lane, with its end of the wire", Standing::ours,
            single(size_of(TAPPET_STATION))},
           {"conveyor of the lane, likewise", Standing::ours, single(size_of(TAPPET_CONVEYOR))}}});
-    result.goals.push_back({"firmware of the loom: <= 1 MB stripped", 1, size, "MB", "firmware.size"});
+    result.goals.push_back({"firmware of the loom: <= 2 MB stripped", 2, size, "MB", "firmware.size"});
     if (!options.only.empty() && std::string{"firmware.size"}.contains(options.only)) {
         result.notes.emplace_back("only the size was asked for");
     } else if (options.setting == "smoke") {

@@ -30,8 +30,7 @@ public:
     [[nodiscard]] can::Counters counters() const noexcept TAPPET_REALTIME override { return {}; }
     void purge() noexcept TAPPET_REALTIME override {}
     can::Restart restart() noexcept override { return can::Restart::not_needed; }
-    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
-    void set_listener(Listener, void*) noexcept override {} // its engine is run by who measures
+    [[nodiscard]] bool wakes(os::Waiter&) noexcept override { return true; }
 
     // ---- the other side
 

@@ -239,29 +239,6 @@ TEST_F(ExecutionEngine, counts_wakes_beyond_the_promise_of_the_row) {
     EXPECT_EQ(statistics().wakes_too_many, 1u);
 }
 
-TEST_F(ExecutionEngine, asks_for_a_stop_when_a_guarded_input_that_was_good_becomes_stale) {
-    Flow flow = Flow::never_written;
-    PortOperations port{};
-    port.flow = [](void* at) noexcept TAPPET_REALTIME { return *static_cast<Flow*>(at); };
-    std::array guarded{GuardedInput{.input = &flow, .port = &port, .connection = 17, .stops = true}};
-    plan.guarded = guarded;
-    begin();
-    next_cycle();
-    flow = Flow::stale;
-    next_cycle();
-    EXPECT_TRUE(stops.empty()) << "it never was good: the machine is still starting";
-    flow = Flow::fresh;
-    next_cycle();
-    flow = Flow::old;
-    next_cycle();
-    EXPECT_TRUE(stops.empty());
-    flow = Flow::stale;
-    next_cycle();
-    EXPECT_EQ(stops, (Stops{{StopReason::stale_input, 17}})) << "the connection's row";
-    next_cycle();
-    EXPECT_EQ(stops.size(), 1u) << "asked once for one loss";
-}
-
 /// A value that a writer elsewhere keeps good for a while, without waking anybody.
 struct Aging {
     const os::Clock* clock = nullptr;
@@ -329,6 +306,36 @@ TEST_F(ExecutionEngine, compares_the_processor_time_of_a_cycle_with_the_budget_o
     EXPECT_EQ(statistics().over_claim, 3u);
 }
 
+TEST_F(ExecutionEngine, measures_each_claim_at_first_and_then_one_of_many) {
+    plan.budget = 100us;
+    workers[0].load = 150us;
+    begin();
+    const auto measured = [this](std::uint32_t cycles) {
+        const std::uint64_t before = statistics().measured_claims;
+        for (std::uint32_t n = 0; n < cycles; ++n) next_cycle();
+        EXPECT_EQ(statistics().over_claim, statistics().measured_claims) << "each takes too much";
+        return statistics().measured_claims - before;
+    };
+    EXPECT_EQ(measured(2), 0u) << "the second cycle tells that a budget is in doubt";
+    EXPECT_EQ(measured(Engine::measured_at_first), Engine::measured_at_first);
+    const std::uint64_t of_many = measured(100 * Engine::measured_one_of);
+    EXPECT_GT(of_many, 50u);
+    EXPECT_LT(of_many, 200u);
+    engine.measure_as_at_first();
+    EXPECT_EQ(measured(Engine::measured_at_first), Engine::measured_at_first);
+}
+
+TEST_F(ExecutionEngine, finds_what_takes_too_much_at_regular_times) {
+    plan.budget = 100us;
+    begin();
+    for (std::uint32_t n = 0; n < 200 * Engine::measured_one_of; ++n) {
+        workers[0].load = n % (2 * Engine::measured_one_of) == 7 ? 150us : 50us;
+        next_cycle();
+    }
+    EXPECT_GT(statistics().over_claim, 0u);
+    EXPECT_EQ(statistics().most_processor, 150us);
+}
+
 TEST_F(ExecutionEngine, compares_what_a_sporadic_activity_uses_within_the_time_of_at_most) {
     plan.budget = 100us;
     plan.periodic = false;
@@ -349,6 +356,25 @@ TEST_F(ExecutionEngine, compares_what_a_sporadic_activity_uses_within_the_time_o
     wakes(7ms, {250us, 25us, 26us, 100us});
     EXPECT_EQ(statistics().over_claim, 1u) << "once for one time of at_most";
     EXPECT_EQ(statistics().most_processor, 401us);
+}
+
+TEST_F(ExecutionEngine, measures_at_once_when_somebody_wants_to_know_though_a_claim_has_begun) {
+    plan.budget = 100us;
+    plan.periodic = false;
+    plan.at_most_n = 3;
+    plan.at_most_per = 10ms;
+    begin();
+    workers[0].load = 400us;
+    for (std::uint32_t n = 0; n < Engine::measured_at_first + 3; ++n) {
+        clock.advance_to(clock.now() + 10ms);
+        engine.run(true);
+    }
+    const std::uint64_t before = statistics().over_claim;
+    engine.run(true); // still within a claim that is not measured
+    EXPECT_EQ(statistics().over_claim, before);
+    engine.measure_as_at_first();
+    engine.run(true);
+    EXPECT_EQ(statistics().over_claim, before + 1);
 }
 
 TEST_F(ExecutionEngine, shows_an_even_generation_between_two_cycles) {

@@ -27,7 +27,6 @@ struct Probe {
     Property<Duration> filter{2ms};
     Timer silence;
 
-    std::vector<std::string> calls;
     void move(double by, int mode) noexcept TAPPET_REALTIME { by_ = by, mode_ = mode; }
     void mixed(std::uint8_t a, double b, std::int16_t c) noexcept TAPPET_REALTIME { mixed_ = a + b + c; }
     void home() noexcept TAPPET_REALTIME { homed_ = true; }

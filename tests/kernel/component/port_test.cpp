@@ -1,5 +1,6 @@
-// Ports: what reading an input tells, with both ends in one activity and across two, and what a stale value
-// becomes.
+// Ports: what reading an input tells, with both ends in one activity and across two. What a row gives in
+// place of a value, and in what order buffers are read: tests/kernel/machine/instance/flow_test.cpp, for any
+// type.
 #include "tests/kernel/component/port_rig.hpp"
 #include "tests/kernel/exchange/placed.hpp"
 
@@ -65,8 +66,6 @@ TEST_P(Ports, call_a_value_stale_that_is_of_a_far_future) {
     EXPECT_EQ(input.read(value), Flow::stale);
 }
 
-RowValue number(double value) { return {.given = true, .number = value}; }
-
 TEST_P(Ports, keep_a_value_stale_that_is_of_a_far_future) {
     port.set_policy(&input, {.max_age = 4ms});
     output.write(9.0, at_ns(0) + 5s);
@@ -102,30 +101,6 @@ TEST_P(Ports, take_the_time_of_a_value_for_its_own_that_another_one_claimed_befo
     output.write(10.0);
     EXPECT_EQ(input.read(value), Flow::fresh);
     EXPECT_EQ(input.stamp(), at_ns(0) + 100ms);
-}
-
-TEST_P(Ports, give_the_substitute_for_a_stale_or_a_never_written_value) {
-    port.set_policy(&input, {.max_age = 4ms, .when_stale = WhenStale::substitute, .substitute = number(-5)});
-    EXPECT_EQ(read(), (Read{Flow::never_written, -5.0}));
-    output.write(7.0);
-    EXPECT_EQ(input.get(), 7.0);
-    now = at_ns(0) + 5ms;
-    EXPECT_EQ(read(), (Read{Flow::stale, -5.0}));
-    output.write(8.0);
-    EXPECT_EQ(read(), (Read{Flow::fresh, 8.0}));
-}
-
-TEST_P(Ports, give_what_the_row_gives_before_the_first_value_and_the_substitute_only_when_it_is_stale) {
-    static const double constant = 11;
-    port.set_policy(&input,
-                    {.max_age = 4ms,
-                     .when_stale = WhenStale::substitute,
-                     .substitute = number(-5),
-                     .before_first = {.given = true, .constant = &constant, .type = type_id<double>}});
-    EXPECT_EQ(read(), (Read{Flow::never_written, 11.0}));
-    output.write(7.0);
-    now = at_ns(0) + 5ms;
-    EXPECT_EQ(read(), (Read{Flow::stale, -5.0}));
 }
 
 TEST_P(Ports, never_call_a_value_stale_whose_row_states_no_age) {
@@ -187,15 +162,6 @@ class BufferPort : public testing::TestWithParam<bool> {};
 
 INSTANTIATE_TEST_SUITE_P(, BufferPort, testing::Bool(), topology);
 
-TEST_P(BufferPort, gives_every_value_in_order) {
-    BufferOutput<int> output;
-    BufferInput<int> input;
-    BufferRow row{GetParam(), output, input, 4, Overflow::reject};
-    for (int value : {1, 2, 3}) EXPECT_TRUE(output.push(value));
-    EXPECT_EQ(drain(input), (std::vector{1, 2, 3}));
-    EXPECT_EQ(drain(input), std::vector<int>{});
-}
-
 TEST_P(BufferPort, rejects_and_counts_what_has_no_room) {
     BufferOutput<int> output;
     BufferInput<int> input;
@@ -205,19 +171,6 @@ TEST_P(BufferPort, rejects_and_counts_what_has_no_room) {
     EXPECT_FALSE(output.push(3));
     EXPECT_EQ(row.lost(), 1u);
     EXPECT_EQ(drain(input), (std::vector{1, 2}));
-}
-
-TEST_P(BufferPort, keeps_the_writers_of_one_input_apart) {
-    BufferOutput<int> one, other;
-    BufferInput<int> input;
-    BufferRow first{GetParam(), one, input, 2, Overflow::reject};
-    BufferRow second{GetParam(), other, input, 2, Overflow::reject};
-    EXPECT_TRUE(other.push(20));
-    EXPECT_TRUE(one.push(10));
-    EXPECT_TRUE(one.push(11));
-    EXPECT_FALSE(one.push(12)) << "full, and the other writer's row is not";
-    EXPECT_TRUE(other.push(21));
-    EXPECT_EQ(drain(input), (std::vector{10, 11, 20, 21}));
 }
 
 TEST_P(BufferPort, gives_every_reader_of_one_output_every_value) {

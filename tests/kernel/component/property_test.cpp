@@ -1,10 +1,8 @@
 // Properties, their bags and their transactions (thesis 4.7, 4.7.1): every value type, the names in nested
 // bags, and several values changed as one, or not at all.
 #include "kernel/base/number.hpp"
-#include "kernel/component/component.hpp"
-#include "kernel/component/property_transaction.hpp"
+#include "tests/kernel/component/every_property.hpp"
 
-#include <Eigen/Core>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,64 +15,7 @@ namespace {
 
 using namespace tappet;
 
-enum class Mode : std::uint8_t { idle, slow, fast };
-
-struct Pid {
-    Property<double> p{1.0};
-    Property<double> i{0.5};
-    static constexpr auto interface() {
-        return facets(property<&Pid::p>("p", "N/deg", "proportional", range(0, 10)),
-                      property<&Pid::i>("i", "N/(deg s)", "integral", range(0, 10)));
-    }
-};
-
-struct Limits {
-    Property<double> low{-1.0};
-    Property<double> high{1.0};
-    static constexpr auto interface() {
-        return facets(property<&Limits::low>("low", "N", "least force"),
-                      property<&Limits::high>("high", "N", "greatest force"));
-    }
-};
-
-struct Arm {
-    Event<> moved;
-    Pid roll, pitch;
-    Limits limits;
-    Property<double> gain{1.5};
-    Property<float> scale{2.0f};
-    Property<std::int64_t> steps{3};
-    Property<std::int8_t> small{4};
-    Property<std::uint16_t> word{5};
-    Property<bool> reversed{true};
-    Property<Duration> filter{2ms};
-    Property<Text<8>> label{"left"};
-    Property<Mode> mode{Mode::slow};
-    Property<Sequence<double, 4>> offsets;
-    Property<Eigen::Vector3d> axis{Eigen::Vector3d{0, 0, 1}};
-
-    int changes = 0;
-    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
-        if (proposal.of(limits.low) > proposal.of(limits.high)) return Sentence{"low is above high"};
-        return {};
-    }
-    void changed() noexcept TAPPET_REALTIME { ++changes; }
-
-    static constexpr auto interface() {
-        return facets(
-            event<&Arm::moved>("moved", "it did"),
-            bag("gains", "of both axes", bag<&Arm::roll>("roll", "of the wrist"),
-                bag<&Arm::pitch>("pitch", "of the elbow"), property<&Arm::gain>("all", "", "of all")),
-            bag<&Arm::limits>("limits", "of the force"), property<&Arm::scale>("scale", "", "of the drawing"),
-            property<&Arm::steps>("steps", "", "per turn"), property<&Arm::small>("small", "", "a byte"),
-            property<&Arm::word>("word", "", "two bytes"),
-            property<&Arm::reversed>("reversed", "", "mounted so"),
-            property<&Arm::filter>("filter", "s", "time constant", range(0, 0.5)),
-            property<&Arm::label>("label", "", "on the plate"), property<&Arm::mode>("mode", "", "of moving"),
-            property<&Arm::offsets>("offsets", "mm", "of the joints", range(-5, 5)),
-            property<&Arm::axis>("axis", "", "of the tool", range(-1, 1)));
-    }
-};
+using every::Arm;
 
 const ComponentType& type = component_type<Arm>;
 
@@ -110,10 +51,11 @@ TEST(Bag, gives_each_property_in_it_its_whole_name) {
     std::vector<std::string> names;
     for (const Facet& each : type.facets) names.emplace_back(each.name);
     const std::vector<std::string> expected{
-        "moved",         "gains",         "gains.roll", "gains.roll.p", "gains.roll.i", "gains.pitch",
+        "angle",         "gains",         "gains.roll", "gains.roll.p", "gains.roll.i", "gains.pitch",
         "gains.pitch.p", "gains.pitch.i", "gains.all",  "limits",       "limits.low",   "limits.high",
-        "scale",         "steps",         "small",      "word",         "reversed",     "filter",
-        "label",         "mode",          "offsets",    "axis"};
+        "scale",         "small",         "word",       "steps",        "huge",         "serial",
+        "reversed",      "filter",        "label",      "side",         "code",         "offsets",
+        "marks",         "axis",          "turn"};
     EXPECT_EQ(names, expected);
 }
 
@@ -148,7 +90,7 @@ TEST_F(Proposed, values_of_every_type_arrive_together) {
     set("reversed", {.kind = Kind::boolean, .integer = 0});
     set("filter", {.kind = Kind::duration, .integer = 5'000'000});
     set("label", {.kind = Kind::text, .text = "right"});
-    set("mode", {.kind = Kind::enumeration, .integer = 2});
+    set("side", {.kind = Kind::enumeration, .integer = 2});
     set("offsets", list_setting(list));
     set("axis", list_setting(list));
     EXPECT_EQ(arm.roll.p.get(), 1.0) << "nothing takes effect before it is committed";
@@ -163,7 +105,7 @@ TEST_F(Proposed, values_of_every_type_arrive_together) {
     EXPECT_FALSE(arm.reversed.get());
     EXPECT_EQ(arm.filter.get(), 5ms);
     EXPECT_EQ(arm.label.get().view(), "right");
-    EXPECT_EQ(arm.mode.get(), Mode::fast);
+    EXPECT_EQ(arm.side.get(), every::Side::both);
     ASSERT_EQ(arm.offsets.get().size(), 3u);
     EXPECT_EQ(arm.offsets.get()[1], -0.5);
     EXPECT_EQ(arm.axis.get(), (Eigen::Vector3d{0.5, -0.5, 1.0}));
@@ -259,7 +201,7 @@ TEST(PropertyWithoutRange, is_a_number_all_the_same_as_is_each_of_its_elements) 
 }
 
 TEST_F(Proposed, transaction_is_for_properties_only) {
-    EXPECT_EQ(transaction.change(index_of("moved")), nullptr);
+    EXPECT_EQ(transaction.change(index_of("angle")), nullptr);
     EXPECT_EQ(transaction.change(index_of("gains")), nullptr);
 }
 
@@ -279,7 +221,7 @@ TEST_F(Proposed, capture_takes_every_property_as_it_is) {
     arm.label.set("both");
     transaction.change_all();
     transaction.capture();
-    EXPECT_EQ(transaction.values().size(), 17u);
+    EXPECT_EQ(transaction.values().size(), 22u);
     Arm other;
     PropertyTransaction copy;
     copy.begin("other", type, &other);

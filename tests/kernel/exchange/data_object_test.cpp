@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -63,16 +61,6 @@ TEST(DataObject, serves_readers_independently) {
     EXPECT_TRUE(object.read(a, generation_a));
     EXPECT_TRUE(object.read(b, generation_b));
     EXPECT_EQ(a, b);
-}
-
-TEST(DataObject, carries_fixed_size_eigen) {
-    DataObject<Eigen::Matrix<double, 6, 1>> object;
-    const Eigen::Matrix<double, 6, 1> value{1, 2, 3, 4, 5, 6};
-    object.write(value);
-    Eigen::Matrix<double, 6, 1> got = got.Zero();
-    std::uint64_t generation = 0;
-    ASSERT_TRUE(object.read(got, generation));
-    EXPECT_EQ(got, value);
 }
 
 TEST(DataObject, keeps_the_writers_private_line_and_the_published_one_apart) {

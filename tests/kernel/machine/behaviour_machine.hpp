@@ -24,9 +24,11 @@ struct Oven : Clocked {
     std::uint64_t steps = 0;
     double from_deg = 0;
     bool trembles = false; ///< about where it is, and does not turn
+    Duration takes{};      ///< in each step
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         ++steps;
+        if (takes != Duration{}) clock->consume(takes);
         const double goes =
             trembles ? static_cast<double>(steps % 2) * 0.01 : static_cast<double>(steps % 36 * 10);
         angle_deg.write(from_deg + goes);

@@ -29,11 +29,11 @@ struct InRealTime : testing::Test {
     }
 };
 
-template <const auto& table> struct RealRig {
+template <const auto& table, const Board& board = real_board> struct RealRig {
     os::Clock clock{os::Clock::Kind::real};
-    MachineInstance instance{AtRunTime<table, real_board>::machine(), clock};
+    MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     RealWorld world{instance};
-    os::ArmingReport report{std::span{real_board.only_warned.begin(), real_board.only_warned.end()}};
+    os::ArmingReport report{std::span{board.only_warned.begin(), board.only_warned.end()}};
 
     std::optional<Armed> arm() {
         if (!instance.configure({})) return {};

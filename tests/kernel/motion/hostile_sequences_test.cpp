@@ -54,6 +54,10 @@ TEST_F(Sequences, are_forgotten_by_filters_of_second_order) {
             for (int k = 0; k < long_one; ++k) ASSERT_TRUE(is_number(filter(value()))) << k;
             for (int k = 0; k < 4 * settles; ++k) ASSERT_TRUE(is_number(filter(1.0))) << k;
             EXPECT_NEAR(filter(1.0), 1.0, 1e-9);
+            Biquad untouched = filter;
+            untouched.reset();
+            EXPECT_NEAR(untouched(1.0), 1.0, 1e-9);
+            for (int k = 0; k < 20; ++k) EXPECT_NEAR(filter(2.0), untouched(2.0), 1e-9) << "it filters";
         }
 }
 
@@ -235,7 +239,16 @@ TEST_F(Controllers, put_out_numbers_between_their_limits_whatever_is_done_with_t
     }
 }
 
-/// The heater of a plant of first order is at its set point again, as it is in the test of one sample.
+TEST_F(Controllers, without_limits_are_begun_anew_by_somebodys_hand) {
+    for (int n = 0; n < sequences; ++n) {
+        Pid pid{{.proportional = 2.0, .integral = 5.0, .derivative = 0.1}};
+        for (int k = 0; k < long_one; ++k) ASSERT_TRUE(is_number(pid(1.0, value(), usual)));
+        pid.track(1.0, 1.0, 3.0);
+        EXPECT_NEAR(pid(1.0, 1.0, usual), 3.0, 1e-9);
+    }
+}
+
+/// The heater of a plant of first order is at its set point again.
 TEST_F(Controllers, forget_what_was_measured_and_wanted_in_any_order) {
     for (int n = 0; n < sequences / 4; ++n)
         for (const double tracking_s : {0.0, 0.05})

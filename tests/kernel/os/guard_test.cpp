@@ -3,12 +3,16 @@
 #include "kernel/os/guard.hpp"
 
 #include "kernel/os/sleep.hpp"
+#include "kernel/os/thread.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
 
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -127,6 +131,57 @@ TEST(Guard, tells_a_crash_before_the_process_ends_and_by_what_thread) {
         });
     EXPECT_EQ(code, 128 + SIGKILL) << "the crashed thread sleeps until the guardian ends it";
 }
+
+/// Uses so many bytes of its stack in frames of that size, writes to the lowest of each, and tells the
+/// compiler so.
+template <std::size_t frame>
+[[gnu::noinline]] int use_stack(std::size_t bytes, const volatile std::byte* above) {
+    volatile std::byte room[frame];
+    room[0] = above == nullptr ? std::byte{1} : above[0];
+    return bytes <= frame ? 1 : use_stack<frame>(bytes - frame, room) + static_cast<int>(room[0]);
+}
+
+class StackUsedUp : public testing::TestWithParam<int (*)(std::size_t, const volatile std::byte*)> {};
+
+TEST_P(StackUsedUp, is_told_and_nothing_below_it_was_written) {
+    static ParamType use;
+    use = GetParam();
+    struct Below {
+        alignas(4096) std::array<std::byte, 16 * 4096> neighbour{};
+        std::array<std::byte, 64 * 1024> stack{};
+    };
+    static Below* memory;
+    memory = static_cast<Below*>(
+        ::mmap(nullptr, sizeof(Below), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+    const int code = split(
+        [](Guard& guard) {
+            if (arm(guard) != 0) return 98;
+            static const ThreadPlan plan{.name = "deep", .stack = memory->stack, .body = [](void*) noexcept {
+                                             use(sizeof memory->stack, nullptr);
+                                         }};
+            Thread thread;
+            if (!thread.start(plan)) return 97;
+            thread.join();
+            return 96;
+        },
+        [](Guard& guard) {
+            if (next(guard) != Seen::crash) return 94;
+            const Sentence told = guard.block().crash.describe();
+            if (told.view().find("in thread \"deep\", whose stack of 65536 bytes is used up") ==
+                std::string_view::npos)
+                return 93;
+            if (std::ranges::any_of(memory->neighbour, [](std::byte each) { return each != std::byte{}; }))
+                return 92;
+            guard.kill();
+            return guard.await_end(1h) ? guard.exit_code() : 91;
+        });
+    EXPECT_EQ(code, 128 + SIGKILL);
+    ::munmap(memory, sizeof(Below));
+}
+constexpr const char* frames[] = {"a_quarter_of_a_page", "nine_pages", "nearly_the_whole_stack"};
+INSTANTIATE_TEST_SUITE_P(in_frames_of, StackUsedUp,
+                         testing::Values(&use_stack<1024>, &use_stack<9 * 4096>, &use_stack<60 * 1024>),
+                         [](const auto& each) { return frames[each.index]; });
 
 TEST(Guard, a_crash_that_nobody_acts_on_ends_the_process_all_the_same) {
     const int code = split(

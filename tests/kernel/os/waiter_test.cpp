@@ -52,6 +52,36 @@ TEST(Waiter, returns_for_a_device_that_is_ready) {
     EXPECT_TRUE(waiter.wait(never));
 }
 
+TEST(Waiter, does_not_return_for_a_ready_device_that_it_does_not_heed) {
+    const ReadyDevice device, other;
+    Waiter waiter;
+    ASSERT_TRUE(waiter.watch(device.ends[0]));
+    waiter.heed(device.ends[0], false);
+    EXPECT_FALSE(waiter.wait(Clock::monotonic() + 1ms));
+    ASSERT_TRUE(waiter.watch(other.ends[0]));
+    EXPECT_TRUE(waiter.wait(never)) << "the others are watched as before";
+    waiter.heed(other.ends[0], false);
+    EXPECT_FALSE(waiter.wait(Clock::monotonic() + 1ms));
+    waiter.heed(device.ends[0], true);
+    EXPECT_TRUE(waiter.wait(never));
+}
+
+TEST(Waiter, does_not_return_for_what_a_driver_watches_that_is_not_served) {
+    const ReadyDevice first, second;
+    Waiter waiter;
+    waiter.watch_for(0);
+    ASSERT_TRUE(waiter.watch(first.ends[0]));
+    waiter.serve(0, false);
+    EXPECT_FALSE(waiter.wait(Clock::monotonic() + 1ms));
+    waiter.watch_for(7);
+    ASSERT_TRUE(waiter.watch(second.ends[0]));
+    EXPECT_TRUE(waiter.wait(never)) << "another driver's";
+    waiter.serve(7, false);
+    EXPECT_FALSE(waiter.wait(Clock::monotonic() + 1ms));
+    waiter.serve(0, true);
+    EXPECT_TRUE(waiter.wait(never));
+}
+
 TEST(Waiter, does_not_return_for_a_ready_device_while_it_waits_for_a_wake_alone) {
     const ReadyDevice device;
     Waiter waiter;

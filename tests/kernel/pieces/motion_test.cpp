@@ -122,6 +122,18 @@ TEST(Lead, takes_no_speed_from_two_samples_at_almost_one_time) {
     EXPECT_NEAR(belt.per_s(), 500.0, 1e-6) << "samples that come faster from now on are believed soon";
 }
 
+TEST(Lead, forgets_one_sample_by_the_next_two) {
+    for (const double one : {no_number, infinite, -infinite, 1.7e308, -1.7e308, 1e306, 1e-310}) {
+        Lead belt{100ms};
+        Time now{};
+        for (const double value : {1.0, 1.0, one}) belt.sample(value, now += 1ms);
+        EXPECT_TRUE(!belt.good(now) || is_number(belt.at(now))) << one;
+        for (int n = 0; n < 2; ++n) belt.sample(1.0, now += 1ms);
+        EXPECT_TRUE(belt.good(now)) << one;
+        EXPECT_EQ(belt.at(now + 5ms), 1.0) << one;
+    }
+}
+
 TEST(Lead, begins_anew_after_what_is_no_number_or_older) {
     Lead belt{100ms};
     belt.sample(0.0, at(0ms));

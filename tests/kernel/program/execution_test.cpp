@@ -58,17 +58,6 @@ TEST(A_program, that_yields_goes_on_in_the_next_step) {
     }
 }
 
-TEST(Arcs, are_followed_in_their_order) {
-    Counting table;
-    const DataOffset yes = table.value(true);
-    const DataOffset no = table.value(false);
-    table.node({}).arc(end_node, table.condition({}, no)).arc(1, table.condition({}, yes)).arc(end_node);
-    table.node({table.counts()}).arc(end_node);
-    Running running{table};
-    EXPECT_EQ(running.run(), ProgramStatus::stopped);
-    EXPECT_EQ(running.get<ScriptInt>(table.count), 1);
-}
-
 TEST(A_time_out, opens_its_arc_when_its_time_has_passed_since_the_node_was_entered) {
     TableBuilder table;
     const DataOffset after = table.value(Duration{20ms});
@@ -127,16 +116,6 @@ TEST(An_action_that_fails, puts_the_program_in_error_at_its_node) {
     EXPECT_FALSE(running.execution.start()) << "an error is left by stop or reset";
     EXPECT_TRUE(running.execution.stop());
     EXPECT_EQ(running.execution.status(), ProgramStatus::stopped);
-}
-
-TEST(An_action_that_fails, goes_where_its_node_says) {
-    Counting table;
-    table.node({fail_instruction()}, 1).arc(end_node);
-    table.node({table.counts()}).arc(end_node);
-    Running running{table};
-    EXPECT_EQ(running.run(), ProgramStatus::stopped);
-    EXPECT_EQ(running.get<ScriptInt>(table.count), 1);
-    EXPECT_EQ(running.execution.failures(), 0u);
 }
 
 TEST(A_condition_that_fails, is_a_failure_of_its_node) {

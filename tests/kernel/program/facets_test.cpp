@@ -1,8 +1,6 @@
-// Programs act on components through their facets (thesis 5.1.4, 5.1.5): ports, buffers, events, operations,
-// methods, the own commands and those of a peer, properties.
+// Programs act on components through their facets (thesis 5.1.4, 5.1.5): ports, buffers, events, properties.
+// Operations, methods and commands are called by the scripts of tests/kernel/script/programs_test.cpp.
 #include "tests/kernel/program/fixture.hpp"
-
-#include "kernel/activity/command_processor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,28 +17,12 @@ struct Arm {
     Event<int, double> moved;
     Property<double> speed{1.0};
     Property<std::int32_t> axes{6};
-    double told = 0;
-    int goal = 0;
-    bool arrived = false;
-    bool broken = false;
     int changes = 0;
-    int asked = 0;
 
-    void tell(double what) noexcept TAPPET_REALTIME { told = what; }
-    double twice(double value, std::int16_t times) noexcept TAPPET_REALTIME { return 2 * value + times; }
-    bool enable(bool how) noexcept TAPPET_REALTIME { return how; }
-    bool move_to(int where, double& way) noexcept TAPPET_REALTIME {
-        goal = where;
-        way = 0;
-        return where >= 0;
-    }
-    CommandProgress moved_to(int where, double& way) noexcept TAPPET_REALTIME {
-        ++asked;
-        if (broken) return CommandProgress::failed;
-        if (!arrived) return CommandProgress::executing;
-        way = where / 2.0;
-        return CommandProgress::done;
-    }
+    void tell(double) noexcept TAPPET_REALTIME {}
+    double twice(double value) noexcept TAPPET_REALTIME { return 2 * value; }
+    bool move_to(int) noexcept TAPPET_REALTIME { return true; }
+    CommandProgress moved_to(int) noexcept TAPPET_REALTIME { return CommandProgress::done; }
     Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
         return proposal.of(speed) == 7 ? Sentence{"not seven"} : Sentence{};
     }
@@ -54,7 +36,6 @@ struct Arm {
             property<&Arm::speed>("speed", "", "of the arm", range(0, 10)),
             property<&Arm::axes>("axes", "", "how many there are"),
             operation<&Arm::tell>("tell", "hears a number"), method<&Arm::twice>("twice", "doubles a number"),
-            method<&Arm::enable>("enable", "switches the arm"),
             command<&Arm::move_to, &Arm::moved_to>("move_to", "goes to an angle"));
     }
 };
@@ -183,158 +164,6 @@ TEST(Events, are_emitted_with_packed_arguments) {
     EXPECT_EQ(p.bind()->run(), ProgramStatus::stopped);
     EXPECT_EQ(heard.number, 3);
     EXPECT_EQ(heard.value, 4.5);
-}
-
-TEST(Operations_and_methods, are_called_here_and_now) {
-    ArmProgram p;
-    const DataOffset told = p.table.value(1.25);
-    std::array<std::byte, 10> packed{};
-    detail::pack(packed.data(), 1.5, std::int16_t{4});
-    const DataOffset arguments = p.table.value(packed);
-    const DataOffset result = p.table.value(0.0);
-    p.table
-        .node({p.with(call_operation(facet("tell")), "tell", no_data, told),
-               p.with(call_method(facet("twice")), "twice", result, arguments)})
-        .arc(end_node);
-    const auto running = p.bind();
-    EXPECT_EQ(running->run(), ProgramStatus::stopped);
-    EXPECT_EQ(p.arm.told, 1.25);
-    EXPECT_EQ(running->get<double>(result), 7.0);
-}
-
-TEST(A_method_as_a_statement, fails_the_program_when_it_answers_false) {
-    for (const bool how : {false, true}) {
-        ArmProgram p;
-        const DataOffset argument = p.table.value(how);
-        p.table.node({p.with(do_method(facet("enable")), "enable", no_data, argument)}).arc(end_node);
-        EXPECT_EQ(p.bind()->run(), how ? ProgramStatus::stopped : ProgramStatus::error);
-    }
-}
-
-/// "do move_to(goal)" of the own component.
-struct OwnCommand : ArmProgram {
-    std::array<std::byte, 12> packed{};
-    DataOffset values, done;
-    explicit OwnCommand(int goal) {
-        detail::pack(packed.data(), goal, -1.0);
-        values = table.value(packed);
-        done = table.scratch();
-        table.node({with(begin_command(facet("move_to")), "move_to", values)})
-            .arc(end_node,
-                 table.condition({with(command_progress(facet("move_to")), "move_to", done, values)}, done));
-    }
-};
-
-TEST(An_own_command, is_begun_once_and_its_completion_asked_in_each_step) {
-    OwnCommand p{8};
-    const auto running = p.bind();
-    EXPECT_EQ(running->run(), ProgramStatus::running);
-    EXPECT_EQ(p.arm.goal, 8);
-    EXPECT_EQ(p.arm.asked, 1) << "in the step in which it began";
-    p.arm.goal = 0;
-    EXPECT_EQ(running->step(at_ms(1)), ProgramStatus::running);
-    p.arm.arrived = true;
-    EXPECT_EQ(running->step(at_ms(2)), ProgramStatus::stopped);
-    EXPECT_EQ(p.arm.goal, 0) << "its action ran once";
-    EXPECT_EQ(detail::load_packed<double>(running->data.data() + p.values + 4), 4.0) << "its result";
-}
-
-TEST(An_own_command, that_is_rejected_or_fails_puts_the_program_in_error) {
-    OwnCommand rejected{-1};
-    EXPECT_EQ(rejected.bind()->run(), ProgramStatus::error);
-    OwnCommand fails{1};
-    const auto running = fails.bind();
-    EXPECT_EQ(running->run(), ProgramStatus::running);
-    fails.arm.broken = true;
-    EXPECT_EQ(running->step(at_ms(1)), ProgramStatus::error);
-}
-
-/// "do arm.move_to(goal)" of an arm in another activity, whose engine is a command processor.
-struct PeersCommand : ArmProgram {
-    DataOffset goal = table.value(8);
-    DataOffset way = table.value(0.0);
-    DataOffset done = table.scratch();
-    CommandSlot slot{};
-    alignas(8) std::array<std::byte, 16> values{};
-    alignas(512) std::array<std::byte, 4096> ring{};
-    std::array<CommandMailbox, 1> boxes{};
-    std::array<CommandSlot*, 4> followed{};
-    CommandProcessor processor{};
-    os::Clock clock{os::Clock::Kind::virtual_time};
-
-    PeersCommand() {
-        EXPECT_LE(CommandMailbox::bytes_for(2), ring.size());
-        boxes[0].place(ring.data(), 2, Overflow::reject);
-        processor.place(boxes, followed, 0);
-        CommandSlot::Route route;
-        route.command = facet("move_to").command;
-        route.receiver = &gate;
-        route.inbox = &processor.inbox();
-        route.clock = &clock;
-        slot.place(route, values.data());
-        links[link("move_to")].slot = &slot;
-        table.node({with(send_command(facet("move_to")), "move_to", no_data, goal)})
-            .arc(1, table.condition({with(command_ended(facet("move_to")), "move_to", done)}, done));
-        table.node({with(command_results(facet("move_to")), "move_to", way)}).arc(end_node);
-    }
-    void serve() {
-        processor.serve([this](std::uint32_t, CommandSlot& each) noexcept
-                        TAPPET_REALTIME { static_cast<void>(processor.take_up(each)); });
-        processor.follow([](std::uint32_t, CommandSlot& each) noexcept
-                         TAPPET_REALTIME { return !in_flight(each.follow()); });
-    }
-};
-
-TEST(A_peers_command, is_sent_and_waited_for_to_its_end) {
-    PeersCommand p;
-    const auto running = p.bind();
-    EXPECT_EQ(running->run(), ProgramStatus::running);
-    EXPECT_EQ(p.slot.state(), CommandState::sent);
-    EXPECT_EQ(p.arm.goal, 0) << "it runs in the other engine";
-    p.serve();
-    EXPECT_EQ(p.arm.goal, 8);
-    EXPECT_EQ(running->step(at_ms(1)), ProgramStatus::running);
-    p.arm.arrived = true;
-    p.serve();
-    EXPECT_EQ(running->step(at_ms(2)), ProgramStatus::stopped);
-    EXPECT_EQ(running->get<double>(p.way), 4.0);
-}
-
-TEST(A_peers_command, that_is_rejected_or_fails_puts_the_program_in_error) {
-    PeersCommand rejected;
-    const auto first = rejected.bind();
-    first->put(rejected.goal, -1);
-    EXPECT_EQ(first->run(), ProgramStatus::running);
-    rejected.serve();
-    EXPECT_EQ(first->step(at_ms(1)), ProgramStatus::error);
-
-    PeersCommand fails;
-    const auto second = fails.bind();
-    second->run();
-    fails.arm.broken = true;
-    fails.serve();
-    EXPECT_EQ(second->step(at_ms(1)), ProgramStatus::error);
-
-    PeersCommand stopped;
-    stopped.gate.state = ComponentState::stopped;
-    EXPECT_EQ(stopped.bind()->run(), ProgramStatus::error) << "its receiver does not run";
-}
-
-TEST(A_peers_command, waits_for_an_earlier_sending_that_is_still_on_its_way) {
-    PeersCommand p;
-    const auto running = p.bind();
-    running->run();
-    p.serve(); // executing
-    ASSERT_TRUE(running->execution.stop());
-    EXPECT_EQ(running->run(at_ms(1)), ProgramStatus::running);
-    EXPECT_EQ(p.slot.state(), CommandState::executing) << "of the first sending";
-    p.arm.arrived = true;
-    p.serve();
-    ASSERT_EQ(p.slot.state(), CommandState::done);
-    EXPECT_EQ(running->step(at_ms(2)), ProgramStatus::running);
-    EXPECT_EQ(p.slot.state(), CommandState::sent) << "the second one went";
-    p.serve();
-    EXPECT_EQ(running->step(at_ms(3)), ProgramStatus::stopped);
 }
 
 TEST(A_property, is_read_and_written_where_its_range_and_its_component_allow) {

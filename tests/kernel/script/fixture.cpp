@@ -149,6 +149,8 @@ void Played::step() {
     }
 }
 
+void Played::stop_far() { parts_->gates[2].state = ComponentState::stopped; }
+
 ProgramExecution& Played::program() {
     for (std::size_t i = 0; i < outcome.unit.instances.size(); ++i)
         if (outcome.unit.types[outcome.unit.instances[i].type].is_program()) return parts_->programs[i];

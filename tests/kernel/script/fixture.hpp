@@ -188,6 +188,8 @@ public:
     void steps(int n) {
         for (int i = 0; i < n; ++i) step();
     }
+    /// As if somebody had stopped that component.
+    void stop_far();
     /// The first program.
     ProgramExecution& program();
     /// A machine by its instance's name.

@@ -214,40 +214,6 @@ StateMachine M {
     EXPECT_EQ(p.state("M"), "Z");
 }
 
-// Waiting programs keep what they had: a function is expanded with places of its own at every call.
-TEST(A_function, keeps_its_arguments_and_variables_apart_in_programs_that_wait_at_the_same_time) {
-    Started p{R"(
-StateMachine M {
-    function int sum(int a, int b) { var int made = a + b; wait(20ms); return made + a; }
-    function later(int n) { var int twice = n + n; wait(20ms); do note(n); do note(twice); }
-    initial state Both {
-        region left {
-            initial state L {
-                run { do later(int(gain)); var int s = sum(int(gain), 10); do note(s); yield; }
-                transition startMovement { do later(int(gain)); }
-            }
-        }
-        region right {
-            initial state R {
-                run { set gain = 3; do later(int(gain)); var int s = sum(int(gain), 20); do note(s); yield; }
-            }
-        }
-        transition halt select Safe
-    }
-    final state Safe { }
-})"};
-    p.step();
-    EXPECT_EQ(p.own.trace, "");
-    p.own.gain.set(5.0);
-    p.event("M", "startMovement"); // while the run programs of both regions wait in the same function
-    EXPECT_EQ(p.own.trace, "");
-    p.steps(3);
-    EXPECT_EQ(p.own.trace, "5 10 1 2 3 6");
-    p.own.gain.set(7.0);
-    p.steps(2);
-    EXPECT_EQ(p.own.trace, "5 10 1 2 3 6 20 30");
-}
-
 // Otherwise one of them would take the end of another's command for that of its own.
 TEST(A_command_of_a_peer, has_a_slot_for_every_run_program_that_may_be_at_work_with_others) {
     Played p{R"(

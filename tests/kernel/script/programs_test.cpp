@@ -171,6 +171,36 @@ TEST(An_own_command, begins_and_is_followed_in_the_program_itself) {
     EXPECT_EQ(p.own.trace, "begin end 1");
 }
 
+TEST(A_command, that_is_rejected_or_fails_puts_the_program_in_error) {
+    for (const std::string_view whose : {"", "robot.", "far."})
+        for (bool Cell::* const does : {&Cell::rejects, &Cell::fails}) {
+            Played p{"do " + std::string{whose} + "go();"};
+            for (Cell* each : {&p.own, &p.robot, &p.far}) each->*does = true;
+            p.steps(3);
+            EXPECT_EQ(p.program().status(), ProgramStatus::error) << whose;
+        }
+}
+
+TEST(A_command_of_a_peer, fails_the_program_when_its_component_does_not_run) {
+    Played p{"do far.go();"};
+    p.stop_far();
+    p.step();
+    EXPECT_EQ(p.program().status(), ProgramStatus::error);
+}
+
+TEST(A_command_of_a_peer, waits_for_an_earlier_sending_that_is_still_on_its_way) {
+    Played p{"do far.go();"};
+    p.far.steps_to_go = 2;
+    p.steps(2);
+    EXPECT_TRUE(p.program().stop());
+    EXPECT_TRUE(p.program().start());
+    p.step();
+    EXPECT_EQ(p.far.trace, "begin") << "of the first sending";
+    p.steps(3);
+    EXPECT_EQ(p.program().status(), ProgramStatus::stopped);
+    EXPECT_EQ(p.far.trace, "begin end begin end");
+}
+
 TEST(A_command, hands_its_results_to_variables) {
     for (const std::string_view whose : {"", "robot.", "far."}) {
         Played p{"var int taken = 0; var double mean = 0; do " + std::string{whose} +

@@ -162,11 +162,18 @@ TEST(StateMachineOrder, line_42_serves_requests_of_programs_after_the_call_and_t
     EXPECT_EQ(m.send("go"), "-a +b ?g -b +c");
     m.act = [&](std::string_view what) {
         if (what != "-a") return;
+        EXPECT_EQ(m.dispatch("next"), StateOutcome::queued);
+    };
+    m.request("a");
+    EXPECT_EQ(m.send("go"), "-a +b -b +c");
+    m.act = [&](std::string_view what) {
+        if (what != "-a") return;
         m.dispatch("next");
-        EXPECT_EQ(m.execution.request_final(m.now), StateOutcome::queued);
+        EXPECT_EQ(m.execution.request_final(m.now, "gave up"), StateOutcome::queued);
     };
     m.request("a");
     EXPECT_EQ(m.send("go"), "-a +b -b +safe");
+    EXPECT_EQ(m.execution.reason(), "gave up");
 }
 
 TEST(StateMachineOrder, line_43_gives_up_what_waits_for_the_final_state) {

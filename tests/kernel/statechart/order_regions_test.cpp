@@ -154,19 +154,24 @@ TEST(StateMachineOrder, hides_nothing_from_a_trace) {
         from c to d on swap
         from x to idle on back
         from a to b on never)"};
-    std::string heard;
-    struct Context {
+    struct Change {
+        std::string_view from, to;
+        TransitionIndex transition;
+        Time at;
+        bool operator==(const Change&) const = default;
+    };
+    struct Changes {
         Play& play;
-        std::string& heard;
-    } context{m, heard};
+        std::vector<Change> list{};
+    } changes{m};
     m.execution.trace(
-        [](void* to, StateIndex from, StateIndex target, TransitionIndex, Time) noexcept TAPPET_REALTIME {
-            auto& c = *static_cast<Context*>(to);
-            TAPPET_ESCAPE(
-                "a test's log grows",
-                c.heard.append(c.play.name(from)).append(">").append(c.play.name(target)).append(" "));
+        [](void* context, StateIndex from, StateIndex to, TransitionIndex transition, Time at) noexcept
+        TAPPET_REALTIME {
+            auto& [play, list] = *static_cast<Changes*>(context);
+            TAPPET_ESCAPE("a test's list grows",
+                          list.push_back({play.name(from), play.name(to), transition, at}));
         },
-        &context);
+        &changes);
     m.start();
     m.send("go");
     m.send("swap");
@@ -174,7 +179,13 @@ TEST(StateMachineOrder, hides_nothing_from_a_trace) {
     m.stop();
     m.execution.request_initial(m.now);
     m.deactivate();
-    EXPECT_EQ(heard, "none>idle idle>c c>d d>idle idle>safe safe>idle idle>none ");
+    EXPECT_EQ(changes.list, (std::vector<Change>{{"none", "idle", start_transition, m.now},
+                                                 {"idle", "c", 0, m.now},
+                                                 {"c", "d", 1, m.now},
+                                                 {"d", "idle", 2, m.now},
+                                                 {"idle", "safe", final_transition, m.now},
+                                                 {"safe", "idle", reset_transition, m.now},
+                                                 {"idle", "none", leaving_transition, m.now}}));
 }
 
 TEST(StateMachineOrder, is_not_bound_without_the_memory_that_history_and_arguments_take) {

@@ -60,8 +60,11 @@ TEST(StateMachineOrder, line_06_keeps_a_waiting_run_program_through_an_internal_
         state a initial run !a.. exit -a
         from a to - on poke then *poke
         from a to safe on end)"};
+    const Time entered = m.now;
     EXPECT_EQ(m.step(), "!a:");
     EXPECT_EQ(m.send("poke"), "*poke");
+    EXPECT_EQ(m.outcome, StateOutcome::taken);
+    EXPECT_EQ(m.execution.entered_at(), entered);
     EXPECT_EQ(m.step(), "");
     EXPECT_EQ(m.step(), ":!a");
 }
@@ -164,6 +167,33 @@ TEST(StateMachineOrder, line_12_runs_the_handle_program_of_the_innermost_state_t
     EXPECT_EQ(m.send("far"), "?outer ~o");
 }
 
+TEST(StateMachineOrder, line_14_counts_a_time_out_from_the_entry_of_its_source) {
+    Started m{R"(
+        state o initial
+        state a in o initial
+        state b in o
+        state c
+        from a to b after 10
+        from b to a after 30
+        from o to c after 100 because slow
+        from c to safe on end)"};
+    const Time entered = m.now;
+    EXPECT_EQ(m.execution.next_timeout(), entered + 10ms);
+    m.step(10ms - 1ns);
+    EXPECT_EQ(m.active(), "o(a)");
+    m.step(1ns);
+    EXPECT_EQ(m.active(), "o(b)");
+    EXPECT_EQ(m.execution.next_timeout(), m.now + 30ms);
+    m.step(60ms);
+    m.step(10ms);
+    EXPECT_EQ(m.active(), "o(b)");
+    EXPECT_EQ(m.execution.next_timeout(), entered + 100ms) << "it was never left meanwhile";
+    m.step(20ms);
+    EXPECT_EQ(m.active(), "c");
+    EXPECT_EQ(m.execution.reason(), "slow");
+    EXPECT_EQ(m.execution.next_timeout(), never);
+}
+
 TEST(StateMachineOrder, line_14_asks_the_guard_of_a_due_time_out_in_every_step) {
     Started m{R"(
         state a initial
@@ -207,6 +237,7 @@ TEST(StateMachineOrder, line_22_asks_conditions_of_a_state_only_when_its_run_pro
         from a to b if inner
         from o to safe if outer
         from b to a on back)"};
+    EXPECT_EQ(m.send("back"), "") << "no event asks them";
     EXPECT_EQ(m.step(), "!o !a: ?outer ~o");
     EXPECT_EQ(m.step(), "!o :!a ?inner ?outer ~o ~a");
 }
@@ -284,6 +315,29 @@ TEST(StateMachineOrder, line_26_handles_events_that_waited_after_the_round) {
     };
     EXPECT_EQ(m.step(), "!a ~a -a +b");
     EXPECT_EQ(m.outcome, StateOutcome::queued);
+}
+
+TEST(StateMachineOrder, line_26_bounds_a_ring_of_raised_events_and_goes_on_in_the_next_call) {
+    Started m{R"(
+        state ping initial entry +ping
+        state pong entry +pong
+        from ping to pong on ring
+        from pong to ping on ring
+        from ping to safe on end)"};
+    m.act = [&](std::string_view) { m.dispatch("ring"); };
+    m.send("ring");
+    EXPECT_TRUE(m.execution.left_over());
+    const std::uint64_t taken = m.execution.status().transitions;
+    EXPECT_EQ(taken, 2 + StateMachineExecution::max_raised_events);
+    m.step();
+    EXPECT_EQ(m.execution.status().transitions, taken + StateMachineExecution::max_raised_events);
+    EXPECT_EQ(m.dispatch("end"), StateOutcome::queued) << "after the one that waits";
+    m.act = {};
+    m.deactivate();
+    EXPECT_FALSE(m.execution.left_over()) << "dropped, line 44";
+    m.start();
+    m.step();
+    EXPECT_EQ(m.active(), "ping");
 }
 
 } // namespace

@@ -18,29 +18,13 @@ namespace tappet {
 
 struct Recorder {
     Bounded<char, 4096> characters;
-    StateMachineExecution* machine = nullptr;
-    StateOutcome last_outcome = StateOutcome::ignored;
-    Time now{};
     bool yes = false;
-    int asked = 0;
 
     template <text what> void say() noexcept TAPPET_REALTIME {
         if (!characters.empty()) static_cast<void>(characters.push(' '));
         for (char character : what.view()) static_cast<void>(characters.push(character));
     }
-    template <text what, std::size_t trigger> void raise() noexcept TAPPET_REALTIME {
-        say<what>();
-        last_outcome = machine->dispatch(trigger, now);
-    }
-    void give_up() noexcept TAPPET_REALTIME {
-        say<"give_up">();
-        last_outcome = machine->request_final(now, "gave up");
-    }
     bool if_yes() const noexcept TAPPET_REALTIME { return yes; }
-    bool if_asked() noexcept TAPPET_REALTIME {
-        ++asked;
-        return yes;
-    }
 
     /// What was written since the last call.
     std::string heard() {
@@ -59,7 +43,6 @@ template <const auto& machine> struct Bound {
     StateOutcome outcome = StateOutcome::ignored; ///< of the last send
 
     Bound() {
-        component.machine = &execution;
         StateMachineBinding binding;
         binding.machine = resolved<machine>.view();
         binding.component = &component;
@@ -67,7 +50,6 @@ template <const auto& machine> struct Bound {
         EXPECT_TRUE(execution.bind(binding));
     }
     StateOutcome dispatch(std::string_view event) {
-        component.now = now;
         const auto names = execution.machine().triggers;
         for (std::size_t i = 0; i < names.size(); ++i)
             if (names[i] == event) return execution.dispatch(i, now);
@@ -80,7 +62,6 @@ template <const auto& machine> struct Bound {
     }
     std::string step(Duration later = 1ms) {
         now += later;
-        component.now = now;
         execution.step(now);
         return component.heard();
     }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -16,8 +17,7 @@ namespace {
 constexpr auto lines = gpio::line_map(gpio::sensor("stop"), gpio::sensor("guard", gpio::active_low),
                                       gpio::actuator("valve", gpio::safe(false)),
                                       gpio::output("lamp", gpio::active_low, gpio::safe(false)));
-constexpr BoundDevice bound =
-    wired("io", "io", line("stop", 0), line("guard", 3), line("valve", 8), line("lamp", 9));
+constexpr std::array bound{line("stop", 0), line("guard", 3), line("valve", 8), line("lamp", 9)};
 
 struct Lines : testing::Test {
     Lines() : chip(std::filesystem::temp_directory_path() / ("tappet-lines-" + std::to_string(getpid()))) {

@@ -30,8 +30,7 @@ public:
     [[nodiscard]] can::Counters counters() const noexcept TAPPET_REALTIME override { return count_; }
     void purge() noexcept TAPPET_REALTIME override {}
     can::Restart restart() noexcept override { return can::Restart::not_needed; }
-    [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return socket_; }
-    void set_listener(Listener, void*) noexcept override {}
+    [[nodiscard]] bool wakes(os::Waiter& waiter) noexcept override { return waiter.watch(socket_); }
 
 private:
     int socket_ = -1;

@@ -20,11 +20,11 @@ LineEnd::~LineEnd() {
 }
 
 std::expected<void, Sentence> LineEnd::open(const std::string& folder, std::span<const gpio::LineRow> map,
-                                            const BoundDevice& bound) {
+                                            std::span<const Fact> bound) {
     map_ = map;
     for (std::size_t i = 0; i < map.size(); ++i) {
         const bool input = map[i].line.role == gpio::Role::input;
-        const unsigned offset = checks::find_named(bound.lines, map[i].line.name)->offset;
+        const unsigned offset = gpio::offset_of(bound, map[i].line.name);
         const std::string path = folder + "/sim_gpio" + std::to_string(offset) + (input ? "/pull" : "/value");
         files_[i] = ::open(path.c_str(), (input ? O_WRONLY : O_RDONLY) | O_CLOEXEC);
         if (files_[i] < 0)

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "drivers/gpio/far_end.hpp"
-#include "kernel/machine/table/binding.hpp"
 
 #include <array>
 #include <expected>
@@ -21,7 +20,7 @@ public:
     /// `folder` is where sim_gpio<n>/pull and sim_gpio<n>/value lie; the lines stand where the binding says.
     /// The error says what is wrong and how to cure it.
     std::expected<void, Sentence> open(const std::string& folder, std::span<const gpio::LineRow> map,
-                                       const BoundDevice& bound);
+                                       std::span<const Fact> bound);
 
     bool drive(std::size_t line, bool active, Time at) noexcept override;
     /// Actuators at each look, what follows a port each `slow_period`: looking takes an emulator some time.

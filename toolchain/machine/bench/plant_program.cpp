@@ -3,6 +3,7 @@
 
 #include "drivers/can/signal_map.hpp"
 #include "drivers/hardware/devices.hpp"
+#include "drivers/modbus/kind.hpp"
 #include "drivers/udp/sender.hpp"
 #include "kernel/base/value_text.hpp"
 #include "kernel/machine/accept.hpp"
@@ -121,7 +122,7 @@ public:
             if (row.type->device_map == nullptr) continue;
             const BoundDevice& bound = *checks::find_named(binding.devices, row.device);
             const BoardDevice* device = checks::find_named(board.devices, bound.at);
-            if (Sentence fault = open(row, bound, device); !fault.empty())
+            if (Sentence fault = open(row, bound, binding.facts_of(bound), device); !fault.empty())
                 return Sentence{"device \"", row.device, "\": ", fault};
         }
         return {};
@@ -129,9 +130,9 @@ public:
     [[nodiscard]] std::span<const ProvidedDevice> all() const { return wires_; }
     Sentence listen() {
         for (const auto& server : servers_) {
-            const std::string_view address = server->bound.at;
-            if (auto listens = server->end.listen(std::string{address.substr(0, address.find(':'))},
-                                                  checks::port_of(address), server->bound.unit.number);
+            const std::string_view address = server->at;
+            if (auto listens =
+                    server->end.listen(std::string{host_of(address)}, port_of(address), server->unit);
                 !listens)
                 return listens.error();
         }
@@ -158,7 +159,8 @@ public:
     }
 
 private:
-    Sentence open(const ComponentRow& row, const BoundDevice& bound, const BoardDevice* device) {
+    Sentence open(const ComponentRow& row, const BoundDevice& bound, std::span<const Fact> facts,
+                  const BoardDevice* device) {
         std::expected<void, Sentence> opened{};
         if (drives(row, "can")) {
             auto& end = *buses_.emplace_back(std::make_unique<CanEnd>());
@@ -171,17 +173,17 @@ private:
             const std::string name{device->address.substr(device->address.rfind('/') + 1)};
             opened =
                 end.open("/sim/" + name,
-                         *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map), bound);
+                         *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map), facts);
         } else if (drives(row, "udp")) {
             auto& end = *ports_.emplace_back(std::make_unique<udp::Sender>());
             wires_.push_back({type_id<udp::Wires>, row.device, static_cast<udp::Wires*>(&end)});
             const std::string_view address = bound.at;
-            opened = end.open(address.substr(0, address.find(':')),
-                              static_cast<std::uint16_t>(checks::port_of(address)));
+            opened = end.open(host_of(address), static_cast<std::uint16_t>(port_of(address)));
         } else if (drives(row, "modbus")) {
             if (device != nullptr)
                 return Sentence{"the bench has no serial lines; bind it to 127.0.0.1:1502"};
-            auto& server = *servers_.emplace_back(std::make_unique<Server>(bound));
+            auto& server =
+                *servers_.emplace_back(std::make_unique<Server>(bound.at, modbus::server_facts(facts).unit));
             wires_.push_back(
                 {type_id<modbus::ServerTables>, row.device, static_cast<modbus::ServerTables*>(&server.end)});
         }
@@ -189,8 +191,9 @@ private:
     }
 
     struct Server {
-        explicit Server(const BoundDevice& to) : bound{to} {}
-        const BoundDevice& bound;
+        Server(std::string_view where, int number) : at{where}, unit{number} {}
+        std::string_view at;
+        int unit;
         ServerEnd end{};
     };
     std::vector<std::unique_ptr<CanEnd>> buses_{};

@@ -10,12 +10,36 @@
 
 namespace tappet::browser {
 
+// One function for each row, in the commands_*.cpp of its sort.
+Run run_list, run_get, run_watch, run_tree, run_info, run_manifest, run_reactions, run_forced, run_events,
+    run_set, run_call, run_send, run_execute, run_force, run_plain_request, run_behaviour, run_why,
+    run_post_mortem, run_scope, run_report;
+
 namespace {
 
 constexpr std::size_t any = browsing::max_words;
 
+/// A request of the machine: what was typed is sent, and its answer told.
+constexpr Command plain(std::string_view name, std::string_view spelled, std::size_t fewest, std::size_t most,
+                        Takes takes, std::string_view help, std::string_view usage = {}) {
+    return {name, usage.empty() ? spelled : usage, help, takes, fewest, most, run_plain_request};
+}
+
+#define TAPPET_X(name, role, fewest, most, arguments, answer, ...)                                           \
+    __VA_OPT__(plain(#name, #name arguments, fewest, most, Takes::__VA_ARGS__), )
+constexpr auto requests = std::to_array<Command>({TAPPET_REQUESTS(TAPPET_X)});
+#undef TAPPET_X
+
+/// A request whose answer is told in its own way.
+constexpr Command asks(std::string_view name, Run* run, Names names = Names::first) {
+    Command command = *std::ranges::find(requests, name, &Command::name);
+    command.run = run;
+    command.names = names;
+    return command;
+}
+
 // clang-format off
-constexpr auto table = std::to_array<Command>({
+constexpr auto own = std::to_array<Command>({
     {"list",    "list [COMPONENT]",                        "components, or the facets of one with type, unit and meaning", Takes::component, 0, 1, run_list, Among::each},
     {"get",     "get NAME...",                             "values, those of one activity of one moment; a component's name: all of its values", Takes::value, 1, any, run_get, Among::values},
     {"watch",   "watch NAME... [--every TIME] [--count N]", "values again and again; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch, Among::values},
@@ -25,29 +49,28 @@ constexpr auto table = std::to_array<Command>({
     {"reactions", "reactions",                             "how long each row took, from the edge or the frame that set it off to the end of what it led to", Takes::nothing, 0, 0, run_reactions, Among::each},
     {"forced",  "forced",                                  "the ports that are forced now", Takes::nothing, 0, 0, run_forced, Among::each},
     {"events",  "events EVENT... [--count N]",             "tells each emission with its arguments", Takes::event, 1, any, run_events, Among::values},
-    {"set",     "set PROPERTY VALUE [PROPERTY VALUE...]",  "properties of one component, all at once or none (engineer)", Takes::property, 2, any, run_set},
-    {"call",    "call METHOD [ARGUMENT...]",               "a method or an operation, answered at once (operator)", Takes::callable, 1, any, run_call},
-    {"send",    "send COMMAND [ARGUMENT...] [--follow]",   "a command; --follow: told until it has come to its end (operator)", Takes::command, 1, any, run_send},
-    {"execute", "execute LINE... [--stop]",                "a line of the script language: an expression, whose value is told, or statements such as do, set, wait, until they end (operator); --stop: ends the one at work", Takes::anything, 0, any, run_execute},
-    {"force",   "force PORT VALUE",                        "a port has this value whatever is written to it (engineer)", Takes::port, 2, 2, run_force},
-    {"release", "release PORT",                            "ends what force began (engineer)", Takes::port, 1, 1, run_force},
-    {"save",    "save [COMPONENT]",                        "writes properties to their files (engineer)", Takes::component, 0, 1, run_plain_request},
-    {"start",   "start COMPONENT|ACTIVITY",                "starts what was stopped (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
-    {"stop",    "stop COMPONENT|ACTIVITY",                 "stops it; it leaves safe values (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
-    {"restart", "restart COMPONENT|ACTIVITY",              "stops and starts it (engineer)", Takes::component_or_activity, 1, 1, run_plain_request},
+    asks("set", run_set, Names::every_other), asks("call", run_call), asks("send", run_send),
+    {"execute", "execute LINE... [--stop]",                "a line of the script language: an expression, whose value is told, or statements such as do, set, wait, until they end (operator); --stop: ends the one at work", Takes::anything, 0, any, run_execute, Among::one, Names::none},
+    asks("force", run_force), asks("release", run_force),
     {"behaviour", "behaviour [list [NAME] | watch [NAME] [--every TIME] [--count N] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
-                                                           "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour, Among::each},
-    {"why",     "why COMPONENT.STATE",                     "why its state machine is not in that state: the transitions that lead nearer, the events they await, the guards that refuse and their reasons", Takes::nothing, 1, 1, run_why},
-    {"post-mortem", "post-mortem FILE [COMMAND...] [--to FILE] [--count N]",       "what a guardian kept of a machine that ended otherwise than asked: why, where each activity stood; or a command that reads, as of a machine that lives", Takes::nothing, 1, any, run_post_mortem},
+                                                           "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour, Among::each, Names::behind_action},
+    asks("why", run_why),
+    {"post-mortem", "post-mortem FILE [COMMAND...] [--to FILE] [--count N]",       "what a guardian kept of a machine that ended otherwise than asked: why, where each activity stood; or a command that reads, as of a machine that lives", Takes::nothing, 1, any, run_post_mortem, Among::one, Names::none},
     {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
-                                                           "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope},
+                                                           "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope, Among::one, Names::second},
     {"report", "report [list | start FILE.mcap [--for TIME] | stop FILE.mcap | convert FILE.mcap FILE.csv]",
-                                                           "the values that the machine's table says are recorded; start: into a file, until ^C, stop or TIME; convert: such a file as a table", Takes::nothing, 0, 3, run_report, Among::each},
+                                                           "the values that the machine's table says are recorded; start: into a file, until ^C, stop or TIME; convert: such a file as a table", Takes::nothing, 0, 3, run_report, Among::each, Names::none},
 });
 // clang-format on
 
-std::unexpected<Failure> wrong(std::string sentence) {
-    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
+/// A plain request needs no row above.
+std::vector<Command> with_plain_requests() {
+    std::vector<Command> all(own.begin(), own.end());
+    auto at = std::ranges::find(all, "behaviour", &Command::name) - all.begin();
+    for (const Command& each : requests)
+        if (std::ranges::find(all, each.name, &Command::name) == all.end())
+            all.insert(all.begin() + at++, each);
+    return all;
 }
 
 std::string_view wanted_of(Takes takes) {
@@ -72,37 +95,71 @@ std::string_view cure_of(std::string_view kind) {
     return "";
 }
 
+/// True for facets of which a command may be given the name.
+bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet) {
+    const std::string_view kind = map.text(facet.kind);
+    switch (takes) {
+    case Takes::value: return facet.value_at != 0;
+    case Takes::property: return kind == "property";
+    case Takes::callable: return kind == "method" || kind == "operation";
+    case Takes::command: return kind == "command";
+    case Takes::event: return kind == "event";
+    case Takes::port: return (facet.flags & map::facet_can_force) != 0;
+    case Takes::anything: return true;
+    default: return false;
+    }
+}
+
+/// Names of facets as they are, names of components for all values in them.
+Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names) {
+    std::vector<std::uint32_t> facets;
+    for (const std::string& name : names) {
+        const auto component = map.find_component(name);
+        if (!component) {
+            const auto facet = find_facet(map, Takes::value, name);
+            if (!facet) return std::unexpected(facet.error());
+            facets.push_back(facet->index);
+            continue;
+        }
+        const map::Component& record = map.components()[*component];
+        for (std::uint32_t i = record.first_facet; i < record.first_facet + record.facet_count; ++i)
+            if (map.facets()[i].value_at != 0) facets.push_back(i);
+    }
+    return facets;
+}
+
 } // namespace
 
-std::span<const Command> commands() { return table; }
+std::span<const Command> commands() {
+    static const std::vector<Command> all = with_plain_requests();
+    return all;
+}
 
 const Command* find_command(std::string_view name) {
-    const auto found = std::ranges::find(table, name, &Command::name);
-    return found == table.end() ? nullptr : &*found;
+    const auto found = std::ranges::find(commands(), name, &Command::name);
+    return found == commands().end() ? nullptr : &*found;
 }
 
 std::string unknown_command(std::string_view name) {
     std::vector<std::string> names;
-    for (const Command& each : table) names.emplace_back(each.name);
+    for (const Command& each : commands()) names.emplace_back(each.name);
     const std::string nearest = MapReader::nearest_of(name, names);
     return "there is no command '" + std::string{name} + "'" +
            (nearest.empty() ? "; help lists them" : nearest);
 }
 
 Result<void> check_options(const Command* command, const Line& line) {
-    constexpr auto of_all =
-        std::to_array<std::string_view>({"--json", "--help", "--socket", "--directory", "--timeout"});
     const auto takes = [](const Command& each, const std::string& option) {
         return each.usage.find("[" + option) != std::string_view::npos;
     };
     for (const std::string& option : line.given) {
-        if (std::ranges::find(of_all, option) != of_all.end() ||
+        if (std::ranges::find(options(), option, &Option::name)->of_all ||
             (command != nullptr && takes(*command, option)))
             continue;
         std::string sentence = (command == nullptr ? "without a command nothing takes "
                                                    : "'" + std::string{command->name} + "' takes no ") +
                                option + "; ";
-        for (const Command& each : table)
+        for (const Command& each : commands())
             if (takes(each, option)) sentence += std::string{each.name} + " ";
         return wrong(sentence + "may");
     }
@@ -122,12 +179,15 @@ Result<void> run_command(Work& work) {
 
 bool is_name(const Command& command, std::span<const std::string> arguments, std::size_t argument) {
     if (command.among == Among::values) return true;
-    if (command.name == "set") return argument % 2 == 0;
-    if (command.name == "scope") return argument == 1;
-    if (command.name == "behaviour")
+    switch (command.names) {
+    case Names::none: return false;
+    case Names::first: return argument == 0;
+    case Names::second: return argument == 1;
+    case Names::every_other: return argument % 2 == 0;
+    case Names::behind_action:
         return arguments.size() > argument && argument == (arguments[0] == "load" ? 2u : 1u);
-    constexpr std::array<std::string_view, 3> without{"execute", "report", "post-mortem"};
-    return argument == 0 && std::ranges::find(without, command.name) == without.end();
+    }
+    return false;
 }
 
 std::string request_of(const Work& work) {
@@ -144,20 +204,6 @@ std::string packet_text(const Work& work, nlohmann::ordered_json packet) {
     packet.erase("id");
     if (!work.place().empty()) packet["machine"] = work.place().substr(0, work.place().size() - 1);
     return packet.dump();
-}
-
-bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet) {
-    const std::string_view kind = map.text(facet.kind);
-    switch (takes) {
-    case Takes::value: return facet.value_at != 0;
-    case Takes::property: return kind == "property";
-    case Takes::callable: return kind == "method" || kind == "operation";
-    case Takes::command: return kind == "command";
-    case Takes::event: return kind == "event";
-    case Takes::port: return (facet.flags & map::facet_can_force) != 0;
-    case Takes::anything: return true;
-    default: return false;
-    }
 }
 
 Result<FoundFacet> find_facet(const MapReader& map, Takes takes, std::string_view name) {
@@ -193,23 +239,6 @@ std::vector<std::string> names_for(const MapReader& map, Takes takes) {
     return names;
 }
 
-Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names) {
-    std::vector<std::uint32_t> facets;
-    for (const std::string& name : names) {
-        const auto component = map.find_component(name);
-        if (!component) {
-            const auto facet = find_facet(map, Takes::value, name);
-            if (!facet) return std::unexpected(facet.error());
-            facets.push_back(facet->index);
-            continue;
-        }
-        const map::Component& record = map.components()[*component];
-        for (std::uint32_t i = record.first_facet; i < record.first_facet + record.facet_count; ++i)
-            if (map.facets()[i].value_at != 0) facets.push_back(i);
-    }
-    return facets;
-}
-
 Result<std::vector<Seen>> find_seen(const Work& work) {
     std::vector<Seen> all;
     for (const Part& part : work.parts()) {
@@ -224,7 +253,7 @@ std::string usage() {
     std::string text = "tappet-browse: looks into a running machine of this box, and asks it to change.\n\n"
                        "  tappet-browse [OPTION...] COMMAND [ARGUMENT...]     one command\n"
                        "  tappet-browse [OPTION...]                           a prompt\n\n";
-    for (const Command& each : table) {
+    for (const Command& each : commands()) {
         text += "  " + std::string{each.usage};
         text += text.size() - text.rfind('\n') - 1 < 44
                     ? std::string(44 - (text.size() - text.rfind('\n') - 1), ' ')

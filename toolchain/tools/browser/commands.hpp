@@ -32,6 +32,15 @@ enum class Among {
     values ///< each argument may be of another machine
 };
 
+/// Which arguments are names of something in a machine; in Among::values each is.
+enum class Names {
+    none, ///< they are words of a line, or files
+    first,
+    second,
+    every_other,
+    behind_action ///< of behaviour
+};
+
 /// What a line wants of one machine.
 struct Part {
     Session* session = nullptr;
@@ -60,6 +69,9 @@ struct Work {
     [[nodiscard]] const std::string& place() const { return session.map().place(); }
 };
 
+using Run = Result<void>(Work& work);
+
+/// With its options, each as "[--option", the usage is all that help, refusals and completion know.
 struct Command {
     std::string_view name;
     std::string_view usage;
@@ -67,8 +79,9 @@ struct Command {
     Takes takes;
     std::size_t fewest; ///< arguments
     std::size_t most;
-    Result<void> (*run)(Work& work);
+    Run* run;
     Among among = Among::one;
+    Names names = Names::first;
 };
 
 [[nodiscard]] std::span<const Command> commands();
@@ -83,15 +96,11 @@ Result<void> run_command(Work& work);
 [[nodiscard]] std::string request_of(const Work& work);
 /// A machine's packet for programs: without what is for the two ends only, with the machine among others.
 [[nodiscard]] std::string packet_text(const Work& work, nlohmann::ordered_json packet);
-/// True for facets of which a command may be given the name.
-[[nodiscard]] bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet);
 /// The facet, or why it is none that this command takes, with the nearest name.
 Result<FoundFacet> find_facet(const MapReader& map, Takes takes, std::string_view name);
 /// Every name that a command may be given.
 [[nodiscard]] std::vector<std::string> names_for(const MapReader& map, Takes takes);
-/// Facets of values: names of facets as they are, names of components for all values in them.
-Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names);
-/// The values that a line names, machine by machine.
+/// The values that a line names, machine by machine; a component's name is all of its values.
 struct Seen {
     Session* session = nullptr;
     std::vector<std::uint32_t> facets{};
@@ -101,34 +110,12 @@ Result<std::vector<Seen>> find_seen(const Work& work);
 /// nothing did.
 [[nodiscard]] std::vector<Failure> run_among(Machines& machines, const Line& line, std::ostream& out,
                                              bool screen, const volatile std::sig_atomic_t* signal);
-/// list, where several machines are: who is there, and what each is about.
-std::vector<Failure> list_machines(Machines& machines, const Line& line, std::ostream& out);
+/// The sentence, or the machine's packet; nothing of a failure.
+Result<void> told(const Work& work, const Result<nlohmann::ordered_json>& reply, const std::string& sentence);
 /// Whether the command takes each option of the line; null: no command, which takes those of all only.
 Result<void> check_options(const Command* command, const Line& line);
 [[nodiscard]] std::string usage();
 [[nodiscard]] std::string help_of(const Command& command);
-
-// One function for each row of the table.
-Result<void> run_list(Work& work);
-Result<void> run_get(Work& work);
-Result<void> run_tree(Work& work);
-Result<void> run_info(Work& work);
-Result<void> run_forced(Work& work);
-Result<void> run_watch(Work& work);
-Result<void> run_events(Work& work);
-Result<void> run_set(Work& work);
-Result<void> run_call(Work& work);
-Result<void> run_send(Work& work);
-Result<void> run_execute(Work& work);
-Result<void> run_force(Work& work);
-Result<void> run_plain_request(Work& work);
-Result<void> run_behaviour(Work& work);
-Result<void> run_why(Work& work);
-Result<void> run_scope(Work& work);
-Result<void> run_reactions(Work& work);
-Result<void> run_post_mortem(Work& work);
-Result<void> run_manifest(Work& work);
-Result<void> run_report(Work& work);
 
 /// What needs no machine: recordings that are there, or are being made.
 [[nodiscard]] bool is_about_files(const Line& line);

@@ -13,8 +13,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-Failure wrong(std::string sentence) { return {Fault::bad_request, std::move(sentence)}; }
-
 /// A node that the wire's component of a machine knows of.
 struct Heard {
     std::string node{};
@@ -68,7 +66,7 @@ std::vector<std::pair<std::string, std::string>> elsewhere(Machines& machines) {
 }
 
 /// Why the word begins with no machine, and what was perhaps meant.
-Failure not_named(Machines& machines, const std::string& word) {
+std::unexpected<Failure> not_named(Machines& machines, const std::string& word) {
     static_cast<void>(machines.reachable());
     std::vector<std::string> with_it, names;
     for (const Machine& each : machines.all()) {
@@ -87,10 +85,11 @@ Failure not_named(Machines& machines, const std::string& word) {
     const std::string first = word.substr(0, word.find('.'));
     for (const auto& [node, hearers] : elsewhere(machines))
         if (node == first)
-            return {Fault::no_machine, "'" + node + "' is a node of this system, and has no socket " +
-                                           machines.place() + "; it is " +
-                                           (hearers.empty() ? "not heard on the wire"
-                                                            : "on another box, and heard by " + hearers)};
+            return failure(
+                Fault::no_machine,
+                "'" + node + "' is a node of this system, and has no socket " + machines.place() +
+                    "; it is " +
+                    (hearers.empty() ? "not heard on the wire" : "on another box, and heard by " + hearers));
     const std::string nearest = MapReader::nearest_of(first, names);
     return wrong("there is no machine '" + first + "' " + machines.place() +
                  (nearest.empty() ? "; there are " + machines.names() : nearest));
@@ -103,11 +102,10 @@ parts_of_words(Machines& machines, const Command& command, std::span<const std::
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         if (!is_name(command, arguments, i)) continue;
         Machine* const machine = machines.named(arguments[i]);
-        if (machine == nullptr) return std::unexpected(not_named(machines, arguments[i]));
+        if (machine == nullptr) return not_named(machines, arguments[i]);
         if (machine->name == arguments[i])
-            return std::unexpected(wrong("'" + arguments[i] +
-                                         "' is a machine; name what is meant in it, as in " + arguments[i] +
-                                         ".component; list " + arguments[i] + " shows what it has"));
+            return wrong("'" + arguments[i] + "' is a machine; name what is meant in it, as in " +
+                         arguments[i] + ".component; list " + arguments[i] + " shows what it has");
         auto known = std::ranges::find(parts, machine, &std::pair<Machine*, Part>::first);
         if (known == parts.end()) known = parts.insert(parts.end(), {machine, {}});
         known->second.names.push_back(arguments[i]);
@@ -123,12 +121,32 @@ struct AtMachines {
     const volatile std::sig_atomic_t* signal;
     std::vector<Failure> failures{};
 
+    void run();
+    void list();
+    void fail(const auto& none) { failures.push_back(none.error()); }
     void at(Machine& machine, const Line& asked) {
         const auto session = machines.reach(machine);
-        if (!session) return failures.push_back(session.error());
+        if (!session) return fail(session);
         Work work{**session, asked, out, screen, signal};
         if (auto done = run_command(work); !done)
             failures.push_back({done.error().fault, machine.name + ": " + done.error().sentence});
+    }
+    /// The only one needs no name; it may be given, as the system's table spells it.
+    void at_only() {
+        Machine& machine = machines.all().front();
+        const MapReader& map = machine.session->map();
+        Line own = line;
+        const Command& command = *find_command(line.words.front());
+        const std::span arguments = std::span{line.words}.subspan(1);
+        for (std::size_t i = 0; i < arguments.size(); ++i) {
+            if (!is_name(command, arguments, i) || map.find(arguments[i])) continue;
+            if (!arguments[i].starts_with(machine.name + ".")) continue;
+            const std::string rest = arguments[i].substr(machine.name.size() + 1);
+            // A component may be called as the machine is.
+            if (map.find_component(rest.substr(0, rest.find('.')))) own.words[i + 1] = rest;
+        }
+        Work work{*machine.session, own, out, screen, signal};
+        if (auto done = run_command(work); !done) fail(done);
     }
     void at_each() {
         for (Machine& each : machines.all()) {
@@ -143,38 +161,14 @@ struct AtMachines {
         std::vector<Part> parts;
         for (auto& [machine, part] : wanted) {
             const auto session = machines.reach(*machine);
-            if (!session) {
-                failures.push_back(session.error());
-                continue;
-            }
-            part.session = *session;
-            parts.push_back(std::move(part));
+            if (!session) fail(session);
+            if (session) parts.push_back({*session, std::move(part.names)});
         }
         if (parts.empty()) return;
         Work work{*parts.front().session, line, out, screen, signal, parts};
-        if (auto done = run_command(work); !done) failures.push_back(done.error());
+        if (auto done = run_command(work); !done) fail(done);
     }
 };
-
-/// The only one needs no name; it may be given, as the system's table spells it.
-std::vector<Failure> at_only(Machines& machines, const Line& line, std::ostream& out, bool screen,
-                             const volatile std::sig_atomic_t* signal) {
-    Machine& machine = machines.all().front();
-    const MapReader& map = machine.session->map();
-    Line own = line;
-    const Command& command = *find_command(line.words.front());
-    const std::span arguments = std::span{line.words}.subspan(1);
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-        if (!is_name(command, arguments, i) || map.find(arguments[i])) continue;
-        if (!arguments[i].starts_with(machine.name + ".")) continue;
-        const std::string rest = arguments[i].substr(machine.name.size() + 1);
-        // A component may be called as the machine is.
-        if (map.find_component(rest.substr(0, rest.find('.')))) own.words[i + 1] = rest;
-    }
-    Work work{*machine.session, own, out, screen, signal};
-    if (auto done = run_command(work); !done) return {done.error()};
-    return {};
-}
 
 /// What a machine is about, as list tells it.
 struct Told {
@@ -220,53 +214,13 @@ std::string line_of(const Session& session, const Told& told) {
     return line + (told.refused.empty() ? "" : "; refuses " + told.refused);
 }
 
-} // namespace
-
-std::vector<Failure> run_among(Machines& machines, const Line& line, std::ostream& out, bool screen,
-                               const volatile std::sig_atomic_t* signal) {
-    const Command* const command = find_command(line.words.front());
-    if (command == nullptr) return {wrong(unknown_command(line.words.front()))};
-    if (auto fits = check_options(command, line); !fits) return {fits.error()};
-    if (!machines.are_several()) return at_only(machines, line, out, screen, signal);
-    AtMachines among{machines, line, out, screen, signal};
-    const std::span arguments = std::span{line.words}.subspan(1);
-    if (arguments.empty() && command->name == "list") return list_machines(machines, line, out);
-    if (arguments.empty() && command->among == Among::each) {
-        among.at_each();
-        return among.failures;
-    }
-    const auto given_first = arguments.empty()
-                                 ? machines.all().end()
-                                 : std::ranges::find(machines.all(), arguments[0], &Machine::name);
-    if (given_first != machines.all().end() && command->among != Among::values) {
-        Line of_it = line;
-        of_it.words.erase(of_it.words.begin() + 1);
-        among.at(*given_first, of_it);
-        return among.failures;
-    }
-    auto parts = parts_of_words(machines, *command, arguments);
-    if (!parts) return {parts.error()};
-    if (command->among == Among::values && !parts->empty()) {
-        among.at_parts(*parts);
-        return among.failures;
-    }
-    if (parts->size() > 1)
-        return {wrong("'" + std::string{command->name} + "' is about one machine at a time; these are of " +
-                      (*parts)[0].first->name + " and " + (*parts)[1].first->name)};
-    if (parts->empty())
-        return {wrong("say of which machine, as in '" + std::string{command->name} + " " +
-                      machines.all().front().name + "'; there are " + machines.names())};
-    among.at(*parts->front().first, line);
-    return among.failures;
-}
-
-std::vector<Failure> list_machines(Machines& machines, const Line& line, std::ostream& out) {
+/// list, where several machines are: who is there, and what each is about.
+void AtMachines::list() {
     std::size_t width = 0;
     for (const Machine& each : machines.all()) width = std::max(width, each.name.size());
     const auto named = [&](const std::string& name) -> std::ostream& {
         return out << name << std::string(std::max(width, name.size()) - name.size() + 2, ' ');
     };
-    std::vector<Failure> failures;
     for (Machine& each : machines.all()) {
         const auto session = machines.reach(each);
         auto told = session ? look_at(**session) : std::unexpected(session.error());
@@ -281,7 +235,7 @@ std::vector<Failure> list_machines(Machines& machines, const Line& line, std::os
                     << ", \"error\": " << in_quotes(told.error().sentence) << "}\n";
             else
                 named(each.name) << "does not answer\n";
-            failures.push_back(told.error());
+            fail(told);
         }
     }
     for (const auto& [node, hearers] : elsewhere(machines))
@@ -290,7 +244,44 @@ std::vector<Failure> list_machines(Machines& machines, const Line& line, std::os
         else
             named(node) << "has no socket " << machines.place()
                         << (hearers.empty() ? "; nobody hears it" : "; heard by " + hearers) << "\n";
-    return failures;
+}
+
+void AtMachines::run() {
+    const Command* const command = find_command(line.words.front());
+    if (command == nullptr) return fail(wrong(unknown_command(line.words.front())));
+    if (auto fits = check_options(command, line); !fits) return fail(fits);
+    if (!machines.are_several()) return at_only();
+    const std::span arguments = std::span{line.words}.subspan(1);
+    if (arguments.empty() && command->name == "list") return list();
+    if (arguments.empty() && command->among == Among::each) return at_each();
+    const auto given_first = arguments.empty()
+                                 ? machines.all().end()
+                                 : std::ranges::find(machines.all(), arguments[0], &Machine::name);
+    if (given_first != machines.all().end() && command->among != Among::values) {
+        Line of_it = line;
+        of_it.words.erase(of_it.words.begin() + 1);
+        return at(*given_first, of_it);
+    }
+    auto parts = parts_of_words(machines, *command, arguments);
+    if (!parts) return fail(parts);
+    if (command->among == Among::values && !parts->empty()) return at_parts(*parts);
+    if (parts->size() > 1)
+        return fail(wrong("'" + std::string{command->name} +
+                          "' is about one machine at a time; these are of " + (*parts)[0].first->name +
+                          " and " + (*parts)[1].first->name));
+    if (parts->empty())
+        return fail(wrong("say of which machine, as in '" + std::string{command->name} + " " +
+                          machines.all().front().name + "'; there are " + machines.names()));
+    at(*parts->front().first, line);
+}
+
+} // namespace
+
+std::vector<Failure> run_among(Machines& machines, const Line& line, std::ostream& out, bool screen,
+                               const volatile std::sig_atomic_t* signal) {
+    AtMachines among{machines, line, out, screen, signal};
+    among.run();
+    return among.failures;
 }
 
 } // namespace tappet::browser

@@ -20,19 +20,6 @@ using nlohmann::ordered_json;
 // A piece of a script, quoted, must fit one packet: each character may need an escape.
 constexpr std::size_t piece_characters = (browsing::max_packet_bytes - 256) / 2;
 
-std::unexpected<Failure> wrong(std::string sentence) {
-    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
-}
-
-std::string quoted(std::string_view text) {
-    std::string word{"\""};
-    for (const char character : text) {
-        if (character == '"' || character == '\\') word += '\\';
-        word += character;
-    }
-    return word + "\"";
-}
-
 std::string text_of(const ordered_json& object, const char* key) {
     const auto found = object.find(key);
     if (found == object.end()) return {};
@@ -89,10 +76,7 @@ Result<void> watch(Work& work, std::string_view name) {
 }
 
 Result<void> asked(Work& work, const std::string& line, const std::string& sentence) {
-    auto reply = work.session.link().request(line);
-    if (!reply) return std::unexpected(reply.error());
-    work.out << (work.line.json ? packet_text(work, std::move(*reply)) : sentence) << "\n";
-    return {};
+    return told(work, work.session.link().request(line), sentence);
 }
 
 Result<void> load(Work& work, const std::string& file, const std::string& slot) {
@@ -104,7 +88,7 @@ Result<void> load(Work& work, const std::string& file, const std::string& slot) 
     for (std::size_t at = 0; at < text.size(); at += piece_characters) {
         const auto sent =
             work.session.link().request("script " + own_word(work, slot) + " " + std::to_string(at) + " " +
-                                        quoted(std::string_view{text}.substr(at, piece_characters)));
+                                        quoted_word(std::string_view{text}.substr(at, piece_characters)));
         if (!sent) return std::unexpected(sent.error());
     }
     const std::string name = std::filesystem::path{file}.filename().string();
@@ -183,19 +167,17 @@ Result<void> run_behaviour(Work& work) {
     if (action == "rollback" && needs(1, 1))
         return asked(work, "roll_back " + own_word(work, words[1]),
                      words[1] + ": the earlier behaviour comes back");
-    constexpr std::array<std::string_view, 7> plain{"start", "stop",       "pause",   "step",
-                                                    "reset", "deactivate", "reactive"};
-    if (std::ranges::find(plain, action) != plain.end() && needs(1, 1))
+    const std::vector<std::string> actions{"start",      "stop",     "pause",  "step",  "reset",
+                                           "deactivate", "reactive", "list",   "watch", "load",
+                                           "unload",     "rollback", "request"};
+    const auto known = std::ranges::find(actions, action);
+    if (known < std::ranges::find(actions, "list") && needs(1, 1))
         return asked(work, "behave " + action + " " + own_word(work, words[1]),
                      words[1] + ": " + action + " done");
     if (action == "request" && needs(2, 2))
         return asked(work, "behave request " + own_word(work, words[1]) + " " + as_word(words[2]),
                      words[1] + ": goes to " + words[2]);
-    constexpr std::array<std::string_view, 6> others{"list",   "watch",    "load",
-                                                     "unload", "rollback", "request"};
-    std::vector<std::string> actions{plain.begin(), plain.end()};
-    actions.insert(actions.end(), others.begin(), others.end());
-    if (std::ranges::find(actions, action) == actions.end())
+    if (known == actions.end())
         if (const std::string nearest = MapReader::nearest_of(action, actions); !nearest.empty())
             return wrong("there is no 'behaviour " + action + "'" + nearest);
     return wrong("'behaviour " + action +

@@ -1,5 +1,6 @@
 // A line of the script language, which the machine compiles and executes: its end is awaited and told.
 #include "toolchain/tools/browser/commands.hpp"
+#include "toolchain/tools/browser/value.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -11,16 +12,6 @@ namespace tappet::browser {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// As the machine unquotes it: \" and \\ stand for themselves.
-std::string as_line_word(std::string_view line) {
-    std::string word{"\""};
-    for (const char character : line) {
-        if (character == '"' || character == '\\') word += '\\';
-        word += character;
-    }
-    return word + "\"";
-}
 
 void tell(Work& work, const ordered_json& end) {
     if (end.contains("value"))
@@ -50,7 +41,7 @@ Result<ordered_json> await_end(Work& work, std::uint32_t number) {
             given_up = Steady::now() + link.patience;
         }
         if (Steady::now() > given_up)
-            return std::unexpected(Failure{Fault::too_late, "the machine does not tell how the line ended"});
+            return failure(Fault::too_late, "the machine does not tell how the line ended");
         auto packet = link.next(std::chrono::milliseconds{100});
         if (!packet) return std::unexpected(packet.error());
         if (*packet && (*packet)->value("id", std::uint32_t{0}) == number && (*packet)->value("final", false))
@@ -62,17 +53,16 @@ Result<ordered_json> await_end(Work& work, std::uint32_t number) {
 
 Result<void> run_execute(Work& work) {
     if (work.line.stop != work.arguments().empty())
-        return std::unexpected(Failure{Fault::bad_request, "execute takes a line or --stop; it is spelled: " +
-                                                               std::string{find_command("execute")->usage}});
+        return wrong("execute takes a line or --stop; it is spelled: " +
+                     std::string{find_command("execute")->usage});
     if (work.line.stop) return break_off(work);
     std::string line;
     for (const std::string& word : work.arguments()) line += (line.empty() ? "" : " ") + word;
     if (std::ranges::any_of(line, [](char each) { return static_cast<unsigned char>(each) < ' '; }))
-        return std::unexpected(Failure{
-            Fault::bad_request,
-            "a line has no breaks and tabs; write blanks, or load a file with behaviour load FILE SLOT"});
+        return wrong(
+            "a line has no breaks and tabs; write blanks, or load a file with behaviour load FILE SLOT");
     std::uint32_t number = 0;
-    const auto begun = work.session.link().request("execute " + as_line_word(line), number);
+    const auto begun = work.session.link().request("execute " + quoted_word(line), number);
     if (!begun) return std::unexpected(begun.error());
     auto end = await_end(work, number);
     if (!end) return std::unexpected(end.error());
@@ -81,7 +71,7 @@ Result<void> run_execute(Work& work) {
     else if (end->value("line", std::string{}) == "done")
         tell(work, *end);
     if (end->value("line", std::string{}) == "done") return {};
-    return std::unexpected(Failure{Fault::failed, end->value("error", std::string{"it failed"})});
+    return failure(Fault::failed, end->value("error", std::string{"it failed"}));
 }
 
 } // namespace tappet::browser

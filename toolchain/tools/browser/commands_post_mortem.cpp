@@ -71,14 +71,12 @@ Result<void> tell(Work& work) {
 
 Result<void> run_post_mortem(Work& work) {
     if (work.session.black_box() == nullptr)
-        return std::unexpected(
-            Failure{Fault::bad_request, "this machine lives; begin with tappet-browse post-mortem FILE"});
+        return wrong("this machine lives; begin with tappet-browse post-mortem FILE");
     if (work.arguments().size() == 1) return tell(work);
     Line line = work.line;
     line.words.erase(line.words.begin(), line.words.begin() + 2);
     Work read{work.session, line, work.out, work.screen, work.signal};
-    if (find_command(line.words.front()) == nullptr)
-        return std::unexpected(Failure{Fault::bad_request, unknown_command(line.words.front())});
+    if (find_command(line.words.front()) == nullptr) return wrong(unknown_command(line.words.front()));
     return run_command(read);
 }
 

@@ -14,16 +14,6 @@ namespace {
 
 using map::none;
 
-std::unexpected<Failure> wrong(std::string sentence) {
-    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
-}
-
-std::string padded(std::string_view text, std::size_t width) {
-    std::string wide(std::max(text.size(), width), ' ');
-    text.copy(wide.data(), text.size());
-    return wide;
-}
-
 std::string activity_name(const MapReader& map, std::uint32_t activity) {
     return activity == none ? "-" : map.named(map.activities()[activity].name);
 }
@@ -292,9 +282,8 @@ Result<void> run_get(Work& work) {
         }
     }
     if (busy.empty()) return {};
-    return std::unexpected(
-        Failure{Fault::too_late, "the activity of '" + busy + "' was in its cycle at each of " +
-                                     std::to_string(Observer::attempts) + " looks; try again"});
+    return failure(Fault::too_late, "the activity of '" + busy + "' was in its cycle at each of " +
+                                        std::to_string(Observer::attempts) + " looks; try again");
 }
 
 Result<void> run_tree(Work& work) {

@@ -18,10 +18,6 @@ using Steady = std::chrono::steady_clock;
 /// A tape holds half a second: looked at so often, nothing is overwritten unseen unless the box is too busy.
 constexpr std::chrono::milliseconds between_looks{10};
 
-std::unexpected<Failure> wrong(std::string sentence) {
-    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
-}
-
 std::int64_t now_of(clockid_t clock) {
     timespec now{};
     ::clock_gettime(clock, &now);

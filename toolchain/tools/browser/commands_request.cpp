@@ -13,22 +13,21 @@ namespace {
 
 using nlohmann::ordered_json;
 
-Result<void> told(Work& work, const Result<ordered_json>& reply, const std::string& sentence) {
-    if (!reply) return std::unexpected(reply.error());
-    work.out << (work.line.json ? packet_text(work, *reply) : sentence) << "\n";
-    return {};
-}
-
 /// "[1.5, 2]" as the machine wrote it, without the quotes of a mere text.
 std::string plain(const ordered_json& value) { return value.dump(); }
 
 } // namespace
 
+Result<void> told(const Work& work, const Result<ordered_json>& reply, const std::string& sentence) {
+    if (!reply) return std::unexpected(reply.error());
+    work.out << (work.line.json ? packet_text(work, *reply) : sentence) << "\n";
+    return {};
+}
+
 Result<void> run_set(Work& work) {
     const auto arguments = work.arguments();
     if (arguments.size() % 2 != 0)
-        return std::unexpected(Failure{Fault::bad_request, "set takes pairs of a property and its value; '" +
-                                                               arguments.back() + "' has no value"});
+        return wrong("set takes pairs of a property and its value; '" + arguments.back() + "' has no value");
     for (std::size_t i = 0; i < arguments.size(); i += 2)
         if (const auto found = find_facet(work.session.map(), Takes::property, arguments[i]); !found)
             return std::unexpected(found.error());
@@ -73,8 +72,7 @@ Result<void> run_send(Work& work) {
                      << std::endl;
         if (!news.value("final", false)) continue;
         if (state == "done") return {};
-        return std::unexpected(
-            Failure{Fault::failed, "'" + name + "' was not done: the machine says " + state});
+        return failure(Fault::failed, "'" + name + "' was not done: the machine says " + state);
     }
     return {};
 }
@@ -91,18 +89,20 @@ Result<void> run_force(Work& work) {
 Result<void> run_plain_request(Work& work) {
     const auto arguments = work.arguments();
     const Takes takes = find_command(work.line.words.front())->takes;
-    if (!arguments.empty()) {
+    if (!arguments.empty() && takes != Takes::nothing) {
         const std::vector<std::string> names = names_for(work.session.map(), takes);
         if (std::ranges::find(names, arguments[0]) == names.end()) {
             const std::string nearest = MapReader::nearest_of(arguments[0], names);
-            return std::unexpected(Failure{
-                Fault::bad_request, "there is nothing '" + arguments[0] + "' to " + work.line.words.front() +
-                                        (nearest.empty() ? "; list shows the components" : nearest)});
+            return wrong("there is nothing '" + arguments[0] + "' to " + work.line.words.front() +
+                         (nearest.empty() ? "; list shows the components" : nearest));
         }
     }
     const auto reply = work.session.link().request(request_of(work));
     std::string sentence = work.line.words.front() + ": done";
-    if (reply && reply->contains("files")) sentence = "saved: " + plain((*reply)["files"]) + " files";
+    ordered_json answer = reply.value_or(ordered_json::object());
+    for (const char* const of_all : {"id", "ok", "dropped"}) answer.erase(of_all);
+    if (!answer.empty()) sentence = work.line.words.front() + ": " + answer.dump();
+    if (answer.contains("files")) sentence = "saved: " + plain(answer["files"]) + " files";
     return told(work, reply, sentence);
 }
 

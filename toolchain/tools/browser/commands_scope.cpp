@@ -19,19 +19,10 @@ using Steady = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds between_looks{10};
 constexpr std::chrono::milliseconds usual_length{1000};
 
-std::unexpected<Failure> wrong(std::string sentence) {
-    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
-}
-
 /// "12.345 us"; times of functions are compared by eye.
 std::string us(std::int64_t ns) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f us", static_cast<double>(ns) / 1000);
-    return text;
-}
-
-std::string padded(std::string text, std::size_t width, bool right = false) {
-    if (text.size() < width) text.insert(right ? 0 : text.size(), width - text.size(), ' ');
     return text;
 }
 
@@ -61,9 +52,7 @@ Result<void> write_file(Work& work, const Waves& waves) {
 /// Those that are of the span, and of one activity when one is named: the worst first.
 Result<std::vector<Kept>> worst_of(const ScopeReader& scope, const std::string& activity) {
     auto kept = scope.worst();
-    if (!kept)
-        return std::unexpected(
-            Failure{Fault::too_late, "the machine was busy keeping cycles at each look; try again"});
+    if (!kept) return failure(Fault::too_late, "the machine was busy keeping cycles at each look; try again");
     const scope::Directory directory = scope.directory();
     const Waves names = scope.empty();
     if (!activity.empty() &&
@@ -237,7 +226,7 @@ Result<void> overview(Work& work, const ScopeReader& scope) {
 
 Result<void> run_scope(Work& work) {
     const auto scope = ScopeReader::open(work.session.map());
-    if (!scope) return std::unexpected(Failure{Fault::refused, scope.error()});
+    if (!scope) return failure(Fault::refused, scope.error());
     const auto words = work.arguments();
     if (words.empty()) return overview(work, *scope);
     if (words[0] == "worst")

@@ -28,9 +28,9 @@ Result<void> ended(std::span<const Seen> all, const std::vector<bool>& has_ended
     for (std::size_t i = 0; i < all.size(); ++i)
         if (has_ended[i]) names += (names.empty() ? "" : ", ") + name_of(all[i]);
     if (names.empty()) return {};
-    return std::unexpected(
-        Failure{Fault::no_machine, all.size() == 1 ? "the machine has ended; what was shown last is its last"
-                                                   : names + " ended; what was shown last is the last"});
+    return failure(Fault::no_machine, all.size() == 1
+                                          ? "the machine has ended; what was shown last is its last"
+                                          : names + " ended; what was shown last is the last");
 }
 
 /// Looks at those that are still there; true: none is.

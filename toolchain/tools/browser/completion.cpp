@@ -15,7 +15,7 @@ std::vector<std::string> names_in(Machines& machines, const Command& command,
     for (const Machine& each : machines.all()) {
         if (may_be_machine) names.push_back(each.name);
         if (each.session == nullptr) continue;
-        if (!is_name(command, arguments, arguments.size()) && command.name != "execute") continue;
+        if (command.names != Names::none && !is_name(command, arguments, arguments.size())) continue;
         for (std::string& name : names_for(each.session->map(), command.takes))
             names.push_back(std::move(name));
     }
@@ -39,7 +39,7 @@ Completion complete(Machines& machines, std::string_view before_cursor) {
     const std::string_view typed = before_cursor.substr(completion.begin);
     std::vector<std::string> names;
     if (typed.starts_with("-")) {
-        for (const std::string_view name : option_names()) names.emplace_back(name);
+        for (const Option& each : options()) names.emplace_back(each.name);
     } else {
         const auto words = split_line(before_cursor.substr(0, completion.begin));
         std::vector<std::string> before;

@@ -29,10 +29,6 @@ using nlohmann::ordered_json;
 using Milliseconds = std::chrono::milliseconds;
 using Steady = std::chrono::steady_clock;
 
-std::unexpected<Failure> failure(Fault fault, std::string sentence) {
-    return std::unexpected(Failure{fault, std::move(sentence)});
-}
-
 std::string why_not_connected(const std::string& path, int error) {
     const std::string socket = "'" + path + "'";
     switch (error) {

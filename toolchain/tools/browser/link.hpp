@@ -35,6 +35,13 @@ struct Failure {
 
 template <class T> using Result = std::expected<T, Failure>;
 
+[[nodiscard]] inline std::unexpected<Failure> failure(Fault fault, std::string sentence) {
+    return std::unexpected(Failure{fault, std::move(sentence)});
+}
+[[nodiscard]] inline std::unexpected<Failure> wrong(std::string sentence) {
+    return failure(Fault::bad_request, std::move(sentence));
+}
+
 /// Memory of the machine, read-only; unmapped at the end.
 class SharedBlock {
 public:

@@ -8,10 +8,6 @@ namespace tappet::browser {
 
 namespace {
 
-std::unexpected<Failure> failure(Fault fault, std::string sentence) {
-    return std::unexpected(Failure{fault, std::move(sentence)});
-}
-
 std::vector<std::string> sockets_in(const std::string& directory) {
     std::vector<std::string> found;
     std::error_code error;

@@ -3,6 +3,7 @@
 
 #include "kernel/base/nearest.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -10,27 +11,54 @@ namespace tappet::browser {
 
 namespace {
 
-constexpr std::array<std::string_view, 12> names{"--json",      "--follow", "--help",   "--count",
-                                                 "--every",     "--at",     "--socket", "--timeout",
-                                                 "--directory", "--for",    "--to",     "--stop"};
+constexpr auto rows = std::to_array<Option>({{"--json", &Line::json, true},
+                                             {"--follow", &Line::follow},
+                                             {"--help", &Line::help, true},
+                                             {"--count", &Line::count},
+                                             {"--every", &Line::every},
+                                             {"--at", &Line::at},
+                                             {"--socket", &Line::sockets, true},
+                                             {"--timeout", &Line::patience, true},
+                                             {"--directory", &Line::directory, true},
+                                             {"--for", &Line::length},
+                                             {"--to", &Line::to},
+                                             {"--stop", &Line::stop}});
 
 bool is_number(std::string_view text) {
-    const std::string_view rest = text.substr(
-        text.find_first_not_of('-') == std::string_view::npos ? text.size() : text.find_first_not_of('-'));
+    const std::string_view rest = text.substr(std::min(text.find_first_not_of('-'), text.size()));
     return !rest.empty() && (rest[0] == '.' || (rest[0] >= '0' && rest[0] <= '9'));
 }
 
 std::string unknown(std::string_view word) {
     Nearest nearest{word};
-    for (const std::string_view name : names) nearest.consider(name);
+    for (const Option& each : rows) nearest.consider(each.name);
     const std::string what = "there is no option " + std::string{word};
     if (nearest.best().empty()) return what + "; --help lists them";
     return what + "; did you mean " + std::string{nearest.best()} + "?";
 }
 
+/// What is wrong with the value; empty: nothing.
+std::string take(Line& line, const Option& option, const std::string& value) {
+    if (const auto* const text = std::get_if<std::string Line::*>(&option.goes_to)) {
+        line.*(*text) = value;
+    } else if (const auto* const list = std::get_if<std::vector<std::string> Line::*>(&option.goes_to)) {
+        (line.*(*list)).push_back(value);
+    } else if (const auto* const number = std::get_if<long Line::*>(&option.goes_to)) {
+        const char* const stop = value.data() + value.size();
+        const auto [end, error] = std::from_chars(value.data(), stop, line.*(*number));
+        if (error != std::errc{} || end != stop || line.*(*number) < 1)
+            return std::string{option.name} + " takes a number from 1, not '" + value + "'";
+    } else {
+        const auto time = parse_time(value);
+        if (!time) return std::string{option.name} + ": " + time.error();
+        line.*std::get<std::chrono::milliseconds Line::*>(option.goes_to) = *time;
+    }
+    return {};
+}
+
 } // namespace
 
-std::span<const std::string_view> option_names() { return names; }
+std::span<const Option> options() { return rows; }
 
 std::expected<std::chrono::milliseconds, std::string> parse_time(std::string_view text) {
     double value = 0;
@@ -58,38 +86,17 @@ std::expected<Line, std::string> parse_line(std::span<const std::string> words) 
             options_end = true;
             continue;
         }
-        if (word == "--json" || word == "--follow" || word == "--help" || word == "--stop") {
-            line.given.push_back(word);
-            (word == "--json"     ? line.json
-             : word == "--follow" ? line.follow
-             : word == "--stop"   ? line.stop
-                                  : line.help) = true;
+        const auto* const option = std::ranges::find(rows, word, &Option::name);
+        if (option == rows.end()) return std::unexpected(unknown(word));
+        line.given.push_back(word);
+        if (const auto* const flag = std::get_if<bool Line::*>(&option->goes_to)) {
+            line.*(*flag) = true;
             continue;
         }
-        line.given.push_back(word);
-        bool known = false;
-        for (const std::string_view name : names) known = known || name == word;
-        if (!known) return std::unexpected(unknown(word));
         if (i + 1 == words.size())
             return std::unexpected(word + " needs a value after it; --help shows which");
-        const std::string& value = words[++i];
-        if (word == "--at") {
-            line.at = value;
-        } else if (word == "--to") {
-            line.to = value;
-        } else if (word == "--socket") {
-            line.sockets.push_back(value);
-        } else if (word == "--directory") {
-            line.directory = value;
-        } else if (word == "--count") {
-            const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), line.count);
-            if (error != std::errc{} || end != value.data() + value.size() || line.count < 1)
-                return std::unexpected("--count takes a number from 1, not '" + value + "'");
-        } else {
-            const auto time = parse_time(value);
-            if (!time) return std::unexpected(word + ": " + time.error());
-            (word == "--every" ? line.every : word == "--for" ? line.length : line.patience) = *time;
-        }
+        if (std::string fault = take(line, *option, words[++i]); !fault.empty())
+            return std::unexpected(std::move(fault));
     }
     return line;
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace tappet::browser {
@@ -29,12 +30,21 @@ struct Line {
     std::string directory{browsing::default_directory};
 };
 
+/// `goes_to` takes the value behind it; a bool takes none.
+struct Option {
+    std::string_view name;
+    std::variant<bool Line::*, std::string Line::*, std::vector<std::string> Line::*, long Line::*,
+                 std::chrono::milliseconds Line::*>
+        goes_to;
+    bool of_all = false; ///< else of the commands whose usage has it
+};
+
+[[nodiscard]] std::span<const Option> options();
 /// Options may stand anywhere; after "--" everything is a word. The error says what is wrong and the cure.
 [[nodiscard]] std::expected<Line, std::string> parse_line(std::span<const std::string> words);
 /// A typed line into words as a request has them: quotes and brackets keep blanks.
 [[nodiscard]] std::expected<std::vector<std::string>, std::string> split_line(std::string_view text);
 /// "200ms", "1.5s", "2s"; a bare number is milliseconds.
 [[nodiscard]] std::expected<std::chrono::milliseconds, std::string> parse_time(std::string_view text);
-[[nodiscard]] std::span<const std::string_view> option_names();
 
 } // namespace tappet::browser

@@ -15,10 +15,6 @@ namespace tappet::browser {
 
 namespace {
 
-std::unexpected<Failure> wrong(std::string sentence) {
-    return std::unexpected(Failure{Fault::bad_request, std::move(sentence)});
-}
-
 struct flock whole_file() {
     struct flock lock{};
     lock.l_type = F_WRLCK;

@@ -22,27 +22,27 @@ Result<std::unique_ptr<Session>> Session::open(const std::string& socket, std::c
     if (!hello) return std::unexpected(hello.error());
     const auto spoken = hello->value("protocol", std::uint32_t{0});
     if (spoken != browsing::protocol_version)
-        return std::unexpected(Failure{
-            Fault::no_machine, "the machine speaks protocol " + std::to_string(spoken) +
-                                   ", this browser protocol " + std::to_string(browsing::protocol_version) +
-                                   "; use the browser that was built with the firmware"});
+        return failure(Fault::no_machine, "the machine speaks protocol " + std::to_string(spoken) +
+                                              ", this browser protocol " +
+                                              std::to_string(browsing::protocol_version) +
+                                              "; use the browser that was built with the firmware");
     if (const auto given = link->request("map"); !given) return std::unexpected(given.error());
     const int descriptor = link->take_descriptor();
     if (descriptor < 0)
-        return std::unexpected(Failure{
-            Fault::no_machine, "the machine handed no memory over; is it built with a browser service?"});
+        return failure(Fault::no_machine,
+                       "the machine handed no memory over; is it built with a browser service?");
     auto block = SharedBlock::map(descriptor);
     ::close(descriptor);
     if (!block) return std::unexpected(block.error());
     auto map = MapReader::open(block->bytes(), std::move(place));
-    if (!map) return std::unexpected(Failure{Fault::no_machine, map.error()});
+    if (!map) return failure(Fault::no_machine, map.error());
     return std::unique_ptr<Session>{new Session{std::move(*link), std::move(*block), std::move(*map),
                                                 hello->value("role", std::string{"unknown"})}};
 }
 
 Result<std::unique_ptr<Session>> Session::open_black_box(const std::string& file) {
     const auto wrong = [&](const std::string& why) {
-        return std::unexpected(Failure{Fault::bad_request, "'" + file + "' " + why});
+        return failure(Fault::bad_request, "'" + file + "' " + why);
     };
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) return wrong(std::string{"cannot be opened: "} + std::strerror(errno));

@@ -302,4 +302,18 @@ std::string as_word(std::string_view text) {
     return one ? std::string{text} : in_quotes(text);
 }
 
+std::string quoted_word(std::string_view text) {
+    std::string word{"\""};
+    for (const char character : text) {
+        if (character == '"' || character == '\\') word += '\\';
+        word += character;
+    }
+    return word + "\"";
+}
+
+std::string padded(std::string text, std::size_t width, bool right) {
+    if (text.size() < width) text.insert(right ? 0 : text.size(), width - text.size(), ' ');
+    return text;
+}
+
 } // namespace tappet::browser

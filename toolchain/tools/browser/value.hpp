@@ -28,6 +28,9 @@ enum class Style {
 [[nodiscard]] std::string in_quotes(std::string_view text);
 /// One word of a request: as it is, or in quotes when it would be taken for several.
 [[nodiscard]] std::string as_word(std::string_view text);
+[[nodiscard]] std::string padded(std::string text, std::size_t width, bool right = false);
+/// Any text as one word of a request, which the machine unquotes.
+[[nodiscard]] std::string quoted_word(std::string_view text);
 /// "4ms", "1.5s", "250us".
 [[nodiscard]] std::string duration_text(std::int64_t nanoseconds);
 /// Of what was measured: three digits, "12.3ms", "87us"; more only before the point.

@@ -1,6 +1,7 @@
 // A row for each frame: dark its time on the wire, light its longest response, a mark at its deadline.
 #include "toolchain/tools/chart/bus.hpp"
 
+#include "drivers/can/kind.hpp"
 #include "kernel/machine/check/traffic.hpp"
 #include "toolchain/svg.hpp"
 
@@ -25,9 +26,8 @@ std::string draw_bus(const AcceptedMachine& machine, std::size_t component, std:
     const ComponentRow& row = machine.table.components[component];
     const auto worst =
         checks::worst_responses_ns(machine.table, *machine.board, *machine.binding, machine.index);
-    constexpr BusErrors errors;
-    const DeviceUse use{row.device,     bit_rate,     data_bit_rate,
-                        errors.at_once, errors.every, Duration{worst[machine.index.activity[component]]}};
+    const std::array rates{tappet::bit_rate(bit_rate, data_bit_rate)};
+    const DeviceUse use{row.device, rates, Duration{worst[machine.index.activity[component]]}};
     std::vector<TrafficRow> frames(row.type->device_traffic.rows);
     const Sentence fault = row.type->device_traffic.analyse(use, frames);
     double load = 0;

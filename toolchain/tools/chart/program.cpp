@@ -3,6 +3,7 @@
 #include "toolchain/tools/chart/program.hpp"
 
 #include "drivers/can/dbc/writer.hpp"
+#include "drivers/can/kind.hpp"
 #include "toolchain/tools/chart/bus.hpp"
 #include "toolchain/tools/chart/options.hpp"
 #include "toolchain/tools/chart/plantuml.hpp"
@@ -116,7 +117,9 @@ private:
     bool write_buses() {
         bool good = true;
         for (const ComponentRow& row : machine_.table.components) {
-            if (row.type->device_kind != "can" || row.type->device_map == nullptr) continue;
+            const DeviceKind* kind = row.type->device_kind;
+            if (kind == nullptr || kind->name != can::device_kind.name || row.type->device_map == nullptr)
+                continue;
             const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
             good = write(stem_ + "." + identifier(row.name) + ".dbc",
                          can::dbc::to_dbc(machine_.table.name, map.frames, map.signals)) &&

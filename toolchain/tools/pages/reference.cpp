@@ -30,6 +30,7 @@
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/pages/pages.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -193,7 +194,8 @@ bool may_be_asked_for(FacetKind kind) {
 
 void put(std::ostream& page, const Described& each, const std::string& text) {
     page << "\n### " << cell(each.row) << "\n\n" << text << "\n\n`#include \"" << each.header << "\"`";
-    if (!each.component.device_kind.empty()) page << "; drives a " << each.component.device_kind << " device";
+    if (each.component.device_kind != nullptr)
+        page << "; drives a " << each.component.device_kind->name << " device";
     page << "\n\n| facet | kind | type | unit | range | text | thread | asked for by |\n"
             "|---|---|---|---|---|---|---|---|\n";
     for (const Facet& facet : each.component.facets) {
@@ -216,6 +218,16 @@ std::optional<std::string> put(std::ostream& page, std::string_view heading, con
     return std::nullopt;
 }
 
+/// Of a kind of device without words nothing stands in a row but its names.
+std::vector<std::string> drivers_with_words(const std::filesystem::path& tree) {
+    std::vector<std::string> found;
+    for (const auto& folder : std::filesystem::directory_iterator{tree / "drivers"})
+        if (contents_of(folder.path() / "kind.hpp").contains("constexpr Fact "))
+            found.push_back(folder.path().filename().string());
+    std::ranges::sort(found);
+    return found;
+}
+
 } // namespace
 
 std::expected<std::string, std::string> reference_page(const std::filesystem::path& tree) {
@@ -235,6 +247,12 @@ std::expected<std::string, std::string> reference_page(const std::filesystem::pa
     for (const auto& [header, heading] : tables)
         if (const auto fault = put(page, heading, std::string{header}, contents_of(tree / header)))
             silent += "\n  " + *fault;
+    for (const std::string& driver : drivers_with_words(tree)) {
+        const std::string header = "drivers/" + driver + "/kind.hpp";
+        if (const auto fault =
+                put(page, "boards and bindings: " + driver, header, contents_of(tree / header)))
+            silent += "\n  " + *fault;
+    }
     if (!silent.empty()) return std::unexpected(silent);
     page << "\n## Commands of the browser\n\n| `tappet-browse ...` | does |\n|---|---|\n";
     for (const browser::Command& each : browser::commands())

@@ -52,9 +52,9 @@ void add_case(const fs::path& file, std::vector<Refusal>& found) {
         found.push_back({"seen by a compiler only, or through it", name, line.substr(refused.size())});
 }
 
-/// Tests of one check beside it: what they expect, word by word, is a whole sentence with its cure.
+/// What the tests of a check beside it expect, word by word, with its cure: a whole sentence, or a row's.
 void add_expected(const fs::path& file, const std::string& topic, std::vector<Refusal>& found) {
-    static const std::regex test{R"(\nTEST\w*\((\w+), (\w+)\)|,\s*((?:"(?:\\.|[^"\\])*"\s*)+)\)(?:;| <<))"};
+    static const std::regex test{R"(\nTEST\w*\((\w+), (\w+)\)|,\s*((?:"(?:\\.|[^"\\])*"\s*)+)(?:\);|\},))"};
     static const std::regex literal{R"~("((?:\\.|[^"\\])*)")~"}, escape{R"(\\(.))"};
     const std::string text = contents_of(file);
     std::string name;

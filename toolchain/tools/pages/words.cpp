@@ -18,8 +18,10 @@ void add_comment(std::string& text, std::string_view line) {
     text += (text.empty() ? "" : " ") + (first > 1 ? "`" + words + "`" : words);
 }
 
+/// The words of rows stand in `tappet` or in the namespace of their driver, and what serves them one deeper.
 bool is_detail(std::string_view line) {
-    return line.starts_with("namespace ") && line.contains("detail") && !line.contains("// namespace");
+    return line.starts_with("namespace ") &&
+           (line.contains("detail") || !line.starts_with("namespace tappet"));
 }
 
 } // namespace

@@ -1,28 +1,23 @@
-// From lines to what a viewer sees: stops, messages, the plain lines and the screen.
-#include "apps/carpet_loom/demo/story.hpp"
+// From lines, and what a serial line may turn them into, to what a viewer sees: stops, messages, the picture.
 #include "apps/carpet_loom/demo/view.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 namespace tappet::demo {
 namespace {
 
-using testing::AllOf;
-using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
+using testing::Pair;
 
 std::string line(int time_ms, const char* state, int speed_rpm, int picks, int stops, const char* cause,
                  int error_ddeg = 0, int angle_deg = 57) {
     return "loom t=" + std::to_string(time_ms) + "ms state=" + state + " speed=" + std::to_string(speed_rpm) +
            "rpm angle=" + std::to_string(angle_deg) + "deg picks=" + std::to_string(picks) +
            " tension=301N oil=250cbar stops=" + std::to_string(stops) + " cause=" + cause +
-           " stop_error=" + std::to_string(error_ddeg) + "ddeg bus=0 frames_lost=0 edges_lost=0 outages=0";
+           " stop_error=" + std::to_string(error_ddeg) + "ddeg bus=active frames_lost=0 waits_for=nothing";
 }
 
 Story story_of(std::initializer_list<std::string> lines) {
@@ -35,21 +30,14 @@ TEST(Story, sees_a_stop_at_the_stop_angle_with_its_error) {
     const Story story =
         story_of({line(1000, "weave", 600, 8, 0, "none"), line(1250, "stopped", 0, 9, 1, "weft", 60, 316),
                   line(1500, "stopped", 0, 9, 1, "weft", 60, 316)});
-    EXPECT_THAT(
-        story.stops(),
-        ElementsAre(SeenStop{
-            .after_pick = 9, .cause = "weft", .angle_deg = 316.0, .at_stop_angle = true, .error_deg = 6.0}));
+    EXPECT_THAT(story.stops(), ElementsAre(Pair("stop after pick 9, weft", "at 316.0 deg, error +6.0 deg")));
 }
 
 TEST(Story, sees_an_emergency_stop_where_the_shaft_came_to_stand_without_an_error) {
     const Story story = story_of({line(1000, "weave", 600, 8, 1, "none", 60),
                                   line(1250, "emergency", 200, 9, 1, "emergency", 60),
                                   line(1500, "emergency", 0, 9, 1, "emergency", 60, 42)});
-    EXPECT_THAT(story.stops(), ElementsAre(SeenStop{.after_pick = 9,
-                                                    .cause = "emergency",
-                                                    .angle_deg = 42.0,
-                                                    .at_stop_angle = false,
-                                                    .error_deg = 0.0}));
+    EXPECT_THAT(story.stops(), ElementsAre(Pair("stop after pick 9, emergency", "at 42.0 deg")));
 }
 
 TEST(Story, sees_a_stop_that_was_over_before_the_next_line) {
@@ -82,7 +70,7 @@ TEST(Story, counts_no_stop_while_the_shaft_stands_from_the_beginning) {
 TEST(Story, keeps_the_last_messages_as_they_came) {
     Story story = story_of({"carpet-loom: cannot open \"can0\"", "", "loom t=cut"});
     EXPECT_THAT(story.messages(), ElementsAre("carpet-loom: cannot open \"can0\"", "loom t=cut"));
-    EXPECT_FALSE(story.begun());
+    EXPECT_THAT(story.status(), IsEmpty());
     for (int i = 0; i < 1000; ++i) story.take("message " + std::to_string(i));
     EXPECT_LE(story.messages().size(), 200U);
     EXPECT_EQ(story.messages().back(), "message 999");
@@ -95,48 +83,66 @@ TEST(Story, knows_how_long_nothing_was_woven) {
     EXPECT_EQ(Story{}.idle_ms(), 0);
 }
 
-TEST(Plain, line_says_state_picks_tension_wires_and_the_activity_nearest_to_its_deadline) {
-    const Story story = story_of({line(2000, "weave", 599, 12, 0, "none"),
-                                  "timing can=100/500us motion=150/1000us io=90/300us misses=0"});
-    const std::string text = plain_line(story, {.picks_wanted = 30, .wall_s = 5.0});
-    EXPECT_THAT(text,
-                AllOf(HasSubstr("2.0 s"), HasSubstr("weave"), HasSubstr("599 rpm"), HasSubstr("picks 12/30"),
-                      HasSubstr("301 N"), HasSubstr("CAN active"), HasSubstr("io 90/300 us")));
-    EXPECT_TRUE(std::ranges::all_of(text, [](char character) {
-        return character >= ' ' && character <= '~';
-    })) << "neither colours nor line ends";
+TEST(Story, keeps_of_the_timing_the_activity_nearest_to_its_deadline) {
+    EXPECT_EQ(story_of({"timing can=100/500us motion=150/1000us io=90/300us misses=2"}).timing(),
+              "io=90/300us misses=2");
 }
 
-TEST(Plain, stop_names_cause_angle_and_error_where_there_is_one) {
-    EXPECT_THAT(plain_stop({9, "weft", 316.0, true, 6.0}),
-                AllOf(HasSubstr("pick 9"), HasSubstr("weft"), HasSubstr("316.0"), HasSubstr("+6.0")));
-    EXPECT_THAT(plain_stop({9, "emergency", 42.0, false, 0.0}),
-                AllOf(HasSubstr("42.0"), Not(HasSubstr("error"))));
-}
-
-TEST(Screen, stays_low_enough_for_a_terminal_whatever_happened) {
-    Story story = story_of({line(0, "weave", 600, 0, 0, "none"), "timing can=100/500us misses=0"});
-    for (int i = 1; i <= 40; ++i) {
-        story.take(line(1000 * i, "stopped", 0, i, i, "weft", i));
-        story.take("message " + std::to_string(i));
+TEST(Words, of_a_line_that_is_damaged_are_none) {
+    const std::string whole = line(4784, "stopped", -1, 9, 1, "weft", -60);
+    const auto words = [](const std::string& each) { return words_of(each, "loom", "waits_for"); };
+    ASSERT_EQ(words(whole).size(), 13u);
+    EXPECT_EQ(number_of(text_of(words(whole), "speed")), -1);
+    EXPECT_EQ(text_of(words(whole), "humidity"), "");
+    for (std::size_t at = 1; at < whole.size(); ++at) {
+        if (at <= whole.rfind('=')) {
+            EXPECT_THAT(words(whole.substr(0, at)), IsEmpty()) << at;
+        }
+        EXPECT_THAT(words(whole.substr(at)), IsEmpty()) << at;
+        EXPECT_THAT(words(whole.substr(0, at) + whole), IsEmpty()) << at;
     }
-    const auto lines = screen(story, {.picks_wanted = 200, .wall_s = 1.0});
-    EXPECT_LE(lines.size(), 16U);
-    EXPECT_THAT(lines, Each(Not(HasSubstr("\n"))));
+    for (const char* other : {"", "loom", "loom ", "loom  ", "looms waits_for=1", "=", "loom =",
+                              "arm: 13 checks made, 1 warning", "\x1d\xff\xfe", "timing can=1/2us misses=0"})
+        EXPECT_THAT(words(other), IsEmpty()) << other;
 }
 
-TEST(Screen, draws_what_no_loom_should_say_without_harm) {
-    const Story story =
-        story_of({"loom t=-1ms state=? speed=-99999rpm angle=99999deg picks=-5 tension=-9999N oil=-1cbar "
-                  "stops=-1 cause=? stop_error=0ddeg bus=77 frames_lost=-1 edges_lost=9 outages=0"});
-    ASSERT_TRUE(story.begun());
-    EXPECT_FALSE(screen(story, {.picks_wanted = 0, .wall_s = 0.0}).empty());
-    EXPECT_THAT(plain_line(story, {}), HasSubstr("CAN unknown"));
+TEST(Picture, has_a_row_for_each_word_the_timing_and_the_last_stops) {
+    Story story = story_of({line(0, "weave", 599, 0, 0, "none"), "timing can=100/500us misses=0"});
+    EXPECT_EQ(picture_of(story, 200, 1.0).rows[1].value, "weave");
+    EXPECT_EQ(picture_of(story, 200, 1.0).rows[2], (browser::WatchRow{"speed", "599", "rpm"}));
+    for (int i = 1; i <= 40; ++i) story.take(line(1000 * i, "stopped", 0, i, i, "weft", i));
+    story.take("a word of the plant");
+    const browser::WatchPicture picture = picture_of(story, 200, 1.0);
+    EXPECT_THAT(picture.title, HasSubstr("pick 40 of 200"));
+    EXPECT_EQ(picture.status, "a word of the plant");
+    EXPECT_LE(draw(picture, {}, false).size(), 24u);
+    EXPECT_EQ(picture.rows.back().name, "stop after pick 40, weft");
 }
 
-TEST(Screen, shows_that_the_box_is_booting_before_the_first_line) {
-    const auto lines = screen(Story{}, {.picks_wanted = 10, .wall_s = 1.0});
-    EXPECT_THAT(lines.back(), HasSubstr("booting"));
+TEST(Picture, says_that_the_box_is_booting_before_the_first_line) {
+    EXPECT_THAT(picture_of(Story{}, 10, 1.0).status, HasSubstr("booting"));
+}
+
+std::vector<std::string> lines_of(std::initializer_list<std::string_view> pieces) {
+    Lines lines;
+    std::vector<std::string> found;
+    for (const std::string_view piece : pieces)
+        lines.add(piece, [&](std::string_view each) { found.emplace_back(each); });
+    return found;
+}
+
+TEST(Lines, come_whole_however_the_bytes_come_in_pieces) {
+    EXPECT_THAT(lines_of({"one\ntwo\n"}), ElementsAre("one", "two"));
+    EXPECT_THAT(lines_of({"o", "n", "e", "\n", "two\nth", "ree"}), ElementsAre("one", "two"));
+    EXPECT_THAT(lines_of({"\n\r\n", "one\r\n"}), ElementsAre("", "", "one"));
+}
+
+TEST(Lines, do_not_grow_without_bound) {
+    const std::string endless(100'000, 'x');
+    const auto lines = lines_of({endless, endless, "\nnext\n"});
+    ASSERT_EQ(lines.size(), 2U);
+    EXPECT_LE(lines[0].size(), 4096U);
+    EXPECT_EQ(lines[1], "next");
 }
 
 } // namespace

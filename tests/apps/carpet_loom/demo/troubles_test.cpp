@@ -1,6 +1,5 @@
 // What the demo shows: a break of each kind, whatever its seed and however many picks it weaves.
-#include "apps/carpet_loom/demo/options.hpp"
-#include "apps/carpet_loom/demo/troubles.hpp"
+#include "apps/carpet_loom/demo/scenario.hpp"
 #include "apps/carpet_loom/plant/options.hpp"
 #include "tests/apps/carpet_loom/loom_run.hpp"
 
@@ -12,26 +11,25 @@ namespace tappet::demo {
 namespace {
 
 /// The demo's plant at the host's loom.
-loom::Report report_of(std::int64_t picks, std::uint64_t seed) {
+loom::Report report_of(std::uint64_t picks, std::uint64_t seed) {
     const std::vector<std::string> words = troubles(picks);
     loom::Settings settings;
     for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
         bool known = false;
         EXPECT_TRUE(loom::read_option(words[i], words[i + 1], settings, known) || !known) << words[i];
     }
-    settings.last_pick = static_cast<std::uint64_t>(picks);
+    settings.last_pick = picks;
     carpet::LoomRun run{settings, seed};
     EXPECT_TRUE(run.start());
-    EXPECT_TRUE(run.weave(static_cast<std::uint64_t>(picks), 400s)) << "seed " << seed;
+    EXPECT_TRUE(run.weave(picks, 400s)) << "seed " << seed;
     const loom::Report report = run.plant().report();
     run.stop();
     return report;
 }
 
 TEST(TheDemo, shows_a_stop_for_a_weft_a_warp_end_and_an_emergency_whatever_chance_brings) {
-    const Options by_default;
-    for (const std::int64_t picks : {by_default.picks, std::int64_t{60}})
-        for (std::uint64_t seed = by_default.seed; seed < by_default.seed + 5; ++seed) {
+    for (const std::uint64_t picks : {usual_picks, std::uint64_t{60}})
+        for (std::uint64_t seed = usual_seed; seed < usual_seed + 5; ++seed) {
             const loom::Report report = report_of(picks, seed);
             const auto count = [&report](loom::StopCause cause) {
                 return std::ranges::count_if(report.stops,

@@ -180,14 +180,14 @@ private:
         const std::int64_t pick = plant.dobby().taken() + 1;
         if (!repeats_pattern && now.time_since_epoch() % 10ms == 0ms)
             plant.receive(wire.frame("dobby_command", {{"pick", pick}, {"pattern", pick}}), now);
-        if (now == Time{} + 100ms) static_cast<void>(plant.climate().write_coil(0, true));
+        if (now == Time{} + 100ms) plant.climate().set_pump(true);
     }
 
     void cam() {
         if (state != State::running || released || speed_rpm < 60.0) return;
         const double speed = speed_rpm * 6.0;
         const double angle = angle_of_position(angle_at_time(now));
-        const double dead_s = 1e-6 * static_cast<double>(wires::nominal::weft_release_dead_us);
+        const double dead_s = to_seconds(wires::nominal::weft_release_dead);
         double in_s = (wires::nominal::weft_release_deg - angle) / speed;
         for (int i = 0; i < 3; ++i)
             in_s = (wires::nominal::weft_release_deg - angle) / (speed + 0.5 * acceleration * in_s);

@@ -1,5 +1,5 @@
 // A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script, in the
-// component's activity, after its commands and events; what it may touch the table checks.
+// component's activity, after its commands and events. What the table refuses: tests/diagnostics/rows.
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -181,33 +181,6 @@ TEST(Behaviour, an_error_stops_the_machine_and_the_report_names_the_line) {
     const std::string why{rig.instance.describe_stop().view()};
     EXPECT_THAT(why, HasSubstr("the behaviour of \"oven\""));
     EXPECT_THAT(why, HasSubstr("\"baking\": run of state \"Feeding\" failed in line 10"));
-}
-
-// ---- what the table refuses
-
-template <class... Rows>
-std::string refusal_of(const Rows&... rows) {
-    const auto wrong = machine("bakery", parts, threads, connections(), reactions(), behaviours(rows...));
-    return std::string{Accepted{wrong.view(), test_board}.refusal().view()};
-}
-
-TEST(BehaviourChecks, a_script_compiled_for_one_activity_is_refused_where_two_run_its_peers) {
-    static constexpr auto too_near =
-        script_reach(reachable<Oven>("oven"), reachable<Door>("door"), reachable<Feeder>("feeder"));
-    EXPECT_THAT(refusal_of(behaviour("oven", compiled_script<baking, too_near>, {})),
-                HasSubstr("touches \"feeder\" as one of its own activity, but activity \"slow\" runs it"));
-}
-
-TEST(BehaviourChecks, a_script_for_a_component_of_another_type_is_refused) {
-    EXPECT_THAT(refusal_of(behaviour("door", compiled_script<baking, reach>, {})),
-                HasSubstr("was compiled for"));
-}
-
-TEST(BehaviourChecks, a_peer_that_the_machine_does_not_have_is_named_with_the_nearest) {
-    static constexpr auto misspelt = script_reach(reachable<Oven>("oven"), reachable<Door>("doors"));
-    static constexpr ScriptSource pushes{"pushes.osd", "do doors.push(1);"};
-    EXPECT_THAT(refusal_of(behaviour("oven", compiled_script<pushes, misspelt>, {})),
-                HasSubstr("there is no component \"doors\"; did you mean \"door\"?"));
 }
 
 } // namespace

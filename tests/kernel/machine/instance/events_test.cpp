@@ -1,5 +1,6 @@
 // Events between the components of a machine (thesis 4.6): rows with handles, the order of an emission,
-// several emitting activities, waits, and the observer of everything.
+// several emitting activities, waits, and the observer of everything. What one row does is tested at the
+// event, in tests/kernel/component/event_test.cpp.
 #include "kernel/machine/plan/subscription.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
 
@@ -64,11 +65,7 @@ struct Console {
     EventWait<Profile, std::int64_t> next_profile;
     Notes<double> beats;
     Notes<std::int64_t> profiles; ///< turns of whole ones
-    bool disconnects_itself = false;
-    void on_beat(double angle) noexcept TAPPET_REALTIME {
-        beats.add(angle);
-        if (disconnects_itself) beat.disconnect();
-    }
+    void on_beat(double angle) noexcept TAPPET_REALTIME { beats.add(angle); }
     void on_profile(Profile made, std::int64_t turn) noexcept TAPPET_REALTIME {
         profiles.add(made == profile_of(turn) ? turn : -1);
     }
@@ -83,13 +80,12 @@ struct Console {
 };
 
 struct Weft {
-    Notes<double> latest;
     Notes<std::int64_t> profiles;
     void keep_profile(Profile made, std::int64_t turn) noexcept TAPPET_REALTIME {
         profiles.add(made == profile_of(turn) ? turn : -1);
     }
     void hold(double) noexcept TAPPET_REALTIME {}
-    void show(double angle) noexcept TAPPET_REALTIME { latest.add(angle); }
+    void show(double) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(operation<&Weft::hold>("hold", "holds", any_thread),
                       operation<&Weft::show>("show", "shows"),
@@ -173,41 +169,6 @@ TEST_F(AReactionRow, that_starts_disconnected_is_run_from_when_its_handle_connec
     pass(20ms);
     EXPECT_THAT(console.beats, ElementsAre(2.0, 3.0));
     EXPECT_EQ(counts("on_beat").posted, 2u);
-}
-
-TEST_F(AReactionRow, drops_what_was_caught_before_it_was_disconnected) {
-    console.beat.connect();
-    shaft.to_emit = {2.0};
-    pass(5ms); // the console's next cycle is later
-    console.beat.disconnect();
-    pass(20ms);
-    EXPECT_THAT(console.beats, ElementsAre());
-    EXPECT_EQ(counts("on_beat").outdated, 1u);
-}
-
-TEST_F(AReactionRow, may_be_disconnected_by_its_own_operation_with_what_waits_after_it) {
-    console.beat.connect();
-    console.disconnects_itself = true;
-    shaft.to_emit = {1.0, 2.0, 3.0};
-    pass(30ms);
-    EXPECT_THAT(console.beats, ElementsAre(1.0));
-    EXPECT_EQ(counts("on_beat").outdated, 2u);
-}
-
-TEST_F(AReactionRow, counts_what_its_queue_cannot_hold) {
-    console.beat.connect();
-    shaft.to_emit = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
-    pass(20ms);
-    EXPECT_THAT(console.beats, ElementsAre(1.0, 2.0, 3.0, 4.0));
-    EXPECT_EQ(counts("on_beat").lost, 2u);
-    EXPECT_EQ(counts("on_beat").high_water, 4u);
-}
-
-TEST_F(AReactionRow, that_keeps_the_latest_delivers_one_emission_of_many) {
-    shaft.to_emit = {1.0, 2.0, 3.0};
-    pass(2ms);
-    EXPECT_THAT(weft.latest, ElementsAre(3.0));
-    EXPECT_EQ(counts("show").lost, 2u);
 }
 
 TEST_F(AReactionRow, carries_arguments_that_a_message_has_no_room_for_in_order_and_whole) {

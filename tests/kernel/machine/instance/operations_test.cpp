@@ -279,6 +279,8 @@ TEST_F(Commands, without_a_completion_it_is_done_when_its_action_has_run) {
     pass(1ms);
     EXPECT_EQ(urgent.mark.state(), CommandState::done);
     EXPECT_THAT(axis.marks, testing::ElementsAre(7));
+    constexpr auto reactions = static_cast<std::size_t>(FunctionKind::reactions);
+    EXPECT_EQ(instance.engines()[motion].plan().functions[reactions].passes, 1u) << "nothing else is timed";
 }
 
 TEST_F(Commands, an_unconnected_one_is_not_sent) {

@@ -110,6 +110,18 @@ TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_i
     EXPECT_EQ(state_now(), "Begin");
 }
 
+TEST_F(BehaviourSlotTest, one_is_not_taken_back_for_what_a_component_of_its_activity_takes) {
+    load_and_settle(numbered(1));
+    EXPECT_EQ(load(numbered(2)), "");
+    run(3ms);
+    ASSERT_EQ(slot.phase(), SlotPhase::trial);
+    oven().takes = 200us;
+    for (int i = 0; i < 8; ++i) tick();
+    EXPECT_GT(instance.engines()[0].statistics().over_claim, 0u);
+    EXPECT_EQ(slot.phase(), SlotPhase::steady);
+    EXPECT_EQ(slot.last_roll_back(), RollBack::none);
+}
+
 TEST_F(BehaviourSlotTest, one_whose_statements_take_until_the_deadline_is_stopped_between_two_of_them) {
     load_and_settle(numbered(1));
     // Six milliseconds of work, which the number of statements alone would let one cycle do.

@@ -11,7 +11,6 @@
 namespace tappet {
 namespace {
 
-using watched::culprit;
 using watched::Order;
 using watched::Worker;
 
@@ -177,28 +176,6 @@ TEST(VirtualWorld, runs_processes_before_the_engines_of_the_same_instant) {
                    }});
     EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10ms));
     EXPECT_EQ(feeder.seen, 2u); // those at 1 and 2 ms
-}
-
-TEST(VirtualWorld, an_overrun_is_blamed_on_the_component_that_took_the_time) {
-    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-        Random random{seed};
-        const std::string_view victim = watched::of_motion[random.below(watched::of_motion.size())];
-        const auto at_cycle = random.between(5, 200);
-        Rig<watched::table> rig;
-        EXPECT_TRUE(rig.world.run_until(at_ns(0) + at_cycle * 1ms));
-        rig.worker(victim).order = Order::overrun;
-        EXPECT_TRUE(rig.world.run_until(at_ns(0) + 300ms));
-        const EngineStatistics& seen = rig.engine(watched::motion).statistics();
-        ASSERT_EQ(seen.misses, 1u) << "seed " << seed;
-        EXPECT_EQ(culprit(rig.engine(watched::motion), seen.recent_misses[0]), victim) << "seed " << seed;
-        EXPECT_EQ(seen.recent_misses[0].took, rig.worker(victim).overrun);
-        EXPECT_EQ(seen.skipped_periods, 2u);
-        std::uint64_t blamed = 0;
-        for (const FunctionTiming& function : rig.engine(watched::motion).plan().functions)
-            blamed += function.blamed;
-        EXPECT_EQ(blamed, 1u);
-        EXPECT_FALSE(rig.instance.stop_asked());
-    }
 }
 
 TEST(VirtualWorld, a_row_that_says_so_stops_the_machine_for_it_with_a_sentence_that_names_both) {

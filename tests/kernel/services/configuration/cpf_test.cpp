@@ -3,7 +3,7 @@
 #include "kernel/services/configuration/cpf.hpp"
 
 #include "kernel/base/random.hpp"
-#include "tests/kernel/services/configuration/every_property.hpp"
+#include "tests/kernel/component/every_property.hpp"
 
 #include <gmock/gmock.h>
 
@@ -187,9 +187,9 @@ TEST_F(Cpf, text_that_no_file_keeps_is_not_written) {
 
 struct Wrong {
     const char* what;
-    const char* members; ///< in <properties>, which is line 1
-    const char* line;
+    std::string members; ///< in <properties>, which is line 1
     const char* said;
+    int line = 2;
 };
 
 class CpfRefusal : public Cpf, public testing::WithParamInterface<Wrong> {};
@@ -197,90 +197,73 @@ class CpfRefusal : public Cpf, public testing::WithParamInterface<Wrong> {};
 TEST_P(CpfRefusal, names_the_file_the_line_the_component_and_the_cure) {
     const Wrong& wrong = GetParam();
     const std::string said = read_members(wrong.members);
-    EXPECT_THAT(said, AllOf(StartsWith(std::string{"arm.cpf:"} + wrong.line + ": component \"arm\": "),
+    EXPECT_THAT(said, AllOf(StartsWith("arm.cpf:" + std::to_string(wrong.line) + ": component \"arm\": "),
                             HasSubstr(wrong.said)))
         << wrong.what;
 }
 
+std::string simple(const std::string& name, const std::string& type, const std::string& value) {
+    return "<simple name=\"" + name + "\" type=\"" + type + "\"><value>" + value + "</value></simple>";
+}
 const Wrong wrongs[]{
-    {"unknown", R"(<simple name="scael" type="double"><value>1</value></simple>)", "2",
-     "did you mean \"scale\"?"},
+    {"unknown", simple("scael", "double", "1"), "did you mean \"scale\"?"},
     {"unknown in a bag",
      "<struct name=\"gains\" type=\"\">\n<struct name=\"roll\" type=\"\">\n<simple name=\"k\" "
      "type=\"double\"><value>1</value></simple></struct></struct>",
-     "4", "property \"gains.roll.k\", which the component has not"},
-    {"unknown bag", "\n<struct name=\"gain\" type=\"PropertyBag\"/>", "3", "did you mean \"gains\"?"},
-    {"a port", R"(<simple name="angle" type="double"><value>1</value></simple>)", "2",
-     "which the component has not"},
-    {"dotted", R"(<simple name="gains.all" type="double"><value>1</value></simple>)", "2",
-     "a <struct> for each bag"},
-    {"type", R"(<simple name="scale" type="string"><value>1</value></simple>)", "2", "write type=\"float\""},
-    {"no type", R"(<simple name="scale"><value>1</value></simple>)", "2", "write type=\"float\""},
-    {"real as whole", R"(<simple name="steps" type="double"><value>1</value></simple>)", "2",
-     "write type=\"long\""},
-    {"no number", R"(<simple name="scale" type="double"><value>fast</value></simple>)", "2",
-     "property \"scale\": "},
-    {"half a number", R"(<simple name="scale" type="double"><value>1.5x</value></simple>)", "2",
-     "property \"scale\": "},
-    {"two numbers", R"(<simple name="scale" type="double"><value>1 2</value></simple>)", "2",
-     "property \"scale\": "},
-    {"empty number", R"(<simple name="scale" type="double"><value/></simple>)", "2", "property \"scale\": "},
-    {"not a number", R"(<simple name="gains" type="double"><value>nan</value></simple>)", "2",
-     "write a <struct>"},
-    {"nan", R"(<simple name="scale" type="double"><value>nan</value></simple>)", "2", "scale"},
-    {"too wide", R"(<simple name="small" type="short"><value>128</value></simple>)", "2",
-     "property \"small\": "},
-    {"negative", R"(<simple name="word" type="ushort"><value>-1</value></simple>)", "2",
-     "property \"word\": "},
-    {"truth", R"(<simple name="reversed" type="boolean"><value>2</value></simple>)", "2",
-     "property \"reversed\": "},
-    {"time without unit", R"(<simple name="filter" type="string"><value>5</value></simple>)", "2",
-     "property \"filter\": "},
-    {"enumeration", R"(<simple name="side" type="string"><value>lefft</value></simple>)", "2",
-     "property \"side\": "},
-    {"too long", R"(<simple name="label" type="string"><value>thirteen char</value></simple>)", "2",
-     "more than its 12 characters"},
+     "property \"gains.roll.k\", which the component has not", 4},
+    {"unknown bag", "\n<struct name=\"gain\" type=\"PropertyBag\"/>", "did you mean \"gains\"?", 3},
+    {"a port", simple("angle", "double", "1"), "which the component has not"},
+    {"dotted", simple("gains.all", "double", "1"), "a <struct> for each bag"},
+    {"type", simple("scale", "string", "1"), "write type=\"float\""},
+    {"no type", R"(<simple name="scale"><value>1</value></simple>)", "write type=\"float\""},
+    {"real as whole", simple("steps", "double", "1"), "write type=\"long\""},
+    {"no number", simple("scale", "double", "fast"), "property \"scale\": "},
+    {"half a number", simple("scale", "double", "1.5x"), "property \"scale\": "},
+    {"two numbers", simple("scale", "double", "1 2"), "property \"scale\": "},
+    {"empty number", R"(<simple name="scale" type="double"><value/></simple>)", "property \"scale\": "},
+    {"not a number", simple("gains", "double", "nan"), "write a <struct>"},
+    {"nan", simple("scale", "double", "nan"), "scale"},
+    {"too wide", simple("small", "short", "128"), "property \"small\": "},
+    {"negative", simple("word", "ushort", "-1"), "property \"word\": "},
+    {"truth", simple("reversed", "boolean", "2"), "property \"reversed\": "},
+    {"time without unit", simple("filter", "string", "5"), "property \"filter\": "},
+    {"enumeration", simple("side", "string", "lefft"), "property \"side\": "},
+    {"too long", simple("label", "string", "thirteen char"), "more than its 12 characters"},
     {"over range",
      "<struct name=\"gains\" type=\"\"><struct name=\"roll\" type=\"\">\n\n<simple name=\"p\" "
      "type=\"double\"><value>10.5</value></simple></struct></struct>",
-     "4", "over its greatest value 10"},
-    {"time over range", R"(<simple name="filter" type="string"><value>501ms</value></simple>)", "2",
-     "over its greatest value 0.5 s"},
+     "over its greatest value 10", 4},
+    {"time over range", simple("filter", "string", "501ms"), "over its greatest value 0.5 s"},
     {"element over range",
      R"(<sequence name="offsets" type="double"><simple type="double"><value>6</value></simple></sequence>)",
-     "2", "element 0 is over its greatest value 5"},
+     "element 0 is over its greatest value 5"},
     {"too few",
-     R"(<sequence name="axis" type="double"><simple type="double"><value>1</value></simple></sequence>)", "2",
+     R"(<sequence name="axis" type="double"><simple type="double"><value>1</value></simple></sequence>)",
      "1 elements, but it has 3"},
-    {"a list as simple", R"(<simple name="axis" type="double"><value>1</value></simple>)", "2",
-     "write a <sequence>"},
-    {"a value as sequence", R"(<sequence name="scale" type="double"/>)", "2", "write a <simple>"},
-    {"a value as struct", R"(<struct name="scale" type=""/>)", "2", "scale"},
-    {"twice",
-     "<simple name=\"steps\" type=\"long\"><value>1</value></simple>\n<simple name=\"steps\" "
-     "type=\"long\"><value>1</value></simple>",
-     "3", "gives \"steps\" again, as line 2 did"},
-    {"a bag twice", "<struct name=\"gains\" type=\"\"/>\n<struct name=\"gains\" type=\"\"/>", "3",
-     "again, as line 2"},
-    {"no name", R"(<simple type="long"><value>1</value></simple>)", "2", "without a name"},
-    {"attribute", R"(<simple name="steps" type="long" unit="1"><value>1</value></simple>)", "2", "\"unit\""},
-    {"attribute twice", R"(<simple name="steps" name="word" type="long"><value>1</value></simple>)", "2",
+    {"a list as simple", simple("axis", "double", "1"), "write a <sequence>"},
+    {"a value as sequence", R"(<sequence name="scale" type="double"/>)", "write a <simple>"},
+    {"a value as struct", R"(<struct name="scale" type=""/>)", "scale"},
+    {"twice", simple("steps", "long", "1") + "\n" + simple("steps", "long", "1"),
+     "gives \"steps\" again, as line 2 did", 3},
+    {"a bag twice", "<struct name=\"gains\" type=\"\"/>\n<struct name=\"gains\" type=\"\"/>",
+     "again, as line 2", 3},
+    {"no name", R"(<simple type="long"><value>1</value></simple>)", "without a name"},
+    {"attribute", R"(<simple name="steps" type="long" unit="1"><value>1</value></simple>)", "\"unit\""},
+    {"attribute twice", R"(<simple name="steps" name="word" type="long"><value>1</value></simple>)",
      "\"name\""},
-    {"no value", R"(<simple name="steps" type="long"></simple>)", "2", "no <value>"},
-    {"two values", R"(<simple name="steps" type="long"><value>1</value><value>2</value></simple>)", "2",
+    {"no value", R"(<simple name="steps" type="long"></simple>)", "no <value>"},
+    {"two values", R"(<simple name="steps" type="long"><value>1</value><value>2</value></simple>)",
      "one <value>"},
-    {"element in a value", R"(<simple name="steps" type="long"><value>1<b/></value></simple>)", "2",
+    {"element in a value", R"(<simple name="steps" type="long"><value>1<b/></value></simple>)",
      "no plain text"},
-    {"foreign element", "<tuple/>", "2", "has <tuple>"},
-    {"loose text", "\nsteps = 1", "3", "text where a property belongs"},
-    {"text in a simple", R"(<simple name="steps" type="long">1<value>1</value></simple>)", "2", "remove it"},
-    {"in a sequence", R"(<sequence name="offsets" type="double"><struct name="x" type=""/></sequence>)", "2",
+    {"foreign element", "<tuple/>", "has <tuple>"},
+    {"loose text", "\nsteps = 1", "text where a property belongs", 3},
+    {"text in a simple", R"(<simple name="steps" type="long">1<value>1</value></simple>)", "remove it"},
+    {"in a sequence", R"(<sequence name="offsets" type="double"><struct name="x" type=""/></sequence>)",
      "that is no <simple>"},
-    {"entity", R"(<simple name="label" type="string"><value>&me;</value></simple>)", "2", "write &amp;"},
-    {"loose ampersand", "<simple name=\"label\" type=\"string\"><value>a & b</value></simple>", "2",
-     "write &amp;"},
-    {"number of no character", R"(<simple name="label" type="string"><value>&#0;</value></simple>)", "2",
-     "write &amp;"},
+    {"entity", simple("label", "string", "&me;"), "write &amp;"},
+    {"loose ampersand", simple("label", "string", "a & b"), "write &amp;"},
+    {"number of no character", simple("label", "string", "&#0;"), "write &amp;"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Cpf, CpfRefusal, testing::ValuesIn(wrongs), [](const auto& each) {

@@ -37,10 +37,6 @@ constexpr auto table = machine("recorded",
     connections(),
     reactions(when("first.done", tell("clerk.on_done"))),
     behaviours());
-constexpr auto two_scopes = machine("twice",
-    components(component<ThreadScope>("scope"), component<ThreadScope>("other")),
-    activities(activity("background", every(20ms), not_real_time, runs("scope", "other"))),
-    connections(), reactions(), behaviours());
 constexpr std::size_t motion = 0, logic = 1, background = 2;
 // clang-format on
 
@@ -214,13 +210,6 @@ TEST_F(Scope, an_activity_that_is_stopped_and_started_goes_on_with_its_tape) {
     TapeCycle cycle;
     ASSERT_TRUE(tape.cycle_before(tape.head(), cycle));
     EXPECT_EQ(cycle.marks, 2u);
-}
-
-TEST(ScopeTable, two_recorders_in_one_table_are_refused) {
-    const Sentence refusal = Accepted{two_scopes.view(), test_board}.refusal();
-    EXPECT_NE(refusal.view().find("\"other\" records the machine's cycles as \"scope\" does already"),
-              std::string_view::npos)
-        << refusal.view();
 }
 
 } // namespace

@@ -28,9 +28,19 @@ struct Pid {
     }
 };
 
+struct Limits {
+    Property<double> low{-1.0};
+    Property<double> high{1.0};
+    static constexpr auto interface() {
+        return facets(property<&Limits::low>("low", "N", "least force"),
+                      property<&Limits::high>("high", "N", "greatest force"));
+    }
+};
+
 struct Arm {
     Output<double> angle;
     Pid roll, pitch;
+    Limits limits;
     Property<double> gain{1.5};
     Property<float> scale{2.0f};
     Property<std::int8_t> small{4};
@@ -48,12 +58,19 @@ struct Arm {
     Property<Eigen::Vector3d> axis{Eigen::Vector3d{0, 0, 1}};
     Property<Eigen::Matrix2d> turn{Eigen::Matrix2d{{1, 2}, {3, 4}}};
 
+    int changes = 0;
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        if (proposal.of(limits.low) > proposal.of(limits.high)) return Sentence{"low is above high"};
+        return {};
+    }
+    void changed() noexcept TAPPET_REALTIME { ++changes; }
+
     static constexpr auto interface() {
         return facets(
             output<&Arm::angle>("angle", "deg", "of the arm"),
             bag("gains", "of both axes", bag<&Arm::roll>("roll", "of the wrist"),
                 bag<&Arm::pitch>("pitch", "of the elbow"), property<&Arm::gain>("all", "", "of all")),
-            property<&Arm::scale>("scale", "", "of the drawing"),
+            bag<&Arm::limits>("limits", "of the force"), property<&Arm::scale>("scale", "", "of the drawing"),
             property<&Arm::small>("small", "", "a byte"), property<&Arm::word>("word", "", "two bytes"),
             property<&Arm::steps>("steps", "", "per turn"),
             property<&Arm::huge>("huge", "", "of eight bytes"),

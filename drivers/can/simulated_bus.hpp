@@ -1,0 +1,38 @@
+// A CAN bus of the host: a machine's controller and its plant's, with the wire between them.
+#pragma once
+
+#include "drivers/can/signal_map.hpp"
+#include "drivers/can/twin.hpp"
+#include "drivers/can/twin_bus.hpp"
+#include "drivers/twin/simulated_device.hpp"
+
+namespace tappet::can {
+
+class SimulatedBus : public SimulatedDevice {
+public:
+    static constexpr const DeviceKind& kind = device_kind;
+
+    SimulatedBus(std::string_view of, std::uint64_t seed) : SimulatedDevice{of}, wire{seed} {}
+
+    std::expected<void, Sentence> open(const void* device_map);
+    [[nodiscard]] ProvidedDevice machine_end() noexcept;
+    [[nodiscard]] ProvidedDevice plant_end() noexcept;
+
+    std::expected<void, Sentence> open_again() { return machine.open(settings); }
+    void count(WireCounters& into) const noexcept { machine.counters().tell(into); }
+    void bring_to_plant(Time now);
+    void bring_to_machine(Time now) { wire.deliver_until(now); }
+    [[nodiscard]] Time next() noexcept { return wire.next(); }
+    [[nodiscard]] bool is_driven() const noexcept { return !wire.is_silent() || plant.has_arrivals(); }
+    [[nodiscard]] bool is_still() const noexcept { return wire.is_still(); }
+    void send_safe_frames(Time now) noexcept;
+
+    TwinBus wire;
+    Settings settings{}; ///< of the machine's controller
+    Twin machine{}, plant{};
+
+private:
+    std::span<const Frame> safe_{};
+};
+
+} // namespace tappet::can

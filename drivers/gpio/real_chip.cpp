@@ -1,0 +1,24 @@
+// Where each line of the map stands, by the binding.
+#include "drivers/gpio/real_chip.hpp"
+
+#include "drivers/gpio/line_map.hpp"
+
+namespace tappet::gpio {
+
+std::expected<void, Sentence> RealChip::open(const DevicePlace& to) {
+    const auto& map = *static_cast<const std::span<const LineRow>*>(to.map);
+    place(map, [&to](std::string_view name) { return offset_of(to.bound, name); }, lines_);
+    return chip_.open({to.address, std::span{lines_}.first(map.size())});
+}
+
+ProvidedDevice RealChip::provided(std::string_view name) noexcept {
+    return {type_id<Device>, name, static_cast<Device*>(&chip_)};
+}
+
+std::expected<void, Sentence> RealChip::prepare_safe_ending() {
+    if (chip_.make_safe()) return {};
+    return std::unexpected(
+        Sentence{"a GPIO chip does not take the safe values of its lines; see that it is still there"});
+}
+
+} // namespace tappet::gpio

@@ -1,0 +1,42 @@
+// A GPIO chip of the host: its twin has one line behind the other, as the map lists them.
+#pragma once
+
+#include "drivers/gpio/line_map.hpp"
+#include "drivers/gpio/twin.hpp"
+#include "drivers/twin/simulated_device.hpp"
+
+namespace tappet::gpio {
+
+class SimulatedChip : public SimulatedDevice {
+public:
+    static constexpr const DeviceKind& kind = device_kind;
+
+    SimulatedChip(std::string_view of, std::uint64_t seed) : SimulatedDevice{of}, twin{seed} {}
+
+    std::expected<void, Sentence> open(const void* device_map) {
+        const auto& map = *static_cast<const std::span<const LineRow>*>(device_map);
+        place(map, [next = 0u](std::string_view) mutable { return next++; }, lines_); // a twin has no board
+        return twin.open({name, std::span{lines_}.first(map.size())});
+    }
+    [[nodiscard]] ProvidedDevice machine_end() noexcept {
+        return {type_id<Device>, name, static_cast<Device*>(&twin)};
+    }
+    [[nodiscard]] ProvidedDevice plant_end() noexcept {
+        return {type_id<Wires>, name, static_cast<Wires*>(&twin)};
+    }
+
+    void count(WireCounters& into) const noexcept { twin.counters().tell(into); }
+    void bring_to_plant(Time) { seen_ = twin.outputs(); }
+    void bring_to_machine(Time now) { twin.deliver_until(now); }
+    [[nodiscard]] bool is_driven() const noexcept { return !twin.is_still() || twin.outputs() != seen_; }
+    [[nodiscard]] bool is_still() const noexcept { return twin.is_still(); }
+    void write_safe_lines() noexcept { static_cast<void>(twin.make_safe()); }
+
+    Twin twin;
+
+private:
+    PlacedLines lines_{};
+    Mask seen_ = 0;
+};
+
+} // namespace tappet::gpio

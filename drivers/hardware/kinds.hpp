@@ -1,0 +1,15 @@
+// The kinds of real devices: an include and a name each are all that speaks of a driver outside of its folder
+// and its tests.
+#pragma once
+
+#include "drivers/can/real_bus.hpp"
+#include "drivers/gpio/real_chip.hpp"
+#include "drivers/modbus/real_server.hpp"
+#include "drivers/udp/real_port.hpp"
+
+namespace tappet {
+
+template <template <class...> class List>
+using RealKinds = List<can::RealBus, gpio::RealChip, modbus::RealServer, udp::RealPort>;
+
+} // namespace tappet

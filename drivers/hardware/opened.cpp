@@ -1,0 +1,132 @@
+// The same for each device, whatever kind it is of.
+#include "drivers/hardware/opened.hpp"
+
+#include "kernel/machine/check/traffic.hpp"
+#include "kernel/os/clock.hpp"
+#include "kernel/os/sleep.hpp"
+
+#include <algorithm>
+
+namespace tappet {
+
+namespace {
+
+constexpr Duration look_every = 5ms; // for confirmations
+
+} // namespace
+
+std::size_t send_safe_frames(std::span<OpenedDevice> devices, Duration within) noexcept {
+    for (OpenedDevice& each : devices) each.device->begin_safe_frames();
+    for (const Time end = os::Clock::monotonic() + within;;) {
+        std::size_t left = 0;
+        for (OpenedDevice& each : devices) {
+            each.device->send_safe_frames();
+            left += each.device->safe_frames_left();
+        }
+        if (left == 0 || os::Clock::monotonic() >= end) return left;
+        os::sleep_for(look_every);
+    }
+}
+
+// A thread for each, because a request waits for its answer: a dead device would take the time of all behind
+// it.
+std::size_t make_safe_requests(std::span<OpenedDevice> devices, Duration within,
+                               const Meanwhile& meanwhile) noexcept {
+    const Time end = os::Clock::monotonic() + within;
+    const auto waits = [](const OpenedDevice& each) { return !each.thread.running() && !each.is_safe; };
+    for (OpenedDevice& each : devices) {
+        each.is_safe = !each.device->has_safe_requests();
+        if (each.is_safe) continue;
+        each.end = end;
+        each.plan = {.name = "safe-requests",
+                     .fifo_priority = os::ThreadPlan::as_its_starter,
+                     .body =
+                         [](void* of) noexcept {
+                             auto& asked = *static_cast<OpenedDevice*>(of);
+                             asked.is_safe = asked.device->make_safe_requests(asked.end, {});
+                         },
+                     .context = &each};
+        static_cast<void>(each.thread.start(each.plan).has_value());
+    }
+    // The box refuses threads: these share the time that there is, until it is over.
+    while (os::Clock::monotonic() < end && std::ranges::any_of(devices, waits)) {
+        std::int64_t left = std::ranges::count_if(devices, waits);
+        for (OpenedDevice& each : devices) {
+            if (!waits(each)) continue;
+            const Time now = os::Clock::monotonic();
+            each.is_safe = each.device->make_safe_requests(now + (end - now) / left--, meanwhile);
+        }
+    }
+    for (OpenedDevice& each : devices)
+        while (!each.thread.join_within(50)) meanwhile();
+    return static_cast<std::size_t>(std::ranges::count(devices, false, &OpenedDevice::is_safe));
+}
+
+std::expected<void, Sentence> OpenedDevices::open(const AcceptedMachine& machine) {
+    give_back_all();
+    used_ = 0;
+    if (machine.board->simulated && !room_.empty())
+        return std::unexpected(Sentence{"board \"", machine.board->name,
+                                        "\" is simulated and has no real device; build the firmware for "
+                                        "another board"});
+    const auto worst =
+        checks::worst_responses_ns(machine.table, *machine.board, *machine.binding, machine.index);
+    for (std::size_t c = 0; c < machine.table.components.size(); ++c) {
+        const ComponentRow& row = machine.table.components[c];
+        if (row.type->device_kind == nullptr || row.type->device_map == nullptr) continue;
+        RealDevice* const device = take(*row.type->device_kind);
+        if (device == nullptr) continue;
+        const BoundDevice& bound = *checks::find_named(machine.binding->devices, row.device); // as checked
+        const BoardDevice* on_board = checks::find_named(machine.board->devices, bound.at);
+        DevicePlace place{.address = bound.at,
+                          .is_on_board = on_board != nullptr,
+                          .bound = machine.binding->facts_of(bound),
+                          .map = row.type->device_map,
+                          .traffic = row.type->device_traffic,
+                          .use = checks::use_of_device(machine.table, *machine.board, *machine.binding,
+                                                       machine.index, worst, c)};
+        if (on_board != nullptr) {
+            place.address = on_board->address;
+            place.of_board = on_board->facts;
+        }
+        room_[used_].device = device;
+        room_[used_].name = row.device;
+        provided_[used_++] = device->provided(bound.name);
+        if (auto opened = device->open(place); !opened)
+            return std::unexpected(Sentence{"board \"", machine.board->name, "\", device \"", row.device,
+                                            "\" at \"", place.address, "\": ", opened.error()});
+    }
+    return {};
+}
+
+void OpenedDevices::report(os::ArmingReport& report) {
+    for (const OpenedDevice& each : opened()) each.device->report(report, each.name);
+}
+
+WireCounters OpenedDevices::counters() const noexcept {
+    WireCounters sum;
+    for (const OpenedDevice& each : opened()) each.device->count(sum);
+    return sum;
+}
+
+Bounded<int, 16> OpenedDevices::kept_by_guardian() const noexcept {
+    Bounded<int, 16> kept;
+    for (const OpenedDevice& each : opened())
+        if (const int descriptor = each.device->kept_by_guardian(); descriptor >= 0)
+            static_cast<void>(kept.push(descriptor)); // as many as a binding has devices
+    return kept;
+}
+
+std::expected<void, Sentence> OpenedDevices::prepare_safe_ending() {
+    for (const OpenedDevice& each : opened())
+        if (auto prepared = each.device->prepare_safe_ending(); !prepared) return prepared;
+    return {};
+}
+
+std::size_t OpenedDevices::write_safe_lines() noexcept {
+    std::size_t failed = 0;
+    for (const OpenedDevice& each : opened()) failed += each.device->write_safe_lines() ? 0u : 1u;
+    return failed;
+}
+
+} // namespace tappet

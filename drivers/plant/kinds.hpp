@@ -1,0 +1,15 @@
+// The kinds of devices that a host has twins of: an include and a name each.
+#pragma once
+
+#include "drivers/can/simulated_bus.hpp"
+#include "drivers/gpio/simulated_chip.hpp"
+#include "drivers/modbus/simulated_server.hpp"
+#include "drivers/udp/simulated_port.hpp"
+
+namespace tappet {
+
+template <template <class...> class List>
+using SimulatedKinds =
+    List<can::SimulatedBus, gpio::SimulatedChip, modbus::SimulatedServer, udp::SimulatedPort>;
+
+} // namespace tappet

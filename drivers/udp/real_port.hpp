@@ -1,0 +1,20 @@
+// A port of this box at which datagrams come in, or one of another box that is asked.
+#pragma once
+
+#include "drivers/udp/socket.hpp"
+#include "kernel/component/real_device.hpp"
+
+namespace tappet::udp {
+
+class RealPort final : public RealDevice {
+public:
+    static constexpr const DeviceKind& kind = device_kind;
+
+    std::expected<void, Sentence> open(const DevicePlace& place) override;
+    ProvidedDevice provided(std::string_view name) noexcept override;
+
+private:
+    Socket socket_{};
+};
+
+} // namespace tappet::udp

@@ -1,0 +1,27 @@
+// A port for datagrams of the host.
+#pragma once
+
+#include "drivers/twin/simulated_device.hpp"
+#include "drivers/udp/twin.hpp"
+
+namespace tappet::udp {
+
+class SimulatedPort : public SimulatedDevice {
+public:
+    static constexpr const DeviceKind& kind = device_kind;
+
+    SimulatedPort(std::string_view of, std::uint64_t) : SimulatedDevice{of} {}
+
+    std::expected<void, Sentence> open(const void*) { return {}; }
+    [[nodiscard]] ProvidedDevice machine_end() noexcept {
+        return {type_id<Device>, name, static_cast<Device*>(&twin_)};
+    }
+    [[nodiscard]] ProvidedDevice plant_end() noexcept {
+        return {type_id<Wires>, name, static_cast<Wires*>(&twin_)};
+    }
+
+private:
+    Twin twin_{};
+};
+
+} // namespace tappet::udp

@@ -1,0 +1,66 @@
+// Two drivers in one activity: who of them is stopped takes no hearing from the other.
+#include "tests/kernel/machine/real_rig.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+namespace tappet {
+namespace {
+
+/// Hears what is written to its descriptor.
+struct Ear {
+    static constexpr DeviceKind device_kind{.name = "test.ear"};
+    std::atomic<std::uint64_t> heard{0};
+    int descriptor = -1;
+
+    ~Ear() { ::close(descriptor); }
+    Sentence configure(Setup& setup) {
+        descriptor = ::eventfd(0, EFD_NONBLOCK);
+        return setup.waiter->watch(descriptor) ? Sentence{} : Sentence{"it cannot be watched"};
+    }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        std::uint64_t more = 0;
+        TAPPET_ESCAPE("a descriptor that does not block",
+                      if (::read(descriptor, &more, sizeof more) == sizeof more) heard += more);
+    }
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+constexpr auto table = machine(
+    "ears", components(component<Ear>("left", device("left")), component<Ear>("right", device("right"))),
+    activities(activity("drivers", on_device("left"), at_most(8, 2ms), runs("left", "right"), deadline(1ms),
+                        budget(30us))),
+    connections(), reactions(), behaviours());
+constexpr Board twin_board = [] {
+    Board board = real_board;
+    board.simulated = true;
+    return board;
+}();
+
+TEST_F(InRealTime, a_driver_that_is_stopped_keeps_no_other_one_of_its_activity_from_hearing) {
+    RealRig<table, twin_board> rig;
+    ASSERT_TRUE(rig.runs());
+    RealWorld& world = rig.world;
+    auto&& life = rig.instance.life();
+    Ear &left = rig.the<Ear>("left"), &right = rig.the<Ear>("right");
+    const auto is_heard_by = [&](Ear& ear) {
+        const std::uint64_t before = ear.heard, one = 1;
+        EXPECT_EQ(::write(ear.descriptor, &one, sizeof one), static_cast<ssize_t>(sizeof one));
+        for (int n = 0; n < 500 && ear.heard == before; ++n) world.supervise(10ms);
+        return ear.heard != before;
+    };
+    EXPECT_TRUE(is_heard_by(left));
+    life.ask_component(1, LifeChange::stop);
+    while (life.state_of(1) != ComponentState::stopped) world.supervise(10ms);
+    EXPECT_TRUE(is_heard_by(left));
+    const std::uint64_t before = right.heard, one = 1;
+    EXPECT_EQ(::write(right.descriptor, &one, sizeof one), static_cast<ssize_t>(sizeof one));
+    world.supervise(50ms);
+    EXPECT_EQ(right.heard, before) << "it stands";
+    life.ask_component(1, LifeChange::start);
+    while (life.state_of(1) != ComponentState::running) world.supervise(10ms);
+    EXPECT_TRUE(is_heard_by(right));
+    EXPECT_EQ(world.stop(), 0u);
+}
+
+} // namespace
+} // namespace tappet
