@@ -62,6 +62,20 @@ std::size_t make_safe_requests(std::span<OpenedDevice> devices, Duration within,
     return static_cast<std::size_t>(std::ranges::count(devices, false, &OpenedDevice::is_safe));
 }
 
+DevicePlace place_of(const ComponentRow& row, const Board& board, const Binding& binding) noexcept {
+    const BoundDevice& bound = *checks::find_named(binding.devices, row.device); // as checked
+    const BoardDevice* device = checks::find_named(board.devices, bound.at);
+    DevicePlace place{.address = bound.at,
+                      .is_on_board = device != nullptr,
+                      .bound = binding.facts_of(bound),
+                      .map = row.type->device_map,
+                      .traffic = row.type->device_traffic};
+    if (device == nullptr) return place;
+    place.address = device->address;
+    place.of_board = device->facts;
+    return place;
+}
+
 std::expected<void, Sentence> OpenedDevices::open(const AcceptedMachine& machine) {
     give_back_all();
     used_ = 0;
@@ -76,22 +90,12 @@ std::expected<void, Sentence> OpenedDevices::open(const AcceptedMachine& machine
         if (row.type->device_kind == nullptr || row.type->device_map == nullptr) continue;
         RealDevice* const device = take(*row.type->device_kind);
         if (device == nullptr) continue;
-        const BoundDevice& bound = *checks::find_named(machine.binding->devices, row.device); // as checked
-        const BoardDevice* on_board = checks::find_named(machine.board->devices, bound.at);
-        DevicePlace place{.address = bound.at,
-                          .is_on_board = on_board != nullptr,
-                          .bound = machine.binding->facts_of(bound),
-                          .map = row.type->device_map,
-                          .traffic = row.type->device_traffic,
-                          .use = checks::use_of_device(machine.table, *machine.board, *machine.binding,
-                                                       machine.index, worst, c)};
-        if (on_board != nullptr) {
-            place.address = on_board->address;
-            place.of_board = on_board->facts;
-        }
+        DevicePlace place = place_of(row, *machine.board, *machine.binding);
+        place.use =
+            checks::use_of_device(machine.table, *machine.board, *machine.binding, machine.index, worst, c);
         room_[used_].device = device;
         room_[used_].name = row.device;
-        provided_[used_++] = device->provided(bound.name);
+        provided_[used_++] = device->provided(row.device);
         if (auto opened = device->open(place); !opened)
             return std::unexpected(Sentence{"board \"", machine.board->name, "\", device \"", row.device,
                                             "\" at \"", place.address, "\": ", opened.error()});

@@ -9,6 +9,10 @@
 
 namespace tappet {
 
+/// Where the device of a driver's row stands, by a binding that was accepted.
+[[nodiscard]] DevicePlace place_of(const ComponentRow& row, const Board& board,
+                                   const Binding& binding) noexcept;
+
 /// One of them, in the order of the table.
 struct OpenedDevice {
     RealDevice* device = nullptr;

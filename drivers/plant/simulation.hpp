@@ -4,8 +4,8 @@
 
 #include "drivers/hardware/devices.hpp"
 #include "drivers/plant/can_log.hpp"
-#include "drivers/plant/kinds.hpp"
 #include "drivers/plant/plant.hpp"
+#include "drivers/plant/simulated_kinds.hpp"
 
 #include <functional>
 #include <memory>

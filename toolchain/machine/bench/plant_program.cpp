@@ -1,18 +1,12 @@
 // Opens the plant's ends where the machine's binding says, and moves the plant along.
 #include "toolchain/machine/bench/plant_program.hpp"
 
-#include "drivers/can/signal_map.hpp"
-#include "drivers/hardware/devices.hpp"
-#include "drivers/modbus/kind.hpp"
-#include "drivers/udp/sender.hpp"
+#include "drivers/hardware/opened.hpp"
+#include "drivers/plant/bench_kinds.hpp"
 #include "kernel/base/value_text.hpp"
 #include "kernel/machine/accept.hpp"
-#include "kernel/machine/check/board.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/notify.hpp"
-#include "toolchain/machine/bench/can_end.hpp"
-#include "toolchain/machine/bench/line_end.hpp"
-#include "toolchain/machine/bench/server_end.hpp"
 
 #include <charconv>
 #include <csignal>
@@ -119,87 +113,47 @@ class BenchWires {
 public:
     Sentence open(const MachineView& machine, const Board& board, const Binding& binding) {
         for (const ComponentRow& row : machine.components) {
-            if (row.type->device_map == nullptr) continue;
-            const BoundDevice& bound = *checks::find_named(binding.devices, row.device);
-            const BoardDevice* device = checks::find_named(board.devices, bound.at);
-            if (Sentence fault = open(row, bound, binding.facts_of(bound), device); !fault.empty())
-                return Sentence{"device \"", row.device, "\": ", fault};
+            if (row.type->device_map == nullptr || row.type->device_kind == nullptr) continue;
+            std::unique_ptr<BenchEnd> end = BenchKinds<Kinds>::make(*row.type->device_kind);
+            if (end == nullptr) continue; // the machine's own kinds, which no driver here knows
+            if (auto opened = end->open(place_of(row, board, binding)); !opened)
+                return Sentence{"device \"", row.device, "\": ", opened.error()};
+            wires_.push_back(end->provided(row.device));
+            ends_.push_back(std::move(end));
         }
         return {};
     }
     [[nodiscard]] std::span<const ProvidedDevice> all() const { return wires_; }
     Sentence listen() {
-        for (const auto& server : servers_) {
-            const std::string_view address = server->at;
-            if (auto listens =
-                    server->end.listen(std::string{host_of(address)}, port_of(address), server->unit);
-                !listens)
-                return listens.error();
-        }
+        for (const auto& each : ends_)
+            if (auto listens = each->listen(); !listens) return listens.error();
         return {};
     }
     void look(Time now) {
-        for (const auto& chip : chips_) chip->look(now);
+        for (const auto& each : ends_) each->look(now);
     }
     void announce_bus_off() {
-        for (const auto& bus : buses_) bus->announce_bus_off();
+        for (const auto& each : ends_) each->announce_bus_off();
     }
-    void set_servers(bool on) {
-        for (const auto& server : servers_) server->end.set_power(on);
+    void set_power(bool on) {
+        for (const auto& each : ends_) each->set_power(on);
     }
-    [[nodiscard]] std::uint64_t unsent() const {
+    [[nodiscard]] std::uint64_t sum(std::uint64_t (BenchEnd::*count)() const noexcept) const {
         std::uint64_t sum = 0;
-        for (const auto& bus : buses_) sum += bus->counters().refused;
-        return sum;
-    }
-    [[nodiscard]] std::uint64_t failures() const {
-        std::uint64_t sum = 0;
-        for (const auto& chip : chips_) sum += chip->failures();
+        for (const auto& each : ends_) sum += (*each.*count)();
         return sum;
     }
 
 private:
-    Sentence open(const ComponentRow& row, const BoundDevice& bound, std::span<const Fact> facts,
-                  const BoardDevice* device) {
-        std::expected<void, Sentence> opened{};
-        if (drives(row, "can")) {
-            auto& end = *buses_.emplace_back(std::make_unique<CanEnd>());
-            wires_.push_back({type_id<can::Device>, row.device, static_cast<can::Device*>(&end)});
-            opened = end.open(device->address, *static_cast<const can::Identifiers*>(row.type->device_map));
-        } else if (drives(row, "gpio")) {
-            auto& end = *chips_.emplace_back(std::make_unique<LineEnd>());
-            wires_.push_back({type_id<gpio::Wires>, row.device, static_cast<gpio::Wires*>(&end)});
-            // The bench makes /dev/NAME for the machine and /sim/NAME for who stands at the other end.
-            const std::string name{device->address.substr(device->address.rfind('/') + 1)};
-            opened =
-                end.open("/sim/" + name,
-                         *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map), facts);
-        } else if (drives(row, "udp")) {
-            auto& end = *ports_.emplace_back(std::make_unique<udp::Sender>());
-            wires_.push_back({type_id<udp::Wires>, row.device, static_cast<udp::Wires*>(&end)});
-            const std::string_view address = bound.at;
-            opened = end.open(host_of(address), static_cast<std::uint16_t>(port_of(address)));
-        } else if (drives(row, "modbus")) {
-            if (device != nullptr)
-                return Sentence{"the bench has no serial lines; bind it to 127.0.0.1:1502"};
-            auto& server =
-                *servers_.emplace_back(std::make_unique<Server>(bound.at, modbus::server_facts(facts).unit));
-            wires_.push_back(
-                {type_id<modbus::ServerTables>, row.device, static_cast<modbus::ServerTables*>(&server.end)});
+    template <class... End>
+    struct Kinds {
+        static std::unique_ptr<BenchEnd> make(const DeviceKind& kind) {
+            std::unique_ptr<BenchEnd> made;
+            ((kind.name == End::kind.name ? made = std::make_unique<End>() : made), ...);
+            return made;
         }
-        return opened ? Sentence{} : opened.error();
-    }
-
-    struct Server {
-        Server(std::string_view where, int number) : at{where}, unit{number} {}
-        std::string_view at;
-        int unit;
-        ServerEnd end{};
     };
-    std::vector<std::unique_ptr<CanEnd>> buses_{};
-    std::vector<std::unique_ptr<LineEnd>> chips_{};
-    std::vector<std::unique_ptr<udp::Sender>> ports_{};
-    std::vector<std::unique_ptr<Server>> servers_{};
+    std::vector<std::unique_ptr<BenchEnd>> ends_{};
     std::vector<ProvidedDevice> wires_{};
 };
 
@@ -229,8 +183,9 @@ public:
             last = now;
         }
         std::fprintf(stderr, "%s: latest wake-up %lld us, frames not sent %llu, line failures %llu\n", name_,
-                     static_cast<long long>(latest_ / 1us), static_cast<unsigned long long>(wires_.unsent()),
-                     static_cast<unsigned long long>(wires_.failures()));
+                     static_cast<long long>(latest_ / 1us),
+                     static_cast<unsigned long long>(wires_.sum(&BenchEnd::unsent)),
+                     static_cast<unsigned long long>(wires_.sum(&BenchEnd::failures)));
     }
 
 private:
@@ -255,7 +210,7 @@ private:
         }
         const Outage& stop = options_.server_stop;
         if (stop.at != Duration::max())
-            wires_.set_servers(since_start < stop.at || since_start >= stop.at + stop.lasts);
+            wires_.set_power(since_start < stop.at || since_start >= stop.at + stop.lasts);
     }
 
     const char* name_;

@@ -1,8 +1,6 @@
 // Levels between a plant and gpio-sim. The files speak of the wire, the plant of what it means: a line that
 // is active low is turned over here.
-#include "toolchain/machine/bench/line_end.hpp"
-
-#include "kernel/machine/check/board.hpp"
+#include "drivers/gpio/bench_lines.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -10,21 +8,26 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace tappet {
+namespace tappet::gpio {
 
-LineEnd::LineEnd() { files_.fill(-1); }
+BenchLines::BenchLines() { files_.fill(-1); }
 
-LineEnd::~LineEnd() {
+BenchLines::~BenchLines() {
     for (const int file : files_)
         if (file >= 0) ::close(file);
 }
 
-std::expected<void, Sentence> LineEnd::open(const std::string& folder, std::span<const gpio::LineRow> map,
-                                            std::span<const Fact> bound) {
+std::expected<void, Sentence> BenchLines::open(const DevicePlace& place) {
+    const std::string name{place.address.substr(place.address.rfind('/') + 1)};
+    return open_at("/sim/" + name, *static_cast<const std::span<const LineRow>*>(place.map), place.bound);
+}
+
+std::expected<void, Sentence> BenchLines::open_at(const std::string& folder, std::span<const LineRow> map,
+                                                  std::span<const Fact> bound) {
     map_ = map;
     for (std::size_t i = 0; i < map.size(); ++i) {
-        const bool input = map[i].line.role == gpio::Role::input;
-        const unsigned offset = gpio::offset_of(bound, map[i].line.name);
+        const bool input = map[i].line.role == Role::input;
+        const unsigned offset = offset_of(bound, map[i].line.name);
         const std::string path = folder + "/sim_gpio" + std::to_string(offset) + (input ? "/pull" : "/value");
         files_[i] = ::open(path.c_str(), (input ? O_WRONLY : O_RDONLY) | O_CLOEXEC);
         if (files_[i] < 0)
@@ -37,7 +40,7 @@ std::expected<void, Sentence> LineEnd::open(const std::string& folder, std::span
     return {};
 }
 
-bool LineEnd::pull(std::size_t line, bool active) noexcept {
+bool BenchLines::pull(std::size_t line, bool active) noexcept {
     const std::string_view word = active != map_[line].line.active_low ? "pull-up" : "pull-down";
     const bool done =
         ::pwrite(files_[line], word.data(), word.size(), 0) == static_cast<ssize_t>(word.size());
@@ -45,14 +48,14 @@ bool LineEnd::pull(std::size_t line, bool active) noexcept {
     return done;
 }
 
-bool LineEnd::drive(std::size_t line, bool active, Time at) noexcept {
-    if (line >= map_.size() || map_[line].line.role != gpio::Role::input) return false;
+bool BenchLines::drive(std::size_t line, bool active, Time at) noexcept {
+    if (line >= map_.size() || map_[line].line.role != Role::input) return false;
     if (at <= looked_) return pull(line, active);
     later_.push_back({line, active, at});
     return true;
 }
 
-void LineEnd::look(Time now) {
+void BenchLines::look(Time now) {
     last_ = looked_ == Time{} ? now : looked_;
     looked_ = now;
     for (const Later& each : later_)
@@ -61,17 +64,17 @@ void LineEnd::look(Time now) {
     const bool slow = now >= slow_at_;
     if (slow) slow_at_ = now + slow_period;
     for (std::size_t i = 0; i < map_.size(); ++i) {
-        if (map_[i].line.role != gpio::Role::output) continue;
-        if (map_[i].driven == gpio::Driven::by_port && !slow) continue;
+        if (map_[i].line.role != Role::output) continue;
+        if (map_[i].driven == Driven::by_port && !slow) continue;
         char digit = '0';
         if (::pread(files_[i], &digit, 1, 0) != 1) {
             ++failures_;
             continue;
         }
-        const gpio::Mask bit = gpio::Mask{1} << i;
+        const Mask bit = Mask{1} << i;
         const bool active = (digit == '1') != map_[i].line.active_low;
         outputs_ = active ? outputs_ | bit : outputs_ & ~bit;
     }
 }
 
-} // namespace tappet
+} // namespace tappet::gpio

@@ -1,19 +1,20 @@
 // The server's thread: sockets, requests, and the answers that libmodbus cannot know.
-#include "toolchain/machine/bench/server_end.hpp"
+#include "drivers/modbus/bench_server.hpp"
+
+#include "kernel/base/address.hpp"
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 
+#include <modbus.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace tappet {
+namespace tappet::modbus {
 
 namespace {
-
-using modbus::Table;
 
 constexpr int poll_ms = 20; // how fast power and the end are noticed
 
@@ -42,34 +43,45 @@ Writes writes_of(const std::uint8_t* body, int length) {
 
 } // namespace
 
-ServerEnd::ServerEnd() { clients_.fill(-1); }
+void BenchServer::FreeContext::operator()(_modbus* context) const { modbus_free(context); }
+void BenchServer::FreeMapping::operator()(_modbus_mapping_t* mapping) const { modbus_mapping_free(mapping); }
 
-ServerEnd::~ServerEnd() {
+BenchServer::BenchServer() { clients_.fill(-1); }
+
+BenchServer::~BenchServer() {
     ending_.store(true);
     if (thread_.joinable()) thread_.join();
     close_all();
 }
 
-std::expected<void, Sentence> ServerEnd::listen(const std::string& address, int port, int unit) {
-    unit_ = unit;
-    context_.reset(modbus_new_tcp(address.c_str(), port));
+std::expected<void, Sentence> BenchServer::open(const DevicePlace& place) {
+    if (place.is_on_board)
+        return std::unexpected(Sentence{"the bench has no serial lines; bind it to 127.0.0.1:1502"});
+    address_ = host_of(place.address);
+    port_ = port_of(place.address);
+    unit_ = server_facts(place.bound).unit;
+    return {};
+}
+
+std::expected<void, Sentence> BenchServer::listen() {
+    context_.reset(modbus_new_tcp(address_.c_str(), port_));
     const auto entries = [this](Table table) { return static_cast<int>(count(table)); };
     mapping_.reset(modbus_mapping_new(entries(Table::coils), entries(Table::discrete_inputs),
                                       entries(Table::holding_registers), entries(Table::input_registers)));
     if (context_ != nullptr && mapping_ != nullptr)
         listening_ = modbus_tcp_listen(context_.get(), static_cast<int>(most_clients));
     if (listening_ < 0)
-        return std::unexpected(Sentence{"Modbus server at \"", std::string_view{address}, ":", port,
+        return std::unexpected(Sentence{"Modbus server at \"", std::string_view{address_}, ":", port_,
                                         "\": ", std::string_view{modbus_strerror(errno)},
                                         "; free the port, or bind the machine to another"});
-    modbus_set_slave(context_.get(), unit);
+    modbus_set_slave(context_.get(), unit_);
     modbus_set_response_timeout(context_.get(), 0, 100'000);
     modbus_set_byte_timeout(context_.get(), 0, 100'000);
     thread_ = std::thread([this] { serve(); });
     return {};
 }
 
-void ServerEnd::close_all() {
+void BenchServer::close_all() {
     if (listening_ >= 0) ::close(listening_);
     listening_ = -1;
     for (int& client : clients_) {
@@ -78,7 +90,7 @@ void ServerEnd::close_all() {
     }
 }
 
-void ServerEnd::to_mapping() {
+void BenchServer::to_mapping() {
     const auto copy = [this](Table table, auto* into) {
         for (std::size_t i = 0; i < count(table); ++i)
             into[i] = static_cast<std::remove_reference_t<decltype(*into)>>(get(table, i));
@@ -89,14 +101,14 @@ void ServerEnd::to_mapping() {
     copy(Table::input_registers, mapping_->tab_input_registers);
 }
 
-void ServerEnd::from_mapping(const std::uint8_t* request, int length) {
+void BenchServer::from_mapping(const std::uint8_t* request, int length) {
     const Writes written = writes_of(request, length);
     for (unsigned i = written.first; i < written.first + written.count && i < count(written.table); ++i)
         set(written.table, i,
             written.table == Table::coils ? mapping_->tab_bits[i] : mapping_->tab_registers[i]);
 }
 
-bool ServerEnd::refuses(const std::uint8_t* body, int length) const {
+bool BenchServer::refuses(const std::uint8_t* body, int length) const {
     const Writes written = writes_of(body, length);
     if (written.count == 0 || written.table == Table::coils) return false;
     const bool single = body[0] == MODBUS_FC_WRITE_SINGLE_REGISTER;
@@ -109,7 +121,7 @@ bool ServerEnd::refuses(const std::uint8_t* body, int length) const {
     return false;
 }
 
-void ServerEnd::answer(int client) {
+void BenchServer::answer(int client) {
     std::uint8_t query[MODBUS_TCP_MAX_ADU_LENGTH];
     modbus_set_socket(context_.get(), client);
     const int length = modbus_receive(context_.get(), query);
@@ -133,7 +145,7 @@ void ServerEnd::answer(int client) {
     from_mapping(query + header, length - header);
 }
 
-void ServerEnd::serve() {
+void BenchServer::serve() {
     while (!ending_.load()) {
         if (!powered_.load()) {
             close_all();
@@ -158,4 +170,4 @@ void ServerEnd::serve() {
     }
 }
 
-} // namespace tappet
+} // namespace tappet::modbus

@@ -1,9 +1,11 @@
 // The plant's ends of the bench's wires on any machine: lines as files in a folder, Modbus over the loopback.
-#include "toolchain/machine/bench/can_end.hpp"
-#include "toolchain/machine/bench/line_end.hpp"
-#include "toolchain/machine/bench/server_end.hpp"
+#include "drivers/can/bench_bus.hpp"
+#include "drivers/can/signal_map.hpp"
+#include "drivers/gpio/bench_lines.hpp"
+#include "drivers/modbus/bench_server.hpp"
 
 #include <gtest/gtest.h>
+#include <modbus.h>
 
 #include <array>
 #include <filesystem>
@@ -40,11 +42,11 @@ struct Lines : testing::Test {
         return word.starts_with("pull-up");
     }
     std::filesystem::path chip;
-    LineEnd end;
+    gpio::BenchLines end;
 };
 
 TEST_F(Lines, carry_levels_both_ways_and_turn_over_what_is_active_low) {
-    ASSERT_TRUE(end.open(chip.string(), lines.rows, bound));
+    ASSERT_TRUE(end.open_at(chip.string(), lines.rows, bound));
     EXPECT_FALSE(is_pulled_up(0));
     EXPECT_TRUE(is_pulled_up(3)) << "active low, and not active";
     put(8, true);
@@ -59,7 +61,7 @@ TEST_F(Lines, carry_levels_both_ways_and_turn_over_what_is_active_low) {
 }
 
 TEST_F(Lines, drive_an_input_when_its_time_has_come) {
-    ASSERT_TRUE(end.open(chip.string(), lines.rows, bound));
+    ASSERT_TRUE(end.open_at(chip.string(), lines.rows, bound));
     end.look(at_ns(1'000'000));
     EXPECT_TRUE(end.drive(0, true, at_ns(5'000'000)));
     EXPECT_FALSE(is_pulled_up(0));
@@ -68,7 +70,7 @@ TEST_F(Lines, drive_an_input_when_its_time_has_come) {
 }
 
 TEST_F(Lines, say_half_way_between_two_looks_when_an_output_changed) {
-    ASSERT_TRUE(end.open(chip.string(), lines.rows, bound));
+    ASSERT_TRUE(end.open_at(chip.string(), lines.rows, bound));
     end.look(at_ns(1'000'000));
     put(8, true);
     end.look(at_ns(1'400'000));
@@ -77,7 +79,7 @@ TEST_F(Lines, say_half_way_between_two_looks_when_an_output_changed) {
 
 TEST_F(Lines, that_are_missing_are_named_with_the_cure) {
     std::filesystem::remove(file(9, "value"));
-    const auto opened = end.open(chip.string(), lines.rows, bound);
+    const auto opened = end.open_at(chip.string(), lines.rows, bound);
     ASSERT_FALSE(opened);
     const std::string said{opened.error().view()};
     EXPECT_NE(said.find("line \"lamp\""), std::string::npos) << said;
@@ -86,8 +88,9 @@ TEST_F(Lines, that_are_missing_are_named_with_the_cure) {
 }
 
 TEST(Can, names_an_interface_that_does_not_exist) {
-    CanEnd can;
-    const auto opened = can.open("no-such-can", {});
+    can::BenchBus bus;
+    const can::Identifiers none{};
+    const auto opened = bus.open({.address = "no-such-can", .map = &none});
     ASSERT_FALSE(opened);
     EXPECT_NE(opened.error().view().find("\"no-such-can\" does not exist"), std::string_view::npos);
 }
@@ -101,8 +104,10 @@ struct Server : testing::Test {
             [](modbus::Table, std::size_t, std::uint16_t value) noexcept { return value >= 300; });
         end.set(modbus::Table::input_registers, 0, 231);
         end.set(modbus::Table::holding_registers, 0, 650);
-        for (port = 15'020; port < 15'060 && !listens; ++port)
-            listens = end.listen("127.0.0.1", port, 1).has_value();
+        for (port = 15'020; port < 15'060 && !listens; ++port) {
+            const std::string address = "127.0.0.1:" + std::to_string(port);
+            listens = end.open({.address = address, .is_on_board = false}) && end.listen();
+        }
         --port;
         client = modbus_new_tcp("127.0.0.1", port);
         modbus_set_slave(client, 1);
@@ -112,7 +117,7 @@ struct Server : testing::Test {
         modbus_close(client);
         modbus_free(client);
     }
-    ServerEnd end;
+    modbus::BenchServer end;
     bool listens = false;
     modbus_t* client = nullptr;
     int port = 0;

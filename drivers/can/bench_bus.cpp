@@ -1,6 +1,7 @@
 // Frames between a plant and SocketCAN.
-#include "toolchain/machine/bench/can_end.hpp"
+#include "drivers/can/bench_bus.hpp"
 
+#include "drivers/can/signal_map.hpp"
 #include "drivers/can/wire.hpp"
 
 #include <cerrno>
@@ -15,13 +16,15 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace tappet {
+namespace tappet::can {
 
-CanEnd::~CanEnd() {
+BenchBus::~BenchBus() {
     if (socket_ >= 0) ::close(socket_);
 }
 
-std::expected<void, Sentence> CanEnd::open(std::string_view interface, const can::Identifiers& machine) {
+std::expected<void, Sentence> BenchBus::open(const DevicePlace& place) {
+    const std::string_view interface = place.address;
+    const auto& machine = *static_cast<const Identifiers*>(place.map);
     const unsigned index = if_nametoindex(std::string{interface}.c_str());
     if (index == 0)
         return std::unexpected(Sentence{"CAN interface \"", interface,
@@ -31,7 +34,7 @@ std::expected<void, Sentence> CanEnd::open(std::string_view interface, const can
         return std::unexpected(
             Sentence{"CAN sockets: ", std::string_view{std::strerror(errno)}, "; load the module can-raw"});
     std::vector<can_filter> filters;
-    for (const can::Identifier& each : machine.transmit) filters.push_back(can::wire::exactly(each));
+    for (const Identifier& each : machine.transmit) filters.push_back(wire::exactly(each));
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(index);
@@ -46,33 +49,32 @@ std::expected<void, Sentence> CanEnd::open(std::string_view interface, const can
     return {};
 }
 
-can::Receive CanEnd::receive(can::Frame& frame) noexcept TAPPET_REALTIME {
+Receive BenchBus::receive(Frame& frame) noexcept TAPPET_REALTIME {
     canfd_frame raw{};
     ssize_t got = 0;
     TAPPET_ESCAPE("a plant is not real-time", got = ::read(socket_, &raw, sizeof raw));
     frame = {};
-    if (got <= 0 || !can::wire::decode(raw, static_cast<std::size_t>(got), can::State::active, frame))
-        return {};
+    if (got <= 0 || !wire::decode(raw, static_cast<std::size_t>(got), State::active, frame)) return {};
     ++count_.received;
-    return {can::Received::frame, 0};
+    return {Received::frame, 0};
 }
 
-can::Send CanEnd::send(const can::Frame& frame, can::Keep) noexcept TAPPET_REALTIME {
+Send BenchBus::send(const Frame& frame, Keep) noexcept TAPPET_REALTIME {
     canfd_frame raw;
-    can::wire::encode(frame, raw);
-    const std::size_t bytes = can::wire::bytes_of(frame);
+    wire::encode(frame, raw);
+    const std::size_t bytes = wire::bytes_of(frame);
     ssize_t sent = 0;
     TAPPET_ESCAPE("a plant is not real-time", sent = ::write(socket_, &raw, bytes));
     const bool whole = sent == static_cast<ssize_t>(bytes);
     whole ? ++count_.sent : ++count_.refused;
-    return whole ? can::Send::queued : can::Send::refused_full;
+    return whole ? Send::queued : Send::refused_full;
 }
 
-void CanEnd::announce_bus_off() {
+void BenchBus::announce_bus_off() {
     can_frame raw{};
     raw.can_id = CAN_ERR_FLAG | CAN_ERR_BUSOFF;
     raw.len = CAN_ERR_DLC;
     if (::write(socket_, &raw, sizeof raw) != sizeof raw) ++count_.refused;
 }
 
-} // namespace tappet
+} // namespace tappet::can

@@ -1,0 +1,56 @@
+// The plant's end of digital lines on the bench: gpio-sim's files, kept open, written and read at offset 0.
+#pragma once
+
+#include "drivers/gpio/far_end.hpp"
+#include "drivers/twin/bench_end.hpp"
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tappet::gpio {
+
+/// Not real-time.
+class BenchLines final : public BenchEnd, public Wires {
+public:
+    static constexpr const DeviceKind& kind = device_kind;
+
+    BenchLines();
+    ~BenchLines() override;
+
+    /// The bench makes /dev/NAME for the machine, and /sim/NAME for who stands at the other end.
+    std::expected<void, Sentence> open(const DevicePlace& place) override;
+    /// `folder` is where sim_gpio<n>/pull and sim_gpio<n>/value lie; the lines stand where the binding says.
+    std::expected<void, Sentence> open_at(const std::string& folder, std::span<const LineRow> map,
+                                          std::span<const Fact> bound);
+    ProvidedDevice provided(std::string_view name) noexcept override {
+        return {type_id<Wires>, name, static_cast<Wires*>(this)};
+    }
+
+    bool drive(std::size_t line, bool active, Time at) noexcept override;
+    /// Actuators at each look, what follows a port each `slow_period`: looking takes an emulator some time.
+    void look(Time now) override;
+    [[nodiscard]] Mask outputs() const noexcept override { return outputs_; }
+    /// Somewhere between two looks: half-way is the best guess.
+    [[nodiscard]] Time changed_at(Time) const noexcept override { return last_ + (looked_ - last_) / 2; }
+    [[nodiscard]] std::uint64_t failures() const noexcept override { return failures_; }
+
+private:
+    struct Later {
+        std::size_t line;
+        bool active;
+        Time at;
+    };
+    static constexpr Duration slow_period = 5ms;
+    bool pull(std::size_t line, bool active) noexcept;
+
+    std::span<const LineRow> map_{};
+    std::array<int, most_lines> files_; ///< of an input its pull, of an output its value
+    std::vector<Later> later_{};
+    Mask outputs_ = 0;
+    Time last_{}, looked_{}, slow_at_{};
+    std::uint64_t failures_ = 0;
+};
+
+} // namespace tappet::gpio
