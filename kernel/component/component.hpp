@@ -3,17 +3,48 @@
 #pragma once
 
 #include "kernel/base/bounded.hpp"
+#include "kernel/base/decimal.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/component/device_traffic.hpp"
 #include "kernel/component/interface.hpp"
 #include "kernel/component/life_functions.hpp"
 #include "kernel/component/operation_interface.hpp"
+#include "kernel/component/peer_property.hpp"
 
 #include <new>
 #include <span>
 #include <string_view>
 
 namespace tappet {
+
+/// What is wrong with a value for that property: out of its range, no number, or none of an enumeration's.
+[[nodiscard]] inline Sentence check_range(const Facet& facet, const std::byte* value) noexcept
+    TAPPET_REALTIME {
+    const PropertyOperations& of = *facet.property;
+    if (of.kind == PropertySetting::Kind::text) return {};
+    const TypeTag& type = *(of.is_list ? of.element : facet.type);
+    for (std::size_t i = 0; i < of.size(value); ++i) {
+        const double number = of.number(value, i);
+        if (type.kind == ValueKind::enumeration && !(number >= 0 && number < double(type.names.size())))
+            return Sentence{"property \"",
+                            facet.name,
+                            "\": ",
+                            decimal(number),
+                            " is none of its ",
+                            type.names.size(),
+                            " values; propose one of those that have a name"};
+        if (facet.range.holds(number)) continue;
+        Sentence text{"property \"", facet.name, "\": "};
+        if (of.is_list) text.add("element ").add(i).add(" ");
+        if (!is_number(number)) return text.add("is no number; propose a finite one");
+        text.add(number < facet.range.low ? "is under its least value " : "is over its greatest value ");
+        if (number < facet.range.low) text.add(decimal(facet.range.low));
+        if (number > facet.range.high) text.add(decimal(facet.range.high));
+        if (of.kind == PropertySetting::Kind::duration) text.add(" s");
+        return text.add("; propose a value in its range");
+    }
+    return {};
+}
 
 struct Controlled;    ///< kernel/machine/instance/controlled.hpp
 struct ScriptUnit;    ///< kernel/script/unit.hpp
@@ -75,9 +106,13 @@ struct ComponentType {
     void (*changed)(void* component) noexcept TAPPET_REALTIME = nullptr;
     void (*control)(void* component, const Controlled&) = nullptr; ///< before its properties are set
 
-    /// Asks the component and, when it consents, gives it all values together. The answer says why it does
-    /// not. Where the component runs, or while it stands still. Real-time.
+    /// The one way to a property once it is configured. Checks the ranges, asks the component and, when it
+    /// consents, gives it all values together. The answer says why it does not. Where the component runs, or
+    /// while it stands still. Real-time.
     Sentence change(void* component, std::span<const ProposedValue> values) const noexcept TAPPET_REALTIME {
+        for (const ProposedValue& each : values)
+            if (const Sentence fault = check_range(facets[each.facet], each.value); !fault.empty())
+                return fault;
         if (accepts != nullptr)
             if (const Sentence refusal = accepts(component, Proposal{values}); !refusal.empty())
                 return refusal;
@@ -155,5 +190,11 @@ constexpr ComponentType describe() {
 
 template <class T>
 inline constexpr ComponentType component_type = detail::describe<T>();
+
+template <class Owner>
+Sentence detail::change_properties(void* component, std::span<const ProposedValue> values) noexcept
+    TAPPET_REALTIME {
+    return component_type<Owner>.change(component, values);
+}
 
 } // namespace tappet

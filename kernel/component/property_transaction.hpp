@@ -2,7 +2,6 @@
 // offered to the component between two of its steps, which takes all of them or none.
 #pragma once
 
-#include "kernel/base/decimal.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/exchange/mailbox.hpp"
 
@@ -64,25 +63,6 @@ public:
     /// Makes room for all properties, for capture().
     void change_all() noexcept {
         for (std::size_t f = 0; f < type_->facets.size(); ++f) static_cast<void>(change(f));
-    }
-
-    /// What is wrong with a value for that property: out of its range, or no number.
-    [[nodiscard]] static Sentence check_range(const Facet& facet, const std::byte* value) noexcept {
-        const PropertyOperations& of = *facet.property;
-        if (of.kind == PropertySetting::Kind::text) return {};
-        for (std::size_t i = 0; i < of.size(value); ++i) {
-            const double number = of.number(value, i);
-            if (facet.range.holds(number)) continue;
-            Sentence text{"property \"", facet.name, "\": "};
-            if (of.is_list) text.add("element ").add(i).add(" ");
-            if (!is_number(number)) return text.add("is no number; propose a finite one");
-            text.add(number < facet.range.low ? "is under its least value " : "is over its greatest value ");
-            if (number < facet.range.low) text.add(decimal(facet.range.low));
-            if (number > facet.range.high) text.add(decimal(facet.range.high));
-            if (of.kind == PropertySetting::Kind::duration) text.add(" s");
-            return text.add("; propose a value in its range");
-        }
-        return {};
     }
 
     /// Asks the component and, when it consents, gives it all of them. Only

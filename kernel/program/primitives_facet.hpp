@@ -174,12 +174,6 @@ inline ActionResult read_property(ProgramContext& context, const Instruction& in
 inline ActionResult write_property(ProgramContext& context, const Instruction& in, std::byte*,
                                    const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     const ProgramLink& link = link_of(context, in);
-    const PropertyOperations& of = *in.facet->property;
-    if (of.kind != PropertySetting::Kind::text) {
-        const std::size_t size = of.size(a);
-        for (std::size_t i = 0; i < size; ++i)
-            if (!in.facet->range.holds(of.number(a, i))) return ActionResult::failed;
-    }
     const ProposedValue proposed{static_cast<std::byte*>(link.place), a, in.size,
                                  static_cast<std::uint32_t>(in.facet - link.type->facets.data())};
     bool taken = false;

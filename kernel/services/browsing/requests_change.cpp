@@ -238,7 +238,7 @@ BrowserService::Verdict BrowserService::serve_set(Client& client, const Request&
             return {Refusal::unsupported, Sentence{"one transaction does not hold so many; send several"}};
         if (const Sentence fault = parse_value(*facet.type, request.arguments[i + 1], value); !fault.empty())
             return {Refusal::bad_value, Sentence{"property \"", name, "\": ", fault}};
-        if (const Sentence fault = PropertyTransaction::check_range(facet, value); !fault.empty())
+        if (const Sentence fault = check_range(facet, value); !fault.empty())
             return {Refusal::bad_value, fault};
     }
     return await_engine(*place, asker(client, request), component,

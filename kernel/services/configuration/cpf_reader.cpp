@@ -160,7 +160,7 @@ private:
         Sentence fault =
             is_list ? read_list(node, facet, place) : read_simple(node, facet, *facet.type, place);
         if (fault.empty())
-            if (const Sentence range = PropertyTransaction::check_range(facet, place); !range.empty())
+            if (const Sentence range = check_range(facet, place); !range.empty())
                 fault = at(node, Sentence{"gives ", range}.view());
         if (fault.empty()) return {};
         if (was_changed)

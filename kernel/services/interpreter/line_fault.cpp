@@ -36,8 +36,7 @@ Sentence why_of(const Instruction& in, const UnitPart& part, std::string_view na
             return Sentence{"\"", name, "\" had not ended in time", in_flight(state) ? "; it goes on" : ""};
     }
     if (in.run == &primitive::write_property) {
-        if (Sentence range = PropertyTransaction::check_range(*in.facet, part.data + in.a); !range.empty())
-            return range;
+        if (Sentence range = check_range(*in.facet, part.data + in.a); !range.empty()) return range;
         return Sentence{"the component of \"", name, "\" does not consent to this value"};
     }
     const bool is_call = in.run == &primitive::call_checked || in.run == &primitive::call_method ||

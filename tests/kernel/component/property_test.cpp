@@ -43,7 +43,7 @@ struct Proposed : testing::Test {
     void real(std::string_view name, double value) { set(name, real_setting(value)); }
     std::string range_fault(std::string_view name) {
         return std::string{
-            PropertyTransaction::check_range(facet(name), transaction.change(index_of(name))).view()};
+            check_range(facet(name), transaction.change(index_of(name))).view()};
     }
 };
 
@@ -190,7 +190,7 @@ TEST(PropertyWithoutRange, is_a_number_all_the_same_as_is_each_of_its_elements) 
             std::byte* const place = transaction.change(f);
             each.property->set(place, each.property->is_list ? list_setting(list) : real_setting(value));
             const bool is_good = is_number(each.name == "scale" ? static_cast<float>(value) : value);
-            const Sentence fault = PropertyTransaction::check_range(each, place);
+            const Sentence fault = check_range(each, place);
             EXPECT_EQ(fault.empty(), is_good) << each.name << " = " << value;
             if (is_good) continue;
             EXPECT_EQ(fault.view(),
