@@ -274,6 +274,49 @@ void hand_over(const std::string& path) {
     results.write_all(bytes);
 }
 
+/// What the host wants of this bench, line by line.
+struct Manifest {
+    std::vector<std::string> modules, commands, files;
+    std::vector<std::pair<std::string, std::string>> devices;
+};
+Manifest read_manifest(const std::string& text) {
+    Manifest wanted;
+    for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
+        const std::string line = text.substr(at, end - at);
+        const std::size_t blank = line.find(' ');
+        const std::string kind = line.substr(0, blank);
+        const std::string rest = blank == std::string::npos ? "" : line.substr(blank + 1);
+        if (kind == "module") {
+            wanted.modules.push_back(rest);
+        } else if (kind == "run") {
+            wanted.commands.push_back(rest);
+        } else if (kind == "collect") {
+            wanted.files.push_back(rest);
+        } else {
+            wanted.devices.emplace_back(kind, rest);
+        }
+    }
+    return wanted;
+}
+
+void set_up(const std::string& kind, const std::string& rest) {
+    if (kind == "can") {
+        must(create_can(rest));
+    } else if (kind == "gpio") {
+        const std::size_t blank = rest.find(' ');
+        must(create_gpio_chip(rest.substr(0, blank), rest.substr(blank + 1)));
+    } else if (kind == "unthrottled") {
+        if (const auto stopped = stop_throttling(); !stopped) {
+            give_up(stopped.error());
+        }
+    } else if (kind == "set") {
+        const std::size_t blank = rest.find(' ');
+        if (!write_text(rest.substr(0, blank), rest.substr(blank + 1))) {
+            must(failed("set " + rest));
+        }
+    }
+}
+
 [[noreturn]] void serve() {
     must(mount_kernel_files());
     ::setenv("PATH", "/bin:/usr/bin", 1);
@@ -281,60 +324,26 @@ void hand_over(const std::string& path) {
     // A command that dies in the middle must not take PID 1 with it.
     ::signal(SIGPIPE, SIG_IGN);
 
-    std::vector<std::string> modules;
-    std::vector<std::string> commands;
-    std::vector<std::string> files;
-    std::vector<std::pair<std::string, std::string>> devices;
-    const std::string manifest = read_text("/bench/manifest");
-    for (std::size_t at = 0, end = 0; (end = manifest.find('\n', at)) != std::string::npos; at = end + 1) {
-        const std::string line = manifest.substr(at, end - at);
-        const std::size_t blank = line.find(' ');
-        const std::string kind = line.substr(0, blank);
-        const std::string rest = blank == std::string::npos ? "" : line.substr(blank + 1);
-        if (kind == "module") {
-            modules.push_back(rest);
-        } else if (kind == "run") {
-            commands.push_back(rest);
-        } else if (kind == "collect") {
-            files.push_back(rest);
-        } else {
-            devices.emplace_back(kind, rest);
-        }
-    }
-
-    must(load_modules(modules));
+    const Manifest wanted = read_manifest(read_text("/bench/manifest"));
+    must(load_modules(wanted.modules));
     console = open_port("tappet.console");
     results.open(open_port("tappet.results"));
     must(set_link("lo", true));
-    for (const auto& [kind, rest] : devices) {
-        if (kind == "can") {
-            must(create_can(rest));
-        } else if (kind == "gpio") {
-            const std::size_t blank = rest.find(' ');
-            must(create_gpio_chip(rest.substr(0, blank), rest.substr(blank + 1)));
-        } else if (kind == "unthrottled") {
-            if (const auto stopped = stop_throttling(); !stopped) {
-                give_up(stopped.error());
-            }
-        } else if (kind == "set") {
-            const std::size_t blank = rest.find(' ');
-            if (!write_text(rest.substr(0, blank), rest.substr(blank + 1))) {
-                must(failed("set " + rest));
-            }
-        }
+    for (const auto& [kind, rest] : wanted.devices) {
+        set_up(kind, rest);
     }
     results.line("booted");
     say_to_host(start_of_output);
 
     int code = 0;
-    for (const std::string& command : commands) {
+    for (const std::string& command : wanted.commands) {
         code = run(command);
         if (code != 0) {
             break;
         }
     }
     stop_background();
-    for (const std::string& file : files) {
+    for (const std::string& file : wanted.files) {
         hand_over(file);
     }
     results.line("exit " + std::to_string(code));

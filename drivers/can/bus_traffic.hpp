@@ -48,6 +48,35 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
     return {};
 }
 
+/// Of a frame that may come too late. `of`: what delays it most.
+constexpr Sentence late_fault(const FrameRow& row, const FrameResponse& found, std::string_view of,
+                              std::int64_t deadline_ns, std::int64_t load_ppm, std::uint32_t bit_rate) {
+    if (!found.response.bounded && found.largest_ns > 0)
+        return Sentence{"frame \"",
+                        row.name,
+                        "\" may still wait when the next one follows, ",
+                        us(row.apart.count()),
+                        " later; ",
+                        largest_part(found, of, bit_rate)};
+    if (!found.response.bounded)
+        return Sentence{"frame \"",
+                        row.name,
+                        "\" may never come through: what is more urgent, and itself, "
+                        "fill the bus, which all frames together load by ",
+                        load_ppm / 10'000,
+                        " % at ",
+                        bit_rate,
+                        " bit/s; send less often, or run the bus faster"};
+    return Sentence{"frame \"",
+                    row.name,
+                    "\" may take ",
+                    us(found.response.worst_ns),
+                    " but is due within ",
+                    us(deadline_ns),
+                    "; ",
+                    largest_part(found, of, bit_rate)};
+}
+
 } // namespace detail
 
 /// The rates that something on a bus was proven for; 0: any. Empty: those of the bus.
@@ -128,32 +157,8 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const Bu
                        found.response.bounded ? Duration{found.response.worst_ns} : Duration::max()};
         if (!fault.empty() || found.response.within(frames[i].deadline_ns)) continue;
         if (row.is_proven && found.response.bounded) continue;
-        const std::string_view of = crossing[by_rank[found.of]].name;
-        if (!found.response.bounded && found.largest_ns > 0)
-            fault = Sentence{"frame \"",
-                             row.name,
-                             "\" may still wait when the next one follows, ",
-                             detail::us(row.apart.count()),
-                             " later; ",
-                             detail::largest_part(found, of, bus.bit_rate)};
-        else if (!found.response.bounded)
-            fault = Sentence{"frame \"",
-                             row.name,
-                             "\" may never come through: what is more urgent, and itself, "
-                             "fill the bus, which all frames together load by ",
-                             load_ppm / 10'000,
-                             " % at ",
-                             bus.bit_rate,
-                             " bit/s; send less often, or run the bus faster"};
-        else
-            fault = Sentence{"frame \"",
-                             row.name,
-                             "\" may take ",
-                             detail::us(found.response.worst_ns),
-                             " but is due within ",
-                             detail::us(frames[i].deadline_ns),
-                             "; ",
-                             detail::largest_part(found, of, bus.bit_rate)};
+        fault = detail::late_fault(row, found, crossing[by_rank[found.of]].name, frames[i].deadline_ns,
+                                   load_ppm, bus.bit_rate);
     }
     return fault;
 }

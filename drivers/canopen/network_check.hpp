@@ -108,6 +108,32 @@ constexpr Sentence signals_fault(const can::SignalMap<F, S>& signals, const Node
     return {};
 }
 
+constexpr Sentence times_fault(const Sentence& subject, const NodeRow& node, const PdoRow& row,
+                               const PdoPlace& place) noexcept {
+    const auto fits = [](Duration time, Duration unit) {
+        return time % unit == Duration{} && time / unit <= 65535;
+    };
+    if (!fits(row.how.event_timer, 1ms) || !fits(row.how.inhibit_time, 100us))
+        return Sentence{subject,
+                        " has an event timer that is no count of ms, or an inhibit time that is none of "
+                        "100 us, up to 65535; round it"};
+    if (row.how.event_timer != Duration{} && node.dictionary.find({place.communication(), 5}) == nullptr)
+        return Sentence{subject,
+                        " has an event timer, which the device has not: ",
+                        node.dictionary.file,
+                        " has no ",
+                        to_text({place.communication(), 5}),
+                        "; let it be synchronous, or send by itself"};
+    if (row.how.inhibit_time != Duration{} && node.dictionary.find({place.communication(), 3}) == nullptr)
+        return Sentence{subject,
+                        " has an inhibit time, which the device has not: ",
+                        node.dictionary.file,
+                        " has no ",
+                        to_text({place.communication(), 3}),
+                        "; take it away"};
+    return {};
+}
+
 template <std::size_t F, std::size_t S>
 constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerRow& manager,
                              const NodeRow& node, const PdoRow& row) noexcept {
@@ -156,27 +182,7 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
         return Sentence{subject, " is synchronous(", unsigned{row.how.type}, "); the standard ends at 240"};
     if (row.how.type <= 240 && manager.sync_every == Duration{})
         return Sentence{subject, " is synchronous and nobody produces SYNC; write manager(..).sync(..)"};
-    const auto fits = [](Duration time, Duration unit) {
-        return time % unit == Duration{} && time / unit <= 65535;
-    };
-    if (!fits(row.how.event_timer, 1ms) || !fits(row.how.inhibit_time, 100us))
-        return Sentence{subject,
-                        " has an event timer that is no count of ms, or an inhibit time that is none of "
-                        "100 us, up to 65535; round it"};
-    if (row.how.event_timer != Duration{} && node.dictionary.find({place.communication(), 5}) == nullptr)
-        return Sentence{subject,
-                        " has an event timer, which the device has not: ",
-                        node.dictionary.file,
-                        " has no ",
-                        to_text({place.communication(), 5}),
-                        "; let it be synchronous, or send by itself"};
-    if (row.how.inhibit_time != Duration{} && node.dictionary.find({place.communication(), 3}) == nullptr)
-        return Sentence{subject,
-                        " has an inhibit time, which the device has not: ",
-                        node.dictionary.file,
-                        " has no ",
-                        to_text({place.communication(), 3}),
-                        "; take it away"};
+    if (const Sentence fault = times_fault(subject, node, row, place); !fault.empty()) return fault;
     return signals_fault(signals, node, row, frame);
 }
 

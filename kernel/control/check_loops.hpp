@@ -103,6 +103,26 @@ constexpr Delay dead_samples(const LoopRow& row, const MachineView& m, const Tab
             before.varying + behind.varying};
 }
 
+/// A properties file, a script and people set the gains within their ranges while the machine runs.
+constexpr Sentence check_by_hand(const LoopRow& row, Range by_hand, Range integral_by_hand, double bound,
+                                 double longest, std::size_t dead, std::size_t varying) {
+    for (const double kp : {by_hand.low, by_hand.high})
+        for (const double ki : {integral_by_hand.low, integral_by_hand.high}) {
+            const SampledLoop extreme{kp * row.factor * longest, ki * row.factor * longest * longest, dead,
+                                      varying};
+            if ((kp == 0.0 && ki == 0.0) || (kp > 0.0 && is_stable(extreme))) continue;
+            return of_loop(row, "people may set ", row.gain,
+                           kp < std::numeric_limits<double>::infinity() ? " to " : " to anything",
+                           kp < std::numeric_limits<double>::infinity() ? in_digits(kp) : Sentence{},
+                           row.integral.empty() ? "" : " beside ",
+                           row.integral.empty() ? Sentence{} : Sentence{in_digits(ki), " of ", row.integral},
+                           " while it runs, which is not stable; give ",
+                           row.integral.empty() ? "it a range" : "both a range", " of gains that are, below ",
+                           in_digits(bound / (row.factor * longest)));
+        }
+    return {};
+}
+
 constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const TableIndexView& r,
                               const Seats& seats) {
     End end;
@@ -165,20 +185,7 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     if (!row.may_overshoot && with(longest).proportional > most_without_overshoot(dead) * (1 + 1e-9))
         return say(most_without_overshoot(dead), "the most that does not overshoot",
                    ", or add may_overshoot if that does no harm");
-    // A properties file, a script and people set them within their ranges while the machine runs.
-    for (const double kp : {by_hand.low, by_hand.high})
-        for (const double ki : {integral_by_hand.low, integral_by_hand.high}) {
-            const SampledLoop extreme{kp * row.factor * longest, ki * row.factor * longest * longest, dead,
-                                      varying};
-            if ((kp == 0.0 && ki == 0.0) || (kp > 0.0 && is_stable(extreme))) continue;
-            return of_loop(row, "people may set ", row.gain, kp < infinity ? " to " : " to anything",
-                           kp < infinity ? in_digits(kp) : Sentence{}, row.integral.empty() ? "" : " beside ",
-                           row.integral.empty() ? Sentence{} : Sentence{in_digits(ki), " of ", row.integral},
-                           " while it runs, which is not stable; give ",
-                           row.integral.empty() ? "it a range" : "both a range", " of gains that are, below ",
-                           in_digits(bound / (row.factor * longest)));
-        }
-    return {};
+    return check_by_hand(row, by_hand, integral_by_hand, bound, longest, dead, varying);
 }
 
 constexpr Sentence check_loops(const ControlView& c, const MachineView& m, const TableIndexView& r,

@@ -52,6 +52,60 @@ struct Bend {
 
 } // namespace detail
 
+namespace detail {
+
+template <const auto& chain>
+double joint_of(std::size_t i, double theta) noexcept TAPPET_REALTIME {
+    return table_of<chain>[i][Of::sense] * (theta - chain.links[i].theta_deg * (std::numbers::pi / 180.0));
+}
+/// As it is in `near`.
+template <const auto& chain>
+Bend as_it_is(const Joints<6>& near, std::size_t i) noexcept TAPPET_REALTIME {
+    const double q = near[static_cast<int>(i)];
+    return Bend{table_of<chain>[i][Of::sense] * q + chain.links[i].theta_deg * (std::numbers::pi / 180.0)};
+}
+
+/// The two turns of the wrist for the first three joints.
+template <const auto& chain>
+void add_wrists(Bounded<Joints<6>, 8>& found, const Joints<6>& near, const Eigen::Matrix3d& rotation,
+                const std::array<Bend, 3>& arm) noexcept TAPPET_REALTIME {
+    using sparse::Turn;
+    constexpr const auto& table = table_of<chain>;
+    constexpr double s1 = table[0][Of::sa], c2 = table[1][Of::ca], s3 = table[2][Of::sa];
+    constexpr double s4 = table[3][Of::sa], s5 = table[4][Of::sa];
+    // The wrist's turn, by its first and its third column.
+    const auto into_arm = [&](const auto& v) {
+        const sparse::Triple column{v(0), v(1), v(2)};
+        const auto upper = back_about_x(Turn{0.0, s1}, back_about_z(arm[0].turn, column));
+        const auto fore = back_about_x(Turn{c2, 0.0}, back_about_z(arm[1].turn, upper));
+        return back_about_x(Turn{0.0, s3}, back_about_z(arm[2].turn, fore));
+    };
+    const auto first = into_arm(rotation.col(0));
+    const auto third = into_arm(rotation.col(2));
+    const double bent = std::sqrt(third.x * third.x + third.y * third.y);
+    const Bend four = bent < 1e-10 ? as_it_is<chain>(near, 3) : Bend{s5 * third.x, s5 * third.y};
+    const Bend five{-s4 * s5 * third.z, bent};
+    // The last turn is what is left: it makes good what is unsure about the fourth near a stretched
+    // wrist.
+    const auto left = back_about_x(
+        Turn{0.0, s5}, back_about_z(five.turn, back_about_x(Turn{0.0, s4}, back_about_z(four.turn, first))));
+    const Bend six{left.x, left.y};
+    Joints<6> q;
+    q << joint_of<chain>(0, arm[0].angle()), joint_of<chain>(1, arm[1].angle()),
+        joint_of<chain>(2, arm[2].angle()), joint_of<chain>(3, four.angle()),
+        joint_of<chain>(4, five.angle()), joint_of<chain>(5, six.angle());
+    if (!q.allFinite()) return; // the target's rotation is none
+    static_cast<void>(found.push(q));
+    // The wrist turned over is the same: half a turn before its bend, which goes the other way, and
+    // after.
+    q[3] += std::numbers::pi;
+    q[4] = joint_of<chain>(4, -five.angle());
+    q[5] += std::numbers::pi;
+    static_cast<void>(found.push(q));
+}
+
+} // namespace detail
+
 /// All joints that lead the end of a chain to `target`: shoulder in front or behind, elbow up or down, wrist
 /// turned over or not; none when it is out of reach. Where a turn is free, with the wrist stretched or above
 /// the first axis, it is that of `near`. Angles as they come; nearest(..) brings them to where the arm is.
@@ -70,8 +124,6 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
     constexpr double a1 = table[0][Of::a], d1 = table[0][Of::d], a2 = table[1][Of::a];
     constexpr double a3 = table[2][Of::a], d4 = table[3][Of::d];
     constexpr double offset = table[1][Of::d] + c2 * table[2][Of::d]; // of the arm's plane from axis 1
-    constexpr double s4 = table[3][Of::sa];
-    constexpr double s5 = table[4][Of::sa];
     require_numbers<6>(near);
     require_numbers<3>(target.position);
     require_numbers<9>(target.rotation.reshaped());
@@ -85,14 +137,6 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
     const double wy = wrist.position.y();
 
     using detail::Bend;
-    using sparse::Turn;
-    const auto joint_of = [](std::size_t i, double theta) {
-        return table[i][Of::sense] * (theta - chain.links[i].theta_deg * (std::numbers::pi / 180.0));
-    };
-    const auto as_it_is = [&](std::size_t i) { // theta of `near`
-        const double q = near[static_cast<int>(i)];
-        return Bend{table[i][Of::sense] * q + chain.links[i].theta_deg * (std::numbers::pi / 180.0)};
-    };
 
     Bounded<Joints<6>, 8> found;
     const double apart = wx * wx + wy * wy; // squared, from axis 1
@@ -103,7 +147,7 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
     const double forearm = std::sqrt(a3 * a3 + d4 * d4);
     for (const double across : {reach, -reach}) {
         const Bend one = apart < 1e-20 * scale
-                             ? as_it_is(0)
+                             ? detail::as_it_is<chain>(near, 0)
                              : Bend{wx * across - wy * s1 * offset, wy * across + wx * s1 * offset};
         const double x = across - a1;
         const double y = s1 * (wrist.position.z() - d1);
@@ -116,37 +160,9 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
             const double ahead = a2 + forearm * cosine;
             const double aside = c2 * forearm * sine;
             const Bend two = x * x + y * y < 1e-20 * scale
-                                 ? as_it_is(1)
+                                 ? detail::as_it_is<chain>(near, 1)
                                  : Bend{x * ahead + y * aside, y * ahead - x * aside};
-            // The wrist's turn, by its first and its third column.
-            const auto into_arm = [&](const auto& v) {
-                const sparse::Triple column{v(0), v(1), v(2)};
-                const auto upper = back_about_x(Turn{0.0, s1}, back_about_z(one.turn, column));
-                const auto fore = back_about_x(Turn{c2, 0.0}, back_about_z(two.turn, upper));
-                return back_about_x(Turn{0.0, s3}, back_about_z(three.turn, fore));
-            };
-            const auto first = into_arm(wrist.rotation.col(0));
-            const auto third = into_arm(wrist.rotation.col(2));
-            const double bent = std::sqrt(third.x * third.x + third.y * third.y);
-            const Bend four = bent < 1e-10 ? as_it_is(3) : Bend{s5 * third.x, s5 * third.y};
-            const Bend five{-s4 * s5 * third.z, bent};
-            // The last turn is what is left: it makes good what is unsure about the fourth near a stretched
-            // wrist.
-            const auto left = back_about_x(
-                Turn{0.0, s5},
-                back_about_z(five.turn, back_about_x(Turn{0.0, s4}, back_about_z(four.turn, first))));
-            const Bend six{left.x, left.y};
-            Joints<6> q;
-            q << joint_of(0, one.angle()), joint_of(1, two.angle()), joint_of(2, three.angle()),
-                joint_of(3, four.angle()), joint_of(4, five.angle()), joint_of(5, six.angle());
-            if (!q.allFinite()) continue; // the target's rotation is none
-            static_cast<void>(found.push(q));
-            // The wrist turned over is the same: half a turn before its bend, which goes the other way, and
-            // after.
-            q[3] += std::numbers::pi;
-            q[4] = joint_of(4, -five.angle());
-            q[5] += std::numbers::pi;
-            static_cast<void>(found.push(q));
+            detail::add_wrists<chain>(found, near, wrist.rotation, {one, two, three});
         }
     }
     return found;

@@ -148,75 +148,87 @@ constexpr void Expressions::check_call(const Token& at, std::uint16_t component,
                   "\" may block, and a script's statements do not; make it a command"});
 }
 
+constexpr Operand Expressions::read_method(const Token& name, std::uint16_t component, std::uint16_t number) {
+    const Facet& facet = facet_of(component, number);
+    check_call(name, component, facet);
+    if (ok() && looks_only_ && !facet.method->is_const)
+        fail(name, {"\"", quoted(facet.name), "\" may change \"", reach_.components[component].name,
+                    "\", and an expression changes nothing; write \"do\" before it, or make the method "
+                    "const"});
+    const FacetAction action = call_method(facet);
+    if (ok() && action.type == nullptr)
+        fail(name, {"\"", quoted(facet.name), "\" returns nothing; write \"do\" and no value"});
+    if (!ok()) return {};
+    const DataOffset packed =
+        facet.method->argument_bytes != 0 ? scratch(facet.method->argument_bytes) : no_data;
+    parse_arguments(facet.type->elements, packed);
+    if (!ok()) return {};
+    const DataOffset to = scratch(action.type->size);
+    act(action, component, number, to, packed);
+    return made(action.type, to);
+}
+
+constexpr Operand Expressions::read_value(const Token& name, std::uint16_t component, std::uint16_t number) {
+    const Facet& facet = facet_of(component, number);
+    check_near(name, component, to_text(facet.kind));
+    if (ok() && is(Sign::dot) && facet.kind != FacetKind::property) {
+        const Place before = here();
+        advance();
+        const std::string_view part = token_.text;
+        const FacetAction asked = part == "valid"   ? input_valid(facet)
+                                  : part == "fresh" ? input_fresh(facet)
+                                  : part == "age"   ? port_age(facet)
+                                                    : FacetAction{};
+        if (part == "value") {
+            advance();
+        } else if (asked) {
+            advance();
+            return read_by(asked, component, number);
+        } else {
+            go_to(before);
+        }
+    }
+    return read_by(is_line_ ? find_look(facet) : find_read(facet), component, number);
+}
+
+constexpr Operand Expressions::read_buffer(const Token& name, std::uint16_t component, std::uint16_t number) {
+    const Facet& facet = facet_of(component, number);
+    check_near(name, component, "a buffer");
+    if (!need(Sign::dot, "\".empty\" or \".pop()\" of the buffer")) return {};
+    const Token part = need_word("empty or pop");
+    if (part.text == "empty") return read_by(buffer_empty(facet), component, number);
+    if (part.text != "pop")
+        fail(part, {"a buffered input has empty and pop(), not \"", quoted(part.text), "\""});
+    if (is_line_) fail_foreign(part, component, facet, "reads it");
+    need(Sign::open_round, "\"(\"");
+    need(Sign::close_round, "\")\"");
+    return read_by(pop_buffer(facet), component, number);
+}
+
+constexpr Operand Expressions::push_value(const Token& name, std::uint16_t component, std::uint16_t number) {
+    const Facet& facet = facet_of(component, number);
+    check_near(name, component, "a buffer");
+    if (is_line_) fail_foreign(name, component, facet, "writes it");
+    need(Sign::dot, "\".push(value)\" of the buffer");
+    const Token part = need_word("push");
+    if (ok() && part.text != "push")
+        fail(part, {"a buffered output has push(value), not \"", quoted(part.text), "\""});
+    if (!ok()) return {};
+    const DataOffset value = scratch(facet.type->size), to = scratch(1);
+    parse_arguments({&facet.type, 1}, value);
+    act(push_buffer(facet), component, number, to, value);
+    return made(script_bool, to);
+}
+
 constexpr Operand Expressions::read_facet(const Token& name, std::uint16_t component, std::uint16_t number) {
     const Facet& facet = facet_of(component, number);
     switch (facet.kind) {
-    case FacetKind::method: {
-        check_call(name, component, facet);
-        if (ok() && looks_only_ && !facet.method->is_const)
-            fail(name, {"\"", quoted(facet.name), "\" may change \"", reach_.components[component].name,
-                        "\", and an expression changes nothing; write \"do\" before it, or make the method "
-                        "const"});
-        const FacetAction action = call_method(facet);
-        if (ok() && action.type == nullptr)
-            fail(name, {"\"", quoted(facet.name), "\" returns nothing; write \"do\" and no value"});
-        if (!ok()) return {};
-        const DataOffset packed =
-            facet.method->argument_bytes != 0 ? scratch(facet.method->argument_bytes) : no_data;
-        parse_arguments(facet.type->elements, packed);
-        if (!ok()) return {};
-        const DataOffset to = scratch(action.type->size);
-        act(action, component, number, to, packed);
-        return made(action.type, to);
-    }
+    case FacetKind::method: return read_method(name, component, number);
     case FacetKind::property:
     case FacetKind::output:
-    case FacetKind::input: {
-        check_near(name, component, to_text(facet.kind));
-        if (ok() && is(Sign::dot) && facet.kind != FacetKind::property) {
-            const Place before = here();
-            advance();
-            const std::string_view part = token_.text;
-            const FacetAction asked = part == "valid"   ? input_valid(facet)
-                                      : part == "fresh" ? input_fresh(facet)
-                                      : part == "age"   ? port_age(facet)
-                                                        : FacetAction{};
-            if (part == "value") {
-                advance();
-            } else if (asked) {
-                advance();
-                return read_by(asked, component, number);
-            } else {
-                go_to(before);
-            }
-        }
-        return read_by(is_line_ ? find_look(facet) : find_read(facet), component, number);
-    }
-    case FacetKind::buffer_input: {
-        check_near(name, component, "a buffer");
-        if (!need(Sign::dot, "\".empty\" or \".pop()\" of the buffer")) return {};
-        const Token part = need_word("empty or pop");
-        if (part.text == "empty") return read_by(buffer_empty(facet), component, number);
-        if (part.text != "pop")
-            fail(part, {"a buffered input has empty and pop(), not \"", quoted(part.text), "\""});
-        if (is_line_) fail_foreign(part, component, facet, "reads it");
-        need(Sign::open_round, "\"(\"");
-        need(Sign::close_round, "\")\"");
-        return read_by(pop_buffer(facet), component, number);
-    }
-    case FacetKind::buffer_output: {
-        check_near(name, component, "a buffer");
-        if (is_line_) fail_foreign(name, component, facet, "writes it");
-        need(Sign::dot, "\".push(value)\" of the buffer");
-        const Token part = need_word("push");
-        if (ok() && part.text != "push")
-            fail(part, {"a buffered output has push(value), not \"", quoted(part.text), "\""});
-        if (!ok()) return {};
-        const DataOffset value = scratch(facet.type->size), to = scratch(1);
-        parse_arguments({&facet.type, 1}, value);
-        act(push_buffer(facet), component, number, to, value);
-        return made(script_bool, to);
-    }
+    case FacetKind::input: return read_value(name, component, number);
+    case FacetKind::buffer_input: return read_buffer(name, component, number);
+    case FacetKind::buffer_output: return push_value(name, component, number);
     case FacetKind::command:
         fail(name,
              {"\"", quoted(facet.name), "\" is a command, which takes time; write \"do\" and no value"});

@@ -371,6 +371,10 @@ protected:
 
 private:
     constexpr Operand read_facet(const Token& name, std::uint16_t component, std::uint16_t number);
+    constexpr Operand read_method(const Token& name, std::uint16_t component, std::uint16_t number);
+    constexpr Operand read_value(const Token& name, std::uint16_t component, std::uint16_t number);
+    constexpr Operand read_buffer(const Token& name, std::uint16_t component, std::uint16_t number);
+    constexpr Operand push_value(const Token& name, std::uint16_t component, std::uint16_t number);
     constexpr Operand read_by(const FacetAction& action, std::uint16_t component, std::uint16_t facet);
     /// What a parent asks of its child machine; in compiler_children.hpp, as what it does with one.
     constexpr Operand parse_machine_value(std::uint16_t child);

@@ -64,32 +64,36 @@ protected:
             advance();
             parse_return(at);
             break;
-        case Sign::k_yield: {
+        case Sign::k_yield:
             advance();
-            begin_action();
-            const NodeIndex node = end_action(at);
-            if (ok()) nodes_[node].yields = true, waits_.put(node, true);
-            may_wait_ = true;
-            pending_ = add_arc(node);
+            parse_yield(at);
             break;
-        }
         case Sign::k_break:
-        case Sign::k_continue: {
+        case Sign::k_continue:
             advance();
-            if (loop_ == nullptr) {
-                fail(at, {"found \"", at.text, "\" outside of a loop"});
-                break;
-            }
-            const Chain arc = pass(at);
-            join(at.sign == Sign::k_break ? loop_->breaks : loop_->continues, arc);
+            parse_jump(at);
             break;
-        }
         default:
             fail_expected("a statement: do, set, var, if, while, for, wait, yield, return, try or a block");
             break;
         }
         static_cast<void>(take(Sign::semicolon));
         leave();
+    }
+    constexpr void parse_yield(const Token& at) {
+        begin_action();
+        const NodeIndex node = end_action(at);
+        if (ok()) nodes_[node].yields = true, waits_.put(node, true);
+        may_wait_ = true;
+        pending_ = add_arc(node);
+    }
+    constexpr void parse_jump(const Token& at) {
+        if (loop_ == nullptr) {
+            fail(at, {"found \"", at.text, "\" outside of a loop"});
+            return;
+        }
+        const Chain arc = pass(at);
+        join(at.sign == Sign::k_break ? loop_->breaks : loop_->continues, arc);
     }
     constexpr void parse_block() {
         if (!need(Sign::open_brace, "\"{\"")) return;

@@ -203,6 +203,169 @@ constexpr Sentence check_clock_error(const SystemView& s, std::span<const WireFr
         ", or promise less"};
 }
 
+template <std::size_t N, std::size_t X>
+constexpr Sentence resolve_crossings(const SystemView& s, SystemPlan<N, X>& plan) {
+    for (std::size_t x = 0; x < X; ++x) {
+        const Crossing& row = s.crossings[x];
+        if (Sentence fault = resolve_crossing(s, row, plan.index[x]); !fault.empty()) return fault;
+        Digest name;
+        add_text(name, row.kind == CrossingKind::presence ? row.node : row.from());
+        add_text(name, row.to());
+        plan.index[x].name = folded(name);
+        for (std::size_t other = 0; other < x; ++other)
+            if (row.kind != CrossingKind::presence && plan.index[other].name == plan.index[x].name)
+                return of_crossing(row, " is told by the same number as \"", s.crossings[other].from(),
+                                   "\" -> \"", s.crossings[other].to(),
+                                   "\", or stands twice; remove it, or rename a node");
+    }
+    return {};
+}
+
+/// What crosses the wire.
+template <std::size_t N, std::size_t X>
+constexpr Sentence add_frames(const SystemView& s, SystemPlan<N, X>& plan) {
+    for (std::size_t n = 0; n < N; ++n)
+        add_frame(plan, {.node = n,
+                         .kind = WireFrameKind::beat,
+                         .apart = s.wire.beats,
+                         .deadline = s.wire.beats,
+                         .bits = plan.shape.beat_bits()});
+    if (s.wire.has_clock()) add_clock(s, plan);
+    if (Sentence fault = pack_data(s, plan); !fault.empty()) return fault;
+    for (std::size_t x = 0; x < X; ++x) {
+        const CrossingKind kind = s.crossings[x].kind;
+        if (kind != CrossingKind::event && kind != CrossingKind::command) continue;
+        if (Sentence fault = add_channels(s, plan, x); !fault.empty()) return fault;
+    }
+    if (plan.frames.size() > most_traffic_rows)
+        return Sentence{"wire \"",
+                        s.wire.name,
+                        "\" has ",
+                        plan.frames.size(),
+                        " frames, more than ",
+                        most_traffic_rows,
+                        " that are analysed: tell values of one node with one every(...), events seldom as "
+                        "values, or make two systems"};
+    return {};
+}
+
+/// The first frame that comes too late, in the order in which they win the wire; as many as there are: none.
+template <std::size_t N, std::size_t X>
+constexpr std::size_t number_frames(const SystemView& s, SystemPlan<N, X>& plan, WireAnalysis analysis) {
+    for (std::size_t f = 0; f < plan.frames.size(); ++f) {
+        const Digest key = key_of(s, plan, f);
+        plan.frames[f].data_id = folded(key);
+        plan.frames[f].id = fixed_identifier(plan.frames[f], key.value());
+    }
+    const std::size_t bad = assign(s, plan, analysis);
+    for (std::size_t f = 0; f < plan.frames.size() && !s.wire.fixed_identifiers; ++f) {
+        const bool is_second = plan.frames[f].kind == WireFrameKind::follow_up;
+        plan.frames[f].id = s.wire.first_identifier + static_cast<std::uint32_t>(f - (is_second ? 1 : 0));
+    }
+    return bad;
+}
+
+/// By what a row is told from another version's.
+template <std::size_t N, std::size_t X>
+constexpr void name_layouts(const SystemView& s, SystemPlan<N, X>& plan) {
+    for (std::size_t x = 0; x < X; ++x) {
+        const Crossing& row = s.crossings[x];
+        const CrossingPlace& place = plan.place[x];
+        CrossingIndex& index = plan.index[x];
+        Digest layout;
+        layout.add(static_cast<std::uint64_t>(row.kind));
+        add_value(layout, index.value);
+        add_value(layout, index.result);
+        if (index.from.facet != nullptr) add_text(layout, index.from.facet->unit);
+        if (index.from.facet != nullptr && index.value.kind == ValueKind::opaque)
+            add_type(layout, index.from.facet->type);
+        if (row.kind == CrossingKind::command) add_type(layout, index.to.facet->command->results);
+        if (row.with_time) {
+            const CommonClock& clock = s.wire.clock;
+            add_text(layout, clock.node);
+            for (const Duration each : {clock.every, clock.within, clock.stamps_late})
+                layout.add(static_cast<std::uint64_t>(each.count()));
+            layout.add(std::bit_cast<std::uint64_t>(clock.drift));
+        }
+        layout.add(std::uint64_t{place.at});
+        for (const std::size_t f : {place.frame, place.answer, place.reply, place.received})
+            if (f != nowhere) layout.add(std::uint64_t{plan.frames[f].id});
+        layout.add(static_cast<std::uint64_t>(row.every.count()));
+        layout.add(static_cast<std::uint64_t>(row.within.count()));
+        index.layout = folded(layout);
+    }
+}
+
+template <std::size_t N, std::size_t X>
+constexpr Sentence check_frames(const SystemView& s, const SystemPlan<N, X>& plan, bool in_time) {
+    for (const WireFrame& frame : plan.frames) {
+        if (!in_time || frame.kind != WireFrameKind::beat) continue;
+        const Duration needed = 2 * s.wire.beats + frame.worst + s.wire.service.deadline;
+        if (s.wire.silent_after < needed)
+            return Sentence{"wire \"", s.wire.name,
+                            "\": one lost beat must not make a node silent, and with that the next "
+                            "one may come after ",
+                            needed.count() / 1000, " us; say silent_after(...) of more than that"};
+    }
+    if (!s.wire.fixed_identifiers && s.wire.first_identifier + plan.frames.size() > 0x800)
+        return Sentence{"wire \"",
+                        s.wire.name,
+                        "\": ",
+                        plan.frames.size(),
+                        " frames from identifier ",
+                        s.wire.first_identifier,
+                        " on go beyond the last of 11 bits; begin lower"};
+    for (std::size_t f = 1; f < plan.frames.size(); ++f)
+        if (plan.frames[f].id == plan.frames[f - 1].id &&
+            !(plan.frames[f].is_of_clock() && plan.frames[f - 1].is_of_clock()))
+            return Sentence{"wire \"",
+                            s.wire.name,
+                            "\": two frames of node \"",
+                            s.nodes[plan.frames[f].node].name,
+                            "\" and node \"",
+                            s.nodes[plan.frames[f - 1].node].name,
+                            "\" would have the same fixed identifier; rename one of the nodes"};
+    return {};
+}
+
+template <std::size_t N, std::size_t X>
+constexpr Sentence late_fault(const SystemView& s, const SystemPlan<N, X>& plan, std::size_t bad) {
+    const WireFrame& frame = plan.frames[bad];
+    const Sentence what = frame.crossing == nowhere ? Sentence{frame.is_of_clock() ? "the clock" : "the beat",
+                                                               " of node \"", s.nodes[frame.node].name, "\""}
+                                                    : of_crossing(s.crossings[frame.crossing]);
+    std::int64_t load_ppm = 0;
+    for (const WireFrame& each : plan.frames)
+        load_ppm += each.on_wire.count() * 1'000'000 / each.apart.count();
+    constexpr std::string_view cure = "; tell less, or less often, run the wire faster, or give it more time";
+    if (load_ppm >= 1'000'000)
+        return Sentence{what,
+                        ": a frame of it may never come through wire \"",
+                        s.wire.name,
+                        "\", which all frames together load by ",
+                        load_ppm / 10'000,
+                        " % at ",
+                        s.wire.rate.bits_per_second,
+                        " bit/s; tell less, or less often, or run the wire faster"};
+    if (frame.worst == Duration::max())
+        return Sentence{what,
+                        ": a frame of it may still wait for wire \"",
+                        s.wire.name,
+                        "\" when the next one follows, ",
+                        frame.apart.count() / 1000,
+                        " us later",
+                        cure};
+    return Sentence{what,
+                    ": a frame of it may take ",
+                    frame.worst.count() / 1000,
+                    " us on wire \"",
+                    s.wire.name,
+                    "\" and has ",
+                    frame.deadline.count() / 1000,
+                    " us",
+                    cure};
+}
+
 } // namespace systems
 
 /// Of a system.
@@ -213,127 +376,18 @@ constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysi
     plan.shape = shape_of(s.wire);
     const auto refuse = [&](const Sentence& fault) { plan.fault = Sentence{s.name, ": ", fault}; };
     if (Sentence fault = systems::check_nodes(s); !fault.empty()) return refuse(fault), plan;
-    for (std::size_t x = 0; x < X; ++x) {
-        const Crossing& row = s.crossings[x];
-        if (Sentence fault = systems::resolve_crossing(s, row, plan.index[x]); !fault.empty())
-            return refuse(fault), plan;
-        Digest name;
-        systems::add_text(name, row.kind == CrossingKind::presence ? row.node : row.from());
-        systems::add_text(name, row.to());
-        plan.index[x].name = systems::folded(name);
-        for (std::size_t other = 0; other < x; ++other)
-            if (row.kind != CrossingKind::presence && plan.index[other].name == plan.index[x].name)
-                return refuse(systems::of_crossing(
-                           row, " is told by the same number as \"", s.crossings[other].from(), "\" -> \"",
-                           s.crossings[other].to(), "\", or stands twice; remove it, or rename a node")),
-                       plan;
-    }
-    for (std::size_t n = 0; n < N; ++n)
-        systems::add_frame(plan, {.node = n,
-                                  .kind = WireFrameKind::beat,
-                                  .apart = s.wire.beats,
-                                  .deadline = s.wire.beats,
-                                  .bits = plan.shape.beat_bits()});
-    if (s.wire.has_clock()) systems::add_clock(s, plan);
-    if (Sentence fault = systems::pack_data(s, plan); !fault.empty()) return refuse(fault), plan;
-    for (std::size_t x = 0; x < X; ++x) {
-        const CrossingKind kind = s.crossings[x].kind;
-        if (kind != CrossingKind::event && kind != CrossingKind::command) continue;
-        if (Sentence fault = systems::add_channels(s, plan, x); !fault.empty()) return refuse(fault), plan;
-    }
-    if (plan.frames.size() > most_traffic_rows)
-        return refuse(Sentence{
-                   "wire \"", s.wire.name, "\" has ", plan.frames.size(), " frames, more than ",
-                   most_traffic_rows,
-                   " that are analysed: tell values of one node with one every(...), events seldom as "
-                   "values, or make two systems"}),
-               plan;
-    for (std::size_t f = 0; f < plan.frames.size(); ++f) {
-        const Digest key = systems::key_of(s, plan, f);
-        plan.frames[f].data_id = systems::folded(key);
-        plan.frames[f].id = systems::fixed_identifier(plan.frames[f], key.value());
-    }
-    const std::size_t bad = systems::assign(s, plan, analysis);
-    for (std::size_t f = 0; f < plan.frames.size() && !s.wire.fixed_identifiers; ++f) {
-        const bool is_second = plan.frames[f].kind == WireFrameKind::follow_up;
-        plan.frames[f].id = s.wire.first_identifier + static_cast<std::uint32_t>(f - (is_second ? 1 : 0));
-    }
-    for (std::size_t x = 0; x < X; ++x) {
-        const Crossing& row = s.crossings[x];
-        const CrossingPlace& place = plan.place[x];
-        CrossingIndex& index = plan.index[x];
-        Digest layout;
-        layout.add(static_cast<std::uint64_t>(row.kind));
-        systems::add_value(layout, index.value);
-        systems::add_value(layout, index.result);
-        if (index.from.facet != nullptr) systems::add_text(layout, index.from.facet->unit);
-        if (index.from.facet != nullptr && index.value.kind == ValueKind::opaque)
-            systems::add_type(layout, index.from.facet->type);
-        if (row.kind == CrossingKind::command) systems::add_type(layout, index.to.facet->command->results);
-        if (row.with_time) {
-            const CommonClock& clock = s.wire.clock;
-            systems::add_text(layout, clock.node);
-            for (const Duration each : {clock.every, clock.within, clock.stamps_late})
-                layout.add(static_cast<std::uint64_t>(each.count()));
-            layout.add(std::bit_cast<std::uint64_t>(clock.drift));
-        }
-        layout.add(std::uint64_t{place.at});
-        for (const std::size_t f : {place.frame, place.answer, place.reply, place.received})
-            if (f != nowhere) layout.add(std::uint64_t{plan.frames[f].id});
-        layout.add(static_cast<std::uint64_t>(row.every.count()));
-        layout.add(static_cast<std::uint64_t>(row.within.count()));
-        index.layout = systems::folded(layout);
-    }
-    for (const WireFrame& frame : plan.frames) {
-        if (bad < plan.frames.size() || frame.kind != WireFrameKind::beat) continue;
-        const Duration needed = 2 * s.wire.beats + frame.worst + s.wire.service.deadline;
-        if (s.wire.silent_after < needed)
-            return refuse(Sentence{"wire \"", s.wire.name,
-                                   "\": one lost beat must not make a node silent, and with that the next "
-                                   "one may come after ",
-                                   needed.count() / 1000, " us; say silent_after(...) of more than that"}),
-                   plan;
-    }
-    if (!s.wire.fixed_identifiers && s.wire.first_identifier + plan.frames.size() > 0x800)
-        return refuse(Sentence{"wire \"", s.wire.name, "\": ", plan.frames.size(), " frames from identifier ",
-                               s.wire.first_identifier, " on go beyond the last of 11 bits; begin lower"}),
-               plan;
-    for (std::size_t f = 1; f < plan.frames.size(); ++f)
-        if (plan.frames[f].id == plan.frames[f - 1].id &&
-            !(plan.frames[f].is_of_clock() && plan.frames[f - 1].is_of_clock()))
-            return refuse(Sentence{"wire \"", s.wire.name, "\": two frames of node \"",
-                                   s.nodes[plan.frames[f].node].name, "\" and node \"",
-                                   s.nodes[plan.frames[f - 1].node].name,
-                                   "\" would have the same fixed identifier; rename one of the nodes"}),
-                   plan;
-    if (bad == plan.frames.size() && s.wire.has_clock())
+    if (Sentence fault = systems::resolve_crossings(s, plan); !fault.empty()) return refuse(fault), plan;
+    if (Sentence fault = systems::add_frames(s, plan); !fault.empty()) return refuse(fault), plan;
+    const std::size_t bad = systems::number_frames(s, plan, analysis);
+    const bool in_time = bad == plan.frames.size();
+    systems::name_layouts(s, plan);
+    if (Sentence fault = systems::check_frames(s, plan, in_time); !fault.empty()) return refuse(fault), plan;
+    if (!in_time) return refuse(systems::late_fault(s, plan, bad)), plan;
+    if (s.wire.has_clock())
         if (Sentence fault = systems::check_clock_error(s, {plan.frames.items.data(), plan.frames.size()},
                                                         plan.clock_error);
             !fault.empty())
             return refuse(fault), plan;
-    if (bad < plan.frames.size()) {
-        const WireFrame& frame = plan.frames[bad];
-        const Sentence what = frame.crossing == nowhere
-                                  ? Sentence{frame.is_of_clock() ? "the clock" : "the beat", " of node \"",
-                                             s.nodes[frame.node].name, "\""}
-                                  : systems::of_crossing(s.crossings[frame.crossing]);
-        std::int64_t load_ppm = 0;
-        for (const WireFrame& each : plan.frames)
-            load_ppm += each.on_wire.count() * 1'000'000 / each.apart.count();
-        constexpr std::string_view cure =
-            "; tell less, or less often, run the wire faster, or give it more time";
-        if (load_ppm >= 1'000'000)
-            refuse(Sentence{what, ": a frame of it may never come through wire \"", s.wire.name,
-                            "\", which all frames together load by ", load_ppm / 10'000, " % at ",
-                            s.wire.rate.bits_per_second,
-                            " bit/s; tell less, or less often, or run the wire faster"});
-        else if (frame.worst == Duration::max())
-            refuse(Sentence{what, ": a frame of it may still wait for wire \"", s.wire.name,
-                            "\" when the next one follows, ", frame.apart.count() / 1000, " us later", cure});
-        else
-            refuse(Sentence{what, ": a frame of it may take ", frame.worst.count() / 1000, " us on wire \"",
-                            s.wire.name, "\" and has ", frame.deadline.count() / 1000, " us", cure});
-    }
     return plan;
 }
 

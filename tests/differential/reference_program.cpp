@@ -128,6 +128,52 @@ ProgramRun::Done ProgramRun::set_part(Value& variable, const std::string& name, 
     return turns ? Done::next : Done::failed;
 }
 
+ProgramRun::Done ProgramRun::assign(Scope& scope, const Statement& statement) {
+    ++covered()["set"];
+    const std::string variable_name = statement.text.substr(0, statement.text.find('.'));
+    Variables* const holder = scope.holder(variable_name);
+    std::optional<std::int64_t> index;
+    if (!statement.indices.empty()) {
+        const std::optional<Value> at = evaluate(scope, statement.indices[0]);
+        if (!at) return Done::failed;
+        index = std::get<std::int64_t>(*at);
+    }
+    std::optional<Value> value = evaluate(scope, statement.expressions[0]);
+    if (!value) return Done::failed;
+    if (holder == nullptr) return scope.world->write(statement.text, *value) ? Done::next : Done::failed;
+    Value& variable = holder->values[variable_name];
+    if (variable_name != statement.text) return set_part(variable, statement.text, *value);
+    if (index) {
+        auto& vector = std::get<Vector>(variable);
+        if (*index < 0 || *index >= static_cast<std::int64_t>(vector.size())) return Done::failed;
+        vector[static_cast<std::size_t>(*index)] = std::get<double>(*convert(*value, "double"));
+        return Done::next;
+    }
+    value = convert(*value, holder->types[variable_name]);
+    if (!value) return Done::failed;
+    variable = *value;
+    return Done::next;
+}
+
+ProgramRun::Done ProgramRun::wait(Scope& scope, const Statement& statement, std::int64_t now) {
+    if (acted_) return now - entered_at_ >= time_limit_ ? Done::next : Done::wait;
+    const std::optional<Value> value = evaluate(scope, statement.expressions[0]);
+    if (!value) return Done::failed;
+    if (const auto* time = std::get_if<Span>(&*value)) {
+        ++covered()["wait for time"];
+        acted_ = true; // how long is reckoned once
+        time_limit_ = time->ns;
+        return now - entered_at_ >= time->ns ? Done::next : Done::wait;
+    }
+    ++covered()["wait for a condition"];
+    if (std::get<bool>(*value)) return Done::next;
+    if (!statement.has_timeout) return Done::wait;
+    const std::optional<Value> limit = evaluate(scope, statement.timeout);
+    if (now - entered_at_ < std::get<Span>(*limit).ns) return Done::wait;
+    ++covered()["time-out"];
+    return Done::failed;
+}
+
 ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, std::int64_t now) {
     const auto value_of = [&](std::size_t i) { return evaluate(scope, statement.expressions[i]); };
     const auto truth = [](const std::optional<Value>& value) { return std::get<bool>(*value); };
@@ -143,32 +189,7 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
         block.declare(statement.text, statement.type, *value);
         return Done::next;
     }
-    case Kind::assign: {
-        ++covered()["set"];
-        const std::string variable_name = statement.text.substr(0, statement.text.find('.'));
-        Variables* const holder = scope.holder(variable_name);
-        std::optional<std::int64_t> index;
-        if (!statement.indices.empty()) {
-            const std::optional<Value> at = evaluate(scope, statement.indices[0]);
-            if (!at) return Done::failed;
-            index = std::get<std::int64_t>(*at);
-        }
-        std::optional<Value> value = value_of(0);
-        if (!value) return Done::failed;
-        if (holder == nullptr) return scope.world->write(statement.text, *value) ? Done::next : Done::failed;
-        Value& variable = holder->values[variable_name];
-        if (variable_name != statement.text) return set_part(variable, statement.text, *value);
-        if (index) {
-            auto& vector = std::get<Vector>(variable);
-            if (*index < 0 || *index >= static_cast<std::int64_t>(vector.size())) return Done::failed;
-            vector[static_cast<std::size_t>(*index)] = std::get<double>(*convert(*value, "double"));
-            return Done::next;
-        }
-        value = convert(*value, holder->types[variable_name]);
-        if (!value) return Done::failed;
-        variable = *value;
-        return Done::next;
-    }
+    case Kind::assign: return assign(scope, statement);
     case Kind::perform: return perform(scope, statement, now);
     case Kind::branch: {
         ++covered()["if"];
@@ -211,24 +232,7 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
         if (std::exchange(acted_, true)) return Done::next;
         ++covered()["yield"];
         return Done::wait;
-    case Kind::wait: {
-        if (acted_) return now - entered_at_ >= time_limit_ ? Done::next : Done::wait;
-        const std::optional<Value> value = value_of(0);
-        if (!value) return Done::failed;
-        if (const auto* time = std::get_if<Span>(&*value)) {
-            ++covered()["wait for time"];
-            acted_ = true; // how long is reckoned once
-            time_limit_ = time->ns;
-            return now - entered_at_ >= time->ns ? Done::next : Done::wait;
-        }
-        ++covered()["wait for a condition"];
-        if (truth(value)) return Done::next;
-        if (!statement.has_timeout) return Done::wait;
-        const std::optional<Value> limit = evaluate(scope, statement.timeout);
-        if (now - entered_at_ < std::get<Span>(*limit).ns) return Done::wait;
-        ++covered()["time-out"];
-        return Done::failed;
-    }
+    case Kind::wait: return wait(scope, statement, now);
     case Kind::guarded:
         ++covered()["try"];
         open_.push_back({.block = &statement.first, .owner = &statement});
@@ -237,29 +241,20 @@ ProgramRun::Done ProgramRun::execute(Scope& scope, const Statement& statement, s
     return Done::failed;
 }
 
-ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, std::int64_t now) {
+bool ProgramRun::take_arguments(Scope& scope, const Expression& call) {
+    given_.clear();
+    for (const Expression& part : call.parts) {
+        const std::optional<Value> value = evaluate(scope, part);
+        if (!value) return false;
+        given_.push_back(*value);
+    }
+    return true;
+}
+
+ProgramRun::Done ProgramRun::perform_command(Scope& scope, const Statement& statement, std::int64_t now) {
     const Expression& call = statement.expressions[0];
     std::vector<Value>& given = given_; // a command at work keeps its own
-    const auto arguments = [&] {
-        given.clear();
-        for (const Expression& part : call.parts) {
-            const std::optional<Value> value = evaluate(scope, part);
-            if (!value) return false;
-            given.push_back(*value);
-        }
-        return true;
-    };
-    if (const Function* function = scope.function(call.text)) {
-        ++covered()["function"];
-        if (!arguments()) return Done::failed;
-        Open call_of{.block = &function->body, .is_call = true, .function = function};
-        for (std::size_t i = 0; i < given.size(); ++i) {
-            const Variable& parameter = function->parameters[i];
-            call_of.own.declare(parameter.name, parameter.type, *convert(given[i], parameter.type));
-        }
-        open_.push_back(call_of);
-        return Done::elsewhere;
-    }
+    const auto arguments = [&] { return take_arguments(scope, call); };
     const auto late = [&]() -> std::optional<bool> {
         if (!statement.has_timeout) return false;
         const std::optional<Value> limit = evaluate(scope, statement.timeout);
@@ -274,8 +269,7 @@ ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, s
         }
         return Done::wait;
     };
-    switch (scope.world->kind_of(call.text)) {
-    case World::Kind::command:
+    if (scope.world->kind_of(call.text) == World::Kind::command) {
         if (!acted_) {
             ++covered()["own command"];
             if (!arguments()) return Done::failed;
@@ -290,8 +284,7 @@ ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, s
         case Answer::failed: ++covered()["command failed"]; return Done::failed;
         case Answer::no: return waits_or_late();
         }
-        break;
-    case World::Kind::sent_command:
+    } else {
         if (!acted_) {
             if (!arguments()) return Done::failed;
             again_ = !scope.world->send(call.text, given);
@@ -307,9 +300,28 @@ ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, s
         case Answer::failed: ++covered()["command failed"]; return Done::failed;
         case Answer::no: return waits_or_late();
         }
-        break;
-    default: break;
     }
+    return Done::failed;
+}
+
+ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, std::int64_t now) {
+    const Expression& call = statement.expressions[0];
+    std::vector<Value>& given = given_; // a command at work keeps its own
+    const auto arguments = [&] { return take_arguments(scope, call); };
+    if (const Function* function = scope.function(call.text)) {
+        ++covered()["function"];
+        if (!arguments()) return Done::failed;
+        Open call_of{.block = &function->body, .is_call = true, .function = function};
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            const Variable& parameter = function->parameters[i];
+            call_of.own.declare(parameter.name, parameter.type, *convert(given[i], parameter.type));
+        }
+        open_.push_back(call_of);
+        return Done::elsewhere;
+    }
+    const World::Kind kind = scope.world->kind_of(call.text);
+    if (kind == World::Kind::command || kind == World::Kind::sent_command)
+        return perform_command(scope, statement, now);
     ++covered()["method"];
     if (!arguments()) return Done::failed;
     const std::optional<Value> result = scope.world->call(call.text, given);

@@ -114,6 +114,10 @@ private:
     Done execute(Scope& scope, const Statement& statement, std::int64_t now);
     static Done set_part(Value& variable, const std::string& name, const Value& value);
     Done perform(Scope& scope, const Statement& statement, std::int64_t now);
+    Done assign(Scope& scope, const Statement& statement);
+    Done wait(Scope& scope, const Statement& statement, std::int64_t now);
+    bool take_arguments(Scope& scope, const Expression& call);
+    Done perform_command(Scope& scope, const Statement& statement, std::int64_t now);
     bool recover();
     static bool counts(const Scope& scope, const Statement& statement);
 

@@ -12,6 +12,7 @@ namespace tappet::house {
 namespace {
 
 constexpr std::size_t most_lines = 500;
+constexpr std::size_t most_lines_of_a_function = 70;
 constexpr std::size_t most_columns =
     140; // code is held at 110 by its layout; this catches what the layout may not touch
 
@@ -22,6 +23,48 @@ Findings too_long(const Tree& files) {
             found.push_back({file.path, file.lines.size(),
                              "has more than " + std::to_string(most_lines) + " lines",
                              "a file is one idea: part it"});
+    return found;
+}
+
+/// A function's body begins after a head with its parameters; what else stands in braces has none, or says
+/// what it is.
+bool opens_function(std::string_view head) {
+    if (find_word(head, "namespace") != head.npos) return false; // behind a macro, too
+    for (const std::string_view word : {"class", "struct", "enum", "union"})
+        if (find_word(head, word) < head.find('(')) return false;
+    return head.contains(')');
+}
+
+Findings too_long_functions(const Tree& files) {
+    struct Open {
+        std::size_t begins;
+        bool is_function;
+    };
+    Findings found;
+    for (const File& file : files) {
+        if (!file.is_cpp()) continue;
+        std::vector<Open> open;
+        std::string head;
+        std::size_t begins = 0;
+        for (std::size_t i = 0; i < file.code.size(); ++i)
+            for (const char each : file.code[i].starts_with('#') ? std::string{} : file.code[i] + '\n') {
+                if (each == '{') open.push_back({begins, opens_function(head)});
+                if (each == '}' && !open.empty()) {
+                    const std::size_t lines = i + 1 - open.back().begins;
+                    if (open.back().is_function && lines > most_lines_of_a_function)
+                        found.push_back({file.path, open.back().begins + 1,
+                                         "a function of " + std::to_string(lines) + " lines",
+                                         "part it: at most " + std::to_string(most_lines_of_a_function)});
+                    open.pop_back();
+                }
+                if (each == '{' || each == '}' || each == ';') {
+                    head.clear();
+                } else if (!head.empty() || (each != ' ' && each != '\n')) {
+                    if (head.empty()) begins = i;
+                    head += each;
+                }
+            }
+    }
     return found;
 }
 
@@ -123,6 +166,7 @@ Findings unmirrored(const Tree& files) {
 }
 
 TEST(Shape, no_file_is_too_long) { expect_none(too_long(tree())); }
+TEST(Shape, no_function_is_too_long) { expect_none(too_long_functions(tree())); }
 TEST(Shape, no_line_is_too_wide) { expect_none(too_wide(tree())); }
 TEST(Shape, every_file_begins_with_its_idea) { expect_none(without_idea(tree())); }
 TEST(Shape, lines_end_where_they_end) { expect_none(untidy_ends(tree())); }
@@ -137,6 +181,19 @@ TEST(ShapeRule, finds_what_is_too_long_or_too_wide) {
     EXPECT_EQ(too_wide({file("a.cpp", wide)}).size(), 1u);
     EXPECT_TRUE(too_wide({file("a.cpp", "// clang-format off\n" + wide + "\n// clang-format on\n")}).empty());
     EXPECT_EQ(too_wide({file("a.cpp", "// clang-format off\n// clang-format on\n" + wide)}).size(), 1u);
+}
+
+TEST(ShapeRule, finds_a_function_that_is_too_long) {
+    const auto of = [](const std::string& head, std::size_t lines) {
+        std::string text = head + "\n";
+        for (std::size_t i = 2; i < lines; ++i) text += "    go();\n";
+        return too_long_functions({file("a.cpp", "int before;\n" + text + "}\n")}).size();
+    };
+    EXPECT_EQ(of("void f() {", most_lines_of_a_function), 0u);
+    EXPECT_EQ(of("void f() {", most_lines_of_a_function + 1), 1u);
+    EXPECT_EQ(of("void f(int a,\n    int b) noexcept {", most_lines_of_a_function), 1u) << "its head counts";
+    EXPECT_EQ(of("struct alignas(64) S {", most_lines_of_a_function + 1), 0u);
+    EXPECT_EQ(of("constexpr int rows[] = {", most_lines_of_a_function + 1), 0u);
 }
 
 TEST(ShapeRule, finds_files_that_do_not_say_their_idea) {

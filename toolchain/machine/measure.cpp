@@ -123,70 +123,64 @@ struct Claims {
 };
 
 Sentence in_us(Duration time) { return Sentence{time.count() / 1000, " us"}; }
+void say(const Sentence& line) { os::print(Sentence{line, "\n"}.view()); }
 
-} // namespace
+using Probes = std::array<Probe, most_processors>;
+using Processors = std::array<bool, most_processors>;
 
-int measure_box(const AcceptedMachine& machine, Duration time) {
-    const auto say = [](const Sentence& line) { os::print(Sentence{line, "\n"}.view()); };
-    auto* const memory = pages_for<Load>();
-    auto* const all = pages_for<std::array<Probe, most_processors>>();
-    auto* const claimed = pages_for<Claims>();
-    if (memory == nullptr || all == nullptr || claimed == nullptr) {
-        say(Sentence{"no memory is left to measure with; stop what else runs"});
-        return 2;
-    }
-    claimed->take(machine);
-    const Claims& claims = *claimed;
-    std::array<Probe, most_processors>& probes = *all;
-    std::array<bool, most_processors> wanted{};
+/// Those that activities of real time run on. False: one cannot be measured.
+bool choose(const AcceptedMachine& machine, const Claims& claims, Processors& wanted) {
     for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {
         if (!machine.table.activities[a].real_time) continue;
         const auto processor = static_cast<std::size_t>(claims.processors[a]);
         if (processor >= most_processors) {
             say(Sentence{"processor ", processor, " is none of the first 16, which can be measured"});
-            return 2;
+            return false;
         }
         wanted[processor] = true;
     }
-    const auto awake = os::hold_cpu_dma_latency();
-    if (!awake) say(awake.error());
+    return true;
+}
+
+/// Wakes and loads them for so long. False: a thread was refused.
+bool measure(Probes& probes, const Processors& wanted, Load& memory, int priority, Duration time) {
     std::atomic<bool> loaded{true};
-    {
-        const HardwareLatency hardware;
-        const Time until = os::Clock::monotonic() + time;
-        for (std::size_t p = 0; p < most_processors; ++p) {
-            if (!wanted[p]) continue;
-            Probe& probe = probes[p];
-            probe.until = until;
-            probe.loaded = &loaded;
-            probe.memory = memory;
-            const auto load = probe.loader.start({.name = "load",
-                                                  .processor = static_cast<int>(p),
-                                                  .stack = probe.load_stack,
-                                                  .body = &Probe::load,
-                                                  .context = &probe});
-            const auto sleep = probe.sleeper.start({.name = "wakes",
-                                                    .fifo_priority = machine.board->highest_priority,
-                                                    .processor = static_cast<int>(p),
-                                                    .stack = probe.stack,
-                                                    .body = &Probe::wake,
-                                                    .context = &probe});
-            if (!load || !sleep) {
-                say(!sleep ? sleep.error() : load.error());
-                loaded = false;
-                return 2;
-            }
+    const HardwareLatency hardware;
+    const Time until = os::Clock::monotonic() + time;
+    for (std::size_t p = 0; p < most_processors; ++p) {
+        if (!wanted[p]) continue;
+        Probe& probe = probes[p];
+        probe.until = until;
+        probe.loaded = &loaded;
+        probe.memory = &memory;
+        const auto load = probe.loader.start({.name = "load",
+                                              .processor = static_cast<int>(p),
+                                              .stack = probe.load_stack,
+                                              .body = &Probe::load,
+                                              .context = &probe});
+        const auto sleep = probe.sleeper.start({.name = "wakes",
+                                                .fifo_priority = priority,
+                                                .processor = static_cast<int>(p),
+                                                .stack = probe.stack,
+                                                .body = &Probe::wake,
+                                                .context = &probe});
+        if (!load || !sleep) {
+            say(!sleep ? sleep.error() : load.error());
+            loaded = false;
+            for (Probe& each : probes) each.sleeper.join(), each.loader.join(); // they look at what is here
+            return false;
         }
-        for (Probe& probe : probes) probe.sleeper.join();
-        loaded = false;
-        for (Probe& probe : probes) probe.loader.join();
-        say(hardware.tell());
     }
+    for (Probe& probe : probes) probe.sleeper.join();
+    loaded = false;
+    for (Probe& probe : probes) probe.loader.join();
+    say(hardware.tell());
+    return true;
+}
+
+/// Whether each activity may begin so late as its processor woke.
+bool judge(const AcceptedMachine& machine, const Claims& claims, const Probes& probes) {
     bool holds = true;
-    for (std::size_t p = 0; p < most_processors; ++p)
-        if (wanted[p])
-            say(Sentence{"processor ", p, ": woke at most ", in_us(probes[p].latest), " late, of ",
-                         probes[p].wakes, " times"});
     for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {
         const ActivityRow& row = machine.table.activities[a];
         if (!row.real_time) continue;
@@ -198,6 +192,30 @@ int measure_box(const AcceptedMachine& machine, Duration time) {
                      " late beside its worst response of ", in_us(Duration{claims.worst_response_ns[a]}),
                      fits ? ": holds" : ": DOES NOT HOLD"});
     }
+    return holds;
+}
+
+} // namespace
+
+int measure_box(const AcceptedMachine& machine, Duration time) {
+    auto* const memory = pages_for<Load>();
+    auto* const probes = pages_for<Probes>();
+    auto* const claims = pages_for<Claims>();
+    if (memory == nullptr || probes == nullptr || claims == nullptr) {
+        say(Sentence{"no memory is left to measure with; stop what else runs"});
+        return 2;
+    }
+    claims->take(machine);
+    Processors wanted{};
+    if (!choose(machine, *claims, wanted)) return 2;
+    const auto awake = os::hold_cpu_dma_latency();
+    if (!awake) say(awake.error());
+    if (!measure(*probes, wanted, *memory, machine.board->highest_priority, time)) return 2;
+    for (std::size_t p = 0; p < most_processors; ++p)
+        if (wanted[p])
+            say(Sentence{"processor ", p, ": woke at most ", in_us((*probes)[p].latest), " late, of ",
+                         (*probes)[p].wakes, " times"});
+    const bool holds = judge(machine, *claims, *probes);
     say(Sentence{holds ? "the box can hold the table's claims"
                        : "the box cannot hold the table's claims; take a "
                          "quicker one, or longer deadlines"});

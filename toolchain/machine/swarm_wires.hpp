@@ -124,6 +124,7 @@ private:
     void add_axes();
     [[nodiscard]] static Axis::Wire wire_of(const can::Identifiers& map, std::string_view facet);
     void hear_axis(Axis& axis, std::string_view device, const can::Frame& frame);
+    void judge_place(Axis& axis, std::string_view device, const can::Frame& frame);
     void hear_homing(Axis& axis, std::string_view device, const can::Frame& frame);
     [[nodiscard]] std::string_view state_of(const Axis& axis) const;
     void add_lines(std::size_t component);

@@ -50,6 +50,33 @@ Sentence too_small(std::string_view what) {
     return Sentence{"its ", what, " take more than the slot has room for; make the slot larger"};
 }
 
+/// Native code is made of tables that the C++ compiler checked; what it leaves of them is no program.
+Sentence check_type(const BehaviourType& type, bool is_native) {
+    if (!is_native)
+        if (Sentence fault = check_tables(type.tables); !fault.empty()) return fault;
+    if (type.is_program()) return {};
+    if (Sentence fault = check(type.machine); !fault.empty()) return fault;
+    return is_native ? Sentence{} : check_references(type.machine);
+}
+
+/// Which event is which trigger of an instance's state machine. `routes`: its own, those of one event
+/// `instances` apart.
+Sentence route_events(const ResolvedView& view, std::span<const std::string_view> events,
+                      std::string_view component, UnitRoute* routes, std::size_t instances) {
+    for (std::size_t t = 0; t < view.triggers.size(); ++t) {
+        const std::string_view name = view.triggers[t];
+        const std::size_t e = find_event(events, name, component);
+        if (e == nowhere)
+            return Sentence{"it hears event \"", name,
+                            "\", which is not in its reach; name it in events(...) of its row"};
+        UnitRoute& route = routes[e * instances];
+        if (route.trigger != no_trigger)
+            return Sentence{"it spells event \"", name, "\" in two ways; use one of them"};
+        route.trigger = static_cast<TriggerIndex>(t);
+    }
+    return {};
+}
+
 } // namespace
 
 Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourCode> code,
@@ -66,6 +93,7 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     engine_ = &engine;
     limit_.stamps = &engine.stamps();
     driven_ = driven;
+    const std::string_view driven_name = machine.machine().table.components[driven].name;
     const std::size_t instances = unit.instances.size();
     detail::UnitLayout layout{memory};
     auto* parts = make<UnitPart>(layout, instances);
@@ -77,14 +105,9 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
     if (layout.full()) return too_small("instances");
     for (std::size_t t = 0; t < unit.types.size(); ++t) {
         const BehaviourType& type = unit.types[t];
-        // Native code is made of tables that the C++ compiler checked; what it leaves of them is no program.
-        const bool is_native = t < code.size() && code[t].code.run != nullptr;
-        if (!is_native)
-            if (Sentence fault = check_tables(type.tables); !fault.empty()) return fault;
+        if (Sentence fault = check_type(type, t < code.size() && code[t].code.run != nullptr); !fault.empty())
+            return fault;
         if (type.is_program()) continue;
-        if (Sentence fault = check(type.machine); !fault.empty()) return fault;
-        if (!is_native)
-            if (Sentence fault = check_references(type.machine); !fault.empty()) return fault;
         const ResolvedRoom room = take_room(layout, measure(type.machine));
         if (layout.full()) return too_small("states and transitions");
         views[t] = resolve_into(type.machine, room);
@@ -102,7 +125,6 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
         UnitPart& part = parts[i];
         part.row = &row;
         part.type = &unit.types[row.type];
-        const BehaviourCode native = row.type < code.size() ? code[row.type] : BehaviourCode{};
         if (part.type->is_program()) part.program = beside.first + program++;
         has_programs_ = has_programs_ || part.program != nullptr;
         part.binding.beside = beside;
@@ -117,19 +139,11 @@ Sentence BehaviourUnit::place(const ScriptUnit& unit, std::span<const BehaviourC
         if (layout.full()) return too_small("commands");
         std::fill_n(part.data, bytes, std::byte{});
         std::copy(row.image.begin(), row.image.end(), part.data);
-        bind(part, native, views[row.type]);
+        bind(part, row.type < code.size() ? code[row.type] : BehaviourCode{}, views[row.type]);
         if (part.machine == nullptr) continue;
-        for (std::size_t t = 0; t < views[row.type].triggers.size(); ++t) {
-            const std::string_view name = views[row.type].triggers[t];
-            const std::size_t e = find_event(events, name, machine.machine().table.components[driven].name);
-            if (e == nowhere)
-                return Sentence{"it hears event \"", name,
-                                "\", which is not in its reach; name it in events(...) of its row"};
-            UnitRoute& route = routes[e * instances + i];
-            if (route.trigger != no_trigger)
-                return Sentence{"it spells event \"", name, "\" in two ways; use one of them"};
-            route.trigger = static_cast<TriggerIndex>(t);
-        }
+        if (Sentence fault = route_events(views[row.type], events, driven_name, &routes[i], instances);
+            !fault.empty())
+            return fault;
     }
     parts_ = {parts, instances};
     routes_ = {routes, events.size() * instances};

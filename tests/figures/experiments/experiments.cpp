@@ -120,6 +120,24 @@ std::vector<Part> parts_of(const Wanted& wanted, const std::string& only) {
     return parts;
 }
 
+void add_notes(figures::Result& result, double seconds, int processor) {
+    result.notes.push_back("each application ran " + std::to_string(seconds) +
+                           " s in each setting, all activities on processor " + std::to_string(processor) +
+                           "; the thesis ran each for 300 s (--seconds 300)");
+    result.notes.push_back("averages and worst cases hold whatever interrupted the machine meanwhile; a bare "
+                           "thread and bare copies, "
+                           "which nothing of Tappet touches, stand beside them");
+    result.notes.push_back("that the highest priority meets a lock held by a lower one is rare, some times "
+                           "in 100000 executions: a "
+                           "short run may see none");
+    result.notes.push_back(
+        "the load of the concurrent application is 0.55: that is what the thesis' periods and "
+        "loads add up to, its table 4.1 says 0.65");
+    result.notes.push_back(
+        "an engine does not stamp an empty queue, so that serving nothing is not shown here; "
+        "figures-dispatch has the empty engine step");
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -177,20 +195,6 @@ int main(int argc, char** argv) {
     std::erase_if(result.figures, [&](const figures::Figure& each) { return !options.wants(each.id); });
     result.plots = plots_of(findings);
     result.statements = statements_of(findings);
-    result.notes.push_back("each application ran " + std::to_string(seconds) +
-                           " s in each setting, all activities on processor " + std::to_string(processor) +
-                           "; the thesis ran each for 300 s (--seconds 300)");
-    result.notes.push_back("averages and worst cases hold whatever interrupted the machine meanwhile; a bare "
-                           "thread and bare copies, "
-                           "which nothing of Tappet touches, stand beside them");
-    result.notes.push_back("that the highest priority meets a lock held by a lower one is rare, some times "
-                           "in 100000 executions: a "
-                           "short run may see none");
-    result.notes.push_back(
-        "the load of the concurrent application is 0.55: that is what the thesis' periods and "
-        "loads add up to, its table 4.1 says 0.65");
-    result.notes.push_back(
-        "an engine does not stamp an empty queue, so that serving nothing is not shown here; "
-        "figures-dispatch has the empty engine step");
+    add_notes(result, seconds, processor);
     return figures::finish(options, result);
 }

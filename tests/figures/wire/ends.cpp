@@ -52,6 +52,27 @@ std::uint32_t activity_of_row(const MachineInstance& instance, std::string_view 
     std::exit(2);
 }
 
+void give_functions(Ends& found) {
+    found.exchange = [] {
+        const Ends& both = *the_ends;
+        both.from->bring_to(*both.to);
+        both.receives->run(true);
+        both.hears->run(true);
+        both.to->bring_to(*both.from);
+        both.sends->run(true);
+        both.from->bring_to(*both.to);
+        both.receives->run(true);
+    };
+    found.hearer_level = [] {
+        const RunsActivity here{hearing_activity};
+        return the_ends->hearer->level.get();
+    };
+    found.are_all_answered = [] {
+        const SendCounts& count = link_from->sent(1);
+        return count.offered == count.delivered && count.offered > 0;
+    };
+}
+
 } // namespace
 
 Ends& ends() {
@@ -98,24 +119,7 @@ Ends& ends() {
             const RunsActivity here{found.telling};
             found.teller->level.write(1.0);
         }
-        found.exchange = [] {
-            const Ends& both = *the_ends;
-            both.from->bring_to(*both.to);
-            both.receives->run(true);
-            both.hears->run(true);
-            both.to->bring_to(*both.from);
-            both.sends->run(true);
-            both.from->bring_to(*both.to);
-            both.receives->run(true);
-        };
-        found.hearer_level = [] {
-            const RunsActivity here{hearing_activity};
-            return the_ends->hearer->level.get();
-        };
-        found.are_all_answered = [] {
-            const SendCounts& count = link_from->sent(1);
-            return count.offered == count.delivered && count.offered > 0;
-        };
+        give_functions(found);
         return found;
     }();
     static const bool met = [] {

@@ -157,17 +157,8 @@ void ProgramText::give(const Instruction& in, Expression value, Reading& reading
     reading.values[in.to] = std::move(value);
 }
 
-void ProgramText::read_one(const Instruction& in, Reading& reading) const {
+bool ProgramText::read_expression(const Instruction& in, Reading& reading) const {
     namespace p = primitive;
-    const auto does = [&](Statement::Kind kind, const std::string& text, bool may_fail) {
-        Statement done;
-        done.kind = kind;
-        done.text = text;
-        done.may_fail = may_fail;
-        if (kind == Statement::Kind::emit) done.event = place(in);
-        reading.may_fail = reading.may_fail || may_fail;
-        reading.statements.push_back(std::move(done));
-    };
     if (const Word* const word = binary_word(in.run)) {
         const Expression a = value(in.a, word->a, reading);
         const Expression b = value(in.b, word->b, reading);
@@ -207,7 +198,25 @@ void ProgramText::read_one(const Instruction& in, Reading& reading) const {
         give(in,
              unknown(value(in.a, nullptr, reading).text + "[" + value(in.b, script_int, reading).text + "]"),
              reading);
-    } else if (in.run == &p::field_write) {
+    } else {
+        return false;
+    }
+    return true;
+}
+
+void ProgramText::read_one(const Instruction& in, Reading& reading) const {
+    namespace p = primitive;
+    const auto does = [&](Statement::Kind kind, const std::string& text, bool may_fail) {
+        Statement done;
+        done.kind = kind;
+        done.text = text;
+        done.may_fail = may_fail;
+        if (kind == Statement::Kind::emit) done.event = place(in);
+        reading.may_fail = reading.may_fail || may_fail;
+        reading.statements.push_back(std::move(done));
+    };
+    if (read_expression(in, reading)) return;
+    if (in.run == &p::field_write) {
         does(Statement::Kind::act,
              variable(in.to) + "." + std::string{in.field->name} + " = " +
                  value(in.a, in.field->type, reading).text,

@@ -66,6 +66,8 @@ private:
         bool may_fail = false;
     };
     void read(std::size_t first, std::size_t count, Reading& reading) const;
+    /// Of an instruction that only computes; false: it does something.
+    [[nodiscard]] bool read_expression(const Instruction& in, Reading& reading) const;
     void read_one(const Instruction& in, Reading& reading) const;
     void give(const Instruction& in, Expression value, Reading& reading) const;
     [[nodiscard]] Expression value(DataOffset at, TypeId type, const Reading& reading) const;

@@ -93,15 +93,8 @@ void finish(const Folder& folder, const fs::path& keys) {
     write_disk(folder.disk(), parts, work / "");
 }
 
-} // namespace
-
-void sign(const fs::path& folder, const fs::path& keys) {
-    if (!can_sign(keys))
-        throw Fault(keys.string() + " has no secret key; name the folder that tappet-image key wrote");
-    finish(Folder{folder}, keys);
-}
-
-Written write_image(const Request& request) {
+/// What the box's init reads of the firmware, and of the request.
+std::string lines_of(const Request& request) {
     if (!fs::exists(request.kernel / "vmlinuz"))
         throw Fault("there is no kernel for a box at " + request.kernel.string() +
                     "; run ci/setup once as root");
@@ -123,7 +116,35 @@ Written write_image(const Request& request) {
     if (!request.keys.empty())
         lines += "key " + public_key(request.next_keys.empty() ? request.keys : request.next_keys) + "\n";
     if (!request.plant.empty()) lines += "plant /bin/plant " + request.plant_words + "\n";
+    return lines;
+}
 
+void write_root(const Request& request, const std::string& lines, const KernelModules& modules,
+                const fs::path& data, const fs::path& archive) {
+    bench::Initramfs root{archive, bench::architecture_of_first({request.firmware})};
+    root.add(request.init, "/init");
+    root.add(request.firmware, "/bin/firmware");
+    if (!request.plant.empty()) root.add(request.plant, "/bin/plant");
+    root.add("/sbin/e2fsck.static", "/bin/e2fsck");
+    root.add_text("/etc/tappet/box", lines);
+    root.add_text("/etc/tappet/modules", modules.table);
+    root.add_text(box::empty_data_file, box::numbered_blocks(read_file(data)));
+    for (const auto& [name, file] : modules.files) root.add(file, "/modules/" + name + ".ko");
+    for (const char* folder : {"/proc", "/sys", "/tmp", "/run"}) root.add_folder(folder);
+    root.finish();
+}
+
+} // namespace
+
+void sign(const fs::path& folder, const fs::path& keys) {
+    if (!can_sign(keys))
+        throw Fault(keys.string() + " has no secret key; name the folder that tappet-image key wrote");
+    finish(Folder{folder}, keys);
+}
+
+Written write_image(const Request& request) {
+    const std::string lines = lines_of(request);
+    const box::Facts facts{lines};
     const auto rows = [&](const char* word) {
         std::vector<std::string> all;
         for (const box::Words& row : facts.all(word)) all.push_back(joined(row));
@@ -136,18 +157,8 @@ Written write_image(const Request& request) {
 
     const bench::WorkFolder work("tappet-image");
     fs::create_directories(request.folder);
-    bench::Initramfs root{work / "root.cpio", architecture};
-    root.add(request.init, "/init");
-    root.add(request.firmware, "/bin/firmware");
-    if (!request.plant.empty()) root.add(request.plant, "/bin/plant");
-    root.add("/sbin/e2fsck.static", "/bin/e2fsck");
-    root.add_text("/etc/tappet/box", lines);
-    root.add_text("/etc/tappet/modules", modules.table);
     write_data(work / "data");
-    root.add_text(box::empty_data_file, box::numbered_blocks(read_file(work / "data")));
-    for (const auto& [name, file] : modules.files) root.add(file, "/modules/" + name + ".ko");
-    for (const char* folder : {"/proc", "/sys", "/tmp", "/run"}) root.add_folder(folder);
-    root.finish();
+    write_root(request, lines, modules, work / "data", work / "root.cpio");
 
     Written written;
     written.bill = request.folder / "sbom.cdx.json";
