@@ -105,13 +105,13 @@ bool Activity::sleep_until(Time time) noexcept TAPPET_REALTIME {
 void Activity::cycles() noexcept TAPPET_REALTIME {
     const EnginePart* const looping = engine_->looping();
     while (true) {
-        if (looping != nullptr && is_running(looping->state) && goes_on()) {
+        if (looping != nullptr && is_running(looping->state) && keeps_running()) {
             state_.store(State::running, std::memory_order_relaxed);
             TAPPET_ESCAPE("this activity is not real-time", loop(*looping));
             state_.store(State::waiting, std::memory_order_relaxed);
         }
-        const bool woken = goes_on() && sleep_until(engine_->next_wake());
-        if (!goes_on()) return;
+        const bool woken = keeps_running() && sleep_until(engine_->next_wake());
+        if (!keeps_running()) return;
         state_.store(State::running, std::memory_order_relaxed);
         engine_->run(woken);
         state_.store(State::waiting, std::memory_order_relaxed);
@@ -134,14 +134,14 @@ void Activity::loop(const EnginePart& part) {
                          [](void* self, Duration time) noexcept {
                              auto& at = *static_cast<Activity*>(self);
                              const Time until = std::min(at.clock_->now() + time, at.engine_->next_wake());
-                             const bool woken = at.goes_on() && at.sleep_until(until);
-                             if (at.goes_on()) at.engine_->run(woken);
-                             return at.goes_on();
+                             const bool woken = at.keeps_running() && at.sleep_until(until);
+                             if (at.keeps_running()) at.engine_->run(woken);
+                             return at.keeps_running();
                          },
                          [](void* self) noexcept {
                              auto& at = *static_cast<Activity*>(self);
-                             if (at.goes_on()) at.engine_->run(false);
-                             return at.goes_on();
+                             if (at.keeps_running()) at.engine_->run(false);
+                             return at.keeps_running();
                          },
                          engine_->now_address()}};
     part.type->loop(part.component_, control);
@@ -152,7 +152,8 @@ void Activity::loop(const EnginePart& part) {
 void Activity::park() noexcept TAPPET_REALTIME {
     is_lost_.store(true, std::memory_order_release);
     state_.store(State::parked, std::memory_order_release);
-    while (goes_on()) TAPPET_ESCAPE("this thread must not go on: its contract is broken", os::sleep_for(1ms));
+    while (keeps_running())
+        TAPPET_ESCAPE("this thread must not go on: its contract is broken", os::sleep_for(1ms));
     if (claim_engine_stop()) {
         engine_->stop(clock_->now());
         engine_->mark_failed();

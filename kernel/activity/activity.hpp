@@ -88,7 +88,7 @@ private:
     void cycles() noexcept TAPPET_REALTIME;
     void run_once() noexcept;
     void loop(const EnginePart& part);
-    [[nodiscard]] bool goes_on() const noexcept TAPPET_REALTIME {
+    [[nodiscard]] bool keeps_running() const noexcept TAPPET_REALTIME {
         return !stop_asked_.load(std::memory_order_acquire);
     }
     bool sleep_until(Time time) noexcept TAPPET_REALTIME;

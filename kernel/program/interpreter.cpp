@@ -40,7 +40,7 @@ struct ArcInMemory {
     [[nodiscard]] Duration after(const ProgramRun& run) const noexcept TAPPET_REALTIME {
         return load_value<Duration>(run.data + arc.after);
     }
-    [[gnu::always_inline]] ConditionResult asks(ProgramContext& context, const ProgramRun&) const noexcept
+    [[gnu::always_inline]] ConditionResult evaluate(ProgramContext& context, const ProgramRun&) const noexcept
         TAPPET_REALTIME {
         return test(tables, context, arc.condition);
     }
@@ -54,7 +54,7 @@ struct NodeInMemory {
         return static_cast<NodeIndex>(node - tables.nodes.data());
     }
     static constexpr bool may_stand() noexcept TAPPET_REALTIME { return true; }
-    [[gnu::always_inline]] ActionResult acts(ProgramContext& context, const ProgramRun&) const noexcept
+    [[gnu::always_inline]] ActionResult act(ProgramContext& context, const ProgramRun&) const noexcept
         TAPPET_REALTIME {
         return execute(context, tables.instructions.data() + node->first, node->count);
     }
@@ -96,7 +96,7 @@ struct StatementInMemory : NodeInMemory {
 // A function of its own: what it needs would push out of the registers what the others need.
 [[gnu::noinline]] NextNode executes_any(NodeInMemory node, ProgramContext& context, ProgramRun& run) noexcept
     TAPPET_REALTIME {
-    return node_order::executes(node, context, run);
+    return node_order::execute(node, context, run);
 }
 
 [[gnu::always_inline]] inline ProgramReturn run(const ProgramTables& tables, ProgramContext& context,
@@ -107,7 +107,7 @@ struct StatementInMemory : NodeInMemory {
     while (next < end_node) {
         const NodeInMemory node{tables, row};
         if (StatementInMemory::is(tables, *row)) [[likely]] {
-            next = node_order::executes(StatementInMemory{node}, context, run);
+            next = node_order::execute(StatementInMemory{node}, context, run);
         } else {
             // Member by member, so that `run` stays in registers.
             ProgramRun shared{run.data, run.left, run.stands};

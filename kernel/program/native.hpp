@@ -73,8 +73,8 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
     // From the node `next` on until the program leaves the piece. Each node asks whether it is meant, which
     // the compiler knows after the one before it.
     template <std::size_t first, std::size_t... i>
-    [[gnu::always_inline]] static NextNode passes(std::index_sequence<i...>, ProgramContext& context,
-                                                  ProgramRun& run, NextNode next) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static NextNode pass(std::index_sequence<i...>, ProgramContext& context,
+                                                ProgramRun& run, NextNode next) noexcept TAPPET_REALTIME {
         constexpr std::size_t end = first + sizeof...(i);
         do
             ((next = next == first + i ? Nodes::template node<static_cast<NodeIndex>(first + i)>(context, run)
@@ -87,27 +87,27 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
     static NextNode piece(ProgramContext& context, ProgramRun& shared, NextNode next) noexcept
         TAPPET_REALTIME {
         ProgramRun run = shared; // in registers
-        next = passes<first>(std::make_index_sequence<end - first>{}, context, run, next);
+        next = pass<first>(std::make_index_sequence<end - first>{}, context, run, next);
         shared = run;
         return next;
     }
 
     // The piece of a node, by halving: no table of functions is left.
     template <std::size_t low, std::size_t high>
-    [[gnu::always_inline]] static NextNode goes_to(ProgramContext& context, ProgramRun& run,
-                                                   NextNode next) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static NextNode go_to(ProgramContext& context, ProgramRun& run,
+                                                 NextNode next) noexcept TAPPET_REALTIME {
         if constexpr (high - low <= 1) {
             return piece<pieces[low].first, pieces[low].end>(context, run, next);
         } else {
             constexpr std::size_t middle = (low + high) / 2;
-            return next < pieces[middle].first ? goes_to<low, middle>(context, run, next)
-                                               : goes_to<middle, high>(context, run, next);
+            return next < pieces[middle].first ? go_to<low, middle>(context, run, next)
+                                               : go_to<middle, high>(context, run, next);
         }
     }
     static NextNode goes_on_at(ProgramContext& context, ProgramRun& run, NextNode next) noexcept
         TAPPET_REALTIME {
         if constexpr (piece_count != 0)
-            while (next < tables.nodes.size()) next = goes_to<0, piece_count>(context, run, next);
+            while (next < tables.nodes.size()) next = go_to<0, piece_count>(context, run, next);
         return next;
     }
 
@@ -162,8 +162,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         else if constexpr (!is_whole(row))
             return goes_on_at(context, run, row.first);
         else if constexpr (row.last <= row.first + 2u)
-            return passes<row.first>(std::make_index_sequence<row.last - row.first>{}, context, run,
-                                     row.first);
+            return pass<row.first>(std::make_index_sequence<row.last - row.first>{}, context, run, row.first);
         else
             return piece<row.first, row.last>(context, run, row.first);
     }

@@ -51,7 +51,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
     // `next` is the first instruction that is not left out. Few functions: a compiler spends most of its time
     // on their number.
     template <std::size_t number, std::size_t i>
-    [[gnu::always_inline]] static bool goes_on(ProgramContext& context, std::byte* data, std::byte* scratch,
+    [[gnu::always_inline]] static bool run_one(ProgramContext& context, std::byte* data, std::byte* scratch,
                                                std::size_t& next, ActionResult& result) noexcept
         TAPPET_REALTIME {
         if (next > i) return true;
@@ -72,7 +72,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
                  [[maybe_unused]] std::byte* scratch) noexcept TAPPET_REALTIME {
         [[maybe_unused]] std::size_t next = 0;
         ActionResult result = ActionResult::done;
-        static_cast<void>((goes_on<first + i, i>(context, data, scratch, next, result) && ...));
+        static_cast<void>((run_one<first + i, i>(context, data, scratch, next, result) && ...));
         return result;
     }
 
@@ -121,8 +121,9 @@ template <const auto& source, std::size_t type> struct NodeCode {
             else
                 return load_value<Duration>(read<arc.after>(run.data, scratch));
         }
-        [[gnu::always_inline]] ConditionResult asks(ProgramContext& context,
-                                                    const ProgramRun& run) const noexcept TAPPET_REALTIME {
+        [[gnu::always_inline]] ConditionResult evaluate(ProgramContext& context,
+                                                        const ProgramRun& run) const noexcept
+            TAPPET_REALTIME {
             return condition<arc.condition>(context, run.data, scratch);
         }
     };
@@ -133,8 +134,8 @@ template <const auto& source, std::size_t type> struct NodeCode {
         static constexpr NodeIndex number() noexcept TAPPET_REALTIME { return index; }
         static constexpr bool stands_here = stands(node);
         static constexpr bool may_stand() noexcept TAPPET_REALTIME { return stands_here; }
-        [[gnu::always_inline]] ActionResult acts(ProgramContext& context,
-                                                 const ProgramRun& run) const noexcept TAPPET_REALTIME {
+        [[gnu::always_inline]] ActionResult act(ProgramContext& context, const ProgramRun& run) const noexcept
+            TAPPET_REALTIME {
             return instructions<node.first>(std::make_index_sequence<node.count>{}, context, run.data,
                                             scratch);
         }
@@ -156,7 +157,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
     [[gnu::always_inline]] static NextNode node(ProgramContext& context, ProgramRun& run) noexcept
         TAPPET_REALTIME {
         alignas(data_alignment) std::byte scratch[scratch_bytes];
-        return node_order::executes(Node<number>{scratch}, context, run);
+        return node_order::execute(Node<number>{scratch}, context, run);
     }
 };
 

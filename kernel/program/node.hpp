@@ -92,7 +92,7 @@ template <class Node, class Arc>
         stands_here(context, run);
         if (context.now < due(arc.after(run), context.position.entered_at)) return leads_nowhere;
     }
-    const ConditionResult result = arc.asks(context, run);
+    const ConditionResult result = arc.evaluate(context, run);
     if (result == ConditionResult::no) return leads_nowhere;
     const bool leads = result == ConditionResult::yes && row.to != no_node;
     return leads ? leads_to(node, row.to, context, run) : fails(node, context, run);
@@ -101,7 +101,7 @@ template <class Node, class Arc>
 /// Executes a node, or goes on where the program waits at it. A node that may_stand() not leads on, or fails,
 /// at once.
 template <class Node>
-[[gnu::always_inline]] inline NextNode executes(Node node, ProgramContext& context, ProgramRun& run) noexcept
+[[gnu::always_inline]] inline NextNode execute(Node node, ProgramContext& context, ProgramRun& run) noexcept
     TAPPET_REALTIME {
     const NodeRow& row = node.row();
     bool has_acted = true;
@@ -110,7 +110,7 @@ template <class Node>
             run.left = 0;
             return halts_at(node.number(), ProgramReturn::left_over);
         }
-        const ActionResult result = node.acts(context, run);
+        const ActionResult result = node.act(context, run);
         if (result == ActionResult::failed) [[unlikely]]
             return fails(node, context, run);
         has_acted = result == ActionResult::done;

@@ -119,7 +119,7 @@ auto StateMachineExecution::serve_final(Call call) noexcept TAPPET_REALTIME -> C
     if (is(inactive) || is_leaving() || under_way || is_there) return call;
     if (!final_reason_.empty()) give_reason(final_transition, final_reason_);
     supersede(final_arc);
-    static_cast<void>(Order::goes_on(*this, call));
+    static_cast<void>(Order::resume(*this, call));
     if (is_final() && (mode_ & (in_hand | error)) == 0) clear(final_wanted); // asked for on the way there
     return call;
 }
@@ -152,8 +152,8 @@ void StateMachineExecution::handle_raised(Call& call) noexcept TAPPET_REALTIME {
     const std::size_t place = raised_first_;
     raised_first_ = static_cast<std::uint8_t>((place + 1) % max_raised_events);
     --raised_count_;
-    static_cast<void>(Order::reacts(*this, statechart::InMemory::Cell{raised_[place]},
-                                    deferred_.data() + place * machine_.sizes.captured, call));
+    static_cast<void>(Order::dispatch(*this, statechart::InMemory::Cell{raised_[place]},
+                                      deferred_.data() + place * machine_.sizes.captured, call));
 }
 
 template <bool quick>
@@ -165,7 +165,7 @@ StateOutcome StateMachineExecution::dispatch_in_memory(StateMachineExecution& ex
     if (execution.machine_.captured[trigger] != 0 && arguments == nullptr) return StateOutcome::ignored;
     Call call = execution.open(now);
     const bool taken =
-        statechart::Order<Table>::reacts(execution, typename Table::Cell{trigger}, arguments, call);
+        statechart::Order<Table>::dispatch(execution, typename Table::Cell{trigger}, arguments, call);
     execution.close(call);
     return taken ? StateOutcome::taken : StateOutcome::ignored;
 }
@@ -221,7 +221,7 @@ StateOutcome StateMachineExecution::pause() noexcept TAPPET_REALTIME {
 // What was begun.
 StateOutcome StateMachineExecution::carry_out(Time now) noexcept TAPPET_REALTIME {
     Call call = open(now);
-    static_cast<void>(Order::goes_on(*this, call));
+    static_cast<void>(Order::resume(*this, call));
     finish(call);
     return StateOutcome::taken;
 }
@@ -240,12 +240,12 @@ template void StateMachineExecution::step_in_memory<false>(StateMachineExecution
 
 template <bool quick> void StateMachineExecution::go_round(Call& call) noexcept TAPPET_REALTIME {
     if (!quick) {
-        if (!Order::goes_on(*this, call) || is(inactive)) return;
+        if (!Order::resume(*this, call) || is(inactive)) return;
         if (!automatic_ && !run_once_) return;
     }
     begin_round();
     std::size_t taken = 0;
-    while (statechart::Order<statechart::Memory<quick>>::goes_round(*this, taken, call)) {
+    while (statechart::Order<statechart::Memory<quick>>::run_round(*this, taken, call)) {
     }
 }
 
@@ -306,14 +306,14 @@ StateOutcome StateMachineExecution::serve_request(Call& call) noexcept TAPPET_RE
         Table::for_each_asked(
             *this, Table::conditions(), [&](Table::Leaf, Table::Arc arc) noexcept TAPPET_REALTIME {
                 const Answer answer =
-                    arc.row().to == target ? Order::asks(*this, arc, nullptr, of_no_event) : Answer::no;
+                    arc.row().to == target ? Order::evaluate(*this, arc, nullptr, of_no_event) : Answer::no;
                 there = answer == Answer::yes;
-                if (there) Order::begins<false>(*this, arc);
+                if (there) Order::begin<false>(*this, arc);
                 return there || answer == Answer::failed ? statechart::Flow::stop : statechart::Flow::on;
             });
     if (!there) return StateOutcome::ignored;
     run_once_ = wanted_run_ && !automatic_;
-    const bool has_ended = Order::goes_on(*this, call);
+    const bool has_ended = Order::resume(*this, call);
     if (has_ended && run_once_) {
         ran_ = {};
         go_round<false>(call);
@@ -356,7 +356,7 @@ StateOutcome StateMachineExecution::deactivate(Time now) noexcept TAPPET_REALTIM
         program_begun_ = false;
         if (job_.end > job_.first) leaves_last();
     }
-    static_cast<void>(Order::goes_on(*this, call));
+    static_cast<void>(Order::resume(*this, call));
     clear(busy);
     return StateOutcome::taken;
 }

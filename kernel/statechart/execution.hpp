@@ -361,7 +361,7 @@ private:
     void fail(StatePart part, StateIndex state, NodeIndex node) noexcept TAPPET_REALTIME;
     bool capture(TransitionIndex transition, const std::byte* arguments) noexcept TAPPET_REALTIME;
     /// The run program of a state that has begun; false: nothing after it is done in this call.
-    bool goes_on_running(ActiveState& at, Call& call) noexcept TAPPET_REALTIME {
+    bool resume_running(ActiveState& at, Call& call) noexcept TAPPET_REALTIME {
         context_.position = at.position;
         const ProgramReturn why = run(at.position, call);
         return why == ProgramReturn::ended || has_not_run(at, why);

@@ -22,14 +22,14 @@ template <bool quick> struct Memory {
         void call(void* component) const noexcept TAPPET_REALTIME { ref.call(component); }
         static constexpr bool is_private() noexcept TAPPET_REALTIME { return false; }
         // A run program.
-        bool begins(Execution& e, ActiveState& at, Call& call) const noexcept TAPPET_REALTIME {
+        bool begin(Execution& e, ActiveState& at, Call& call) const noexcept TAPPET_REALTIME {
             e.context_.position = {.node = first_node(e)};
             const ProgramReturn why = e.run(at.position, call);
             return why == ProgramReturn::ended || e.has_not_run(at, why);
         }
         // The one in hand: from its beginning, or from where it stands.
         template <class Step>
-        bool ends(Execution& e, StatePart part, StateIndex state, Step, Call& call) const noexcept
+        bool run_to_end(Execution& e, StatePart part, StateIndex state, Step, Call& call) const noexcept
             TAPPET_REALTIME {
             e.context_.position = e.program_begun_ ? e.position_ : ProgramPosition{.node = first_node(e)};
             const ProgramReturn why = e.run(e.position_, call);

@@ -201,7 +201,7 @@ template <const auto& source, std::size_t type> struct MachineCode : MachineRows
             TAPPET_REALTIME {
             constexpr Case at = cases<true>[number];
             if (at.captures && arguments == nullptr) return;
-            if (Order<at.leaf>::reacts(e, typename Rows::template Asked<at.first>{}, arguments, call))
+            if (Order<at.leaf>::dispatch(e, typename Rows::template Asked<at.first>{}, arguments, call))
                 outcome = StateOutcome::taken;
         }
     };
@@ -212,7 +212,7 @@ template <const auto& source, std::size_t type> struct MachineCode : MachineRows
 
         template <std::size_t number> [[gnu::always_inline]] void meets(Execution& e, Call& call) noexcept
             TAPPET_REALTIME {
-            again = Order<cases<false>[number].leaf>::goes_round(e, taken, call);
+            again = Order<cases<false>[number].leaf>::run_round(e, taken, call);
         }
     };
     // By halving: no table is left.

@@ -87,8 +87,9 @@ template <const auto& source, std::size_t type> struct MachineRows {
         }
         // From its beginning; `stopped(stands, next)` when it does not end.
         template <class Stopped>
-        [[gnu::always_inline]] static bool runs([[maybe_unused]] Execution& e, [[maybe_unused]] Call& call,
-                                                [[maybe_unused]] const Stopped& stopped) noexcept
+        [[gnu::always_inline]] static bool run_nodes([[maybe_unused]] Execution& e,
+                                                     [[maybe_unused]] Call& call,
+                                                     [[maybe_unused]] const Stopped& stopped) noexcept
             TAPPET_REALTIME {
             if constexpr (number != no_program) {
                 ProgramRun run{e.context_.data, call.left, false, counts};
@@ -99,16 +100,16 @@ template <const auto& source, std::size_t type> struct MachineRows {
             }
             return true;
         }
-        [[gnu::always_inline]] static bool begins(Execution& e, ActiveState& at, Call& call) noexcept
+        [[gnu::always_inline]] static bool begin(Execution& e, ActiveState& at, Call& call) noexcept
             TAPPET_REALTIME {
-            return runs(e, call, [&](bool stands, NextNode next) noexcept TAPPET_REALTIME {
+            return run_nodes(e, call, [&](bool stands, NextNode next) noexcept TAPPET_REALTIME {
                 return e.has_not_run(at, halts(e, at.position, stands, next));
             });
         }
         template <class Step>
-        [[gnu::always_inline]] static bool ends(Execution& e, StatePart part, StateIndex state, Step step,
-                                                Call& call) noexcept TAPPET_REALTIME {
-            return runs(e, call, [&](bool stands, NextNode next) noexcept TAPPET_REALTIME {
+        [[gnu::always_inline]] static bool run_to_end(Execution& e, StatePart part, StateIndex state,
+                                                      Step step, Call& call) noexcept TAPPET_REALTIME {
+            return run_nodes(e, call, [&](bool stands, NextNode next) noexcept TAPPET_REALTIME {
                 const ProgramReturn why = halts(e, e.position_, stands, next);
                 e.program_begun_ = true;
                 step.stands(e);

@@ -31,7 +31,7 @@ template <class Table> struct Order {
         if (program.is_function()) {
             --call.left;
             program.call(e.context_.component);
-        } else if (!program.ends(e, part, state, step, call)) [[unlikely]] {
+        } else if (!program.run_to_end(e, part, state, step, call)) [[unlikely]] {
             return false;
         }
         return program.is_private() || !e.is(Execution::error);
@@ -39,7 +39,7 @@ template <class Table> struct Order {
 
     // 1, 2, 3, 4, 5, 6, 8
     template <StepKind kind, class Arc, class Step>
-    [[gnu::always_inline]] static bool does(Execution& e, Arc arc, Step step, Call& call) noexcept
+    [[gnu::always_inline]] static bool run_step(Execution& e, Arc arc, Step step, Call& call) noexcept
         TAPPET_REALTIME {
         if constexpr (kind == StepKind::act) {
             return perform(e, arc.then(), StatePart::then, arc.row().source, step, call);
@@ -84,23 +84,23 @@ template <class Table> struct Order {
 
     // All that is in hand, and of one event all that is selected. True when nothing is in hand any more.
     template <class Arc, class Steps>
-    [[gnu::always_inline]] static bool carries_out(Execution& e, Arc arc, Steps steps, Call& call) noexcept
+    [[gnu::always_inline]] static bool run_steps(Execution& e, Arc arc, Steps steps, Call& call) noexcept
         TAPPET_REALTIME {
         if constexpr (Table::is_constant) {
             return Table::for_each_step(e, steps,
                                         [&]<StepKind kind> [[gnu::always_inline]] (auto step) noexcept
-                                        TAPPET_REALTIME { return does<kind>(e, arc, step, call); });
+                                        TAPPET_REALTIME { return run_step<kind>(e, arc, step, call); });
         } else {
-            return goes_on(e, call);
+            return resume(e, call);
         }
     }
-    static bool goes_on(Execution& e, Call& call) noexcept TAPPET_REALTIME {
+    static bool resume(Execution& e, Call& call) noexcept TAPPET_REALTIME {
         for (;;) {
             if (e.is(Execution::error)) return false;
             if (e.job_.at != no_step) {
                 const bool has_ended = Table::for_each_step(
                     e, 0, [&]<StepKind kind> [[gnu::always_inline]] (auto step) noexcept TAPPET_REALTIME {
-                        return does<kind>(e, Table::arc_in_hand(e), step, call);
+                        return run_step<kind>(e, Table::arc_in_hand(e), step, call);
                     });
                 if (!has_ended) return false;
             } else if (e.selected_.empty() || e.is(Execution::final_wanted)) {
@@ -112,28 +112,28 @@ template <class Table> struct Order {
                 for (std::size_t i = 1; i < e.selected_.size(); ++i) e.selected_[i - 1] = e.selected_[i];
                 --e.selected_.used;
                 const auto arc = Table::arc_of(e, next.arc);
-                next.otherwise ? begins<true>(e, arc) : begins<false>(e, arc);
+                next.otherwise ? begin<true>(e, arc) : begin<false>(e, arc);
             }
         }
     }
     template <bool otherwise, class Arc>
-    [[gnu::always_inline]] static void begins(Execution& e, Arc arc) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static void begin(Execution& e, Arc arc) noexcept TAPPET_REALTIME {
         if constexpr (!Table::is_constant) e.holds(Table::template job<otherwise>(e, arc));
         if (!otherwise && arc.row().gives_reason) e.give_reason(arc.row().transition, arc.because());
         Table::asks_again(e);
     }
     template <bool otherwise, class Arc>
-    [[gnu::always_inline]] static bool takes(Execution& e, Arc arc, Call& call) noexcept TAPPET_REALTIME {
-        begins<otherwise>(e, arc);
-        return carries_out(e, arc, arc.template steps<otherwise>(), call);
+    [[gnu::always_inline]] static bool fire(Execution& e, Arc arc, Call& call) noexcept TAPPET_REALTIME {
+        begin<otherwise>(e, arc);
+        return run_steps(e, arc, arc.template steps<otherwise>(), call);
     }
     // False: it did not end.
     template <class State>
-    [[gnu::always_inline]] static bool handles(Execution& e, State state, Call& call) noexcept
+    [[gnu::always_inline]] static bool handle(Execution& e, State state, Call& call) noexcept
         TAPPET_REALTIME {
         if (state.handle().empty()) return true;
         if constexpr (!Table::is_constant) e.holds({.at = e.machine_.plans[state.number()].handle});
-        return carries_out(e, Table::no_arc(), state.handle_steps(), call);
+        return run_steps(e, Table::no_arc(), state.handle_steps(), call);
     }
 
     // ---- which transition
@@ -152,8 +152,8 @@ template <class Table> struct Order {
     }
     // 10, 11, 14
     template <class Arc>
-    [[gnu::always_inline]] static Answer asks(Execution& e, Arc arc, const std::byte* arguments,
-                                              TransitionIndex& refused_by) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static Answer evaluate(Execution& e, Arc arc, const std::byte* arguments,
+                                                  TransitionIndex& refused_by) noexcept TAPPET_REALTIME {
         if (arc.row().after != Duration{} &&
             e.context_.now < Execution::due(arc.row(), Table::source_of(e, arc).entered_at))
             return Answer::no;
@@ -173,8 +173,8 @@ template <class Table> struct Order {
 
     // An event: 10, 12, 13. Nothing runs before all regions have been asked.
     template <class Cell>
-    [[gnu::always_inline]] static bool reacts(Execution& e, Cell cell, const std::byte* arguments,
-                                              Call& call) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static bool dispatch(Execution& e, Cell cell, const std::byte* arguments,
+                                                Call& call) noexcept TAPPET_REALTIME {
         StateIndex refused = no_state;
         TransitionIndex refused_by = no_transition;
         bool is_taken = false, has_failed = false;
@@ -182,7 +182,7 @@ template <class Table> struct Order {
             e, cell, [&] [[gnu::always_inline]] (auto leaf, auto arc) noexcept TAPPET_REALTIME {
                 if (!Table::is_asked_from(e, leaf, arc)) return Flow::next_leaf;
                 if (Table::is_inside_selected(e, arc)) return Flow::on;
-                const Answer answer = asks(e, arc, arguments, refused_by);
+                const Answer answer = evaluate(e, arc, arguments, refused_by);
                 if (answer == Answer::no) {
                     if (refused == no_state) refused = arc.row().source;
                     return Flow::on;
@@ -197,8 +197,8 @@ template <class Table> struct Order {
                         e.selected_.push({arc.row().source, arc.number(), answer == Answer::otherwise}));
                     return Flow::on;
                 }
-                static_cast<void>(answer == Answer::yes ? takes<false>(e, arc, call)
-                                                        : takes<true>(e, arc, call));
+                static_cast<void>(answer == Answer::yes ? fire<false>(e, arc, call)
+                                                        : fire<true>(e, arc, call));
                 return Flow::stop;
             });
         if (has_failed) [[unlikely]] {
@@ -209,11 +209,11 @@ template <class Table> struct Order {
             if constexpr (!Table::is_constant)
                 if (!e.selected_.empty()) {
                     e.set(Execution::in_hand);
-                    if (!Table::is_single(e)) static_cast<void>(goes_on(e, call));
+                    if (!Table::is_single(e)) static_cast<void>(resume(e, call));
                 }
         } else if (refused != no_state) {
             if (refused_by != no_transition) e.tell_refusal(refused_by);
-            static_cast<void>(handles(e, Table::first_asked(e, cell, refused), call));
+            static_cast<void>(handle(e, Table::first_asked(e, cell, refused), call));
         }
         return is_taken;
     }
@@ -222,7 +222,8 @@ template <class Table> struct Order {
 
     // 21, 25
     template <class State>
-    [[gnu::always_inline]] static bool runs(Execution& e, State state, Call& call) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static bool run_active(Execution& e, State state, Call& call) noexcept
+        TAPPET_REALTIME {
         ActiveState& at = state.at(e);
         if (at.run != RunPhase::fresh && at.run != RunPhase::under_way) return true;
         const auto program = state.run();
@@ -244,7 +245,7 @@ template <class Table> struct Order {
         if (program.is_function()) {
             --call.left;
             program.call(e.context_.component);
-        } else if (begins ? !program.begins(e, at, call) : !e.goes_on_running(at, call)) [[unlikely]] {
+        } else if (begins ? !program.begin(e, at, call) : !e.resume_running(at, call)) [[unlikely]] {
             return false;
         }
         return program.is_private() || !e.is(Execution::error);
@@ -253,7 +254,7 @@ template <class Table> struct Order {
     enum class Found : std::uint8_t { nothing, taken, halted };
 
     // 22: the innermost states first; of the states around several leaves, after all of those.
-    [[gnu::always_inline]] static Found finds(Execution& e, Call& call) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static Found find_transition(Execution& e, Call& call) noexcept TAPPET_REALTIME {
         Found found = Found::nothing;
         std::uint32_t number = 0;
         TransitionIndex of_no_event = no_transition;
@@ -275,22 +276,22 @@ template <class Table> struct Order {
                     --call.left;
                     ++e.asked_;
                 }
-                const Answer answer = asks(e, arc, nullptr, of_no_event);
+                const Answer answer = evaluate(e, arc, nullptr, of_no_event);
                 if (answer == Answer::no || answer == Answer::otherwise) return Flow::on;
-                found = answer == Answer::yes && takes<false>(e, arc, call) ? Found::taken : Found::halted;
+                found = answer == Answer::yes && fire<false>(e, arc, call) ? Found::taken : Found::halted;
                 return Flow::stop;
             });
         return found;
     }
 
     // 24
-    [[gnu::always_inline]] static bool handles_all(Execution& e, Call& call) noexcept TAPPET_REALTIME {
+    [[gnu::always_inline]] static bool handle_all(Execution& e, Call& call) noexcept TAPPET_REALTIME {
         const bool all =
             Table::for_each_active(e, [&] [[gnu::always_inline]] (auto state) noexcept TAPPET_REALTIME {
                 ActiveState& at = state.at(e);
                 if (at.run != RunPhase::ran && at.run != RunPhase::asked) return true;
                 at.run = RunPhase::done;
-                return handles(e, state, call);
+                return handle(e, state, call);
             });
         if (!all) [[unlikely]]
             e.has_asked_all();
@@ -299,19 +300,19 @@ template <class Table> struct Order {
 
     // One round of run programs, conditions and handle programs: 21 - 24. True: another one follows in this
     // step.
-    [[gnu::always_inline]] static bool goes_round(Execution& e, std::size_t& taken, Call& call) noexcept
+    [[gnu::always_inline]] static bool run_round(Execution& e, std::size_t& taken, Call& call) noexcept
         TAPPET_REALTIME {
         const auto serves_final = [&]() noexcept TAPPET_REALTIME {
             call = e.serve_final(call);
             return (e.mode_ & (Execution::in_hand | Execution::error)) == 0;
         };
         if (!Table::for_each_active(e, [&] [[gnu::always_inline]] (auto state) noexcept
-                                    TAPPET_REALTIME { return runs(e, state, call); }))
+                                    TAPPET_REALTIME { return run_active(e, state, call); }))
             return false;
         if (e.is(Execution::final_wanted)) [[unlikely]]
             return serves_final();
         if (Table::is_automatic(e)) {
-            switch (finds(e, call)) {
+            switch (find_transition(e, call)) {
             case Found::halted: return false;
             case Found::taken:
                 if (e.is(Execution::final_wanted) && !serves_final()) return false;
@@ -320,7 +321,7 @@ template <class Table> struct Order {
                 return !e.conditions_left_;
             case Found::nothing: break;
             }
-            if (!handles_all(e, call)) return false;
+            if (!handle_all(e, call)) return false;
         } else {
             for (const ActiveState& active : e.status_.states)
                 if (active.run == RunPhase::waits) return false;
