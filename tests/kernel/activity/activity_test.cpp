@@ -9,10 +9,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include <pthread.h>
+#include <unistd.h>
 
 namespace tappet {
 namespace {
@@ -22,6 +25,7 @@ struct Worker {
     std::atomic<int> initialised{0}, started{0}, stepped{0}, stopped{0}, finalised{0};
     std::atomic<int> out_of_turn{0};
     std::atomic<pthread_t> initialiser{}, starter{}, stepper{}, stopper{}, finaliser{};
+    std::atomic<pid_t> stepper_of_system{0};
     std::atomic<bool> hang{false};
     std::atomic<bool> runs{false};
     std::atomic<bool> refuses{false};
@@ -43,6 +47,7 @@ struct Worker {
     }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         stepper = self();
+        TAPPET_ESCAPE("a test asks which thread this is", stepper_of_system = gettid());
         ++stepped;
         if (!runs) ++out_of_turn;
         while (hang) {
@@ -183,6 +188,10 @@ TEST_F(AnActivity, that_hangs_does_not_stop_and_one_that_was_given_up_runs_no_st
     workers[0].hang = false;
     EXPECT_TRUE(activity.is_stopped_within(patience_ms));
     EXPECT_EQ(workers[0].stopped, 0);
+    // Nobody joins it, and it still stands on this test and on the next one's stack.
+    const std::string thread = "/proc/self/task/" + std::to_string(workers[0].stepper_of_system);
+    for (int i = 0; i < patience_ms && std::filesystem::exists(thread); ++i) os::sleep_for(1ms);
+    ASSERT_FALSE(std::filesystem::exists(thread));
 }
 
 TEST_F(AnActivity, answers_each_of_many_threads_that_ask_for_its_components_lives) {
