@@ -20,8 +20,8 @@ public:
     BenchEnd& operator=(const BenchEnd&) = delete;
     virtual ~BenchEnd() = default;
 
-    /// The other end of what the machine's driver opens at that place. The error says what is wrong and how to
-    /// cure it, not which device it is.
+    /// The other end of what the machine's driver opens at that place. The error says what is wrong and how
+    /// to cure it, not which device it is.
     virtual std::expected<void, Sentence> open(const DevicePlace& place) = 0;
     /// For the plant's FarEnd.
     [[nodiscard]] virtual ProvidedDevice provided(std::string_view name) noexcept = 0;

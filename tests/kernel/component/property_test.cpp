@@ -42,8 +42,7 @@ struct Proposed : testing::Test {
     }
     void real(std::string_view name, double value) { set(name, real_setting(value)); }
     std::string range_fault(std::string_view name) {
-        return std::string{
-            check_range(facet(name), transaction.change(index_of(name))).view()};
+        return std::string{check_range(facet(name), transaction.change(index_of(name))).view()};
     }
 };
 
