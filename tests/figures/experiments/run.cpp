@@ -75,10 +75,8 @@ void evaluate(std::span<const Execution> executions, Setting setting, double ns_
         if (setting == Setting::locked || setting == Setting::data) into.exchanges.add(ns(now.exchange));
         if (now.sent != 0) into.sends.add(ns(now.sent));
         const auto serving = static_cast<double>(now.serving);
-        // A command is timed twice: when it is taken up, and when its completion is asked.
-        const std::uint32_t served = setting == Setting::commands ? now.served / 2 : now.served;
-        if (served == 1) into.one_served.add(serving);
-        if (served == 2) into.two_served.add(serving);
+        if (now.served == 1) into.one_served.add(serving);
+        if (now.served == 2) into.two_served.add(serving);
         if (now.served != 0) into.served.add(serving);
     }
 }
