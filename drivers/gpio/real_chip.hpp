@@ -19,6 +19,7 @@ public:
     bool write_safe_lines() noexcept override { return chip_.make_safe(); }
 
 private:
+    std::string_view address_{};
     Lines chip_{};
     PlacedLines lines_{};
 };

@@ -137,6 +137,12 @@ void BenchServer::answer(int client) {
     if (unit != unit_ && unit != MODBUS_TCP_SLAVE) return; // another unit behind the same address
     const auto all = whole();
     to_mapping();
+    // It would answer these and change a copy only.
+    if (const int function = query[header];
+        function == MODBUS_FC_MASK_WRITE_REGISTER || function == MODBUS_FC_WRITE_AND_READ_REGISTERS) {
+        modbus_reply_exception(context_.get(), query, MODBUS_EXCEPTION_ILLEGAL_FUNCTION);
+        return;
+    }
     if (refuses(query + header, length - header)) {
         modbus_reply_exception(context_.get(), query, MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE);
         return;

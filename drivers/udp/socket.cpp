@@ -15,11 +15,16 @@ Socket::~Socket() {
     if (socket_ >= 0) ::close(socket_);
 }
 
+void Socket::make_anew() {
+    if (socket_ >= 0) ::close(socket_);
+    socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+}
+
 std::expected<void, Sentence> Socket::open(std::string_view address, std::uint16_t port) {
     sockaddr_in at;
     if (!read_address(address, port, at))
         return std::unexpected(Sentence{"\"", address, "\" is no IPv4 address; write it as 192.168.7.1"});
-    socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    make_anew();
     if (socket_ < 0 || ::bind(socket_, as_socket_address(at), sizeof at) != 0)
         return std::unexpected(Sentence{std::string_view{std::strerror(errno)},
                                         "; it must be an address of this box, and its port be free"});
@@ -29,7 +34,7 @@ std::expected<void, Sentence> Socket::open(std::string_view address, std::uint16
 std::expected<void, Sentence> Socket::ask(std::string_view address, std::uint16_t port) {
     if (!read_address(address, port, to_))
         return std::unexpected(Sentence{"\"", address, "\" is no IPv4 address; write it as 192.168.7.1"});
-    socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    make_anew();
     if (socket_ < 0 || ::connect(socket_, as_socket_address(to_), sizeof to_) != 0)
         return std::unexpected(Sentence{"no way to ", address, ": ", std::string_view{std::strerror(errno)},
                                         "; is the network up?"});

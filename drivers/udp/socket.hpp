@@ -28,6 +28,8 @@ public:
     bool send(std::span<const std::byte> datagram) noexcept TAPPET_REALTIME override;
 
 private:
+    void make_anew();
+
     int socket_ = -1;
     sockaddr_in to_{}; ///< of no family: to nobody yet
 };

@@ -45,7 +45,6 @@ inline constexpr std::uint32_t functions_per_part = 4;
 /// A component in its engine; what a step needs stands in front.
 struct EnginePart : GatedComponent {
     void (*step)(void* component, const Cycle&) noexcept TAPPET_REALTIME = nullptr; ///< of its type
-    const ComponentType* type = nullptr;
     std::string_view name{};
     LifeRequests requests{};
     // Of one that is asked to stop while its behaviours come to their ends; never: none is.

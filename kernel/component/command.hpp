@@ -70,6 +70,9 @@ struct CommandOperations {
     /// Null: it is done when its action has run.
     CommandProgress (*progress)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
 
+    /// Of a setter or a getter: the `at` of the property's facet.
+    void* (*property)(void* component, std::size_t index) noexcept = nullptr;
+
     [[nodiscard]] CommandProgress ask(GatedComponent& at, std::byte* values) const noexcept TAPPET_REALTIME {
         return progress == nullptr ? CommandProgress::done : progress(at, values);
     }

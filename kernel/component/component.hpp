@@ -5,6 +5,7 @@
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/decimal.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/base/whole_value.hpp"
 #include "kernel/component/device_traffic.hpp"
 #include "kernel/component/interface.hpp"
 #include "kernel/component/life_functions.hpp"
@@ -17,24 +18,30 @@
 
 namespace tappet {
 
-/// What is wrong with a value for that property: out of its range, no number, or none of an enumeration's.
+/// Describes what is wrong with a value for that property: longer than its type, out of its range, not a
+/// number, not a named value of its enumeration, a text that no file keeps. Empty: nothing. Every way to a
+/// property asks here.
 [[nodiscard]] inline Sentence check_range(const Facet& facet, const std::byte* value) noexcept
     TAPPET_REALTIME {
     const PropertyOperations& of = *facet.property;
-    if (of.kind == PropertySetting::Kind::text) return {};
-    const TypeTag& type = *(of.is_list ? of.element : facet.type);
+    const TypeTag& type = *of.element;
+    const Range range = range_of(facet);
+    Sentence text{"property \"", facet.name, "\": "};
+    if (!is_whole(*facet.type, value)) return text.add("is longer than its type; propose a shorter value");
     for (std::size_t i = 0; i < of.size(value); ++i) {
+        if (of.kind == PropertySetting::Kind::text) {
+            const auto* const element = value + i * type.size;
+            if (std::memchr(element, 0, length_in(type, element)) != nullptr)
+                return text.add("holds a zero character, which no file keeps; leave it out");
+            continue;
+        }
         const double number = of.number(value, i);
         if (type.kind == ValueKind::enumeration && !(number >= 0 && number < double(type.names.size())))
-            return Sentence{"property \"",
-                            facet.name,
-                            "\": ",
-                            decimal(number),
-                            " is none of its ",
-                            type.names.size(),
-                            " values; propose one of those that have a name"};
-        if (facet.range.holds(number)) continue;
-        Sentence text{"property \"", facet.name, "\": "};
+            return text.add(decimal(number))
+                .add(" is none of its ")
+                .add(type.names.size())
+                .add(" values; propose one of those that have a name");
+        if (range.holds(number)) continue;
         if (of.is_list) text.add("element ").add(i).add(" ");
         if (!is_number(number)) return text.add("is no number; propose a finite one");
         text.add(number < facet.range.low ? "is under its least value " : "is over its greatest value ");
@@ -191,10 +198,19 @@ constexpr ComponentType describe() {
 template <class T>
 inline constexpr ComponentType component_type = detail::describe<T>();
 
-template <class Owner>
-Sentence detail::change_properties(void* component, std::span<const ProposedValue> values) noexcept
-    TAPPET_REALTIME {
-    return component_type<Owner>.change(component, values);
+inline bool detail::set_property(const ComponentType& type, const CommandOperations& setting, void* component,
+                                 void* property, std::byte* value) noexcept TAPPET_REALTIME {
+    for (std::size_t f = 0; f < type.facets.size(); ++f) {
+        const Facet& facet = type.facets[f];
+        if (facet.kind != FacetKind::property || facet.at != setting.property) continue;
+        const PropertyOperations& of = *facet.property;
+        if (is_whole(*facet.type, value)) of.resize(value, of.size(value)); // nothing hides behind its end
+        const ProposedValue proposed{static_cast<std::byte*>(property), value,
+                                     static_cast<std::uint32_t>(facet.type->size),
+                                     static_cast<std::uint32_t>(f)};
+        return type.change(component, {&proposed, 1}).empty();
+    }
+    return false; // the table's check refuses it
 }
 
 } // namespace tappet

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 #include <string_view>
@@ -162,6 +163,20 @@ struct Facet {
     const PropertyOperations* property = nullptr;
     const TimerOperations* timer = nullptr;
 };
+
+/// A property's range in the numbers that its type has: both ends are in it, although a float rounds them and
+/// a time is a whole number of nanoseconds.
+constexpr Range range_of(const Facet& facet) noexcept TAPPET_REALTIME {
+    const PropertyOperations& of = *facet.property;
+    const Range& range = facet.range;
+    if (of.kind == PropertySetting::Kind::duration) return {range.low - 0.5e-9, range.high + 0.5e-9};
+    if (of.kind != PropertySetting::Kind::real || of.element->size != sizeof(float)) return range;
+    const auto rounded = [](double end) {
+        constexpr double most = std::numeric_limits<float>::max();
+        return end >= -most && end <= most ? double{static_cast<float>(end)} : end;
+    };
+    return {rounded(range.low), rounded(range.high)};
+}
 
 constexpr std::string_view to_text(FacetKind kind) noexcept {
     switch (kind) {

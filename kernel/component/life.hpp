@@ -39,6 +39,8 @@ template <>
 inline constexpr auto names_of<ComponentState> = std::array<std::string_view, 7>{
     "inactive", "waiting", "starting", "running", "stopping", "stopped", "failed"};
 
+struct ComponentType; ///< component.hpp
+
 using AtomicComponentState = std::atomic<ComponentState>;
 static_assert(AtomicComponentState::is_always_lock_free);
 
@@ -88,6 +90,7 @@ public:
     }
 
     AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
+    const ComponentType* type = nullptr;                  ///< of the table's row; set before anybody enters
     /// By turns with others (thesis 3.1.3): it stands, its outputs are shut, and its peers may ask it.
     std::atomic<bool> waits_for_its_turn{false};
     std::atomic<std::uint32_t> dropped{0};        ///< synchronous reactions that were not let in

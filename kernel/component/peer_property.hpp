@@ -10,59 +10,53 @@
 //     uses("tuner.set", "pump.set_limit"), uses("tuner.get", "pump.get_limit")
 #pragma once
 
-#include "kernel/base/text.hpp"
 #include "kernel/component/operation_interface.hpp"
-#include "kernel/component/proposal.hpp"
 
 #include <array>
 #include <cstring>
-#include <span>
 
 namespace tappet {
 
 namespace detail {
 
-/// ComponentType::change; component.hpp has it.
-template <class Owner>
-Sentence change_properties(void* component, std::span<const ProposedValue> values) noexcept TAPPET_REALTIME;
+/// Changes the property by the type of the component in the table, whichever class declares the member; see
+/// component.hpp. `value` is aligned and may be changed.
+bool set_property(const ComponentType& type, const CommandOperations& setting, void* component,
+                  void* property, std::byte* value) noexcept TAPPET_REALTIME;
 
 /// Commands of the property behind a member. They run in the owner's engine, between two of its steps.
 template <auto Member>
 struct PeerProperty {
     using M = MemberOf<Member>;
-    using Owner = typename M::Component;
     using Value = typename M::Type::Value;
 
-    static constexpr std::size_t facet() noexcept {
-        const auto& facets = full_facets<Owner>();
-        std::size_t at = 0;
-        while (at < facets.size() && !(facets[at].kind == FacetKind::property && facets[at].at == &M::at))
-            ++at;
-        return at;
+    static auto& property_of(void* component) noexcept TAPPET_REALTIME {
+        return static_cast<typename M::Component*>(component)->*Member;
     }
-    static bool set(void* component, std::byte* values) noexcept TAPPET_REALTIME {
-        constexpr std::size_t index = facet();
-        static_assert(index < full_facets<Owner>().size(),
-                      "a setter names a property that stands in its component's interface(), not in a bag");
-        auto& property = static_cast<Owner*>(component)->*Member;
+    static bool set(GatedComponent& gate, std::byte* values) noexcept TAPPET_REALTIME {
         alignas(Value) std::array<std::byte, sizeof(Value)> value; // what was sent is packed
         std::memcpy(value.data(), values, sizeof(Value));
-        const ProposedValue proposed{static_cast<std::byte*>(static_cast<void*>(&property)), value.data(),
-                                     sizeof(Value), static_cast<std::uint32_t>(index)};
-        return change_properties<Owner>(component, {&proposed, 1}).empty();
+        bool taken = false;
+        const bool entered = gate.enter(Entry::queued, [&](void* component) noexcept TAPPET_REALTIME {
+            taken = set_property(*gate.type, setting, component, static_cast<void*>(&property_of(component)),
+                                 value.data());
+        });
+        return entered && taken;
     }
     static bool get(void* component, std::byte* values) noexcept TAPPET_REALTIME {
-        std::memcpy(values, &(static_cast<const Owner*>(component)->*Member).get(), sizeof(Value));
+        std::memcpy(values, &property_of(component).get(), sizeof(Value));
         return true;
     }
     static constexpr CommandOperations setting{.arguments = type_id<Arguments<Value>>,
                                                .results = type_id<Arguments<>>,
                                                .argument_bytes = sizeof(Value),
-                                               .begin = &GatedCommand<&set, nullptr>::begin};
+                                               .begin = &set,
+                                               .property = &M::at};
     static constexpr CommandOperations getting{.arguments = type_id<Arguments<>>,
                                                .results = type_id<Arguments<Value>>,
                                                .result_bytes = sizeof(Value),
-                                               .begin = &GatedCommand<&get, nullptr>::begin};
+                                               .begin = &GatedCommand<&get, nullptr>::begin,
+                                               .property = &M::at};
 };
 
 } // namespace detail

@@ -4,6 +4,7 @@
 
 #include "kernel/base/number.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/base/whole_value.hpp"
 #include "kernel/system/rows.hpp"
 
 #include <cmath>
@@ -20,6 +21,7 @@ struct WireValue {
     bool is_real = false;  ///< and as it is
     bool has_time = false; ///< behind it stands when it was true
     double step = 1;
+    TypeId type = nullptr; ///< of a value that crosses as it is
     constexpr bool operator==(const WireValue&) const = default;
 
     /// In a frame: whether it is valid, the value, and its time.
@@ -53,6 +55,7 @@ constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& 
     if (encoding.bits == 0) {
         if (type->kind == ValueKind::boolean) value.kind = ValueKind::boolean, value.bits = 1;
         value.is_real = type->kind == ValueKind::real;
+        if (value.kind == ValueKind::opaque) value.type = type;
         return value;
     }
     const bool is_number = (type->kind == ValueKind::integer || type->kind == ValueKind::natural ||
@@ -170,7 +173,7 @@ constexpr bool age_of_time(std::uint64_t told, Time now, Duration clocks_differ,
     return Duration{(turn - steps) * time_step_ns} <= clocks_differ + Duration{2 * time_step_ns};
 }
 
-/// The way back. False: it is no number.
+/// The way back. False: it is no number, or longer than its type.
 inline bool hear(std::span<const std::uint8_t> from, std::size_t at, const WireValue& as,
                  std::byte* value) noexcept TAPPET_REALTIME {
     if (as.kind == ValueKind::boolean) {
@@ -181,7 +184,7 @@ inline bool hear(std::span<const std::uint8_t> from, std::size_t at, const WireV
     if (as.kind == ValueKind::opaque) {
         for (std::size_t i = 0; i < as.bytes; ++i)
             value[i] = static_cast<std::byte>(take_bits(from, at + 8 * i, 8));
-        return !as.is_real || is_number(real_at(value, as.bytes));
+        return is_whole(*as.type, value) && (!as.is_real || is_number(real_at(value, as.bytes)));
     }
     auto steps = static_cast<std::int64_t>(take_bits(from, at, as.bits));
     if (as.is_signed && (steps >> (as.bits - 1) & 1) != 0) steps -= std::int64_t{1} << as.bits;

@@ -50,7 +50,7 @@ struct Probe {
     static void wake(void* self) noexcept {
         Probe& own = *static_cast<Probe*>(self);
         Time due = os::Clock::monotonic() + wakes_every;
-        for (; due < own.until; due += wakes_every) {
+        for (; due < own.until && own.loaded->load(std::memory_order_relaxed); due += wakes_every) {
             const std::int64_t ns = to_ns(due);
             const timespec at{ns / 1'000'000'000, ns % 1'000'000'000};
             while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr) != 0) {

@@ -82,15 +82,8 @@ constexpr Sentence check_proof(const MachineView& m, const Board& board, const P
     return {};
 }
 
-constexpr Sentence check_devices(const MachineView& m, const Board& board, const Binding& binding) {
-    if (binding.too_many)
-        return Sentence{"binding to board \"", board.name,
-                        "\": it has more rows than a binding holds: 16 devices, 256 words of them, 64 "
-                        "placements; raise the bound in "
-                        "kernel/machine/table/binding.hpp"};
-    for (const BoardDevice& device : board.devices)
-        if (Sentence fault = check_words(device.facts, device.kind); !fault.empty())
-            return Sentence{"board \"", board.name, "\", device \"", device.name, "\": ", fault};
+/// Of each row by itself: its device stands on the board, and is of its kind.
+constexpr Sentence check_each_device(const MachineView& m, const Board& board, const Binding& binding) {
     for (std::size_t c = 0; c < m.components.size(); ++c) {
         const ComponentRow& row = m.components[c];
         if (row.type->device_kind == nullptr) continue;
@@ -121,6 +114,19 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board, const
             !fault.empty())
             return of_component(row.name, ": ", fault);
     }
+    return {};
+}
+
+constexpr Sentence check_devices(const MachineView& m, const Board& board, const Binding& binding) {
+    if (binding.too_many)
+        return Sentence{"binding to board \"", board.name,
+                        "\": it has more rows than a binding holds: 16 devices, 256 words of them, 64 "
+                        "placements; raise the bound in "
+                        "kernel/machine/table/binding.hpp"};
+    for (const BoardDevice& device : board.devices)
+        if (Sentence fault = check_words(device.facts, device.kind); !fault.empty())
+            return Sentence{"board \"", board.name, "\", device \"", device.name, "\": ", fault};
+    if (Sentence fault = check_each_device(m, board, binding); !fault.empty()) return fault;
     const auto address_of = [&board](const BoundDevice& bound) {
         const BoardDevice* device = find_named(board.devices, bound.at);
         return device != nullptr && !device->address.empty() ? device->address : bound.at;

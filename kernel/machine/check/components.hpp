@@ -95,6 +95,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
         if (Sentence fault = check_life(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
         if (Sentence fault = check_bags(row); !fault.empty()) return fault;
+        if (Sentence fault = check_setters(row); !fault.empty()) return fault;
         if (Sentence fault = check_properties_file(m, row); !fault.empty()) return fault;
         if (row.type->device_kind != nullptr && row.device.empty())
             return of_component(row.name, " drives a ", row.type->device_kind->name,

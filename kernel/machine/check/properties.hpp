@@ -135,11 +135,21 @@ constexpr Sentence check_value(const ComponentRow& row, std::string_view name, c
                                                                    .add(" characters; shorten it");
     if (wanted.kind == Kind::integer && (setting.integer < wanted.least || setting.integer > wanted.most))
         return sets().add("more than ").add(wanted.element->name).add(" holds; set a value it can hold");
-    const double value = value_of(setting);
+    if (const std::size_t names = wanted.element->names.size();
+        wanted.kind == Kind::enumeration && names != 0)
+        if (setting.integer < 0 || static_cast<std::uint64_t>(setting.integer) >= names)
+            return sets()
+                .add("none of the ")
+                .add(names)
+                .add(" values of ")
+                .add(wanted.element->name)
+                .add(" that have a name; set one of them");
+    double value = value_of(setting);
     if (!is_number(value)) return sets().add("no number; set a finite one");
     if (wanted.kind == Kind::real && !holds(*wanted.element, value))
         return sets().add("more than ").add(wanted.element->name).add(" holds; set a value it can hold");
-    if (facet.range.holds(value)) return {};
+    if (wanted.kind == Kind::real && wanted.element->size == sizeof(float)) value = static_cast<float>(value);
+    if (range_of(facet).holds(value)) return {};
     Sentence text = sets();
     if (value < facet.range.low)
         text.add("under its least value ").add(decimal(facet.range.low));
@@ -185,6 +195,34 @@ constexpr Sentence check_settings(const ComponentRow& row) {
             if (same_text(row.settings[j].name, setting.name))
                 return of_component(row.name, " sets property \"", setting.name, "\" twice; keep one");
         if (Sentence fault = check_setting(row, setting); !fault.empty()) return fault;
+    }
+    return {};
+}
+
+/// A setter and a getter are of a property of this component, and each property stands in its interface once:
+/// otherwise nothing would say whose range counts.
+constexpr Sentence check_setters(const ComponentRow& row) {
+    const auto& facets = row.type->facets;
+    const auto is_of = [&](std::size_t f, void* (*at)(void*, std::size_t) noexcept, std::size_t index) {
+        return facets[f].kind == FacetKind::property && facets[f].at == at && facets[f].index == index;
+    };
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        const Facet& facet = facets[f];
+        if (facet.kind == FacetKind::property)
+            for (std::size_t other = 0; other < f; ++other)
+                if (is_of(other, facet.at, facet.index))
+                    return of_component(
+                        row.name, ": its properties \"", facets[other].name, "\" and \"", facet.name,
+                        "\" are one member; remove one of them from the interface of ", row.type->tag->name);
+        if (facet.kind != FacetKind::command || facet.command->property == nullptr) continue;
+        bool found = false;
+        for (std::size_t other = 0; other < facets.size(); ++other)
+            found = found || is_of(other, facet.command->property, 0);
+        if (!found)
+            return of_component(row.name, ": its command \"", facet.name,
+                                "\" sets or gets a member that is no property of it; add property<..>(..) to "
+                                "the interface of ",
+                                row.type->tag->name);
     }
     return {};
 }

@@ -13,6 +13,30 @@ struct Named : Tension {
     }
 };
 
+enum class Gate { open, shut };
+template <> inline constexpr auto tappet::names_of<Gate> = std::array<std::string_view, 2>{"open", "shut"};
+struct Gated : Tension {
+    Property<Gate> gate{Gate::shut};
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      property<&Gated::gate>("gate", "", "of the warp"));
+    }
+};
+struct Twice : Tension {
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      property<&Tension::wanted_n>("wanted", "N", "of the warp"),
+                      property<&Tension::wanted_n>("wish", "N", "of the warp"));
+    }
+};
+
+struct Peerless : Tension {
+    static constexpr auto interface() {
+        return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
+                      setter<&Tension::wanted_n>("set_wanted", "by a peer"));
+    }
+};
+
 namespace {
 
 struct Noted : Tension {
@@ -66,6 +90,9 @@ constexpr Fault setting_faults[] = {
      R"(loom: component "shaft" sets more than 24 properties; give the others their default in the component)"},
     {"property_duration", [](Table& m) { m.put(component<Shaft>("shaft", set("filter", 2))); },
      R"(loom: component "shaft" sets property "filter" to 2, but it is a time; write it with its unit, like 2ms)"},
+    {"property_enumerator",
+     [](Table& m) { m.put(component<Gated>("tension", set("gate", static_cast<Gate>(7)))); },
+     R"(loom: component "tension" sets property "gate" to Gate 7, which is none of the 2 values of Gate that have a name; set one of them)"},
     {"property_enumeration", [](Table& m) { m.put(component<Shaft>("shaft", set("turn", 1))); },
      R"(loom: component "shaft" sets property "turn" to 1, but it is an enumeration; write a value of small::Turn)"},
     {"property_range", [](Table& m) { m.put(component<Shaft>("shaft", set("gain", 12.5))); },
@@ -109,6 +136,10 @@ constexpr Fault declaration_faults[] = {
      R"(loom: component "tension": its property "wanted.n" has a dot in its name; put it into a bag(...) in Named)"},
     {"properties_too_many", [](Table& m) { m.put(component<Noted>("tension")); },
      R"(loom: component "tension" has 1 properties of 2064 bytes, but a transaction holds 64 of 2048; divide the component)"},
+    {"property_under_two_names", [](Table& m) { m.put(component<Twice>("tension")); },
+     R"(loom: component "tension": its properties "wanted" and "wish" are one member; remove one of them from the interface of Twice)"},
+    {"setter_of_no_property", [](Table& m) { m.put(component<Peerless>("tension")); },
+     R"(loom: component "tension": its command "set_wanted" sets or gets a member that is no property of it; add property<..>(..) to the interface of Peerless)"},
     {"bag_of_an_operation", [](Table& m) { m.put(component<Deeds>("tension")); },
      R"(loom: component "tension": its bag "deeds" holds "deeds.stop", which is an operation; a bag holds properties and bags)"},
 };

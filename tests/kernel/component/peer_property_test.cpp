@@ -36,6 +36,39 @@ struct Pump {
     }
 };
 
+/// Inherits the member, and states less of it.
+struct SmallPump : Pump {
+    Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
+        return proposal.of(limit) == 3.0 ? Sentence{"not that one"} : Sentence{};
+    }
+    void changed() noexcept TAPPET_REALTIME { changes += 100; }
+    static constexpr auto interface() {
+        return facets(property<&SmallPump::limit>("most", "bar", "of the pressure", range(0, 5)),
+                      setter<&SmallPump::limit>("set_limit", "by a peer"),
+                      getter<&SmallPump::limit>("get_limit", "for a peer"));
+    }
+};
+
+struct Recipe {
+    Property<Sequence<double, 4>> steps{};
+    Property<Text<8>> name{};
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(property<&Recipe::steps>("steps", "mm", "of the cut", range(0, 10)),
+                      property<&Recipe::name>("name", "", "of the part"),
+                      setter<&Recipe::steps>("set_steps", "by a peer"),
+                      setter<&Recipe::name>("set_name", "by a peer"));
+    }
+};
+struct Desk {
+    CommandCall<Sequence<double, 4>> steps;
+    CommandCall<Text<8>> name;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(sends<&Desk::steps>("steps", "of the cut"), sends<&Desk::name>("name", "of the part"));
+    }
+};
+
 struct Tuner {
     CommandCall<double> set;
     CommandCall<double&> get;
@@ -52,15 +85,18 @@ struct Tuner {
 
 // clang-format off
 constexpr auto table = machine("pressure",
-    components(component<Pump>("pump"), component<Tuner>("tuner"), component<Tuner>("near")),
+    components(component<Pump>("pump"), component<Tuner>("tuner"), component<Tuner>("near"),
+               component<SmallPump>("small"), component<Tuner>("careful"), component<Recipe>("recipe"), component<Desk>("desk")),
     activities(
-        activity("fast", every(1ms),  budget(50us), runs("pump", "near")),
+        activity("fast", every(1ms),  budget(50us), runs("pump", "near", "small", "careful", "recipe", "desk")),
         activity("slow", every(10ms), budget(50us), runs("tuner"))),
     connections(),
     reactions(
         uses("tuner.set", "pump.set_limit"), uses("tuner.get", "pump.get_limit"),
         uses("tuner.set_mode", "pump.set_mode"), uses("tuner.get_mode", "pump.get_mode"),
-        uses("near.set", "pump.set_limit"), uses("near.get", "pump.get_limit")),
+        uses("near.set", "pump.set_limit"), uses("near.get", "pump.get_limit"),
+        uses("careful.set", "small.set_limit"), uses("careful.get", "small.get_limit"),
+        uses("desk.steps", "recipe.set_steps"), uses("desk.name", "recipe.set_name")),
     behaviours());
 // clang-format on
 
@@ -135,6 +171,51 @@ TEST_F(RunningMode, of_an_enumeration_is_one_of_its_values) {
     pass(20ms);
     EXPECT_EQ(tuner.set_mode.state(), CommandState::rejected);
     EXPECT_EQ(pump.mode.get(), Mode::fast);
+}
+
+/// Sends and lets it be served.
+struct Served : testing::Test, RunningRig<table> {
+    template <class Call, class... Values> CommandState send(Call& call, const Values&... values) {
+        EXPECT_TRUE(call.reset());
+        EXPECT_TRUE(call.send(values...));
+        EXPECT_TRUE(run(20ms));
+        return call.state();
+    }
+};
+
+TEST_F(Served, inherited_property_is_set_by_the_rules_of_the_component_in_the_table) {
+    auto& small = the<SmallPump>("small");
+    auto& careful = the<Tuner>("careful");
+    const int configured = small.changes;
+    EXPECT_EQ(send(careful.set, 6.0), CommandState::rejected) << "its own range, not the base's";
+    EXPECT_EQ(send(careful.set, 3.0), CommandState::rejected) << "its own consent";
+    EXPECT_EQ(small.changes, configured);
+    EXPECT_EQ(send(careful.set, 2.5), CommandState::done);
+    EXPECT_EQ(small.limit.get(), 2.5);
+    EXPECT_EQ(small.changes, configured + 100) << "its own changed()";
+}
+
+TEST_F(Served, list_that_is_longer_than_its_type_is_rejected) {
+    auto& recipe = the<Recipe>("recipe");
+    Sequence<double, 4> list{{1.0, 2.0, 3.0, std::numeric_limits<double>::quiet_NaN()}, 3};
+    EXPECT_EQ(send(the<Desk>("desk").steps, list), CommandState::done) << "behind its end may stand anything";
+    EXPECT_EQ(recipe.steps.get().size(), 3u);
+    EXPECT_EQ(recipe.steps.get().items[3], 0.0) << "but it is not kept";
+    for (const std::size_t wild : {std::size_t{5}, std::size_t{1} << 30, ~std::size_t{0}}) {
+        list.used = wild;
+        EXPECT_EQ(send(the<Desk>("desk").steps, list), CommandState::rejected) << wild;
+        EXPECT_EQ(recipe.steps.get().size(), 3u);
+    }
+}
+
+TEST_F(Served, text_that_is_longer_than_its_type_or_that_no_file_keeps_is_rejected) {
+    auto& recipe = the<Recipe>("recipe");
+    EXPECT_EQ(send(the<Desk>("desk").name, Text<8>{"plate"}), CommandState::done);
+    Text<8> wild{"wild"};
+    wild.length = 0x0fff'ffff;
+    EXPECT_EQ(send(the<Desk>("desk").name, wild), CommandState::rejected);
+    EXPECT_EQ(send(the<Desk>("desk").name, Text<8>{"a\0b"}), CommandState::rejected);
+    EXPECT_EQ(recipe.name.get().view(), "plate");
 }
 
 } // namespace

@@ -46,6 +46,29 @@ struct Proposed : testing::Test {
     }
 };
 
+struct Ends {
+    Property<float> share{0.05f};
+    Property<Duration> pause{1ms};
+    static constexpr auto interface() {
+        return facets(property<&Ends::share>("share", "", "of all", range(0.05, 0.1)),
+                      property<&Ends::pause>("pause", "s", "between two", range(0.009, 0.018)));
+    }
+};
+
+TEST(Range, has_both_its_ends_although_a_float_rounds_them_and_a_second_has_nanoseconds) {
+    const auto fault = [](std::size_t facet, const auto& value) {
+        const auto* const bytes = static_cast<const std::byte*>(static_cast<const void*>(&value));
+        return std::string{check_range(component_type<Ends>.facets[facet], bytes).view()};
+    };
+    EXPECT_EQ(fault(0, 0.1f), "");
+    EXPECT_EQ(fault(0, 0.05f), "");
+    EXPECT_NE(fault(0, std::nextafter(0.1f, 1.0f)), "");
+    EXPECT_EQ(fault(1, Duration{9ms}), "");
+    EXPECT_EQ(fault(1, Duration{18ms}), "");
+    EXPECT_NE(fault(1, Duration{18ms + 1ns}), "");
+    EXPECT_NE(fault(1, Duration{9ms - 1ns}), "");
+}
+
 TEST(Bag, gives_each_property_in_it_its_whole_name) {
     std::vector<std::string> names;
     for (const Facet& each : type.facets) names.emplace_back(each.name);

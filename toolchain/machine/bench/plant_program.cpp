@@ -4,7 +4,7 @@
 #include "drivers/hardware/opened.hpp"
 #include "drivers/plant/bench_kinds.hpp"
 #include "kernel/base/value_text.hpp"
-#include "kernel/machine/accept.hpp"
+#include "kernel/machine/check/board.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/notify.hpp"
 
@@ -278,9 +278,10 @@ int run_plant(const MachineView& machine, const Board& board, const Binding& bin
             return fail(Sentence{"option ", option, " is unknown; see --help"});
         if (!fault.empty()) return fail(Sentence{"option ", option, ": ", fault});
     }
-    // Its ends are opened where the binding says: so the table must fit here, too.
-    if (const Accepted accepted{machine, board, binding}; !accepted.refusal().empty())
-        return fail(accepted.refusal());
+    // Its ends are opened where the binding says. Not the whole table: nobody runs it here, and it may be no
+    // more than the wires of several machines.
+    if (const Sentence fault = checks::check_each_device(machine, board, binding); !fault.empty())
+        return fail(Sentence{machine.name, ": ", fault});
     listen_to_signals();
     BenchWires wires;
     if (const Sentence fault = wires.open(machine, board, binding); !fault.empty()) return fail(fault);
