@@ -4,6 +4,7 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/type_tag.hpp"
 
+#include <array>
 #include <cstring>
 
 namespace tappet {
@@ -16,32 +17,58 @@ inline std::uint64_t length_in(const TypeTag& type, const std::byte* value) noex
     return length;
 }
 
-/// False when a text or a sequence in the value is longer than its type. Looks into records and lists; not
-/// into a struct without named fields. Bounded by the type. Real-time.
+/// Returns false when a text or a sequence in the value is longer than its type. Looks into records and
+/// lists, eight levels deep; not into a struct without named fields. Bounded by the type, without recursion.
+/// Real-time.
 inline bool is_whole(const TypeTag& type, const std::byte* value) noexcept TAPPET_REALTIME {
-    std::uint64_t elements = 0;
-    switch (type.kind) {
-    case ValueKind::text: return length_in(type, value) <= type.columns;
-    case ValueKind::sequence:
-        elements = length_in(type, value);
-        if (elements > type.columns) return false;
-        break;
-    case ValueKind::matrix: elements = type.rows * type.columns; break;
-    case ValueKind::record:
-        for (const RecordField& field : type.fields)
-            if (!is_whole(*field.type, value + field.offset())) return false;
-        return true;
-    case ValueKind::arguments:
-        for (const TypeId each : type.elements) {
-            if (!is_whole(*each, value)) return false;
-            value += each->size;
+    struct Visit {
+        const TypeTag* of; ///< whose parts are looked at one after the other
+        const std::byte* at;
+        std::uint64_t parts;
+        std::uint64_t seen = 0;
+    };
+    std::array<Visit, 8> open;
+    std::size_t depth = 0;
+    // Looks at a value, and notes its parts. False: too long, or too deep.
+    const auto enter = [&](const TypeTag& of, const std::byte* at) noexcept TAPPET_REALTIME {
+        std::uint64_t parts = 0;
+        switch (of.kind) {
+        case ValueKind::text: return length_in(of, at) <= of.columns;
+        case ValueKind::sequence:
+            parts = length_in(of, at);
+            if (parts > of.columns) return false;
+            break;
+        case ValueKind::matrix: parts = of.rows * of.columns; break;
+        case ValueKind::record: parts = of.fields.size(); break;
+        case ValueKind::arguments: parts = of.elements.size(); break;
+        default: return true;
         }
+        if (parts == 0 || (of.element != nullptr && of.element->kind < ValueKind::text)) return true;
+        if (depth == open.size()) return false;
+        open[depth++] = {&of, at, parts};
         return true;
-    default: return true;
+    };
+    if (!enter(type, value)) return false;
+    while (depth != 0) {
+        Visit& now = open[depth - 1];
+        if (now.seen == now.parts) {
+            --depth;
+            continue;
+        }
+        const std::uint64_t part = now.seen++;
+        const TypeTag* of = now.of->element;
+        const std::byte* at = now.at;
+        if (now.of->kind == ValueKind::record) {
+            of = now.of->fields[part].type;
+            at += now.of->fields[part].offset();
+        } else if (now.of->kind == ValueKind::arguments) { // packed one after the other
+            of = now.of->elements[part];
+            now.at += of->size;
+        } else {
+            at += part * of->size;
+        }
+        if (!enter(*of, at)) return false;
     }
-    if (type.element->kind < ValueKind::text) return true;
-    for (std::uint64_t i = 0; i < elements; ++i)
-        if (!is_whole(*type.element, value + i * type.element->size)) return false;
     return true;
 }
 
