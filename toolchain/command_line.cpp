@@ -1,4 +1,4 @@
-// Reads command lines and writes their help.
+// Parses command lines and writes their help.
 #include "toolchain/command_line.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -10,7 +10,7 @@ namespace tappet {
 
 namespace {
 
-/// Empty: the word is a value of the option.
+/// Returns what is wrong with the word; empty when it is a value of the option.
 std::string fault_in(const Option& option, std::string_view word) {
     if (!option.is_number) return {};
     const std::string head = "option " + std::string{option.name} + ": \"" + std::string{word} + "\" is not ";

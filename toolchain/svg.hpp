@@ -1,5 +1,5 @@
-// A picture that a machine's host program draws of a run, written as SVG: lines, circles and characters only,
-// so that any browser shows it.
+// A picture of a run, drawn by a machine's host program as SVG: lines, circles and characters only, so that
+// any browser shows it.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace tappet {
 
-/// On white; px.
+/// White background; units are px.
 class Svg {
 public:
     Svg(double width, double height) {
@@ -49,7 +49,7 @@ public:
         raw("<text").at("x", x).at("y", y);
         return raw(" ").raw(style).raw(">").raw(characters).raw("</text>\n");
     }
-    /// The whole document; nothing is left.
+    /// Returns the whole document and leaves this object empty.
     [[nodiscard]] std::string take() {
         raw("</svg>\n");
         return std::move(text_);

@@ -1,4 +1,4 @@
-// The press as a whole: the states of its axis as PLCopen names them, its drive, its lamp.
+// The press as a machine: the states of its axis in PLCopen's names, its drive, its lamp.
 #pragma once
 
 #include "apps/bearing_press/maps.hpp"
@@ -11,7 +11,7 @@
 
 namespace bearing_press {
 
-/// Process component: it reads all, says which chain shall run, and leads the drive. Real-time, periodic.
+/// Process component: reads all inputs, selects the control chain, and leads the drive. Real-time, periodic.
 struct Axis {
     Input<std::int64_t> statusword;
     Input<double> position, velocity;
@@ -31,10 +31,10 @@ struct Axis {
         follows_ = canopen::drive_state(status) == canopen::DriveState::operation_enabled;
         if (in_flight(run.state())) return;
         if (asked_ != wanted_ &&
-            (follows_ || !needs_power_)) { // a drive without power would be led, and jump
+            (follows_ || !needs_power_)) { // a led drive without power would jump once enabled
             run.reset();
             if (run.send(wanted_)) asked_ = wanted_;
-        } else if (run.state() == CommandState::done && tells_ != nullptr) { // only who runs hears it
+        } else if (run.state() == CommandState::done && tells_ != nullptr) { // only a running chain hears it
             tells_->emit(value_);
             tells_ = nullptr;
         }
@@ -45,13 +45,13 @@ struct Axis {
     }
 
     // ---- entries
-    /// What moves meanwhile is not counted by anybody.
+    /// Clears is_homed: nobody counts the motion of a disabled drive.
     void disable() noexcept TAPPET_REALTIME {
         is_homed.write(false);
         become(canopen::DriveGoal::quick_stop, "off");
     }
     void halt() noexcept TAPPET_REALTIME { become(canopen::DriveGoal::enabled, "stand"); }
-    /// Towards the edge of the home switch, from whichever side.
+    /// Moves towards the edge of the home switch, from either side.
     void seek() noexcept TAPPET_REALTIME {
         become(canopen::DriveGoal::enabled, "jog", &jog_at, home.get() ? homing_speed : -homing_speed);
     }
@@ -63,7 +63,7 @@ struct Axis {
     void go_up() noexcept TAPPET_REALTIME { go_to(rest); }
     void press() noexcept TAPPET_REALTIME { become(canopen::DriveGoal::enabled, "press"); }
 
-    // ---- of transitions
+    // ---- effects of transitions
     void acknowledge() noexcept TAPPET_REALTIME { drive_.acknowledge(); }
     void take_zero() noexcept TAPPET_REALTIME {
         zero_ = position.get();
@@ -82,7 +82,7 @@ struct Axis {
     [[nodiscard]] bool may_cycle() noexcept TAPPET_REALTIME {
         return may_move() && is_homed.last() && !at_end();
     }
-    /// The button is let go, or the slide is at the end to which it leads.
+    /// Returns true when the button is released or the slide is at the end towards which it moves.
     [[nodiscard]] bool jogs_no_more() noexcept TAPPET_REALTIME {
         return jogs_down_ ? !down.get() || lower_end.get() : !up.get() || upper_end.get();
     }
@@ -91,7 +91,7 @@ struct Axis {
                run.state() == CommandState::rejected;
     }
     [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME { return has_failed() || at_end(); }
-    /// Empty: nothing stands in the way of a start.
+    /// Returns what prevents a start; empty when nothing does.
     [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
         if (lines_faulted.get()) return "the lines cannot be relied on";
         if (bus_faulted.get()) return "the CAN bus cannot be relied on";
@@ -128,7 +128,7 @@ private:
         drive_.want(goal);
         needs_power_ = goal == canopen::DriveGoal::enabled;
         lamp.write(goal == canopen::DriveGoal::enabled);
-        asked_ = {};                              // anew, also the same: it may have fallen back meanwhile
+        asked_ = {}; // sends the same chain again too: it may have fallen back meanwhile
         static_cast<void>(wanted_.assign(chain)); // shorter than any text
         tells_ = tells;
         value_ = value;
@@ -140,7 +140,7 @@ private:
 
     canopen::DriveControl drive_{};
     ScriptText wanted_{}, asked_{};
-    Event<double>* tells_ = nullptr; ///< what the chain is told when it runs
+    Event<double>* tells_ = nullptr; ///< event for the chain, sent when it runs
     double value_ = 0.0;
     bool follows_ = false, needs_power_ = false, jogs_down_ = false;
     double zero_ = 0.0;
@@ -156,7 +156,7 @@ inline constexpr auto axis_states = state_machine<Axis>("axis_states",
         state("Homing",           entry<&Axis::seek>),
         state("ContinuousMotion", entry<&Axis::jog>),
         state("DiscreteMotion",   entry<&Axis::go_down>), // down to the bearing
-        state("Pressing",         entry<&Axis::press>),   // led by force
+        state("Pressing",         entry<&Axis::press>),   // controlled by force
         state("Returning",        entry<&Axis::go_up>),
         state("Stopping",         entry<&Axis::halt>),
         state("ErrorStop",        entry<&Axis::disable>),

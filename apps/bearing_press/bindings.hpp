@@ -1,4 +1,4 @@
-// Where the press's devices and lines stand on each board.
+// Maps the press's devices and lines to each board.
 #pragma once
 
 #include "drivers/gpio/kind.hpp"
@@ -17,7 +17,7 @@ inline constexpr Binding bench = binding(wired("axis-can", "can0"), panel);
 inline constexpr Binding ipc_x86_64 = binding(wired("axis-can", "can0"), panel, place("can", 3),
                                               place("loops", 3), place("io", 3), place("browser", 0));
 
-// The processors are four there, too.
+// This board also has four processors.
 inline constexpr Binding ipc_aarch64 = ipc_x86_64;
 
 } // namespace bearing_press::bindings

@@ -1,5 +1,5 @@
-// The controllers of the press: one axis under a position and a velocity loop, or led by the force it lacks.
-// Down is positive.
+// The controllers of the press: one axis under a position and a velocity loop, or controlled by the force
+// error. Down is positive.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -19,13 +19,13 @@ inline constexpr motion::AxisLimits slide{.velocity = 0.2, .acceleration = 2.0, 
 
 /// The highest speed of the drive, m/s. Each path asks for less.
 inline constexpr double fastest = 0.25;
-/// A speed that the drive can have; 0 when it is no number. A loop that takes over begins with what was sent,
-/// and somebody may have forced that.
+/// Returns a speed within the drive's limits; 0 when `speed` is not a number. A loop that takes over starts
+/// from the last sent value, and somebody may have forced that value.
 constexpr double speed_of_drive(double speed) noexcept TAPPET_REALTIME {
     return is_number(speed) ? std::clamp(speed, -fastest, fastest) : 0.0;
 }
 
-/// Estimator: how fast the slide is.
+/// Estimator: the velocity of the slide.
 struct Speed {
     Input<double> position;
     Output<double> velocity;
@@ -48,7 +48,7 @@ private:
     motion::AlphaBeta filter_{gains};
 };
 
-/// Generator: wherever the slide is, there it shall be; for a drive without power.
+/// Generator: the set point is the slide's own position; for a drive without power.
 struct Idle {
     Input<double> position;
     Output<double> target, speed;
@@ -65,7 +65,7 @@ struct Idle {
     }
 };
 
-/// Generator: comes to rest from whatever speed, and stays there.
+/// Generator: brakes from any speed to rest and stays there.
 struct Standing {
     Input<double> position, sent;
     Output<double> target, speed;
@@ -94,7 +94,7 @@ private:
     Time began_{};
 };
 
-/// Generator: on at a constant speed, until another one takes over.
+/// Generator: keeps a constant speed until another generator takes over.
 struct Jogging {
     Input<double> position, sent;
     Output<double> target, speed;
@@ -129,7 +129,7 @@ private:
     double at_ = 0.0, speed_ = 0.0, wanted_ = 0.0;
 };
 
-/// Generator: from rest to a place, with bounded jerk.
+/// Generator: moves from rest to a position with bounded jerk.
 struct Path {
     Input<double> position;
     Output<double> target, speed;
@@ -151,7 +151,7 @@ struct Path {
         arrived.emit();
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
-    /// From rest; on the way to another place it is not heard.
+    /// Plans a path from rest to `place`. Ignored while another path is under way.
     void aim(double place) noexcept TAPPET_REALTIME {
         const auto planned = motion::jerk_limited(target.last(), place, slide);
         if (is_under_way_ || !planned) return;
@@ -172,7 +172,7 @@ private:
     bool is_under_way_ = false, begins_ = false;
 };
 
-/// Controller of places: proportional, and the speed of the path beforehand.
+/// Position controller: proportional, with the path's speed fed forward.
 struct Place {
     Input<double> target, speed, position, sent;
     Output<double> velocity;
@@ -197,12 +197,12 @@ private:
     [[nodiscard]] double wanted() noexcept TAPPET_REALTIME {
         const double all = speed.get() + kp.get() * (target.get() - position.get());
         if (all != all) return 0.0;
-        return std::clamp(all, -fastest, fastest); // a place may be so far that its way is no number
+        return std::clamp(all, -fastest, fastest); // a far place may make the sum not-a-number
     }
     HandOver take_over_;
 };
 
-/// Generator and Controller of force in one: down, as fast as force is lacking.
+/// Generator and Controller of force in one: moves down at a speed proportional to the missing force.
 struct Approach {
     Input<double> position;
     Output<double> target;
@@ -218,7 +218,7 @@ struct Approach {
     }
 };
 
-/// Controller of force: a velocity for the force that is lacking.
+/// Force controller: commands a velocity proportional to the missing force.
 struct Press {
     Input<double> target, force, sent;
     Output<double> velocity;
@@ -231,7 +231,7 @@ struct Press {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double lacking = target.get() - force.get();
         velocity.write(std::clamp(kf.get() * lacking, -slide.velocity, slide.velocity));
-        if (!(std::abs(lacking) <= 0.02 * target.get())) // what is no number is not within either
+        if (!(std::abs(lacking) <= 0.02 * target.get())) // also true for not-a-number
             since_ = never;
         else if (since_ == never)
             since_ = cycle.now;
@@ -253,7 +253,7 @@ private:
     Time since_ = never;
 };
 
-/// Generator of the inner level: what the outer one commands, within twice the slide's acceleration.
+/// Generator of the inner level: follows the outer level's command within twice the slide's acceleration.
 struct Ramp {
     Input<double> command, sent;
     Output<double> target;
@@ -263,7 +263,7 @@ struct Ramp {
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double asked =
-            command.get(); // beyond what the drive does the ramp would take time to come back
+            command.get(); // clamped below: a ramp beyond the drive's speed takes time to return
         target.write(ramp_(is_number(asked) ? speed_of_drive(asked) : asked, cycle.period));
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { target.write(0.0); }
@@ -277,8 +277,8 @@ private:
     tappet::Ramp ramp_{2.0 * slide.acceleration};
 };
 
-/// Controller of the inner level: the speed itself, and what the drive lacks of it, summed up. What the
-/// Effector cut off is not summed.
+/// Controller of the inner level: the target speed plus the integrated speed error of the drive. It does not
+/// integrate what the Effector cut off.
 struct Trim {
     Input<double> target, velocity, sent;
     Output<double> wanted;

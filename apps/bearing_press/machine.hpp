@@ -1,4 +1,4 @@
-// A press seats bearings in their housings: one axis, led by place or by force. The machine on one page.
+// A press seats bearings in their housings: one axis under position or force control. The machine on a page.
 #pragma once
 
 #include "apps/bearing_press/axis.hpp"
@@ -27,7 +27,7 @@ inline constexpr auto table = machine("bearing-press",
         component<Place>("place", set("kp", 20.0)), component<Press>("press", set("kf", 1e-5)),
         component<Ramp>("ramp"), component<Trim>("trim"),
         component<instruments::VelocityAxis<"m/s">>("drive", set("most", fastest)),
-        component<Axis>("axis"),                                    // the states of the whole
+        component<Axis>("axis"),                                    // the press's state machine
         component<can::Restarter>("restarter", device("axis-can")),
         component<BrowserService>("browser")),
     activities( // threads; their priorities follow from the deadlines
@@ -39,7 +39,7 @@ inline constexpr auto table = machine("bearing-press",
         activity("restarter", every(100ms), not_real_time,       runs("restarter")),
         activity("browser",   every(20ms), not_real_time,        runs("browser"), stack(224 * 1024))),
     connections( // data flow
-        data("can.axis.position", "gauge.counts",  stale_after(20ms), hold), // the drive is stopped then: see axis.statusword
+        data("can.axis.position", "gauge.counts",  stale_after(20ms), hold), // when stale, axis.statusword stops the drive
         data("can.cell.force",    "cell.measured", stale_after(20ms), stop_machine),
         data("gauge.position", "speed.position"),
         data("gauge.position", "idle.position"),
@@ -58,7 +58,7 @@ inline constexpr auto table = machine("bearing-press",
         data("ramp.target",    "trim.target"),       data("speed.velocity", "trim.velocity"), data("drive.velocity", "trim.sent", delayed),
         data("trim.wanted",    "drive.wanted"),
         data("drive.velocity", "can.command.velocity", stale_after(10ms), substitute(0.0)),
-        data("can.axis.statusword", "axis.statusword", stale_after(20ms), substitute(0.0)), // silent: it follows nothing
+        data("can.axis.statusword", "axis.statusword", stale_after(20ms), substitute(0.0)), // when silent: the drive follows nothing
         data("gauge.position", "axis.position"),     data("speed.velocity", "axis.velocity"),
         data("io.home", "axis.home"), data("io.upper_end", "axis.upper_end"), data("io.lower_end", "axis.lower_end"), data("io.stop", "axis.stop_held"), data("io.up", "axis.up"), data("io.down", "axis.down"),
         data("io.faulted", "axis.lines_faulted"), data("can.faulted", "axis.bus_faulted"), data("can.faulted", "restarter.faulted"),
@@ -77,7 +77,7 @@ inline constexpr auto table = machine("bearing-press",
             sensor("gauge"), sensor("cell"), estimator("speed"), generator("ramp"), controller("trim", tracks("sent")), effector("drive")),
         process("axis"),
         exclusive("mode",
-            fallback("off",   "idle",     "place"), // also of a drive without power
+            fallback("off",   "idle",     "place"), // also while the drive has no power
             chain("stand",    "standing", "place"),
             chain("jog",      "jogging",  "place"),
             chain("path",     "path",     "place"),

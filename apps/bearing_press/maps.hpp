@@ -1,4 +1,4 @@
-// What stands on the wires of the press: the drive and the force sensor on CAN, buttons, switches and lamp on
+// The signals on the press's wires: the drive and the force sensor on CAN; buttons, switches and lamp on
 // lines.
 #pragma once
 
@@ -25,8 +25,8 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::sensor("stop", gpio::debounce(5ms)),
     gpio::sensor("up", gpio::debounce(5ms)),
     gpio::sensor("down", gpio::debounce(5ms)),
-    gpio::sensor("home"),      // active above the edge that is zero
-    gpio::sensor("upper_end"), // the ends of the slide's way
+    gpio::sensor("home"),      // active above the edge that defines zero
+    gpio::sensor("upper_end"), // the ends of the slide's travel
     gpio::sensor("lower_end"),
     gpio::output("lamp", gpio::safe(false)));
 // clang-format on

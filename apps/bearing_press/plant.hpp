@@ -1,4 +1,4 @@
-// The slide with its drive, a bearing in the bore of its housing, and people at the other end of the wires.
+// Simulates the slide with its drive, a bearing in the bore of its housing, and the people at the machine.
 #pragma once
 
 #include "apps/bearing_press/loops.hpp"
@@ -15,8 +15,8 @@
 
 namespace bearing_press {
 
-/// Somebody switches on, lets the axis find its zero, and starts a bearing as often as the lamp is lit and
-/// the slide stands. The bore is as stiff as the table believes; each bearing lies a little elsewhere.
+/// The operator switches on, starts homing, and starts a bearing whenever the lamp is lit and the slide
+/// stands still. The bore is as stiff as the table assumes; each bearing lies at a slightly different place.
 class Plant final : public tappet::Plant {
 public:
     explicit Plant(std::uint64_t seed) : random_{seed} {
@@ -40,7 +40,7 @@ public:
         const double force = stiffness * std::max(0.0, place_ - bearing_);
         worst_force_ = std::max(worst_force_, force);
         if (force > 0.98 * seat_force) is_seated_ = true;
-        if (is_seated_ && place_ < bearing_ - 0.05) { // it is up again: another one is put in
+        if (is_seated_ && place_ < bearing_ - 0.05) { // the slide is up again: the next bearing is put in
             ++bearings_;
             next_bearing();
         }
@@ -70,7 +70,7 @@ public:
             .field("worst_speed_m_s", worst_speed_);
     }
 
-    // For tests: what people and faults do.
+    // For tests: actions of people, and faults.
     void press(std::string_view button, bool pressed) {
         if (button == "stop") stop_ = pressed;
         if (button == "up") up_ = pressed;
@@ -89,7 +89,7 @@ public:
 
     static constexpr double stiffness = 2.0e6;                    // N/m
     static constexpr double seat_force = 2000.0;                  // N
-    static constexpr double most_jolt = 2.2 * slide.acceleration; // m/s2: the inner level's, and a tenth
+    static constexpr double most_jolt = 2.2 * slide.acceleration; // m/s2: the inner level's plus 10 %
     static constexpr std::int64_t wanted = 3;
 
 private:
@@ -98,7 +98,7 @@ private:
 
     static constexpr double drive_lag_s = 0.004, brake_lag_s = 0.02, zero_ = 0.05, switched_on_at = 0.037;
 
-    /// Start is pressed again and again while the slide stands and bearings are wanted.
+    /// Presses start repeatedly while the slide stands still and bearings are wanted.
     void operate() {
         const Duration t = elapsed() % 400ms;
         const bool starts = operator_works_ && bearings_ < wanted && std::abs(speed_) < 1e-3;

@@ -11,7 +11,7 @@
 
 namespace tappet::car_tracking {
 
-/// Each of its peers runs in an activity of its own.
+/// Each of these components runs in its own activity.
 inline constexpr auto tracking_reach =
     script_reach(reachable<Tracking>("tracking"), reachable<Camera>("camera", false),
                  reachable<ImageRecognition>("recognition", false), reachable<Panel>("panel", false));

@@ -1,5 +1,5 @@
-// Coherent spots of an image: pixels that weigh something, joined with their eight neighbours. Runs of a row
-// are labelled and joined with those of the row above; one pass, bounded, in fixed memory.
+// Finds connected blobs of an image: pixels of weight above 0, joined with their eight neighbours. It labels
+// the runs of a row and joins them with those of the row above: one pass, bounded, in fixed memory.
 #pragma once
 
 #include "apps/car_tracking/image.hpp"
@@ -16,12 +16,12 @@ struct Blob {
     std::int64_t weighted_row = 0;
     std::size_t first_column = image_columns, last_column = 0, first_row = image_rows, last_row = 0;
 
-    /// Weighted, in pixels; of a blob that is not empty.
+    /// Returns the weighted centre in pixels. The blob must not be empty.
     [[nodiscard]] Eigen::Vector2d centre() const noexcept TAPPET_REALTIME {
         const auto total = static_cast<double>(weight);
         return {static_cast<double>(weighted_column) / total, static_cast<double>(weighted_row) / total};
     }
-    /// A part of it may lie outside.
+    /// Returns true when a part of the blob may lie outside the image.
     [[nodiscard]] bool touches_border() const noexcept TAPPET_REALTIME {
         return first_column == 0 || first_row == 0 || last_column + 1 == image_columns ||
                last_row + 1 == image_rows;
@@ -38,13 +38,13 @@ struct Blob {
     }
 };
 
-/// Finds the blobs of one image. An object is its work space: 40 kB.
+/// Finds the blobs of one image. The object is its own work space: 40 kB.
 class BlobFinder {
 public:
-    static constexpr std::size_t most_blobs = 512; ///< labels; an image with more shows the first ones only
+    static constexpr std::size_t most_blobs = 512; ///< labels; an image with more yields the first ones only
 
-    /// `weigh(Colour)` answers a whole number, 0 for what belongs to no blob, at most 1000. The blobs, in no
-    /// order. Real-time.
+    /// Returns the blobs, in no order. `weigh(Colour)` returns an integer: 0 for a pixel of no blob, at most
+    /// 1000. Real-time.
     template <class Weigh>
     std::span<const Blob> find(const Image& image, Weigh weigh) noexcept TAPPET_REALTIME {
         count_ = 0;
@@ -84,7 +84,7 @@ private:
         parent_[std::max(one, other)] = low;
         return low;
     }
-    /// Of a pixel: its neighbours', joined, or a new one.
+    /// Returns a pixel's label: the joined label of its neighbours, or a new one.
     Label label_for(const std::array<Label, image_columns>& here, std::size_t column) noexcept
         TAPPET_REALTIME {
         Label label = column > 0 ? here[column - 1] : no_label;
@@ -98,7 +98,7 @@ private:
         blobs_[label] = {};
         return label;
     }
-    /// Adds up what was joined; what is left stands first.
+    /// Adds up the joined blobs and moves the remaining ones to the front.
     std::span<const Blob> gather() noexcept TAPPET_REALTIME {
         std::size_t kept = 0;
         for (std::size_t i = count_; i-- > 0;)

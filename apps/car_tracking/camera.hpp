@@ -1,4 +1,4 @@
-// The steerable camera (thesis 1.4, 5.4): it takes images, aims where it is told, and learns its axes' zero
+// The steerable camera (thesis 1.4, 5.4): takes images, aims as commanded, and learns the zeros of its axes
 // and its lens.
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace tappet::car_tracking {
 
-/// All real-time, in a periodic activity. Its commands come from one peer at a time: what does not fit what
-/// it is doing is rejected.
+/// All real-time, in a periodic activity. Its commands come from one component at a time. It rejects a
+/// command that does not fit its current action.
 struct Camera {
     static constexpr DeviceKind device_kind{.name = "camera"};
 
@@ -42,7 +42,7 @@ struct Camera {
         phase_ = Phase::idle;
         return true;
     }
-    /// Rejected while it moves, is calibrated or is off, and where the head cannot turn to.
+    /// Starts a move. Rejected while the camera moves, calibrates or is off, and for an aim out of reach.
     bool begin_move(const Aim& to) noexcept TAPPET_REALTIME {
         if (!is_on_ || is_moving_ || phase_ != Phase::idle || !can_reach(to)) return false;
         go_to(to);
@@ -52,7 +52,7 @@ struct Camera {
         if (is_moving_) return CommandProgress::executing;
         return is_on_ ? CommandProgress::done : CommandProgress::failed;
     }
-    /// Rejected while an image is being taken, it is calibrated or is off.
+    /// Starts to take an image. Rejected while an image is being taken, during calibration, and while off.
     bool begin_fetch() noexcept TAPPET_REALTIME {
         if (!is_on_ || is_fetching_ || phase_ != Phase::idle) return false;
         is_fetching_ = true;
@@ -63,7 +63,7 @@ struct Camera {
         if (is_fetching_) return CommandProgress::executing;
         return is_on_ ? CommandProgress::done : CommandProgress::failed;
     }
-    /// Finds the index marks, then the mark under several aims. Fails when the marks are not to be seen.
+    /// Finds the index marks, then the mark under several aims. Fails when the marks cannot be seen.
     bool begin_calibration() noexcept TAPPET_REALTIME {
         if (!is_on_ || is_moving_ || is_fetching_ || phase_ != Phase::idle) return false;
         is_calibrated_.store(false, std::memory_order_relaxed);
@@ -80,7 +80,7 @@ struct Camera {
     }
 
     // Methods, safe from any thread.
-    /// Where it looks, as far as it knows.
+    /// Returns the aim that the camera believes to have.
     Aim get_position() const noexcept TAPPET_REALTIME {
         Aim now{};
         std::uint64_t generation = 0;
@@ -95,13 +95,13 @@ struct Camera {
         device_ = setup.device<CameraDevice>();
         return device_ == nullptr ? setup.no_device() : Sentence{};
     }
-    /// What it has learned holds.
+    /// Keeps an earlier calibration.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         read_head();
         if (is_calibrated()) return;
         lens.write({nominal_focal_px.get(), 0.0});
         calibration_error_px.write(0.0);
-        pan_.call_it(0.0); // until the index marks are known it counts from where it stands
+        pan_.call_it(0.0); // until the index marks are known, angles count from the present position
         tilt_.call_it(0.0);
         read_head();
     }
@@ -145,7 +145,7 @@ private:
                                               Aim{-17, -12}, Aim{17, -12}, Aim{-17, 12}};
 
     static bool can_reach(const Aim& to) noexcept TAPPET_REALTIME {
-        return std::abs(to.pan) <= 80.0 && to.tilt >= -85.0 && to.tilt <= 30.0; // false for no number
+        return std::abs(to.pan) <= 80.0 && to.tilt >= -85.0 && to.tilt <= 30.0; // false for not-a-number
     }
     [[nodiscard]] Aim aim_now() const noexcept TAPPET_REALTIME { return {pan_.angle(), tilt_.angle()}; }
     void go_to(const Aim& to) noexcept TAPPET_REALTIME {
@@ -171,7 +171,7 @@ private:
         is_exposed_ = false;
     }
 
-    /// Both axes swing to one side and to the other until both marks were passed.
+    /// Swings both axes to either side until both index marks were passed.
     void home() noexcept TAPPET_REALTIME {
         if (pan_.is_index_seen() && tilt_.is_index_seen()) {
             static_cast<void>(pan_.take_index(index_marks.pan));
@@ -212,7 +212,7 @@ private:
         image_ready.emit();
     }
 
-    /// The mark is the white spot.
+    /// Finds the mark: it is the white spot.
     void look_at_mark() noexcept TAPPET_REALTIME {
         const auto blobs = finder_.find(frame_, [](const Colour& c) noexcept TAPPET_REALTIME {
             const int least =
@@ -243,7 +243,7 @@ private:
     bool is_on_ = false;
     bool is_moving_ = false;
     bool is_fetching_ = false;
-    bool is_exposed_ = false; // the image that is fetched
+    bool is_exposed_ = false; // the image that is being fetched
     Phase phase_ = Phase::idle;
     std::size_t swing_ = 0;
     std::size_t view_ = 0;

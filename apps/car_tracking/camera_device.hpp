@@ -1,5 +1,5 @@
-// A steerable camera as its component sees it: a head with two motors and encoders, and a sensor. Behind it
-// stands the simulated scene.
+// The interface of a steerable camera to its component: a head with two motors and encoders, and a sensor.
+// The simulated scene implements it.
 #pragma once
 
 #include "apps/car_tracking/image.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet::car_tracking {
 
-/// One axis of the head. Counts begin anywhere at power-on; passing the index mark stores the count there.
+/// One axis of the head. Counts start at any value at power-on; passing the index mark stores its count.
 struct AxisReading {
     static constexpr double counts_per_degree = 200.0;
     std::int64_t counts = 0;
@@ -27,15 +27,15 @@ inline constexpr Aim index_marks{0.0, -30.0};
 class CameraDevice {
 public:
     virtual ~CameraDevice() = default;
-    /// Off: the motors hold, and no image is taken.
+    /// Switches the camera on or off. Off: the motors hold, and no image is taken.
     virtual void switch_on(bool on) noexcept TAPPET_REALTIME = 0;
-    /// Speeds in deg/s, until told anew; the motors need their time to reach them.
+    /// Sets the speeds in deg/s, valid until the next call. The motors need time to reach them.
     virtual void turn(double pan, double tilt) noexcept TAPPET_REALTIME = 0;
     [[nodiscard]] virtual HeadReading head() const noexcept TAPPET_REALTIME = 0;
-    /// Begins to expose at once; false while an image is being taken, or when it is off.
+    /// Starts the exposure at once; returns false while an image is being taken, or when off.
     [[nodiscard]] virtual bool expose(Duration exposure) noexcept TAPPET_REALTIME = 0;
-    /// Copies the pixels of the image that was exposed, once; false before it was read out. `taken`: the
-    /// middle of its exposure.
+    /// Copies the pixels of the exposed image, once; returns false until it was read out. `taken`: the middle
+    /// of its exposure.
     [[nodiscard]] virtual bool take(Image& into, Time& taken) noexcept TAPPET_REALTIME = 0;
 
 protected:

@@ -1,8 +1,8 @@
-// The geometry of looking: where a head aims, how a lens maps directions to pixels and back, and where a ray
-// meets the floor.
+// The geometry of the camera: where a head aims, how a lens maps directions to pixels and back, and where a
+// ray meets the floor.
 //
-// The room has its origin in a corner of the play field: x to the right, y away from the camera, z upwards,
-// in metres. A camera has the axes right, down and forward. Pixels count from the image's upper left corner.
+// The room's origin is a corner of the play field: x to the right, y away from the camera, z upwards, in
+// metres. A camera has the axes right, down and forward. Pixels count from the image's upper left corner.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -18,8 +18,8 @@
 
 namespace tappet::car_tracking {
 
-/// Where the head looks, in degrees: pan 0 is along y, positive to the right; tilt 0 is level, positive
-/// upwards. A difference of two aims is one too.
+/// The direction of the head, in degrees: pan 0 is along y, positive to the right; tilt 0 is level, positive
+/// upwards. A difference of two aims is also an Aim.
 struct Aim {
     double pan = 0.0;
     double tilt = 0.0;
@@ -46,7 +46,7 @@ struct Lens {
 inline constexpr std::size_t image_columns = 160;
 inline constexpr std::size_t image_rows = 120;
 
-/// The pixel that the optical axis meets.
+/// Returns the pixel at the optical axis.
 inline Eigen::Vector2d image_centre() noexcept TAPPET_REALTIME {
     return {0.5 * (image_columns - 1), 0.5 * (image_rows - 1)};
 }
@@ -58,7 +58,7 @@ constexpr double in_degrees(double radians) noexcept TAPPET_REALTIME {
     return radians * (180.0 / std::numbers::pi);
 }
 
-/// The camera's axes right, down and forward as columns, in the room.
+/// Returns the camera's axes right, down and forward as columns, in the room's frame.
 inline Eigen::Matrix3d axes_at(const Aim& aim) noexcept TAPPET_REALTIME {
     const double pan = in_radians(aim.pan);
     const double tilt = in_radians(aim.tilt);
@@ -73,13 +73,13 @@ inline Eigen::Matrix3d axes_at(const Aim& aim) noexcept TAPPET_REALTIME {
     return axes;
 }
 
-/// The aim that looks along a direction of the room; its length does not matter.
+/// Returns the aim along a direction of the room; the direction's length does not matter.
 inline Aim aim_along(const Eigen::Vector3d& direction) noexcept TAPPET_REALTIME {
     return {in_degrees(std::atan2(direction.x(), direction.y())),
             in_degrees(std::atan2(direction.z(), std::hypot(direction.x(), direction.y())))};
 }
 
-/// The pixel of a direction in the camera's axes; nothing for what lies behind it.
+/// Returns the pixel of a direction in the camera's axes; nothing for a direction behind the camera.
 inline std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& ray, const Lens& lens) noexcept
     TAPPET_REALTIME {
     if (ray.z() <= 1e-6) return std::nullopt;
@@ -88,7 +88,7 @@ inline std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& ray, const
     return Eigen::Vector2d{image_centre() + stretch * flat};
 }
 
-/// The direction, in the camera's axes and with forward = 1, that a pixel shows. For |k1| r^2 < 0.2.
+/// Returns the direction that a pixel shows, in the camera's axes and with forward = 1. For |k1| r^2 < 0.2.
 inline Eigen::Vector3d ray_of(const Eigen::Vector2d& pixel, const Lens& lens) noexcept TAPPET_REALTIME {
     const Eigen::Vector2d bent = (pixel - image_centre()) / lens.focal_px;
     Eigen::Vector2d flat = bent;
@@ -96,7 +96,7 @@ inline Eigen::Vector3d ray_of(const Eigen::Vector2d& pixel, const Lens& lens) no
     return {flat.x(), flat.y(), 1.0};
 }
 
-/// Where a ray of the room that begins at `eye` comes down to a height; nothing when it does not.
+/// Returns where a ray from `eye`, in the room, comes down to a height; nothing when it never does.
 inline std::optional<Eigen::Vector3d> meet_height(const Eigen::Vector3d& eye,
                                                   const Eigen::Vector3d& direction, double height) noexcept
     TAPPET_REALTIME {
@@ -112,7 +112,7 @@ template <>
 inline constexpr auto tappet::fields_of<tappet::car_tracking::Aim> =
     tappet::fields(tappet::field<&tappet::car_tracking::Aim::pan>("pan", "deg"),
                    tappet::field<&tappet::car_tracking::Aim::tilt>("tilt", "deg"));
-/// A script adds and subtracts aims.
+/// Scripts may add and subtract aims.
 template <>
 inline constexpr tappet::Registered<tappet::Op<"+", &tappet::car_tracking::sum_of_aims>,
                                     tappet::Op<"-", &tappet::car_tracking::difference_of_aims>>

@@ -1,5 +1,5 @@
-// One axis of the camera's head: what its counts mean, and how fast it must turn to come to an angle and
-// stand there.
+// One axis of the camera's head: converts its counts to angles, and computes the speed with which it reaches
+// an angle and stops there.
 #pragma once
 
 #include "apps/car_tracking/camera_device.hpp"
@@ -12,14 +12,14 @@ namespace tappet::car_tracking {
 /// All real-time; angles in degrees.
 class HeadAxis {
 public:
-    /// Once per step, with the device's reading.
+    /// Stores the device's reading; call it once per step.
     void read(const AxisReading& reading) noexcept TAPPET_REALTIME {
         steps_standing_ = reading.counts == reading_.counts ? steps_standing_ + 1 : 0;
         reading_ = reading;
     }
-    /// Where it stood at this reading counts as `angle`.
+    /// Defines the position of the last reading as `angle`.
     void call_it(double angle) noexcept TAPPET_REALTIME { offset_ = angle - degrees_of(reading_.counts); }
-    /// The index mark is at `angle`. False when the mark was not passed yet.
+    /// Defines the position of the index mark as `angle`. Returns false when the mark was not passed yet.
     bool take_index(double angle) noexcept TAPPET_REALTIME {
         if (reading_.is_index_seen) offset_ = angle - degrees_of(reading_.index_counts);
         return reading_.is_index_seen;
@@ -33,7 +33,7 @@ public:
     [[nodiscard]] bool arrived() const noexcept TAPPET_REALTIME {
         return std::abs(target_ - angle()) < 2.0 * close_enough && steps_standing_ >= 3;
     }
-    /// The speed to turn at, in deg/s, so that it brakes in time.
+    /// Returns the speed to turn at, in deg/s; the axis can still brake in time.
     [[nodiscard]] double speed() const noexcept TAPPET_REALTIME {
         const double way = target_ - angle();
         const double far = std::abs(way);

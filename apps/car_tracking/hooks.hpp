@@ -1,4 +1,4 @@
-// The host's program looks into the machine for the picture of its run.
+// Lets the host's program read the machine for the picture of its run.
 #pragma once
 
 #include "apps/car_tracking/host/picture.hpp"

@@ -1,4 +1,4 @@
-// A colour image as it flows from the camera to who looks for something in it.
+// A colour image, as the camera passes it to its users.
 #pragma once
 
 #include "apps/car_tracking/geometry.hpp"
@@ -17,7 +17,7 @@ struct Colour {
     friend constexpr bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// Row by row from above, with the aim that the camera believes it had while it was taken.
+/// Pixels row by row from the top, with the aim that the camera believed to have at the exposure.
 struct Image {
     Aim aim{};
     std::array<Colour, image_columns * image_rows> pixels{};

@@ -1,5 +1,5 @@
-// Image recognition (thesis 1.4, 5.4): finds the car of one colour in the last image and says where in the
-// room it is.
+// Image recognition (thesis 1.4, 5.4): finds the car of one colour in the last image and computes its place
+// in the room.
 #pragma once
 
 #include "apps/car_tracking/blob.hpp"
@@ -19,7 +19,7 @@ inline constexpr auto tappet::names_of<tappet::car_tracking::CarColour> =
 
 namespace tappet::car_tracking {
 
-/// All real-time. It believes the camera's aim and lens, as they come with the image and over its port.
+/// All real-time. It relies on the aim that comes with the image and on the lens at its port.
 struct ImageRecognition {
     Input<Image> image;
     Input<Lens> lens;
@@ -36,7 +36,7 @@ struct ImageRecognition {
         is_on_ = is_processing_ = false;
         return true;
     }
-    /// Rejected while one is processed, it is off, or there never was an image.
+    /// Processes the last image. Rejected while one is processed, while off, and before the first image.
     bool begin_processing() noexcept TAPPET_REALTIME {
         if (!is_on_ || is_processing_ || image.flow() == Flow::never_written) return false;
         return is_processing_ = true;
@@ -47,9 +47,9 @@ struct ImageRecognition {
     }
 
     // Methods, safe from any thread.
-    /// In the image processed last.
+    /// Returns true when the last processed image showed the car.
     bool car_located() const noexcept TAPPET_REALTIME { return last_sighting().located; }
-    /// From where the camera looked to the car; zero while the car is not located.
+    /// Returns the offset from the camera's aim to the car; zero while the car is not located.
     Aim car_location() const noexcept TAPPET_REALTIME {
         const Sighting seen = last_sighting();
         return seen.located ? seen.offset : Aim{};
@@ -90,13 +90,13 @@ struct ImageRecognition {
     // clang-format on
 
 private:
-    /// How much brighter the car's colour is than both others, 0 for what is not its colour.
+    /// Returns how much brighter the car's colour is than both others; 0 for other colours.
     static std::int64_t likeness(CarColour wanted, const Colour& pixel) noexcept TAPPET_REALTIME {
         const std::array<int, 3> parts{pixel.red, pixel.green, pixel.blue};
         const auto own = static_cast<std::size_t>(wanted);
         const int other = std::max(parts[(own + 1) % 3], parts[(own + 2) % 3]);
         const int excess = parts[own] - other - other / 2 - 20;
-        return std::min(std::max(excess, 0), 80); // beyond it is the car for sure, however bright
+        return std::min(std::max(excess, 0), 80); // above 80 it is certainly the car, at any brightness
     }
 
     void process() noexcept TAPPET_REALTIME {
@@ -120,14 +120,14 @@ private:
         }
         publish(best, image.stamp());
     }
-    /// A pixel covers more of the floor the farther it is and the flatter it is seen. At the border only a
-    /// part is to be seen.
+    /// Returns true when the blob's size fits a car. A pixel covers more floor the farther away it is and the
+    /// flatter the view. At the border only a part of the car is visible.
     [[nodiscard]] bool fits_car(const Blob& blob, const Eigen::Vector3d& ray,
                                 const Eigen::Vector3d& direction, const Eigen::Vector3d& place,
                                 const Lens& through) const noexcept TAPPET_REALTIME {
         const double distance = (place - eye()).norm();
         const double steepness = -direction.z() / direction.norm();
-        const double slant = ray.norm(); // a flat sensor sees what is beside its axis larger
+        const double slant = ray.norm(); // a flat sensor magnifies what lies off its axis
         const double side = distance / (through.focal_px * slant);
         const double area = static_cast<double>(blob.pixels) * side * side / (steepness * slant);
         const double least = blob.touches_border() ? 0.25 : 0.35;

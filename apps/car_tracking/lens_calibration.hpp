@@ -15,7 +15,7 @@ struct MarkView {
 struct LensFit {
     Lens lens{};
     Aim mark{};
-    double error_px = 0.0; ///< root mean square of what the fit leaves unexplained, per coordinate
+    double error_px = 0.0; ///< root mean square of the residuals of the fit, per coordinate
 };
 
 /// All real-time, bounded.
@@ -27,8 +27,8 @@ public:
     void begin() noexcept TAPPET_REALTIME { views_.clear(); }
     void add(const MarkView& view) noexcept TAPPET_REALTIME { static_cast<void>(views_.push(view)); }
 
-    /// From a first guess, of 5 degrees and 15 % at most. Nothing when there are too few views, or they do
-    /// not determine the lens.
+    /// Fits the lens, starting from `guess`, which may be wrong by 5 degrees and 15 % at most. Returns
+    /// nothing when there are too few views, or when they do not determine the lens.
     [[nodiscard]] std::optional<LensFit> fit(const Lens& guess, const Aim& mark) const noexcept
         TAPPET_REALTIME {
         if (views_.size() < least_views) return std::nullopt;
@@ -67,7 +67,7 @@ private:
         if (!pixel) return std::nullopt;
         return Eigen::Vector2d{*pixel - view.pixel};
     }
-    /// One view's part of the normal equations, with slopes by differences.
+    /// Adds one view's part of the normal equations; slopes are differences.
     [[nodiscard]] static bool add_view(const MarkView& view, const Parameters& at, Eigen::Matrix4d& normal,
                                        Parameters& slope) noexcept TAPPET_REALTIME {
         const auto left = residual(view, at);

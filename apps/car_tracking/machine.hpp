@@ -1,5 +1,5 @@
 // The car tracker on one page (thesis 1.4, 5.4): a steerable camera, the recognition of a car in its images,
-// and the component that tracks it.
+// and the component that tracks the car.
 #pragma once
 
 #include "apps/car_tracking/behaviour.hpp"
@@ -13,7 +13,7 @@ namespace tappet::car_tracking {
 inline constexpr auto table = machine("car-tracking",
     components(
         component<Camera>("camera", device("tracking-camera")),
-        component<ImageRecognition>("recognition"),  // where in the room is the car
+        component<ImageRecognition>("recognition"),  // locates the car in the room
         component<Tracking>("tracking"),             // aims the camera at it
         component<BehaviourTask<tracking_script, "application">>("application", controls("tracking"), set("patience", 3)),
         component<Panel>("panel")),                  // the buttons
@@ -25,7 +25,7 @@ inline constexpr auto table = machine("car-tracking",
     connections( // data flow
         data("camera.image", "recognition.image"),
         data("camera.lens",  "recognition.lens")),
-    reactions(), // what happens upon the panel's buttons stands in tracking.osd
+    reactions(), // tracking.osd handles the panel's buttons
     behaviours(
         behaviour("tracking", compiled<tracking_script>)));
 // clang-format on

@@ -1,4 +1,4 @@
-// The panel of who works with the tracker: its buttons, pressed by a day's plan.
+// The operator's panel: its buttons, pressed by a fixed plan.
 #pragma once
 
 #include "apps/car_tracking/geometry.hpp"
@@ -21,10 +21,10 @@ struct Press {
     Aim aim{}; ///< of move_camera
 };
 
-/// Positioned by hand, asked too early, calibrated, tracking, a pause, tracking again.
+/// Manual move, a start that is too early, calibration, tracking, a pause, tracking again.
 inline constexpr std::array<Press, 7> day{{
     {1s, Press::Button::move_camera, {8.0, -4.0}},
-    {2s, Press::Button::start_localisation, {}}, // too early: nobody listens before the calibration
+    {2s, Press::Button::start_localisation, {}}, // too early: ignored before the calibration
     {3s, Press::Button::start_calibration, {}},
     {11s, Press::Button::start_localisation, {}},
     {40s, Press::Button::stop_localisation, {}},

@@ -1,4 +1,4 @@
-// The room behind the camera's wires, and what was recorded of a run in it.
+// The simulated room behind the camera's wires, and the record of a run in it.
 #pragma once
 
 #include "apps/car_tracking/host/record.hpp"
@@ -45,7 +45,7 @@ public:
 
     Scene scene;
     Record record{};
-    std::string picture{}; ///< the file to write; empty: none
+    std::string picture{}; ///< the file to write; empty: no picture
 
 private:
     std::array<ProvidedDevice, 1> devices_{

@@ -1,4 +1,4 @@
-// What was seen of the car in one image.
+// The result of searching the car in one image.
 #pragma once
 
 #include "apps/car_tracking/geometry.hpp"
@@ -7,10 +7,10 @@ namespace tappet::car_tracking {
 
 struct Sighting {
     bool located = false;
-    double x = 0.0; ///< in the room; of the last image in which it was located
+    double x = 0.0; ///< in the room; from the last image in which it was located
     double y = 0.0;
-    Aim offset{};       ///< from where the camera looked to the car
-    bool whole = false; ///< no part of it lies outside the image
+    Aim offset{};       ///< from the camera's aim to the car
+    bool whole = false; ///< the whole car is inside the image
     std::int64_t pixels = 0;
 };
 

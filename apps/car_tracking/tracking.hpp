@@ -1,5 +1,5 @@
-// The component that tracks the car (thesis 5.4). What it does stands in its script, tracking.osd; here is
-// what the script asks of it.
+// The component that tracks the car (thesis 5.4). Its behaviour is the script tracking.osd; this file holds
+// the operations that the script calls.
 #pragma once
 
 #include "apps/car_tracking/geometry.hpp"
@@ -14,7 +14,7 @@ struct Tracking {
 
     Output<std::int64_t> misses;
 
-    /// Where to look in the nth attempt to find a car that was lost: over the whole field, again and again.
+    /// Returns the aim for the nth attempt to find a lost car: it scans the whole field, repeatedly.
     Aim search_place(std::int64_t attempt) noexcept TAPPET_REALTIME {
         const auto count = static_cast<std::int64_t>(places.size());
         return places[static_cast<std::size_t>(((attempt % count) + count) % count)];

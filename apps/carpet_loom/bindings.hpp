@@ -1,4 +1,4 @@
-// Where the carpet loom's devices and lines stand on each board, and which processor runs which activity.
+// Maps the carpet loom's devices and lines to each board, and its activities to processors.
 #pragma once
 
 #include "drivers/gpio/kind.hpp"
@@ -29,13 +29,13 @@ inline constexpr Binding ipc_x86_64 = binding(
     wired("loom-can", "can0"),
     detail::loom_io("io"),
     wired("loom-utility", "192.168.7.2:502", unit(1)),
-    // The device activities on a processor of their own, so that neither an interrupt nor a background
-    // activity takes their caches.
+    // The device activities have a processor of their own: neither an interrupt nor a background activity
+    // evicts their caches.
     place("can", 3), place("io", 3),
     place("utility", 0), place("console", 0), place("restarter", 0), place("scope", 0), place("browser", 0),
     proven_by("weft.picks_woven", 100));
 
-// The processors are four there, too.
+// This board also has four processors.
 inline constexpr Binding ipc_aarch64 = ipc_x86_64;
 // clang-format on
 

@@ -1,5 +1,5 @@
-// The loom's console: what an engineer at the box's terminal sees of the machine, one line at a time. It also
-// is the record that the summary reads.
+// The loom's console: shows the machine's status on the box's terminal, one line at a time. The summary reads
+// the same lines.
 #pragma once
 
 #include "apps/carpet_loom/loom_state.hpp"
@@ -10,7 +10,7 @@
 namespace tappet::carpet {
 
 /// Runs in a background activity. Its lines begin with "loom ", so that another program can pick them out of
-/// a serial console; those that nobody takes in time are dropped.
+/// a serial console. Lines that nobody reads in time are dropped.
 struct Console {
     Input<LoomState> state;
     Input<StopCause> cause;

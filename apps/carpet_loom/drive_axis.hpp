@@ -1,5 +1,5 @@
-// What the loom's two CiA 402 drives have in common: led to their goal each cycle, enabled and fault told on
-// change.
+// The common part of the loom's two CiA 402 drives: leads them to their goal each cycle and reports enabled
+// and fault on change.
 #pragma once
 
 #include "drivers/canopen/cia402.hpp"
@@ -18,7 +18,7 @@ public:
     void disable() noexcept TAPPET_REALTIME { control_.want(canopen::DriveGoal::off); }
     void quick_stop() noexcept TAPPET_REALTIME { control_.want(canopen::DriveGoal::quick_stop); }
 
-    /// One cycle: from the statusword to the controlword. True when the drive follows its target.
+    /// Runs a cycle from the statusword to the controlword. Returns true when the drive follows its target.
     bool lead(Input<std::int64_t>& statusword, Output<std::int64_t>& controlword, Output<bool>& enabled,
               Output<bool>& fault) noexcept TAPPET_REALTIME {
         const bool heard = statusword.good();
@@ -31,13 +31,13 @@ public:
         enabled_.write(enabled, follows);
         return follows;
     }
-    /// Whatever was wanted of the drive before is forgotten: it moves when it is asked for again.
+    /// Forgets all earlier requests: the drive moves only when it is asked again.
     void start(Output<std::int64_t>& controlword, Output<double>& target) noexcept TAPPET_REALTIME {
         control_ = {};
         controlword.write(canopen::controlword::disable_voltage);
         target.write(0.0);
     }
-    /// The last word of a component that stops; nobody leads the drive or knows of it any longer.
+    /// Writes the last commands of a component that stops; after that nobody leads the drive.
     void stop(Output<std::int64_t>& controlword, Output<double>& target, Output<bool>& enabled,
               Output<bool>& fault) noexcept TAPPET_REALTIME {
         controlword.write(canopen::controlword::quick_stop);

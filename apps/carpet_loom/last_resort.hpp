@@ -1,5 +1,5 @@
-// What is left when an activity hangs: that of the states of the whole, and brake, valve and drives are told
-// without it; that of the shaft, and the yarn cutter waits for no beat-up.
+// The last resort when an activity hangs. For the logic activity it sets brake, valve and drives directly;
+// for the shaft activity it retracts the yarn cutter without waiting for a beat-up.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -11,7 +11,7 @@ struct LastResort {
     Input<bool> logic_alive, shaft_alive;
     Event<> set_brake, close_valve, quick_stop, rest_cutter;
 
-    /// A silence is told once, perhaps to nobody.
+    /// Acts on watchdogs that are silent already: they report a silence once, perhaps to nobody.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         if (logic_alive.good() && !logic_alive.get()) act({});
         if (shaft_alive.good() && !shaft_alive.get()) let_cutter_rest({});

@@ -1,4 +1,4 @@
-// The loom as a whole: what its state machine asks of the other components, and what it must know to decide.
+// The loom's state component: the operations and the guards of its state machine.
 #pragma once
 
 #include "apps/carpet_loom/loom_state.hpp"
@@ -42,25 +42,25 @@ struct Loom {
         return missing == WaitsFor::nothing || missing == WaitsFor::drop_wire;
     }
     [[nodiscard]] bool may_start() noexcept TAPPET_REALTIME { return first_missing() == WaitsFor::nothing; }
-    /// What these guards lack.
+    /// Returns which condition of these guards is missing.
     [[nodiscard]] std::string_view missing() noexcept TAPPET_REALTIME { return name_of(first_missing()); }
     [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
         return name_of(emergency_stop.get() ? WaitsFor::emergency_stop : before_acknowledgement());
     }
     [[nodiscard]] bool at_speed() noexcept TAPPET_REALTIME { return main_at_speed.get(); }
-    /// The brake may be released: it does not hold a shaft that turns, and nothing sets it again at once.
+    /// True when the brake may be released: the shaft stands still and nothing sets it again at once.
     [[nodiscard]] bool may_prepare() noexcept TAPPET_REALTIME {
         return !emergency_stop.get() && before_acknowledgement() == WaitsFor::acknowledgement;
     }
     [[nodiscard]] bool repaired() noexcept TAPPET_REALTIME { return !drop_wire.get() && may_prepare(); }
     [[nodiscard]] bool emergency_is_pressed() noexcept TAPPET_REALTIME { return emergency_stop.get(); }
-    /// A valve or a brake may not be what the loom believes: only the drive's quick stop can be relied on.
+    /// True: valve and brake may differ from what the loom believes; only the drive's quick stop is reliable.
     [[nodiscard]] bool bus_is_off() noexcept TAPPET_REALTIME { return bus_faulted.get(); }
     [[nodiscard]] bool encoder_is_stale() noexcept TAPPET_REALTIME { return !shaft_valid.get(); }
     [[nodiscard]] bool drives_are_off() noexcept TAPPET_REALTIME {
         return !main_enabled.get() || !let_off_enabled.get();
     }
-    /// The drive turns and the shaft's encoder does not: frozen, or its coupling is broken.
+    /// True when the drive turns and the shaft's encoder does not: frozen, or its coupling is broken.
     [[nodiscard]] bool encoder_stands() noexcept TAPPET_REALTIME {
         return main_at_speed.get() && shaft_standing.get();
     }
@@ -69,7 +69,7 @@ struct Loom {
         return main_fault.get() || let_off_fault.get();
     }
     [[nodiscard]] bool drive_slips() noexcept TAPPET_REALTIME { return main_slips.get(); }
-    /// What was there since the loom began to prepare itself and is not any longer, be it back or not.
+    /// True when a condition that was once met since preparation began is not met now.
     [[nodiscard]] bool something_is_lost() noexcept TAPPET_REALTIME { return (had_ & ~there()) != 0; }
     [[nodiscard]] bool oil_is_lost() noexcept TAPPET_REALTIME { return !oil_good(); }
     [[nodiscard]] bool stop_is_refused() noexcept TAPPET_REALTIME {
@@ -80,7 +80,7 @@ struct Loom {
     }
 
     // Programs of the state machine.
-    /// Whatever ended before: nothing moves until somebody at the machine says so.
+    /// Enters the locked state from any other: nothing moves until somebody acknowledges at the machine.
     void enter_locked() noexcept TAPPET_REALTIME {
         set_cause(StopCause::none);
         pump.write(0.0);
@@ -95,7 +95,7 @@ struct Loom {
         release_brake.emit();
         enable_drives.emit();
     }
-    /// It prepares itself on, and whoever comes asks the drives again.
+    /// Continues to prepare; an acknowledgement enables the drives again.
     void enter_asking() noexcept TAPPET_REALTIME { tell(LoomState::preparing, false, false, true); }
     void enter_ready() noexcept TAPPET_REALTIME { tell(LoomState::ready, false, true, false); }
     void enter_run_up() noexcept TAPPET_REALTIME {
@@ -108,7 +108,7 @@ struct Loom {
     void enter_weave() noexcept TAPPET_REALTIME { tell(LoomState::weave, true, false, false); }
     void enter_stopping() noexcept TAPPET_REALTIME {
         tell(LoomState::stopping, false, false, false);
-        static_cast<void>(stop_shaft.send()); // of an older stop: then this one was asked for already
+        static_cast<void>(stop_shaft.send()); // during an older stop: this one is already requested
     }
     void enter_stopped() noexcept TAPPET_REALTIME { tell(LoomState::stopped, false, false, true); }
     void enter_emergency() noexcept TAPPET_REALTIME {
@@ -120,7 +120,7 @@ struct Loom {
         make_safe(LoomState::fault);
     }
     void enter_safe() noexcept TAPPET_REALTIME {
-        disable_drives.emit(); // the quick stop that follows is what a shaft that turns is given
+        disable_drives.emit(); // a turning shaft gets the quick stop that follows
         make_safe(LoomState::safe);
         lamp_fault.write(false);
         pump.write(0.0);
@@ -129,7 +129,7 @@ struct Loom {
     void because_warp() noexcept TAPPET_REALTIME { set_cause(StopCause::warp); }
     void because_operator() noexcept TAPPET_REALTIME { set_cause(StopCause::operator_stop); }
 
-    /// Whatever it decides by wakes it, what grows stale too.
+    /// Every input that decides wakes it, also when the input becomes stale.
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         had_ |= there();
         waits_for_.write(waits_for, first_missing());
@@ -214,7 +214,7 @@ private:
         if (!tension_in_band.get()) return WaitsFor::warp_tension;
         return drop_wire.get() ? WaitsFor::drop_wire : WaitsFor::nothing;
     }
-    /// What an acknowledgement would be refused for; the acknowledgement itself when there is nothing.
+    /// Returns why an acknowledgement would be refused; WaitsFor::acknowledgement when it would not.
     [[nodiscard]] WaitsFor before_acknowledgement() noexcept TAPPET_REALTIME {
         if (bus_faulted.get()) return WaitsFor::bus;
         if (io_faulted.get()) return WaitsFor::lines;
@@ -226,7 +226,8 @@ private:
     [[nodiscard]] bool shaft_is_known() noexcept TAPPET_REALTIME {
         return shaft_valid.get() && shaft_alive.get();
     }
-    /// By the encoder, which a drive that says it turns puts in the wrong; without one by the drive alone.
+    /// Returns true when the shaft stands, by the encoder; a drive that reports turning overrules it. Without
+    /// an encoder the drive alone decides.
     [[nodiscard]] bool stands() noexcept TAPPET_REALTIME {
         const bool known = main_velocity.good();
         const double rpm = main_velocity.get();
@@ -234,7 +235,7 @@ private:
         if (known && !slow) return false;
         return shaft_valid.get() ? shaft_standing.get() : known;
     }
-    /// One bit for each that the loom is prepared with.
+    /// Returns one bit for each condition that holds now.
     [[nodiscard]] std::uint32_t there() noexcept TAPPET_REALTIME {
         std::uint32_t bits = nodes_operational.get() ? 1u : 0u;
         bits |= shaft_is_known() ? 2u : 0u;
@@ -262,7 +263,7 @@ private:
 
     static constexpr double standing_rpm = 1.0;
 
-    std::uint32_t had_ = 0; // of there(), since it began to prepare
+    std::uint32_t had_ = 0; // conditions of there() met at any time since preparation began
     StopCause cause_ = StopCause::none;
     Changed<WaitsFor> waits_for_;
 };

@@ -1,4 +1,4 @@
-// The states of the carpet loom.
+// The state machine of the carpet loom.
 #pragma once
 
 #include "apps/carpet_loom/loom.hpp"
@@ -15,7 +15,7 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
         state("locked",    initial, entry<&Loom::enter_locked>),                     // nothing moves: acknowledge
         state("operating"),
         state("preparing", in("operating"), initial, entry<&Loom::enter_preparing>), // drives on, tension, oil
-        state("asking",    in("operating"), entry<&Loom::enter_asking>),             // the same, for an acknowledgement
+        state("asking",    in("operating"), entry<&Loom::enter_asking>),             // as preparing, but waits for an acknowledgement
         state("ready",     in("operating"), entry<&Loom::enter_ready>),              // the operator may start
         state("running",   in("operating")),
         state("run_up",    in("running"), initial, entry<&Loom::enter_run_up>),
@@ -28,7 +28,7 @@ inline constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
     transitions(
         transition("locked",    "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)),
         transition("preparing", "ready",     guard<&Loom::prepared>.because<&Loom::missing>(unprepared)),
-        transition("preparing", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)), // asks the drives again
+        transition("preparing", "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)), // enables the drives again
         transition("preparing", "asking",    after(2s), guard<&Loom::drives_are_off>, because("a drive was asked to follow and does not: acknowledge, and it is asked again")),
         transition("asking",    "ready",     guard<&Loom::prepared>.because<&Loom::missing>(unprepared)),
         transition("asking",    "preparing", on("io.button_acknowledge.rises"), guard<&Loom::may_prepare>.because<&Loom::obstacle>(unsafe)),

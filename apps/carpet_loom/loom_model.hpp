@@ -1,5 +1,5 @@
-// What the loom's verification knows beside its table: the weft's release, the shaft's angles and its brake,
-// as a handful of truths, and what must never happen. See toolchain/tools/chart/model.hpp.
+// The verification model of the loom beside its table: the weft's release, the shaft's angles and its brake
+// as a few variables, and the properties that must hold. See toolchain/tools/chart/model.hpp.
 #pragma once
 
 #include "apps/carpet_loom/machine.hpp"
@@ -15,13 +15,13 @@ static_assert(loom::wires::nominal::weft_release_deg >= loom::wires::nominal::sh
 
 // clang-format off
 inline constexpr auto model = chart::verification(
-    // of the weft: as in WeftInsertion
+    // the weft: as in WeftInsertion
     chart::remembers("allowed", 0, 1),
     chart::remembers("ready", 0, 1),
     chart::remembers("released", 0, 1),
     chart::remembers("arrived", 0, 1),
     chart::remembers("early", 0, 1),
-    // of the shaft: the last angle event; its brake is 0 free, 1 wanted, 2 braking, 3 set by somebody else
+    // the shaft: the last angle event; its brake is 0 free, 1 wanted, 2 braking, 3 set by another component
     chart::remembers("angle", 0, 5),
     chart::remembers("brake", 0, 3),
     chart::remembers("by_operator", 0, 1), // the cause of the last stop
@@ -42,8 +42,8 @@ inline constexpr auto model = chart::verification(
     chart::operation("shaft.release",       chart::sets("brake = 0")),
     chart::operation("shaft.brake_was_set", chart::sets("brake = 3")),
 
-    // The angles come in their order; an encoder that was lost begins anew at any beat-up. The command "stop"
-    // brakes too, so the brake may come unasked.
+    // The angles come in their order. After a loss, the encoder restarts at any beat-up. The command "stop"
+    // also brakes, so braking may come unrequested.
     chart::happens("shaft.beat_up",       chart::sets("angle = 0")),
     chart::happens("shaft.offer_pattern", chart::when_true("angle == 0"), chart::sets("angle = 1")),
     chart::happens("shaft.weft_opens",    chart::when_true("angle == 1"), chart::sets("angle = 2")),

@@ -1,4 +1,4 @@
-// What the loom says of itself: its state, why it stopped last, and what it waits for, each with its names.
+// The loom's status: its state, the cause of its last stop, and what it waits for, each with its names.
 #pragma once
 
 #include "kernel/base/type_tag.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::carpet {
 
-/// As the state machine in loom_cycle.hpp names them.
+/// Names as in the state machine of loom_cycle.hpp.
 enum class LoomState : std::int64_t {
     off,
     locked,
@@ -24,7 +24,7 @@ enum class LoomState : std::int64_t {
     safe
 };
 enum class StopCause : std::int64_t { none, weft, warp, operator_stop, emergency, fault };
-/// What the loom waits for before it may start; the first that is missing.
+/// The first missing condition for a start.
 enum class WaitsFor : std::int64_t {
     nothing,
     emergency_stop,

@@ -1,5 +1,5 @@
-// The carpet loom on one page: its components, the activities that run them, what flows between them and what
-// happens upon what. Read it with main_shaft.hpp, weft_insertion.hpp, loom_cycle.hpp and cams.hpp at hand.
+// The carpet loom on one page: its components, the activities that run them, the data flow and the execution
+// flow. Read it with main_shaft.hpp, weft_insertion.hpp, loom_cycle.hpp and cams.hpp at hand.
 #pragma once
 
 #include "apps/carpet_loom/console.hpp"
@@ -34,20 +34,20 @@ inline constexpr auto table = machine("carpet-loom",
         component<MainDrive>("main", set("speed_rpm", 600.0), properties_file("main.cpf", optional)),
         component<WarpTension>("warp", set("set_point_n", 300.0), set("band_n", 30.0), properties_file("warp.cpf", optional)),
         component<canopen::Manager<loom_network>>("network"), // CANopen: configures, starts and watches the nodes
-        component<Loom>("loom"),                             // the states of the whole
-        component<can::Restarter>("restarter", device("loom-can")), // restarts a bus that went off, a few times
+        component<Loom>("loom"),                             // the loom's state machine
+        component<can::Restarter>("restarter", device("loom-can")), // restarts the bus after bus-off, a few times
         component<modbus::Client<utility_registers>>("utility", device("loom-utility")),
-        component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // once that activity hangs
-        component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // written at each sample
-        component<Watchdog>("io_dog", watches("io"), set("limit", 4ms)), // silent: woken, and it does not come
+        component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)), // silent once the activity "motion" hangs
+        component<Watchdog>("shaft_dog", watches("shaft.speed_rpm"), set("limit", 20ms)), // the speed is written at each encoder sample
+        component<Watchdog>("io_dog", watches("io"), set("limit", 4ms)), // silent: io was woken and did not run
         component<Watchdog>("logic_dog", watches("logic"), set("limit", 20ms)),
-        component<LastResort>("last_resort"),                // when logic hangs
+        component<LastResort>("last_resort"),                // acts when logic or shaft hangs
         component<TimedEvent>("new_shift"),
-        component<WeftRecord>("record"),                     // when the wefts arrived in this shift
+        component<WeftRecord>("record"),                     // arrival angles of the wefts in this shift
         component<Console>("console"),
         component<ThreadScope>("scope"),                     // the worst cycles of the last hour: tappet-browse scope
-        component<BrowserService>("browser")),               // who looks in from outside: see tappet-browse
-    activities( // threads; their priorities follow from the deadlines; on a stop the last row stops first
+        component<BrowserService>("browser")),               // outside access: see tappet-browse
+    activities( // threads; their priorities follow from the deadlines; a stop begins with the last row
         activity("can",     on_device("can"), at_most(9, 1ms), runs("can"),           deadline(500us), budget(30us)),
         activity("io",      on_device("io"),  at_most(8, 1ms), runs("io"),             deadline(300us), budget(16us)),
         activity("utility", every(100ms),     runs("utility"), not_real_time),
@@ -80,7 +80,7 @@ inline constexpr auto table = machine("carpet-loom",
         data("main.at_speed",             "loom.main_at_speed",   wakes),
         data("main.fault",                "loom.main_fault",      wakes),
         data("main.slips",                "loom.main_slips",      wakes),
-        data("can.main_drive.velocity",   "loom.main_velocity",   stale_after(50ms), hold), // at an acknowledgement
+        data("can.main_drive.velocity",   "loom.main_velocity",   stale_after(50ms), hold), // read at an acknowledgement
         data("warp.enabled",              "loom.let_off_enabled", wakes),
         data("warp.fault",                "loom.let_off_fault",   wakes),
         data("warp.in_band",              "loom.tension_in_band", wakes),
@@ -103,7 +103,7 @@ inline constexpr auto table = machine("carpet-loom",
         data("loom.lamp_run",             "io.lamp_run",          wakes),
         data("loom.lamp_stop",            "io.lamp_stop",         wakes),
         data("loom.lamp_fault",           "io.lamp_fault",        wakes),
-        buffer<64>("weft.arrivals",       "record.arrivals",      drop_oldest), // none is missed: 250 ms hold three
+        buffer<64>("weft.arrivals",       "record.arrivals",      drop_oldest), // no arrival is lost: 250 ms hold three
         data("loom.state",                "console.state"),
         data("loom.cause",                "console.cause"),
         data("loom.waits_for",            "console.waits_for"),
@@ -120,19 +120,19 @@ inline constexpr auto table = machine("carpet-loom",
         data("utility.unit.oil_pressure", "console.oil_bar"),
         data("utility.outages",           "console.outages")),
     reactions( // execution flow
-        when("shaft.weft_opens",     call("weft.on_release_angle")), // in the shaft's activity, here and now
+        when("shaft.weft_opens",     call("weft.on_release_angle")), // in the shaft's activity, at once
         when("shaft.weft_closes",    call("weft.on_close_angle")),
         when("shaft.window_opens",   call("weft.on_window_opens")),
         when("shaft.window_closes",  call("weft.on_window_closes")),
         when("shaft.beat_up",        call("weft.on_beat_up")),
         when("shaft.offer_pattern",  call("weft.on_offer_pattern")),
-        uses("weft.angle_at",        "shaft.angle_at"),              // a method: in the caller's thread
+        uses("weft.angle_at",        "shaft.angle_at"),              // a method: runs in the caller's thread
         when("weft.open_valve",      tell("io.weft_release.set")),   // in the engine of io
         when("weft.close_valve",     tell("io.weft_release.clear")),
         when("weft.drive_cutter",    tell("io.yarn_cutter.set")),
         when("weft.rest_cutter",     tell("io.yarn_cutter.clear")),
         when("io.weft_detector.rises", tell("weft.on_arrival"), handled_by("weft.detector"), disconnected),
-        when("weft.missed",          call("shaft.stop_at_angle")),   // no detour: the brake's angle is near
+        when("weft.missed",          call("shaft.stop_at_angle")),   // a direct call, because the brake's angle is near
         when("shaft.brake_now",      tell("io.brake.set")),
         when("shaft.brake_now",      tell("main.halt")),
         when("shaft.brake_now",      call("weft.hold")),
@@ -149,20 +149,20 @@ inline constexpr auto table = machine("carpet-loom",
         when("loom.quick_stop",      tell("main.quick_stop")),
         when("loom.quick_stop",      tell("warp.hold")),
         when("loom.quick_stop",      tell("shaft.brake_was_set")),
-        when("loom.quick_stop",      tell("can.purge")),             // nothing stale follows an emergency stop
+        when("loom.quick_stop",      tell("can.purge")),             // no stale command follows an emergency stop
         when("loom.set_brake",       tell("io.brake.set")),
         when("loom.release_brake",   tell("io.brake.clear")),
         when("loom.release_brake",   tell("shaft.release")),
         when("loom.allow_weft",      tell("weft.allow")),
         when("loom.inhibit_weft",    tell("weft.inhibit")),
-        when("loom.inhibit_weft",    tell("io.weft_release.clear")), // also when the shaft's activity hangs
-        when("io.line_fault",        tell("weft.lose_lines")),          // the brake may be on by now, whoever else hangs
-        when("logic_dog.silent",     call("last_resort.act")),       // the states of the whole cannot say it any more
-        when("shaft_dog.silent",     call("last_resort.let_cutter_rest")), // no beat-up ends the cut any more
+        when("loom.inhibit_weft",    tell("io.weft_release.clear")), // direct, in case the shaft's activity hangs
+        when("io.line_fault",        tell("weft.lose_lines")),          // the brake may be on now, even when other activities hang
+        when("logic_dog.silent",     call("last_resort.act")),       // logic hangs: the state machine cannot react
+        when("shaft_dog.silent",     call("last_resort.let_cutter_rest")), // shaft hangs: no beat-up ends the cut
         when("last_resort.rest_cutter", tell("io.yarn_cutter.clear")),
         when("last_resort.set_brake",   tell("io.brake.set")),
         when("last_resort.close_valve", tell("io.weft_release.clear")),
-        when("last_resort.close_valve", tell("weft.inhibit")),       // a shaft that is braked passes the release angle, too
+        when("last_resort.close_valve", tell("weft.inhibit")),       // a braked shaft passes the release angle, too
         when("last_resort.quick_stop",  tell("main.quick_stop")),
         when("last_resort.quick_stop",  tell("warp.hold"))),
     behaviours(
@@ -170,7 +170,7 @@ inline constexpr auto table = machine("carpet-loom",
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),
                                peers("shaft", "loom"), operations("weft.lift", "weft.weave_carpet"),
                                events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(4)))),
-    limits( // whatever a component writes, its drive is told no more than this
+    limits( // upper bounds for the drives, whatever a component writes
         limit("main.target",                 0.0, 700.0, stop_on_breach),
         limit("warp.target",                -5.0,  40.0)));
 // clang-format on

@@ -1,4 +1,4 @@
-// The main drive: leads the CiA 402 velocity drive to enabled, runs and halts the loom.
+// The main drive: enables the CiA 402 velocity drive, runs and halts the loom.
 #pragma once
 
 #include "apps/carpet_loom/drive_axis.hpp"
@@ -46,7 +46,7 @@ struct MainDrive {
         if (start_asked_) {
             start_asked_ = false;
             run_from_ = cycle.now +
-                        brake_release.get(); // against a brake that still holds the motor would be blocked
+                        brake_release.get(); // a motor that runs against the holding brake would be blocked
         }
         const bool runs = running_ && cycle.now >= run_from_;
         static_cast<void>(axis_.lead(statusword, controlword, enabled, fault));
@@ -87,7 +87,7 @@ struct MainDrive {
     }
 
 private:
-    /// A brake that grips, or a load too heavy. A run-up, or one to another speed, is none.
+    /// Detects a gripping brake or a load too heavy. Ignores a run-up, or a change of speed.
     void watch_speed(Time now, bool reached) noexcept TAPPET_REALTIME {
         if (reached) kept_rpm_ = speed_rpm.get();
         const bool keeps = running_ && kept_rpm_ == speed_rpm.get();
@@ -100,7 +100,7 @@ private:
     bool running_ = false;
     bool start_asked_ = false;
     Time run_from_{};
-    double kept_rpm_ = 0.0; // reached since it runs; 0: not yet
+    double kept_rpm_ = 0.0; // speed reached since it runs; 0: not yet
     Time kept_at_{};
     Changed<bool> at_speed_, slips_;
 };

@@ -1,5 +1,5 @@
-// The main shaft: where it is between two encoder samples, the events of its angles, and the brake angle that
-// is learned from stop to stop (US4553569).
+// The main shaft: its position between two encoder samples, the events of its angles, and the brake angle,
+// which it learns from stop to stop (US4553569).
 #pragma once
 
 #include "apps/carpet_loom/cams.hpp"
@@ -40,32 +40,32 @@ struct MainShaft {
     Property<double> late_deg{8.0};
     Property<Duration> stamp_latency{0us};
 
-    /// Brakes so that the shaft comes to stand at the stop angle: in this turn if it is still possible.
+    /// Brakes so that the shaft stops at the stop angle: in this turn if still possible.
     void stop_at_angle() noexcept TAPPET_REALTIME { want_stop(stop_angle_deg.get()); }
-    /// The same as a goal. Rejected when the brake was set by somebody else, or the angle is not known.
+    /// The same as a command. Rejected when another component set the brake or the angle is unknown.
     bool stop_shaft(double&) noexcept TAPPET_REALTIME { return want_stop(stop_angle_deg.get()); }
     bool stop_shaft_at(double at_deg, double&) noexcept TAPPET_REALTIME {
         return at_deg >= 0.0 && at_deg < 360.0 && want_stop(at_deg);
     }
     CommandProgress has_stopped(double& error_deg) noexcept TAPPET_REALTIME {
         if (phase_ == Phase::wanted || phase_ == Phase::braking) return CommandProgress::executing;
-        if (!reached_) return CommandProgress::failed; // the brake was set by somebody else, or released
+        if (!reached_) return CommandProgress::failed; // another component set the brake, or it was released
         error_deg = stop_error_deg.last();
         return CommandProgress::done;
     }
     CommandProgress has_stopped_at(double, double& error_deg) noexcept TAPPET_REALTIME {
         return has_stopped(error_deg);
     }
-    /// The angle, in degrees, at a time near the last sample.
+    /// Returns the angle in degrees at a time near the last sample.
     double angle_at(const Time& at) noexcept TAPPET_REALTIME {
         return estimator_.motion().at(at).position.angle().in_degrees();
     }
-    /// Forgets a stop, or that the brake holds.
+    /// Forgets a stop, or a brake that holds.
     void release() noexcept TAPPET_REALTIME {
         phase_ = Phase::free;
         brake_timer.cancel();
     }
-    /// The brake was set by somebody else (emergency): nothing is to be learned from this stop.
+    /// Another component set the brake (emergency): this stop is not used for learning.
     void brake_was_set() noexcept TAPPET_REALTIME {
         phase_ = Phase::foreign;
         brake_timer.cancel();
@@ -90,7 +90,7 @@ struct MainShaft {
         stop_error_deg.write(0.0);
         lose();
     }
-    /// Nobody knows the angle any longer.
+    /// The angle is unknown from now on.
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         release();
         lose();
@@ -108,7 +108,7 @@ struct MainShaft {
         cam_timer.arm(schedule_.next_due());
     }
 
-    /// No sample came in time: nothing else would tell.
+    /// Handles the time-out of encoder samples: nothing else would detect it.
     void watch(const Cycle& cycle) noexcept TAPPET_REALTIME { follow(cycle.now); }
 
     void brake_due(const Cycle& cycle) noexcept TAPPET_REALTIME {
@@ -171,15 +171,15 @@ struct MainShaft {
 private:
     enum class Phase : std::uint8_t { free, wanted, braking, foreign };
     static constexpr double brake_dead_s = to_seconds(wires::nominal::brake_dead);
-    // What a brake of this loom can need at nominal speed; what is learned stays between them.
+    // Range of the brake distance of this loom at nominal speed; the learned distance stays within it.
     static constexpr double least_distance_deg = 30.0;
     static constexpr double most_distance_deg = 180.0;
     static_assert(least_distance_deg > wires::nominal::speed_rpm * 6.0 * brake_dead_s,
                   "during the dead time alone the shaft turns so far");
-    // Below this the brake bites at once and the distance says nothing of its torque.
+    // Below this speed the brake bites at once, and the distance says nothing about its torque.
     static constexpr double least_learning_deg_s = 0.5 * wires::nominal::speed_rpm * 6.0;
 
-    /// False: the brake was set by somebody else. A stop that has begun keeps its angle.
+    /// Returns false when another component set the brake. A stop that has begun keeps its angle.
     bool want_stop(double at_deg) noexcept TAPPET_REALTIME {
         if (phase_ == Phase::foreign || !valid.last()) return false;
         if (phase_ != Phase::free) return true;
@@ -203,7 +203,7 @@ private:
         else
             lose();
         if (!is_valid) return;
-        // What the stand closes is closed, and judged, before it is told: a weft that is missed by it counts.
+        // At standstill, cams close and are judged before the stop is reported: a weft missed here counts.
         if (estimator_.standing() && schedule_.next_due() <= now) fire_cams({.now = now});
         if (phase_ == Phase::wanted) plan_brake(now, state);
         if (phase_ == Phase::braking && estimator_.standing()) finish_stop(state);
@@ -219,7 +219,7 @@ private:
         rest(estimator_.standing());
         standing_.write(standing, estimator_.standing());
     }
-    /// Nobody knows where the shaft is: no cam fires, what one opened is closed, and no speed is followed.
+    /// The position is unknown: no cam fires, open cams are closed, and the reported speed is 0.
     void lose() noexcept TAPPET_REALTIME {
         schedule_.leave_all([this](const CamEvent& event) noexcept TAPPET_REALTIME { fire(event); });
         rest(true);
@@ -252,8 +252,8 @@ private:
         }
     }
 
-    /// Of a brake that needs this distance at nominal speed: during its dead time the shaft turns on, the
-    /// rest is braking.
+    /// Returns the deceleration for this brake distance at nominal speed. It excludes the way during the dead
+    /// time, in which the shaft turns on.
     [[nodiscard]] static double deceleration_for(double distance_deg) noexcept TAPPET_REALTIME {
         constexpr double speed = wires::nominal::speed_rpm * 6.0;
         return speed * speed / (2.0 * (distance_deg - speed * brake_dead_s));
@@ -303,7 +303,7 @@ private:
                                        deceleration_for(least_distance_deg));
         }
         brake_distance_deg.write(distance_at(wires::nominal::speed_rpm * 6.0));
-        // Saved at halt, the next start knows it; the last digits of what was computed may lie outside.
+        // Saved at halt for the next start. Clamped because of rounding.
         first_brake_distance_deg.set(
             std::clamp(brake_distance_deg.last(), least_distance_deg, most_distance_deg));
         stop_error_deg.write(error_of(state));
@@ -319,14 +319,14 @@ private:
                       cams.rows[arrival_window_row].name == "arrival_window" && cams.rows.size() == 4,
                   "fire() gives each cam row its event");
 
-    static constexpr Duration settling = 20ms; // after a start: long enough for all to see that it was lost
+    static constexpr Duration settling = 20ms; // after a start: all components see that the angle was lost
 
     ShaftEstimator estimator_{ShaftProperties{}};
     CamSchedule<cams.size()> schedule_{cams};
     EncoderTrust trust_{};
     Phase phase_ = Phase::free;
     double wanted_deg_ = wires::nominal::stop_deg;
-    bool reached_ = false; // the stop that was wanted last
+    bool reached_ = false; // the last wanted stop was reached
     ShaftPosition edge_{};
     double edge_speed_deg_s_ = 0.0;
     double deceleration_ = 1.0;

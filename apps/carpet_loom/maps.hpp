@@ -1,4 +1,4 @@
-// What stands on the loom's buses, as tables: frames and their signals, lines, registers.
+// The signals on the loom's buses, as tables: frames and their signals, lines, registers.
 #pragma once
 
 #include "apps/carpet_loom/wires.hpp"

@@ -1,4 +1,4 @@
-// The loom's CANopen network: its nodes, what their frames hold and how they are configured.
+// The loom's CANopen network: its nodes, the contents of their frames, and their configuration.
 #pragma once
 
 #include "apps/carpet_loom/maps.hpp"
@@ -14,7 +14,7 @@ namespace tappet::carpet {
 
 // clang-format off
 inline constexpr auto loom_network = canopen::network(can_signals,
-    canopen::manager(wires::node::machine), // no heartbeat of its own: drives stop without their commands
+    canopen::manager(wires::node::machine), // no heartbeat of its own: the drives stop when its commands cease
     canopen::node(wires::node::main_drive, "main", canopen::dictionary<files::drive_eds>).heartbeat(wires::heartbeat_period)
         .pdo("main_drive", canopen::on_event(wires::drive_status_period), {0x6041, 0x606C})
         .pdo("main_drive_command", {0x6040, 0x60FF})

@@ -1,4 +1,4 @@
-// The simulated carpet loom at the other end of the machine's wires, in whatever world.
+// The simulated carpet loom at the other end of the machine's wires, in any world.
 #pragma once
 
 #include "apps/carpet_loom/maps.hpp"
@@ -13,10 +13,10 @@
 
 namespace tappet::carpet {
 
-/// Weaves until its last pick is woven and it stands.
+/// Weaves until its last pick is woven and the shaft stands.
 class Plant final : public tappet::Plant {
 public:
-    /// Nothing goes wrong unless options say so.
+    /// No fault occurs unless options request one.
     explicit Plant(std::uint64_t seed) : Plant{loom::Settings{}, seed} {}
     Plant(const loom::Settings& settings, std::uint64_t seed) : settings_{settings}, seed_{seed} {}
 
@@ -39,7 +39,7 @@ public:
     void report(JsonText& json) const override { loom::write_json(loom().report(), json); }
     [[nodiscard]] std::uint64_t digest() const override { return loom().report().digest; }
 
-    /// So many picks, and it stands.
+    /// Returns true when at least `picks` are woven and the shaft stands.
     [[nodiscard]] bool has_woven(std::uint64_t picks) const {
         return loom_ && loom_->picks() >= picks && loom_->speed_rpm() == 0.0;
     }
@@ -65,8 +65,8 @@ private:
     struct {
         std::uint64_t steps = ~std::uint64_t{0};
         std::uint32_t changes = 0;
-    } exchanged_{};                    // of the climate, and of the tables
-    std::optional<Duration> origin_{}; // its own time begins at Time{}
+    } exchanged_{};                    // last exchanged: the climate's steps, the tables' changes
+    std::optional<Duration> origin_{}; // the plant's own time begins at Time{}
 };
 
 } // namespace tappet::carpet

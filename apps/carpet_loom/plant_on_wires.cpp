@@ -27,8 +27,8 @@ constexpr Input inputs[] = {
     {"weft_detector", line::weft_detector},   {"button_start", line::button_start},
     {"button_stop", line::button_stop},       {"button_acknowledge", line::button_acknowledge}};
 
-/// Holding registers that the unit has beyond what the machine reads and writes; the other such thing is its
-/// discrete input, oil level low.
+/// Holding registers of the unit that the machine neither reads nor writes. Its discrete input "oil level
+/// low" is likewise unused.
 struct Setting {
     std::uint16_t first, least, most;
 };
@@ -74,7 +74,7 @@ Time Plant::move(Time now) {
 }
 
 std::optional<Time> Plant::leap(Time until) {
-    if (settings_.edge_burst_at != Duration::max()) return {}; // it leaves the wires, not the loom
+    if (settings_.edge_burst_at != Duration::max()) return {}; // the burst leaves the wires, not the loom
     const Time next = loom().leap(until - *origin_);
     exchange_registers();
     return next + *origin_;
@@ -89,7 +89,7 @@ void Plant::take_wires(Time own) {
 }
 
 void Plant::give_frames(Time now) {
-    // A full bus loses it, as a real node would; the end counts it.
+    // A full bus loses the frame, as with a real node; the final report counts it.
     const auto send = [this, now](can::Frame frame) {
         frame.stamp = now;
         static_cast<void>(can_.send(frame));
@@ -97,7 +97,7 @@ void Plant::give_frames(Time now) {
     bool is_sampled = false;
     for (can::Frame frame; loom().transmit(frame);) {
         if (frame.id == loom::wires::cob::encoder_position)
-            is_sampled = true; // who comes late sends the shaft as it is, once, not as it was
+            is_sampled = true; // when late, the present angle is sent once, not each past sample
         else
             send(frame);
     }
@@ -111,7 +111,7 @@ void Plant::give_lines(Time now) {
             if (each.offset == edge.line) io_.set(each.name, edge.level, edge.at + *origin_);
     if (now - *origin_ < Time{} + settings_.edge_burst_at) return;
     settings_.edge_burst_at = Duration::max();
-    constexpr unsigned burst_edges = 400; // more than any buffer of events holds
+    constexpr unsigned burst_edges = 400; // more than any event buffer holds
     for (unsigned i = 0; i < burst_edges; ++i) io_.set("weft_detector", i % 2 == 0, now);
 }
 

@@ -1,5 +1,5 @@
-// What must never be so of the carpet loom, whatever goes wrong around it, and when it weaves: what its swarm
-// judges by.
+// The rules of the carpet loom's swarm: what must never happen, whatever goes wrong around the loom, and when
+// it weaves.
 #pragma once
 
 #include "apps/carpet_loom/console.hpp"
@@ -89,10 +89,10 @@ public:
     [[nodiscard]] SwarmPeople people() const override { return {properties, ports, scripts}; }
 
 private:
-    static constexpr Duration reaction = 5ms;         // from a state to what it promises on the lines
-    static constexpr Duration taken_up = 25ms;        // what a chip refused, when it is back
+    static constexpr Duration reaction = 5ms;         // from a state to its promised line levels
+    static constexpr Duration taken_up = 25ms;        // writes that a chip refused, once it is back
     static constexpr Duration stops_within = 500ms;   // a shaft at speed, by its brake
-    static constexpr Duration noticed_within = 300ms; // that the states are gone, and it stands
+    static constexpr Duration noticed_within = 300ms; // loss of the state machine, until standstill
     static constexpr bool weaves(LoomState state) {
         return state == LoomState::run_up || state == LoomState::weave || state == LoomState::stopping;
     }
@@ -100,7 +100,7 @@ private:
         return state == LoomState::locked || state == LoomState::emergency || state == LoomState::fault ||
                state == LoomState::safe;
     }
-    // What says how brake, beam and encoder are made is for who knows them.
+    // Properties that describe the construction of brake, beam and encoder are left to experts.
     static constexpr std::array<std::string_view, 9> properties{
         "main.speed_rpm",   "main.slip_for", "shaft.stop_angle_deg", "shaft.learning_rate", "shaft.late_deg",
         "warp.set_point_n", "warp.band_n",   "loom.colour",          "record.shift"};
@@ -128,15 +128,15 @@ private:
           " final state Carpet { entry { do weft.weave_carpet(); } } }",
           false}}};
 
-    /// The parts between the states and the main drive.
+    /// Returns how long all parts between the states and the main drive have been intact.
     [[nodiscard]] Duration led_for(Time now) const {
         Duration least = Duration::max();
         for (const std::size_t each : leads_) least = std::min(least, struck_.whole_for(each, now));
         return least;
     }
-    /// Without its states the loom is stopped by what is left.
+    /// Without its state machine, the remaining components must stop the loom.
     std::string_view blind(Time now) {
-        // One that hangs is missed once somebody needs it.
+        // A hanging activity is noticed only once somebody needs it.
         const bool rests = machine_.life().state_of(logic_) == ComponentState::running &&
                            !machine_.engines()[machine_.machine().index.activity[logic_]].is_woken();
         if (struck_.whole_for(logic_, now) >= Duration{} || rests) seen_at_ = now;

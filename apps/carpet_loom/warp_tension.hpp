@@ -1,5 +1,5 @@
-// The let-off: a velocity drive turns the warp beam so that the warp keeps its tension (a PI controller with
-// the take-up of the main shaft fed forward, thesis 3.3; US4827985).
+// The let-off: a velocity drive turns the warp beam so that the warp keeps its tension. A PI controller with
+// the main shaft's take-up fed forward (thesis 3.3; US4827985).
 #pragma once
 
 #include "apps/carpet_loom/drive_axis.hpp"
@@ -13,7 +13,7 @@ namespace tappet::carpet {
 
 namespace wires = loom::wires;
 
-/// Of the tension's loop.
+/// The gains of the tension loop.
 struct TensionGains {
     Property<double> proportional{0.004};
     Property<double> integral{0.02};
@@ -50,7 +50,7 @@ struct WarpTension {
         axis_.enable();
     }
     void disable() noexcept TAPPET_REALTIME { axis_.disable(); }
-    /// Feeds what a shaft that still turns takes up, and stands with it.
+    /// Feeds the take-up of a shaft that still turns, and stops with it.
     void hold() noexcept TAPPET_REALTIME { held_ = true; }
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
@@ -100,7 +100,7 @@ private:
         const bool blind = flow == Flow::stale || flow == Flow::never_written;
         const double error = tension_n - set_point_n.get();
         in_band_.write(in_band, !blind && error < band_n.get() && -error < band_n.get());
-        // The take-up alone is followed: while the shaft stands, or nobody knows its speed, nothing is fed.
+        // Only the take-up is followed: nothing is fed while the shaft stands or its speed is unknown.
         if (blind || held_) return speed_rpm > 0.0 ? forward + integral_rpm_ : 0.0;
         integral_rpm_ = std::clamp(integral_rpm_ + gains.integral.get() * error * to_seconds(cycle.period),
                                    -integral_limit_rpm, integral_limit_rpm);

@@ -1,4 +1,4 @@
-// The weft: released at its angle, watched for in its window, and the pattern of each pick.
+// The weft: releases it at its angle, watches for it in its window, and selects the pattern of each pick.
 #pragma once
 
 #include "apps/carpet_loom/weft_record.hpp"
@@ -12,7 +12,7 @@ namespace tappet::carpet {
 
 namespace wires = loom::wires;
 
-/// All real-time. It stands in the shaft's activity, so that the angle events call it without a detour.
+/// All real-time. It runs in the shaft's activity, so that the angle events call it directly.
 struct WeftInsertion {
     static constexpr bool slot_required = true; // the pattern's behaviour is loaded while the machine runs
 
@@ -28,29 +28,29 @@ struct WeftInsertion {
     EventHandle detector;
 
     void allow() noexcept TAPPET_REALTIME { allowed_ = true; }
-    /// No weft in the turns to come; the one that flies is let fly.
+    /// Releases no weft in the coming turns; a weft in flight continues.
     void hold() noexcept TAPPET_REALTIME { allowed_ = ready_ = false; }
-    /// No weft from now on; an open valve closes.
+    /// Releases no weft from now on and closes an open valve.
     void lose_lines() noexcept TAPPET_REALTIME { inhibit(); }
     void inhibit() noexcept TAPPET_REALTIME {
         hold();
         close_valve.emit();
     }
 
-    /// The pattern of the picks to come instead of the carpet's, one bit for each of the dobby's harnesses.
-    /// False: no harness, or one that the dobby does not have.
+    /// Sets the pattern of the coming picks in place of the carpet's, one bit for each harness of the dobby.
+    /// Returns false for no harness, or for one that the dobby does not have.
     bool lift(std::int64_t harnesses) noexcept TAPPET_REALTIME {
         if (harnesses <= 0 || harnesses > all_harnesses) return false;
         lifted_ = harnesses;
         return true;
     }
-    /// The carpet's patterns again.
+    /// Returns to the carpet's patterns.
     void weave_carpet() noexcept TAPPET_REALTIME { lifted_ = 0; }
 
     void on_beat_up() noexcept TAPPET_REALTIME {
         if (arrived_) picks_woven.write(picks_woven.last() + 1);
         released_ = arrived_ = false;
-        detector.disconnect(); // a pulse without a weft on its way is none
+        detector.disconnect(); // ignores pulses without a weft in flight
         ready_ = allowed_;     // only a turn that began with permission gets a weft
         cut(false);
     }
@@ -71,21 +71,21 @@ struct WeftInsertion {
     }
     void on_window_opens() noexcept TAPPET_REALTIME { early_ = arrived_; }
     void on_window_closes() noexcept TAPPET_REALTIME {
-        // A pulse before the window is no weft of this pick: it flew too short, or the detector chatters.
+        // A pulse before the window is no valid arrival: the weft flew too short, or the detector chatters.
         if (released_ && (!arrived_ || early_)) missed.emit();
     }
     void on_arrival(Time at) noexcept TAPPET_REALTIME {
-        // A weft counts also while the shaft is stopped, when nobody knows the angle.
+        // A weft also counts while the shaft component is stopped and the angle is unknown.
         if (const auto angle_deg = angle_at(at); angle_deg.given()) {
             arrival_deg.write(angle_deg.value_or(0.0), at);
-            // A second pulse of the same weft is none.
+            // Ignores a second pulse of the same weft.
             if (!arrived_)
                 static_cast<void>(arrivals.push({picks_woven.last() + 1, angle_deg.value_or(0.0)}));
         }
         arrived_ = true;
         if (turning_) cut(true);
     }
-    /// The shaft stands or is lost: the beat-up that ends the cut may never come.
+    /// Ends the cut: the shaft stands or is lost, and the beat-up that ends the cut may never come.
     void on_rest() noexcept TAPPET_REALTIME {
         turning_ = false;
         cut(false);
@@ -99,7 +99,7 @@ struct WeftInsertion {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         working.write(false);
-        if (allowed_) missed.emit(); // a loom that turns on without us weaves nothing
+        if (allowed_) missed.emit(); // a loom that turns on without this component weaves nothing
         inhibit();
         on_rest();
         detector.disconnect();
@@ -156,7 +156,7 @@ private:
             rest_cutter.emit();
     }
 
-    std::int64_t lifted_ = 0; // by a behaviour; 0: the carpet's
+    std::int64_t lifted_ = 0; // set by a behaviour; 0: the carpet's
     bool allowed_ = false;
     bool ready_ = false;
     bool released_ = false;

@@ -1,4 +1,4 @@
-// The record of a shift: when the wefts arrived and how the loom stopped, for the weaver who sets it up.
+// The record of a shift: arrival angles of the wefts and stops of the loom, for the weaver who sets it up.
 #pragma once
 
 #include "apps/carpet_loom/wires.hpp"
@@ -14,7 +14,7 @@ struct Arrival {
     double angle_deg = 0.0; ///< of the main shaft
 };
 
-/// Runs in a background activity: every arrival reaches it through a buffer, however late it comes to look.
+/// Runs in a background activity. A buffer holds every arrival until it runs.
 struct WeftRecord {
     BufferInput<Arrival> arrivals;
     Event<Duration> begun;
@@ -36,7 +36,7 @@ struct WeftRecord {
             add(arrival.angle_deg);
         }
     }
-    /// Begins anew: with another shift, say.
+    /// Starts a new record, for instance with a new shift.
     void forget(Time) noexcept TAPPET_REALTIME {
         count.write(0);
         earliest_deg.write(0.0);

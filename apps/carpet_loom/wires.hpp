@@ -1,5 +1,5 @@
-// The wires between the carpet loom's machine and the loom itself: what stands on each CAN identifier and
-// GPIO line, and the loom's nominal figures. The machine's maps and the plant read the same numbers.
+// The wires between the carpet loom's machine and the loom: the contents of each CAN identifier and GPIO
+// line, and the loom's nominal figures. The machine's maps and the plant use the same numbers.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -91,7 +91,7 @@ inline constexpr unsigned chip_lines = 14;
 
 inline constexpr Duration weft_pulse = 3ms;
 
-// --- Nominal figures of the loom: what its maker's data sheet tells the machine
+// --- Nominal figures of the loom, from its maker's data sheet
 
 namespace nominal {
 inline constexpr double speed_rpm = 600.0;

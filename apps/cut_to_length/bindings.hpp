@@ -1,4 +1,4 @@
-// Where the cutter's devices and lines stand on each board.
+// Maps the cutter's devices and lines to each board.
 #pragma once
 
 #include "drivers/gpio/kind.hpp"
@@ -16,7 +16,7 @@ inline constexpr Binding bench = binding(wired("feed-can", "can0"), buttons_and_
 inline constexpr Binding ipc_x86_64 = binding(wired("feed-can", "can0"), buttons_and_knife, place("can", 3),
                                               place("io", 3), place("browser", 0));
 
-// The processors are four there, too.
+// This board also has four processors.
 inline constexpr Binding ipc_aarch64 = ipc_x86_64;
 
 } // namespace cut_to_length::bindings

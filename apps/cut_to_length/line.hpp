@@ -1,4 +1,4 @@
-// The line as a whole: its states, its drive, its lamp.
+// The line's state component: its state machine, its drive, its lamp.
 #pragma once
 
 #include "apps/cut_to_length/maps.hpp"
@@ -38,7 +38,7 @@ struct Line {
     [[nodiscard]] bool is_in_danger() noexcept TAPPET_REALTIME {
         return emergency_stop.get() || lines_faulted.get() || bus_faulted.get() || !wheel_valid.get();
     }
-    /// Why the guards above say no.
+    /// Returns why the guards above refuse.
     [[nodiscard]] std::string_view obstacle() noexcept TAPPET_REALTIME {
         if (emergency_stop.get()) return "the emergency stop is pressed";
         if (lines_faulted.get()) return "the lines cannot be relied on";
@@ -75,7 +75,7 @@ private:
 inline constexpr auto line_states = state_machine<Line>("line_states",
     states(
         state("locked",    initial, entry<&Line::enter_halted>), // nothing moves: press start once
-        state("ready",     entry<&Line::enter_stopped>),         // the web stands, or comes to stand and is cut
+        state("ready",     entry<&Line::enter_stopped>),         // the web stands, or brakes to a stand and is cut
         state("running",   entry<&Line::enter_running>),
         state("emergency", entry<&Line::enter_halted>),
         state("safe",      final, entry<&Line::enter_halted>)),

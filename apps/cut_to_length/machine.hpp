@@ -12,7 +12,7 @@
 namespace cut_to_length {
 
 // clang-format off
-// One length of web is one turn: the blade meets the web where it is complete, the line rests until the next one.
+// One length of web is one turn. The blade meets the web at the complete length, then the line rests.
 inline constexpr auto cams = cam_table(600_rpm, cam("cut", window(0_deg, 60_deg), dead_time(knife_dead_time)));
 
 inline constexpr auto table = machine("cut-to-length",
@@ -20,9 +20,9 @@ inline constexpr auto table = machine("cut-to-length",
         component<can::Bus<can_signals>>("can", device("feed-can")),
         component<gpio::LinePort<io_lines>>("io", device("line-io")),
         component<CamShaft<cams>>("wheel", set("codes_per_turn", 500 * codes_per_mm), set("counter_bits", wheel_bits)),
-        component<Line>("line", set("speed", 2.0)),             // the states of the whole
-        component<can::Restarter>("restarter", device("feed-can")), // restarts a bus that went off, a few times
-        component<BrowserService>("browser")),                      // who looks in from outside: see tappet-browse
+        component<Line>("line", set("speed", 2.0)),             // the line's state machine
+        component<can::Restarter>("restarter", device("feed-can")), // restarts the bus after bus-off, a few times
+        component<BrowserService>("browser")),                      // outside access: see tappet-browse
     activities( // threads; their priorities follow from the deadlines
         activity("can",       on_device("can"), at_most(4, 1ms), runs("can"),       deadline(500us), budget(30us)),
         activity("io",        on_device("io"),  at_most(4, 1ms), runs("io"),        deadline(300us), budget(16us)),
@@ -32,7 +32,7 @@ inline constexpr auto table = machine("cut-to-length",
         activity("browser",   every(20ms), not_real_time,        runs("browser"), stack(224 * 1024))),
     connections( // data flow
         data("can.wheel.position",   "wheel.code", wakes, stale_after(20ms), hold),
-        data("can.feed.statusword",  "line.statusword",    stale_after(50ms), substitute(0.0)), // silent: it follows nothing
+        data("can.feed.statusword",  "line.statusword",    stale_after(50ms), substitute(0.0)), // when silent: the drive follows nothing
         data("can.faulted",          "line.bus_faulted"),
         data("can.faulted",          "restarter.faulted"),
         data("io.emergency_stop",    "line.emergency_stop"),

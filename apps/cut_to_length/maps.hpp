@@ -1,5 +1,5 @@
-// What stands on the wires of the cutter: a measuring wheel and a feed drive on CAN, buttons, knife and lamp
-// on lines.
+// The signals on the cutter's wires: a measuring wheel and a feed drive on CAN; buttons, knife and lamp on
+// lines.
 #pragma once
 
 #include "drivers/can/bus.hpp"
@@ -25,7 +25,7 @@ inline constexpr auto io_lines = gpio::line_map(
     gpio::sensor("start", gpio::debounce(5ms)),
     gpio::sensor("stop", gpio::debounce(5ms)),
     gpio::sensor("emergency_stop"),
-    gpio::actuator("knife", gpio::safe(false)), // one edge, one turn of the knife
+    gpio::actuator("knife", gpio::safe(false)), // one edge makes one turn of the knife
     gpio::output("lamp", gpio::safe(false)));
 // clang-format on
 

@@ -1,4 +1,4 @@
-// The web, its drive and its knife at the other end of the wires; it measures each piece that is cut.
+// Simulates the web, its drive and its knife at the other end of the wires, and measures each cut piece.
 #pragma once
 
 #include "apps/cut_to_length/maps.hpp"
@@ -62,10 +62,10 @@ public:
         json.field("pieces", pieces_).field("worst_error_mm", worst_mm_).field("web_m", web_mm_ / 1000.0);
     }
 
-    // For tests: what people and faults do.
+    // For tests: actions of people, and faults.
     void press_emergency_stop(bool pressed) {
         emergency_ = pressed;
-        cut_before_ = false; // the piece that lies there is scrap
+        cut_before_ = false; // the piece being fed is scrap
     }
     void press_start(Time at) { start_at_ = at; }
     void silence_drive() { can.send_every("feed", Duration::zero()); }
@@ -77,7 +77,7 @@ public:
     [[nodiscard]] std::int64_t pieces() const { return pieces_; }
     [[nodiscard]] double worst_mm() const { return worst_mm_; }
 
-    static constexpr double tolerance_mm = 1.0; // half a millisecond of the web at 2 m/s
+    static constexpr double tolerance_mm = 1.0; // the web moves this far in half a millisecond at 2 m/s
 
 private:
     can::FarEnd<can_signals> can{ends, "feed-can"};
@@ -86,7 +86,7 @@ private:
     static constexpr double acceleration = 2.0; // m/s2
     static constexpr double length_mm = 500.0;
 
-    /// Presses start until the line runs, once; and stop when enough is cut.
+    /// Presses start until the line runs, once; presses stop when enough is cut.
     void operate(Time now) {
         started_ |= io.get("lamp");
         const Duration t = elapsed() % 500ms;

@@ -1,4 +1,4 @@
-// An arm at the other end of its robot's wires: six axes with drives that lag, brakes, encoders and switches,
+// An arm at the other end of its robot's wires: six axes with lagging drives, brakes, encoders and switches,
 // and somebody who presses its buttons.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace two_robots {
 
-/// What an arm has that its simulation has to know.
+/// The properties of an arm that its simulation needs.
 struct ArmFacts {
     std::span<const double, 6> counts_per_rad, volts_per_rate, switch_angles, lowest, highest;
     bool absolute; ///< encoders
@@ -27,8 +27,8 @@ struct ArmFacts {
 class ArmPlant : public Plant {
 public:
     static constexpr double drive_lag_s = 0.010, brake_lag_s = 0.005;
-    static constexpr double repeatability = 0.5e-3; ///< rad: of a switch, either way
-    static constexpr double to_buffers = 0.01; ///< rad: from where a joint may go to where it hits something
+    static constexpr double repeatability = 0.5e-3; ///< rad: of a switch, in both directions
+    static constexpr double to_buffers = 0.01;      ///< rad: from a joint's limit to its buffer
 
     ArmPlant(std::uint64_t seed, const ArmFacts& facts, const Joints& at)
         : facts_{facts}, random_{seed}, at_{at} {
@@ -40,17 +40,17 @@ public:
         can.send_every("encoders_c", servo_period);
     }
 
-    /// Of the joints, as they are.
+    /// Returns the true joint angles.
     [[nodiscard]] const Joints& joints() const { return at_; }
     [[nodiscard]] const Joints& rates() const { return rate_; }
     [[nodiscard]] const Joints& worst_rates() const { return worst_rate_; }
-    [[nodiscard]] double worst_change() const { return worst_change_; } ///< rad/s2 of what was asked
+    [[nodiscard]] double worst_change() const { return worst_change_; } ///< rad/s2 of the commanded rates
     [[nodiscard]] bool brakes_are_on() const { return !released_; }
     [[nodiscard]] bool stands() const { return rate_.cwiseAbs().maxCoeff() < 1e-4; }
-    /// How far a joint pressed into a buffer, rad; 0: none.
+    /// Returns how far a joint pressed into a buffer, rad; 0: none did.
     [[nodiscard]] double beyond() const { return beyond_; }
 
-    // ---- for tests and stories: what people and faults do
+    // ---- for tests and stories: actions of people, and faults
     void press(std::string_view button, Time until) { pressed_ = {button, until}; }
     void jam(int axis) { jammed_ = axis; }
     void forget_worst() {
@@ -114,7 +114,7 @@ private:
         can.set_integer("encoders_c.joint_5", count(4));
         can.set_integer("encoders_c.joint_6", count(5));
     }
-    /// Each time a switch is passed it gives way a little earlier or later.
+    /// Each time a joint passes its switch, the switching angle changes slightly.
     void give_switches() {
         for (std::size_t i = 0; i < 6; ++i) {
             const double edge = facts_.switch_angles[i] + offset_[i];

@@ -1,4 +1,4 @@
-// Where the lines of either robot stand on the chip that it is wired to.
+// Maps the lines of either robot to the chip to which they are wired.
 #pragma once
 
 #include "drivers/gpio/kind.hpp"

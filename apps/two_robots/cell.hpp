@@ -1,4 +1,4 @@
-// What stands where around the two robots, and the camera that looks at the body: simulated, for plants.
+// The geometry around the two robots, and the camera that looks at the body: simulated, for plants.
 #pragma once
 
 #include "apps/two_robots/kinematics.hpp"
@@ -13,12 +13,12 @@
 
 namespace two_robots {
 
-inline constexpr double hole_radius = 0.012; ///< m: wider than the body moves
+inline constexpr double hole_radius = 0.012; ///< m: larger than the body's motion
 
-/// The body as the base of the robot that operates sees it, for the joints of the one that holds it.
+/// Returns the body in the base frame of the operating robot, for joints `q` of the robot that holds it.
 inline BodyFrame body_held_by(const Joints& q) {
     struct BodyRobot;
-    motion::Frame<Base, BodyRobot> stands; // opposite, and looks back
+    motion::Frame<Base, BodyRobot> stands; // placed opposite, facing back
     stands.rotation << -1, 0, 0, 0, -1, 0, 0, 0, 1;
     stands.position << 2.3, 0.0, 0.0;
     K160Kinematics kinematics;
@@ -30,25 +30,25 @@ inline BodyFrame body_held_by(const Joints& q) {
     return stands * holds * chest;
 }
 
-/// The tip as the body sees it.
+/// Returns the tip in the body's frame.
 inline BodyTip tip_in_body(const BodyFrame& body, const Joints& q, double tool_length) {
     K361Kinematics kinematics;
     return inverse(body) * kinematics.posture(SixNumbers{q}).frame() * tip_of_tool(tool_length);
 }
 
-/// How far the middle of the shaft of a tip inside passes that of the hole, m.
+/// Returns the distance between the centre of the hole and the shaft of a tip inside, m.
 inline double shaft_beside_hole(const BodyTip& tip) {
     const Eigen::Vector3d shaft = tip.rotation.col(2);
     const Eigen::Vector3d in_hole = tip.position - shaft * (tip.position.z() / shaft.z());
     return std::sqrt(in_hole.x() * in_hole.x() + in_hole.y() * in_hole.y());
 }
 
-/// The 3D camera at 50 Hz, 60 ms late, with noise; its packets are lost and overtake each other.
+/// The 3D camera at 50 Hz, 60 ms late, with noise. Its packets may be lost or overtake each other.
 class SimulatedCamera {
 public:
     struct Faults {
         std::uint64_t lost_one_in = 50, late_one_in = 100, invalid_one_in = 200;
-        double noise_m = 0.05e-3; ///< deviation of each coordinate
+        double noise_m = 0.05e-3; ///< standard deviation of each coordinate
         bool covered = false;     ///< nothing is seen
         int hidden_led = -1;
     };
@@ -65,7 +65,7 @@ public:
     }
 
     Faults faults{};
-    void restart() { cycle_ = 0; } ///< it counts its exposures anew
+    void restart() { cycle_ = 0; } ///< the count of its exposures restarts
 
     static constexpr Duration exposed_every = 20ms, least_latency = 60ms, jitter = 4ms;
 
@@ -95,7 +95,7 @@ private:
         const bool lost = random_.one_in(faults.lost_one_in);
         if (!lost && !faults.covered) on_the_way_.push_back({at + takes, led_packet::write(leds, invalid)});
     }
-    /// Of deviation one, nearly: the sum of twelve even ones.
+    /// Returns a nearly normal number of deviation 1: the sum of twelve uniform ones.
     double normal() {
         double sum = -6.0;
         for (int i = 0; i < 12; ++i) sum += random_.unit();

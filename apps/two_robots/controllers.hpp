@@ -1,4 +1,4 @@
-// Controllers of both robots: joints by what they lack, with the rate of the path beforehand or without.
+// Controllers of both robots: control joints by their error, with or without feed-forward of the rate.
 #pragma once
 
 #include "apps/two_robots/values.hpp"
@@ -11,8 +11,8 @@
 
 namespace two_robots {
 
-/// What both have. They take over from what was sent, and the difference fades; they brake before a joint
-/// ends, as soon as its angle is known. Real-time.
+/// The common part of both. They take over from the last sent rates, and the difference fades. They brake
+/// before a joint's limit, as soon as its angle is known. Real-time.
 struct JointController {
     Input<Joints> target, rate, positions, sent;
     Input<bool> calibrated;
@@ -56,7 +56,7 @@ protected:
     }
 
 private:
-    /// The rate from which it can still stop within `way`.
+    /// Returns the highest rate from which the joint still stops within `way`.
     [[nodiscard]] double reaches(double way) const noexcept TAPPET_REALTIME {
         return way > 0.0 ? std::sqrt(2.0 * way * braking.get()) : 0.0;
     }
@@ -66,7 +66,7 @@ private:
     std::array<HandOver, 6> take_over_{};
 };
 
-/// By the error and its sum alone.
+/// Controls by the error and its integral alone.
 struct JointPid : JointController {
     Property<double> ki{0.0};
 
@@ -77,7 +77,7 @@ struct JointPid : JointController {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const Joints error = target.get() - positions.get();
         const Joints before = wanted.last();
-        for (int i = 0; i < 6; ++i) // what the Effector cut off is not summed
+        for (int i = 0; i < 6; ++i) // what the Effector cut off is not integrated
             if (sent.get()[i] == before[i]) sum_[i] += ki.get() * error[i] * to_seconds(cycle.period);
         sum_ = within(sum_, most_sum);
         put(kp.get() * error + sum_, cycle);
@@ -93,7 +93,7 @@ private:
     Joints sum_ = Joints::Zero();
 };
 
-/// The rate of the set points, and what the error adds.
+/// Controls by the rate of the set points plus a term proportional to the error.
 struct JointFeedForward : JointController {
     void start(const Cycle&) noexcept TAPPET_REALTIME { begin(would()); }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME { put(would(), cycle); }

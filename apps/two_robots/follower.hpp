@@ -1,5 +1,4 @@
-// Leads six joints so that the flange follows a commanded frame: what every Generator in Cartesian space
-// does.
+// Leads six joints so that the flange follows a commanded frame. All Generators in Cartesian space use it.
 #pragma once
 
 #include "apps/two_robots/values.hpp"
@@ -10,9 +9,9 @@
 
 namespace two_robots {
 
-/// Set points of the joints, from where they are. The command's twist is gone along, and what is still
-/// missing of its frame made up for with `gain` (1/s); within `rate` (rad/s) and `acceleration` (rad/s2) of
-/// each joint. Real-time.
+/// Computes set points of the joints, starting from their positions. Follows the command's twist and corrects
+/// the error of its frame with `gain` (1/s), within `rate` (rad/s) and `acceleration` (rad/s2) of each joint.
+/// Real-time.
 class FrameFollower {
 public:
     struct Limits {
@@ -26,7 +25,7 @@ public:
     void step(const MethodCall<Posture(const SixNumbers&)>& posture_of, const FlangeCommand& command,
               const Limits& limits, double h) noexcept TAPPET_REALTIME {
         const Answer<Posture> answer = posture_of(SixNumbers{target_});
-        // Nobody says where the flange is: it comes to a standstill.
+        // The flange's posture is unknown: brakes to a standstill.
         if (!answer.given()) return go(Joints{Joints::Zero()}, limits.acceleration, h);
         const Posture posture = answer.value_or({});
         auto twist = motion::difference(posture.frame(), command.frame);
@@ -36,10 +35,10 @@ public:
             motion::damped_rates(posture.jacobian(), twist, damping, Joints{Joints::Constant(limits.rate)});
         go(wanted ? *wanted : Joints{Joints::Zero()}, limits.acceleration, h);
     }
-    /// Towards these rates.
+    /// Accelerates towards these rates.
     void go(const Joints& wanted, double acceleration, double h) noexcept TAPPET_REALTIME {
         const double most = acceleration * h;
-        double over = 1.0; // shrunk together, so that the direction stays
+        double over = 1.0; // all joints are scaled together, so that the direction stays
         for (int i = 0; i < 6; ++i) over = std::max(over, std::abs(wanted[i] - rate_[i]) / most);
         const Joints before = rate_;
         rate_ += (wanted - rate_) / over;

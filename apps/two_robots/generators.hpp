@@ -10,7 +10,7 @@
 
 namespace two_robots {
 
-/// What every Generator of joints has: it begins where the joints are, as fast as they were told to go.
+/// The common part of all Generators of joints: start at the joints' positions, at the last sent rates.
 struct JointGenerator {
     Input<Joints> positions, sent;
     Output<Joints> target, rate;
@@ -29,7 +29,7 @@ protected:
     }
 };
 
-/// Wherever the joints are, there they shall be: for brakes that hold them. Real-time, as all that follow.
+/// The set points are the joints' own positions: for brakes that hold them. Real-time, as all that follow.
 struct Idle : JointGenerator {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
     void step(const Cycle&) noexcept TAPPET_REALTIME { put(positions.get(), Joints::Zero()); }
@@ -37,7 +37,7 @@ struct Idle : JointGenerator {
     static constexpr auto interface() { return joint_facets<Idle>(); }
 };
 
-/// Comes to rest from whatever rate, and stays there.
+/// Brakes from any rate to rest and stays there.
 struct Standing : JointGenerator {
     Property<double> acceleration{0.4};
 
@@ -59,7 +59,7 @@ private:
     FrameFollower follower_;
 };
 
-/// Rates that somebody asks for, joint by joint.
+/// Turns joints at requested rates, each joint by itself.
 struct Turning : JointGenerator {
     Property<double> acceleration{0.4};
 
@@ -70,8 +70,8 @@ struct Turning : JointGenerator {
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         const double most_change = acceleration.get() * to_seconds(cycle.period);
-        rate_ += within(wanted_ - rate_, most_change); // each joint for itself
-        put(positions.get(), rate_);                   // a counter may be set meanwhile: no place is kept
+        rate_ += within(wanted_ - rate_, most_change); // each joint by itself
+        put(positions.get(), rate_);                   // a counter may be set meanwhile: keeps no position
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { rate.write(Joints::Zero()); }
     void turn(int axis, double rad_per_s) noexcept TAPPET_REALTIME {
@@ -89,7 +89,7 @@ private:
     Joints wanted_ = Joints::Zero(), rate_ = Joints::Zero();
 };
 
-/// From rest to a posture; the joints set off and arrive together.
+/// Moves from rest to a posture; all joints start and arrive together.
 struct JointPath : JointGenerator {
     Property<Joints> ready{Joints::Zero()};
     Property<double> most_rate{0.3}, most_acceleration{0.3}, most_jerk{2.0};
@@ -160,7 +160,7 @@ private:
     bool is_under_way_ = false, begins_ = false;
 };
 
-/// What every Generator of frames has beside.
+/// The common part of all Generators of frames.
 struct FrameGenerator : JointGenerator {
     MethodCall<Posture(const SixNumbers&)> posture;
     Property<double> gain{20.0}, most_rate{0.4}, most_acceleration{4.0};
@@ -186,7 +186,7 @@ protected:
     FrameFollower follower_;
 };
 
-/// Leads the flange where the level above commands it.
+/// Leads the flange as the level above commands.
 struct Cartesian : FrameGenerator {
     Input<FlangeCommand> command;
 
@@ -202,7 +202,7 @@ struct Cartesian : FrameGenerator {
     }
 };
 
-/// Twists of the flange that somebody asks for, along the axes of its base.
+/// Twists the flange as requested, along the axes of its base.
 struct Twisting : FrameGenerator {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         wanted_ = {};
@@ -210,7 +210,7 @@ struct Twisting : FrameGenerator {
         step(cycle);
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        // Without an answer the follower has none either, and stands still.
+        // Without an answer the follower has none either, and brakes to a standstill.
         FlangeCommand command{posture(SixNumbers{follower_.target()}).value_or({}).frame(), wanted_};
         follow(command, cycle);
     }
@@ -227,7 +227,7 @@ private:
     FlangeTwist wanted_{};
 };
 
-/// A body that breathes: the flange goes to and fro about where it began.
+/// Simulates a breathing body: the flange moves to and fro around its start position.
 struct BodySimulation : FrameGenerator {
     Property<double> stroke{0.010}, frequency{0.25};
     Property<Eigen::Vector3d> direction{Eigen::Vector3d{0, 0, 1}};
@@ -245,7 +245,7 @@ struct BodySimulation : FrameGenerator {
         const double turn = 2.0 * std::numbers::pi * frequency.get();
         phase_ += turn * h;
         if (phase_ > 2.0 * std::numbers::pi) phase_ -= 2.0 * std::numbers::pi;
-        swell_ = std::min(1.0, swell_ + h / swelling_s); // a body does not begin at full stroke
+        swell_ = std::min(1.0, swell_ + h / swelling_s); // the stroke grows from zero
         const auto [sine, cosine] = motion::sine_cosine(phase_);
         const double reach = 0.5 * stroke.get() * swell_;
         FlangeCommand command{.frame = centre_};
@@ -268,7 +268,7 @@ struct BodySimulation : FrameGenerator {
     }
 
 private:
-    /// False: nobody says where the flange is.
+    /// Returns false when the flange's posture is unknown.
     [[nodiscard]] bool find_centre() noexcept TAPPET_REALTIME {
         if (knows_centre_) return true;
         const Answer<Posture> now = posture(SixNumbers{follower_.target()});

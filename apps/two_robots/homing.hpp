@@ -13,9 +13,9 @@
 
 namespace two_robots {
 
-/// Commands of all joints may run at once. A joint goes back until its switch lets go of it, forward at a
-/// creep until it is active, takes that for the switch's angle, and goes to zero. One that does not move
-/// fails. Real-time, in the activity of the loop.
+/// Commands of all joints may run at once. A joint moves back until its switch is inactive, then creeps
+/// forward until it is active, takes the switch's angle as its own, and moves to zero. The command fails when
+/// the joint does not move. Real-time, in the activity of the loop.
 struct Homing {
     Input<Joints> positions;
     Input<bool> switch_1, switch_2, switch_3, switch_4, switch_5, switch_6;
@@ -55,7 +55,7 @@ struct Homing {
         return one.is_homed ? CommandProgress::done : CommandProgress::failed;
     }
     bool all_homed() const noexcept TAPPET_REALTIME { return homed.last(); }
-    /// Nobody knows any more where the joints are, or what they are at is broken off.
+    /// Forgets all zeros: the joints' angles are unknown from now on. Aborts running homing.
     void forget() noexcept TAPPET_REALTIME { axes_ = {}; }
 
     // clang-format off
@@ -83,7 +83,7 @@ private:
     struct Axis {
         Phase phase = Phase::idle;
         bool is_homed = false;
-        double seen = 0.0; ///< where it was when it was last seen to move
+        double seen = 0.0; ///< where it last was seen to move
         Time seen_at{};
         double cleared = 0.0;
     };
@@ -99,12 +99,12 @@ private:
             one.seen = now;
             one.seen_at = time;
         } else if (time - one.seen_at > moves_within.get() && one.phase != Phase::goes_to_zero) {
-            end(axis, one, false); // it is jammed, or without power
+            end(axis, one, false); // it is jammed, or has no power
             return;
         }
         if (!move(axis, one, now).given()) end(axis, one, false); // the axes were stopped
     }
-    /// One step of it. The answer is that of the component that moves the axis.
+    /// Runs one step. Returns the answer of the component that moves the axis.
     [[nodiscard]] Answer<void> move(int axis, Axis& one, double now) noexcept TAPPET_REALTIME {
         auto moved = Answer<void>{true};
         switch (one.phase) {
@@ -116,7 +116,7 @@ private:
             one.phase = Phase::clears;
             one.cleared = now;
             break;
-        case Phase::clears: // far enough off the edge to come over it at a creep
+        case Phase::clears: // far enough off the edge to creep over it
             moved = turn(axis, -rate.get());
             if (one.cleared - now > clearance) one.phase = Phase::finds;
             break;
@@ -137,7 +137,7 @@ private:
         return moved;
     }
     void end(int axis, Axis& one, bool well) noexcept TAPPET_REALTIME {
-        static_cast<void>(turn(axis, 0.0)); // one that is stopped stands
+        static_cast<void>(turn(axis, 0.0)); // a stopped axis stands anyway
         one = {.is_homed = well};
     }
 

@@ -1,4 +1,4 @@
-// The ends of a robot's control loop: its joints as encoders tell them, and as drives take velocities.
+// The ends of a robot's control loop: joint angles from encoders, and velocities to drives.
 #pragma once
 
 #include "apps/two_robots/values.hpp"
@@ -13,15 +13,15 @@
 
 namespace two_robots {
 
-/// Of encoders with 4096 counts a turn behind gears; negative ones turn the other way.
+/// Counts per rad of encoders with 4096 counts a turn behind gears; negative gears invert the direction.
 constexpr std::array<double, 6> counts_of(const std::array<double, 6>& gears) noexcept {
     std::array<double, 6> counts{};
     for (std::size_t i = 0; i < 6; ++i) counts[i] = gears[i] * 4096 / (2 * std::numbers::pi);
     return counts;
 }
 
-/// Sensor: positions and rates of six joints. Relative encoders count from where they were switched on, until
-/// somebody says which angle a joint has. Real-time.
+/// Sensor: positions and rates of six joints. Relative encoders count from power-on, until somebody sets the
+/// angle of a joint. Real-time.
 struct JointSensor {
     Input<std::int64_t> counts_1, counts_2, counts_3, counts_4, counts_5, counts_6;
     Output<Joints> positions, rates;
@@ -40,13 +40,13 @@ struct JointSensor {
                                                          &counts_4, &counts_5, &counts_6};
         Joints now;
         for (std::size_t i = 0; i < 6; ++i) {
-            if (!inputs[i]->good()) return; // nothing is written: who reads it grows stale
+            if (!inputs[i]->good()) return; // writes nothing: the readers become stale
             const auto way = static_cast<double>(counts_[i].take(inputs[i]->get(), 32));
             const double angle = way / counts_per_rad.get()[static_cast<int>(i)] + zero_[static_cast<int>(i)];
-            if (!is_angle(angle)) return; // likewise
+            if (!is_angle(angle)) return; // as above
             now[static_cast<int>(i)] = angle;
         }
-        // Over the time since the last angles: cycles in between may have had none.
+        // Divides by the time since the last angles: cycles in between may have had none.
         const Duration passed = has_seen_ ? cycle.release - seen_at_ : Duration::zero();
         positions.write(now);
         rates.write(passed > Duration::zero() ? Joints{(now - seen_) / to_seconds(passed)} : Joints::Zero());
@@ -57,13 +57,13 @@ struct JointSensor {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { rates.write(Joints::Zero()); }
 
-    /// Joint `axis` (1 to 6) is at `angle` now.
+    /// Sets the present angle of joint `axis` (1 to 6).
     void calibrate(int axis, double angle) noexcept TAPPET_REALTIME {
         const int i = axis - 1;
-        if (i < 0 || i >= 6 || !is_angle(angle)) return; // no joint, or none of its angles
+        if (i < 0 || i >= 6 || !is_angle(angle)) return; // no joint, or an impossible angle
         const double moved = angle - seen_[i];
         zero_[i] += moved;
-        seen_[i] += moved; // which is no motion
+        seen_[i] += moved; // this step is no motion
         known_ |= 1U << i;
     }
     bool is_calibrated(int axis) noexcept TAPPET_REALTIME {
@@ -88,7 +88,7 @@ struct JointSensor {
 
 private:
     static constexpr unsigned all = 0b111111;
-    /// No joint turns further, by far.
+    /// Returns true for a plausible angle: no joint turns nearly this far.
     static constexpr bool is_angle(double angle) noexcept { return std::abs(angle) <= 1e4; }
     std::array<UnwrappedCount, 6> counts_{};
     Joints zero_ = Joints::Zero(), seen_ = Joints::Zero();
@@ -97,8 +97,8 @@ private:
     bool has_seen_ = false;
 };
 
-/// Effector: rates of six joints to drives that take volts, within what the arm may do: rates, and how
-/// fast they change. What is no number stands still. Real-time.
+/// Effector: sends rates of six joints to drives that take volts, within the arm's limits of rate and
+/// acceleration. A rate that is not a number becomes a standstill. Real-time.
 struct JointEffector {
     Input<Joints> wanted;
     Output<Joints> sent;

@@ -1,5 +1,5 @@
-// How the plants of both robots stay one cell where each runs in a process of its own: the one tells the
-// other where its joints are, truly.
+// Keeps the plants of both robots one cell when each runs in its own process: one plant sends the true
+// positions of its joints to the other.
 #pragma once
 
 #include "apps/two_robots/values.hpp"
@@ -12,12 +12,12 @@
 
 namespace two_robots {
 
-/// Between two plants of one box. Not real-time.
+/// Connects two plants on one box. Not real-time.
 class JointsLink {
 public:
     static constexpr std::string_view box = "127.0.0.1";
 
-    /// Empty: the port is good.
+    /// Opens the port; returns empty when the port is valid.
     Sentence tell(std::string_view port) {
         return with(port, [this](std::uint16_t number) { return teller_.emplace().open(box, number); });
     }
@@ -26,7 +26,7 @@ public:
     }
     [[nodiscard]] bool listens() const { return listener_.has_value(); }
 
-    /// Lost ones do not matter: the next one follows.
+    /// Sends the joints. A lost message does not matter: the next one follows.
     void put(const Joints& joints) {
         if (!teller_) return;
         const SixNumbers numbers{joints};

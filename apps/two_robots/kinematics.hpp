@@ -1,5 +1,5 @@
-// The arms as tables, and the process component that answers what the data flow asks of them (thesis
-// fig. 3.10 a).
+// The arms as tables, and the process component that answers the data flow's kinematic questions (thesis fig.
+// 3.10 a).
 #pragma once
 
 #include "apps/two_robots/values.hpp"
@@ -15,8 +15,8 @@
 namespace two_robots {
 
 // clang-format off
-/// Rz(q1) Tz(l1) Rx(-q2) Tz(l2) Rx(-q3) Tz(l3) Rz(q4) Rx(-q5) Rz(q6) Tz(l6): how KUKA's 160 and, with the wrist below, its
-/// 361 are built; lengths in m.
+/// Rz(q1) Tz(l1) Rx(-q2) Tz(l2) Rx(-q3) Tz(l3) Rz(q4) Rx(-q5) Rz(q6) Tz(l6): the structure of KUKA's 160 and,
+/// with the wrist below, of its 361; lengths in m.
 constexpr motion::Chain<Base, Flange, 6> kuka_arm(double l1, double l2, double l3, double l6) noexcept TAPPET_REALTIME {
     return {{{
         {.alpha_deg = 90, .d_m = l1, .theta_deg = 90},
@@ -31,15 +31,15 @@ inline constexpr auto k361_arm = kuka_arm(1.020, 0.480, 0.645, 0.120);
 inline constexpr auto k160_arm = kuka_arm(0.900, 0.970, 1.080, 0.180);
 // clang-format on
 
-/// A wrist whose three axes meet at right angles: angles of the table are those of the joints.
+/// A wrist whose three axes meet at right angles: its table angles equal its joint angles.
 struct PlainWrist {
     static Joints angles(const Joints& q) noexcept TAPPET_REALTIME { return q; }
     static Joints joints(const Joints& angles) noexcept TAPPET_REALTIME { return angles; }
     static void columns(const Joints&, Eigen::Matrix<double, 6, 6>&) noexcept TAPPET_REALTIME {}
 };
 
-/// That of the K361: joint 5 turns two cones of 30 degrees against each other. It amounts to a plain wrist
-/// bent by `th` that joints 4 and 6 see turned by `al`.
+/// The wrist of the K361: joint 5 turns two cones of 30 degrees against each other. It is equivalent to a
+/// plain wrist bent by `th`, which joints 4 and 6 see turned by `al`.
 struct ConeWrist {
     static Joints angles(const Joints& q) noexcept TAPPET_REALTIME {
         const auto [sine, cosine] = motion::sine_cosine(0.5 * q[4]);
@@ -50,7 +50,7 @@ struct ConeWrist {
         angles[5] -= al;
         return angles;
     }
-    /// A bend of more than 120 degrees it cannot make: it makes those.
+    /// Limits the bend to the possible 120 degrees.
     static Joints joints(const Joints& angles) noexcept TAPPET_REALTIME {
         const double sine = std::min(std::max(2.0 * motion::sine_cosine(0.25 * angles[4]).sine, -1.0), 1.0);
         const double cosine = std::sqrt(1.0 - sine * sine);
@@ -61,7 +61,7 @@ struct ConeWrist {
         q[5] += al;
         return q;
     }
-    /// From how the flange moves with the angles to how it moves with the joints.
+    /// Converts the flange's motion per angle to its motion per joint.
     static void columns(const Joints& q, Eigen::Matrix<double, 6, 6>& jacobian) noexcept TAPPET_REALTIME {
         const double cosine = motion::sine_cosine(q[4]).cosine;
         const double half = motion::sine_cosine(0.5 * q[4]).cosine;
@@ -76,7 +76,7 @@ struct JointSolution {
     SixNumbers joints{};
 };
 
-/// Where the flange of an arm is for some joints. `robot`: folded, or Loaded. Real-time.
+/// Returns the flange's posture for some joints. `robot`: folded, or Loaded. Real-time.
 template <class Wrist, class Robot>
 Posture posture_of(const Robot& robot, const SixNumbers& joints) noexcept TAPPET_REALTIME {
     const Joints q = joints.joints();
@@ -87,13 +87,13 @@ Posture posture_of(const Robot& robot, const SixNumbers& joints) noexcept TAPPET
     return posture;
 }
 
-/// Process component of an arm: where its flange is for some joints, and the joints for a place. Real-time.
+/// Process component of an arm: the flange's posture for joints, the joints for a posture. Real-time.
 template <const auto& arm, class Wrist>
 struct Kinematics {
     Posture posture(const SixNumbers& joints) noexcept TAPPET_REALTIME {
         return posture_of<Wrist>(motion::folded<arm>, joints);
     }
-    /// The nearest one to `near`, without a look at where the joints end.
+    /// Returns the solution nearest to `near`; does not check the joints' limits.
     JointSolution solve(const FrameNumbers& flange, const SixNumbers& near) noexcept TAPPET_REALTIME {
         const Joints from = Wrist::angles(near.joints());
         const auto all = motion::closed_form(motion::folded<arm>, flange.frame(), from);
@@ -108,8 +108,8 @@ struct Kinematics {
     }
 };
 
-/// The same of an arm whose lengths somebody measured, to be asked in place of the drawn one. Its callers run
-/// in any activity, and its lengths are set in its own: each is a number that is whole. Real-time.
+/// The same for an arm with measured lengths, called in place of the drawn one. Its callers run in any
+/// activity, and its lengths are set in its own: each length is written atomically. Real-time.
 template <class Wrist>
 struct MeasuredKinematics {
     Property<double> l1{1.0}, l2{0.5}, l3{0.5}, l6{0.1};

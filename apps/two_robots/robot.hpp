@@ -1,5 +1,5 @@
-// The process component that leads a robot (thesis fig. 3.10 b): what people ask of it becomes the events of
-// its states, which are a script.
+// The process component that leads a robot (thesis fig. 3.10 b): turns people's requests into events of its
+// state machine, which is a script.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -9,7 +9,7 @@ namespace two_robots {
 
 using namespace tappet;
 
-/// Work is a moving body of the one robot and an operation of the other: start_work is the thesis'
+/// Work means a moving body for one robot and an operation for the other: start_work is the thesis'
 /// StartSimulation there, stop_work its StopSimulation. Real-time.
 struct Robot {
     static constexpr bool behaviour_required = true;

@@ -1,5 +1,5 @@
-// The network between both robots' clocks, simulated: questions and answers that take their time or are lost,
-// and the clock of the robot that holds the body, which goes its own way.
+// Simulates the network between both robots' clocks: delayed or lost questions and answers, and the drifting
+// clock of the robot that holds the body.
 #pragma once
 
 #include "drivers/udp/clock_exchange.hpp"
@@ -13,13 +13,13 @@ namespace two_robots {
 
 using namespace tappet;
 
-/// In one process both machines run by one clock. What leaves the answering one is of a clock that is ahead
-/// of it and drifts: its answers say so. Not real-time.
+/// In one process both machines share one clock. The answering machine's times are shifted to a clock that is
+/// ahead and drifts. Not real-time.
 class TimeLink {
 public:
     struct Faults {
         std::uint64_t lost_one_in = 20;
-        Duration most_delay = 3ms; ///< either way
+        Duration most_delay = 3ms; ///< in each direction
         bool is_cut = false;
     };
 
@@ -28,11 +28,11 @@ public:
         drift_ = 100e-6 * (2.0 * random_.unit() - 1.0);
     }
 
-    /// By how much the other clock is ahead at `now`, truly.
+    /// Returns the true lead of the other clock at `now`.
     [[nodiscard]] Duration ahead(Time now) const {
         return ahead_ + Duration{static_cast<std::int64_t>(drift_ * static_cast<double>(to_ns(now)))};
     }
-    /// It was set.
+    /// Records that the other clock was set.
     void set_by(Duration step) { ahead_ += step; }
 
     void carry(Time now, udp::FarEnd& asking, udp::FarEnd& answering) {

@@ -1,4 +1,4 @@
-// What flows between the components of a robot: six joints, the postures of its arm, frames that are led.
+// The values between the components of a robot: six joints, the postures of its arm, commanded frames.
 #pragma once
 
 #include "kernel/motion/kinematics.hpp"
@@ -13,14 +13,14 @@ namespace two_robots {
 
 using namespace tappet;
 
-/// The references of each robot: where it is screwed on, and the end of its arm.
+/// The reference frames of each robot: its mounting base, and the end of its arm.
 struct Base;
 struct Flange;
 
 /// rad, rad/s or V, one for each joint.
 using Joints = motion::Joints<6>;
-/// Each of them within `most` either way; and the largest, whatever its sign. Real-time, which Eigen's own
-/// are not to the compiler.
+/// Limits each joint to -most..most; largest() returns the largest absolute value. Real-time; the compiler
+/// does not know Eigen's own functions as such.
 inline Joints within(const Joints& joints, double most) noexcept TAPPET_REALTIME {
     Joints bounded;
     for (int i = 0; i < 6; ++i) bounded[i] = std::min(std::max(joints[i], -most), most);
@@ -36,7 +36,7 @@ using FlangeFrame = motion::Frame<Base, Flange>;
 using FlangeTwist = motion::Twist<Flange, Base, Flange, Base>;
 using FlangeJacobian = motion::Jacobian<Flange, Base, Flange, Base, 6>;
 
-/// Numbers as methods pass them, which take what is copied byte by byte; matrices column by column.
+/// Numbers in the form in which methods pass them: trivially copyable; matrices column by column.
 struct SixNumbers {
     std::array<double, 6> of{};
 
@@ -68,7 +68,7 @@ struct FrameNumbers {
     }
 };
 
-/// Where the flange is for some joints, and how it moves with them.
+/// The flange's posture for some joints, and its motion with them.
 struct Posture {
     FrameNumbers flange{};
     std::array<double, 36> jacobian_numbers{};
@@ -81,7 +81,7 @@ struct Posture {
     }
 };
 
-/// What a level above asks of the flange: where it shall be, and how fast it moves there.
+/// The command of a level above to the flange: its frame and its speed there.
 struct FlangeCommand {
     FlangeFrame frame{};
     FlangeTwist twist{};

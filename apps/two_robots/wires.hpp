@@ -1,4 +1,4 @@
-// What stands on the wires of either robot: encoders and drives behind CAN modules, switches and power on
+// The signals on the wires of either robot: encoders and drives behind CAN modules, switches and power on
 // lines.
 #pragma once
 
@@ -25,8 +25,8 @@ inline constexpr auto robot_signals = can::signal_map(
         can::signal("joint_5", 16, 16).as_signed().times(0.0003125).in("V").safe(0),
         can::signal("joint_6", 32, 16).as_signed().times(0.0003125).in("V").safe(0)));
 
-// The switch of a joint is active from an angle on: where a relative encoder finds its zero, and where an absolute one is
-// proved.
+// The switch of a joint is active beyond an angle: a relative encoder finds its zero there, and an absolute
+// one is checked there.
 inline constexpr auto robot_lines = gpio::line_map(
     gpio::sensor("start", gpio::debounce(5ms)),
     gpio::sensor("ready", gpio::debounce(5ms)),

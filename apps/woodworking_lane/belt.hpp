@@ -1,4 +1,4 @@
-// The conveyor: it stops where stations ask it to, and when one of them falls silent.
+// The conveyor: it stops where stations request it, and when a station falls silent.
 #pragma once
 
 #include "apps/woodworking_lane/values.hpp"
@@ -33,9 +33,9 @@ struct Belt {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { speed_command.write(0); }
 
-    // ---- of stations
+    // ---- operations of stations
 
-    /// The board shall stand where the belt has gone so far, mm.
+    /// Requests a stop at this position of the belt, mm.
     bool stop_at(std::int32_t where) noexcept TAPPET_REALTIME {
         if (!may_run_ || where <= position_) return false;
         return stops_.push(where);
@@ -47,18 +47,18 @@ struct Belt {
         ++works_;
         return CommandProgress::done;
     }
-    /// A station has done its work.
+    /// A station has finished its work.
     void go() noexcept TAPPET_REALTIME { works_ = std::max(works_ - 1, 0); }
     void board_leaves(Ticket) noexcept TAPPET_REALTIME { boards_out.write(++out_); }
 
-    // ---- of the infeed
+    // ---- operations of the infeed
 
     void scanned() noexcept TAPPET_REALTIME {
         boards_in.write(++in_);
         board_in.emit(static_cast<Ticket>(code.get()));
     }
 
-    // ---- of its states
+    // ---- operations of its state machine
 
     [[nodiscard]] bool all_are_there() noexcept TAPPET_REALTIME {
         return saw_is_there.get() && drill_is_there.get() && polish_is_there.get() && glue_is_there.get();
@@ -112,14 +112,14 @@ private:
             if (stops_[i] != where) stops_[kept++] = stops_[i];
         stops_.used = kept;
     }
-    /// So that it stands at the next place where it is asked to.
+    /// Returns the speed with which the belt stops at the next requested position.
     [[nodiscard]] double wanted_speed() const noexcept TAPPET_REALTIME {
         if (!may_run_ || works_ > 0) return 0.0;
         double left = 1e9;
         const std::size_t count = stops_.size();
         for (std::size_t i = 0; i < count; ++i)
             left = std::min(left, std::max(0.0, static_cast<double>(stops_[i] - position_)));
-        // It brakes a little less than it could, and creeps the last millimetre.
+        // Brakes less than possible, and creeps the last millimetre.
         return std::min(belt_speed, std::floor(std::sqrt(2.0 * 0.6 * belt_brakes * left)));
     }
 

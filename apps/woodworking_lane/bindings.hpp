@@ -1,4 +1,4 @@
-// Where each machine's wires stand: on the bench, on which all five are in one box, and on a box of its own.
+// Maps each machine's wires: on the bench, where one box runs all five machines, and on a box of its own.
 #pragma once
 
 #include "drivers/gpio/kind.hpp"
@@ -11,7 +11,7 @@ inline constexpr auto lane_wire = tappet::wired("lane", "can0");
 inline constexpr auto belt_can = tappet::wired("belt-can", "can1");
 inline constexpr auto belt_io =
     tappet::wired("belt-io", "io", tappet::line("acknowledge", 0), tappet::line("lamp", 1));
-/// A station has two lines, on the bench behind those of the ones before it.
+/// A station has two lines; on the bench they follow those of the stations before it.
 constexpr auto station_io(std::string_view device, unsigned station) {
     return tappet::wired(device, "io", tappet::line("board", 2 + 2 * station),
                          tappet::line("tool", 3 + 2 * station));

@@ -56,7 +56,7 @@ inline constexpr auto& drill = station_table<1, 500'000'000>;
 inline constexpr auto& polish = station_table<2, 1'200'000'000>;
 inline constexpr auto& glue = station_table<3, 300'000'000>;
 
-// ---- what crosses between them
+// ---- the crossings between them
 
 inline constexpr auto lane = system("woodworking-lane",
     nodes(node<conveyor>("conveyor"), node<saw>("saw"), node<drill>("drill"), node<polish>("polish"), node<glue>("glue")),
@@ -67,13 +67,13 @@ inline constexpr auto lane = system("woodworking-lane",
         across(data("conveyor.belt.position", "drill.station.belt_position",  stale_after(60ms), hold), every(20ms), in_natural_bits(30), with_time),
         across(data("conveyor.belt.position", "polish.station.belt_position", stale_after(60ms), hold), every(20ms), in_natural_bits(30), with_time),
         across(data("conveyor.belt.position", "glue.station.belt_position",   stale_after(60ms), hold), every(20ms), in_natural_bits(30), with_time),
-        // Each board's ticket goes with it from station to station.
+        // Each board's ticket moves with it from station to station.
         across(when("conveyor.belt.board_in",   tell("saw.station.board_comes")),    at_most(1, 500ms), within(120ms)),
         across(when("saw.station.board_out",    tell("drill.station.board_comes")),  at_most(1, 200ms), within(120ms), if_lost("saw.station.not_handed_on")),
         across(when("drill.station.board_out",  tell("polish.station.board_comes")), at_most(1, 200ms), within(120ms), if_lost("drill.station.not_handed_on")),
         across(when("polish.station.board_out", tell("glue.station.board_comes")),   at_most(1, 200ms), within(120ms), if_lost("polish.station.not_handed_on")),
         across(when("glue.station.board_out",   tell("conveyor.belt.board_leaves")), at_most(1, 200ms), within(120ms), if_lost("glue.station.not_handed_on")),
-        // A station has the belt stand, and lets it go.
+        // A station stops the belt, and releases it.
         across(uses("saw.station.stop_belt",    "conveyor.belt.stop_at"), at_most(1, 200ms), within(120ms)),
         across(uses("drill.station.stop_belt",  "conveyor.belt.stop_at"), at_most(1, 200ms), within(120ms)),
         across(uses("polish.station.stop_belt", "conveyor.belt.stop_at"), at_most(1, 200ms), within(120ms)),
@@ -82,7 +82,7 @@ inline constexpr auto lane = system("woodworking-lane",
         across(when("drill.station.done",  tell("conveyor.belt.go")), at_most(1, 200ms), within(120ms)),
         across(when("polish.station.done", tell("conveyor.belt.go")), at_most(1, 200ms), within(120ms)),
         across(when("glue.station.done",   tell("conveyor.belt.go")), at_most(1, 200ms), within(120ms)),
-        // Who falls silent stops the belt; a station without the belt stops its tool.
+        // A silent station stops the belt; a station that does not hear the belt stops its tool.
         presence("saw",      "conveyor.belt.saw_is_there"),
         presence("drill",    "conveyor.belt.drill_is_there"),
         presence("polish",   "conveyor.belt.polish_is_there"),
@@ -103,7 +103,7 @@ inline constexpr auto lane = system("woodworking-lane",
 
 } // namespace woodworking
 
-// What each box is flashed with.
+// The table with which each box is flashed.
 namespace woodworking::at_conveyor {
 inline constexpr auto table = station<lane, "conveyor", conveyor>;
 }

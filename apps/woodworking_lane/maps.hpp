@@ -1,4 +1,4 @@
-// The machines' own wires: the conveyor's drive and scanner on CAN, a station's light barrier and tool on
+// The machines' own wires: the conveyor's drive and scanner on CAN; a station's light barrier and tool on
 // lines.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The lane's other end: one belt with boards on it, and what each machine's wires have of it. Somebody lays
-// boards on the belt, acknowledges, and takes out what nobody worked on.
+// The lane's other end: one belt with boards on it, as each machine's wires see it. Somebody lays boards on
+// the belt, acknowledges, and removes boards that nobody worked on.
 #pragma once
 
 #include "apps/woodworking_lane/maps.hpp"
@@ -15,17 +15,17 @@
 
 namespace woodworking {
 
-/// A board, as it really is.
+/// The true state of a board.
 struct Workpiece {
     Ticket ticket = 0;
-    double laid_at = 0; ///< the belt had gone so far, mm
+    double laid_at = 0; ///< position of the belt at that time, mm
     std::array<Duration, station_count> worked{};
-    std::array<double, station_count> off_by{}; ///< mm: how far from its place it stood at the worst
+    std::array<double, station_count> off_by{}; ///< mm: largest distance from its working place
     bool harmed = false;                        ///< a tool worked on it while it moved
     bool left = false;
 };
 
-/// What all plants of the lane share; one thread. Times are true ones.
+/// The state that all plants of the lane share; one thread. Times are true ones.
 class Hall {
 public:
     explicit Hall(std::uint64_t seed) : random_{seed} {}
@@ -42,7 +42,7 @@ public:
     bool acknowledges = false;
     bool runs = false; ///< the conveyor's lamp says that the belt may run
 
-    /// Once a millisecond of the conveyor's time.
+    /// Call once per millisecond of the conveyor's time.
     void move(Duration step) {
         const double dt = to_seconds(step);
         const double change = belt_brakes * dt, before = speed;
@@ -88,7 +88,7 @@ private:
     Ticket scanned_ = 0;
 };
 
-/// The conveyor's drive and scanner, and who acknowledges.
+/// The conveyor's drive and scanner, and the person who acknowledges.
 class ConveyorWires {
 public:
     explicit ConveyorWires(FarEnds& ends) : can{ends, "belt-can"}, io{ends, "belt-io"} {
@@ -125,7 +125,7 @@ private:
     gpio::FarEnd<station_lines> io;
 };
 
-// ---- of one machine each, where all of them live in one process
+// ---- plants of one machine each, where all of them live in one process
 
 class ConveyorPlant final : public tappet::Plant {
 public:

@@ -1,4 +1,4 @@
-// A station: it lets boards pass, or has the belt stand while its tool works on one.
+// A station: lets boards pass, or stops the belt while its tool works on one.
 #pragma once
 
 #include "apps/woodworking_lane/values.hpp"
@@ -10,7 +10,7 @@
 
 namespace woodworking {
 
-/// What a station is about.
+/// The present activity of a station.
 enum class Phase : std::uint8_t { waits, stops_belt, works, lost };
 
 } // namespace woodworking
@@ -54,7 +54,7 @@ struct Station {
             break;
         case Phase::works:
             if (!belt_is_known) {
-                miss(); // nobody says that the board still stands there
+                miss(); // it is unknown whether the board still stands there
             } else if (cycle.now >= ends_) {
                 boards_done.write(++done_);
                 become(Phase::waits);
@@ -69,17 +69,17 @@ struct Station {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { tool.write(false); }
 
-    /// The station before has let it go, or the infeed.
+    /// The previous station, or the infeed, has released a board.
     void board_comes(Ticket board) noexcept TAPPET_REALTIME {
         if (!coming_.push({board, belt_position.get()})) boards_missed.write(++missed_);
     }
-    /// The light barrier: the next one is here.
+    /// The light barrier detects the next board.
     void board_seen(Time at) noexcept TAPPET_REALTIME {
-        // The position that is known is of the past, since when the belt went on at its speed.
+        // The known position is from the past; since then the belt moved on at its speed.
         const double since = to_seconds(at - belt_position.stamp());
         const std::int64_t position =
             belt_position.get() + static_cast<std::int64_t>(belt_speed * std::clamp(since, 0.0, 0.06));
-        if (phase_ != Phase::waits || !find(position)) return; // somebody takes out what nobody knows
+        if (phase_ != Phase::waits || !find(position)) return; // an unknown board: somebody removes it
         if (!has_work(here_, static_cast<int>(number.get()))) {
             board_out.emit(here_);
             return;
@@ -89,7 +89,7 @@ struct Station {
         else
             miss();
     }
-    /// Nobody knows whether the next station has heard of it.
+    /// It is unknown whether the next station received the ticket.
     void not_handed_on() noexcept TAPPET_REALTIME { boards_missed.write(++missed_); }
 
     static constexpr auto interface() {
@@ -124,11 +124,11 @@ private:
     /// A board on its way here.
     struct Coming {
         Ticket ticket = 0;
-        std::int64_t told_at = 0; ///< the belt had gone so far
+        std::int64_t told_at = 0; ///< position of the belt at that time
         bool operator==(const Coming&) const = default;
     };
-    /// Whose front is at the barrier: by how far the belt has gone since its ticket came. Of those before it
-    /// nobody knows.
+    /// Finds the board whose front is at the barrier, by the belt's way since its ticket came. Drops the
+    /// boards before it: their fate is unknown.
     bool find(std::int64_t position) noexcept TAPPET_REALTIME {
         const std::size_t count = coming_.size();
         std::size_t first = count;

@@ -1,4 +1,4 @@
-// When a frame arrived, in the machine's time: the kernel stamps frames by the wall clock, which people and
+// Arrival time of a frame in the machine's time: the kernel stamps frames by the wall clock, which people and
 // daemons set.
 #pragma once
 
@@ -9,20 +9,20 @@
 
 namespace tappet::can {
 
-/// Of one socket. A wall clock that was set since the last frame shows in its distance from the machine's:
-/// the frame then counts as arrived now, and what was stamped before it cannot have arrived earlier than
-/// that.
+/// The arrivals of one socket. A wall clock set since the last frame shows as a change of its distance from
+/// the machine's clock: the frame then counts as arrived now, and no later answer is before it.
 class Arrivals {
 public:
-    /// What a wall clock that is only steered does not differ by between two frames.
+    /// Most drift between two frames of a wall clock that is only steered.
     static constexpr Duration most_drift = 1ms;
 
-    /// `wall` and `now` are the two clocks at one time, before the first frame.
+    /// Starts with the two clocks read at one time, before the first frame.
     constexpr void begin(Time wall, Time now) noexcept {
         distance_ = wall - now;
         last_ = Time::min();
     }
-    /// `stamp` is the frame's by the wall clock; the answer is never before the last one, nor after `now`.
+    /// Returns the arrival time of a frame with this wall clock stamp; never before the last answer, nor
+    /// after `now`.
     constexpr Time of(Time stamp, Time wall, Time now) noexcept TAPPET_REALTIME {
         const Duration change = (wall - now) - distance_;
         distance_ += change;
@@ -30,7 +30,7 @@ public:
         last_ = std::max(last_, was_set_ ? now : std::min(now, now - (wall - stamp)));
         return last_;
     }
-    /// The last answer is when it was read, for want of a better one.
+    /// Returns true when the last answer is only the time of reading, because the wall clock was set.
     [[nodiscard]] constexpr bool was_set() const noexcept TAPPET_REALTIME { return was_set_; }
 
 private:

@@ -23,21 +23,23 @@ namespace tappet::can {
 /// Facets: an output or an input for each signal, an event for each received frame, and the state of the bus.
 /// Runs in an activity that is on_device. All real-time.
 ///
-/// A cyclic frame goes out at its period, with the last values of its inputs. When a writer was interrupted
-/// between two of them (their stamps differ where they agreed before), the values sent last go out once more.
-/// A frame on demand goes out once for each writing that has a time of its own; all of its signals are
-/// written in one cycle of one writer: no command leaves with another's arguments, and two that have no time
-/// make none. A row that wakes makes it leave at once. What was demanded behind a force leaves after it, but
-/// not if it ends with a stop. A frame with an input that was never written, is no number, or is stale
-/// without a substitute does not go out: the receiver's own time-out notices. What arrives and is no number
-/// is counted: its output grows stale. Of a multiplexed frame what its multiplexors select is written, read
-/// and sent.
+/// A cyclic frame is sent at its period with the last values of its inputs. When a writer was interrupted
+/// between two of them (their stamps differ although they agreed before), the previous values are sent once
+/// more.
+/// A frame on demand is sent once for each write that has its own time stamp. All its signals are written in
+/// one cycle of one writer, so no command is sent with another's arguments; two values without a time never
+/// count as one command. A row that wakes sends it at once. A demand made behind a force is sent after the
+/// force, but not when the force ends with a stop.
+/// A frame is not sent when an input was never written, is not a number, or is stale without a substitute;
+/// the receiver's own time-out detects this. A received value that is not a number is counted, and its output
+/// becomes stale. Of a multiplexed frame only the signals that its multiplexors select are written, read and
+/// sent.
 ///
-/// A bus that was faulted, or stopped, begins anew: what arrived, waited or was demanded before is forgotten.
-/// Faulted, it looks for its restart every now and then and rests in between.
+/// After a fault or a stop the bus starts fresh: earlier arrivals, queued frames and demands are discarded.
+/// While faulted, it polls for its restart and rests in between.
 ///
-/// With services, what they receive leaves by the buffered output `services`, and what comes in by the
-/// buffered input `to_send` goes out, all of it in order.
+/// With services, their received frames leave by the buffered output `services`. Frames from the buffered
+/// input `to_send` are sent, all of them in order.
 template <const auto& map, const auto& protocol = no_services>
 struct Bus {
     static constexpr std::string_view device_fault = map.fault.view();
@@ -58,13 +60,14 @@ struct Bus {
     }
     static constexpr DeviceTraffic device_traffic{AllFrames<map, protocol>::traffic.size(), &analyse_traffic,
                                                   &longest_seen};
-    /// Frames taken in one cycle; more wait for the next one, which follows at once.
+    /// Most frames taken in one cycle; more are left to the next cycle, which follows at once.
     static constexpr int max_frames_per_cycle = 64;
-    static constexpr Duration look_while_faulted = 20ms; ///< for a restart that came through
+    static constexpr Duration look_while_faulted = 20ms; ///< period of polling for a restart
     static constexpr Duration retry_after = 1ms;         ///< when the kernel had no room for a frame
-    static constexpr Duration shortest_wait = 100us;     ///< a device that asks for less cannot spin us
+    static constexpr Duration shortest_wait = 100us;     ///< lower limit of a device's request, so that the
+                                                         ///< cycle cannot spin
 
-    // One port of each sort for each signal: those that the signal's direction and type do not ask for stay
+    // One port of each sort for each signal; those that do not fit the signal's direction and type stay
     // unused.
     std::array<Output<double>, signal_count> physical_out{};
     std::array<Output<std::int64_t>, signal_count> integer_out{};
@@ -98,7 +101,7 @@ struct Bus {
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
-            // One grid for all: their response times are proven by that.
+            // All frames share one time grid; the proof of their response times relies on it.
             due_[f] = is_cyclic(f) ? cycle.now + map.frames[f].every : never;
         may_repeat_ = {};
         was_faulted_ = false;
@@ -109,11 +112,11 @@ struct Bus {
         status_ = status_now();
         write_state();
         arm(cycle.now);
-        waiter_->wake(); // for what arrived before
+        waiter_->wake(); // for frames that arrived before
     }
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        // What was demanded meanwhile waits for no reading.
+        // Demands made in the meantime are sent before arrivals are read.
         if (send_on_demand(cycle.now)) device_->service(cycle.now);
         take_frames();
         send_services();
@@ -122,7 +125,7 @@ struct Bus {
     }
 
     /// Sends what is still to be sent, then the safe frames of the map. The guardian would send the same
-    /// ones. They do not depend on what the stop() of a writer left.
+    /// ones. They do not depend on values left by a writer's stop().
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t f = 0; f < frame_count; ++f)
             if (is_cyclic(f) && map.frames[f].silence_is_safe) send(f, cycle.now);
@@ -138,7 +141,7 @@ struct Bus {
             stopped_safely_ = stopped_safely_ && answer == Send::queued;
         }
         stopped_safely_ = (device_->finish(cycle.now) && stopped_safely_) || device_map.safe.empty();
-        // A bus that nobody serves cannot be relied on, though it be well.
+        // A bus without service cannot be relied on, even if it is healthy.
         bus_state.write(static_cast<std::int64_t>(State::down));
         if (!was_faulted_) bus_fault.emit();
         was_stopped_ = true;
@@ -146,7 +149,7 @@ struct Bus {
 
     [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return stopped_safely_; }
 
-    /// Drops what waits to be sent.
+    /// Drops what is queued for sending.
     void purge() noexcept TAPPET_REALTIME { device_->purge(); }
 
     void send_cyclic(const Cycle& cycle) noexcept TAPPET_REALTIME {
@@ -161,7 +164,7 @@ struct Bus {
 
     [[nodiscard]] const DecodeCounters& decoding() const noexcept { return store_.count; }
     [[nodiscard]] Counters counters() const noexcept { return device_->counters(); }
-    /// Of a frame that is sent: from the making of its contents until it was confirmed.
+    /// Returns the longest time of a sent frame from the making of its contents to its confirmation.
     [[nodiscard]] Duration longest_response(std::string_view frame) const noexcept {
         for (const FrameRow& row : AllFrames<map, protocol>::traffic)
             if (row.name == frame) return device_->longest_response(row.identifier);
@@ -212,7 +215,7 @@ struct Bus {
 
 private:
     static constexpr std::size_t fixed_facets = 13;
-    // At start: the kernel's buffer holds fewer frames.
+    // At the start: the kernel's buffer holds fewer frames.
     static constexpr int max_passes = 4096;
 
     static constexpr bool is_cyclic(std::size_t f) noexcept {
@@ -233,7 +236,8 @@ private:
                                   : nth_output<&Bus::physical_out>(s, name, signal.unit, "received");
     }
 
-    /// Absolute times: a late cycle does not move the ones after it, and whole periods missed are left out.
+    /// Advances by absolute times: a late cycle does not shift later ones, and whole missed periods are
+    /// skipped.
     void next_period(std::size_t f, Time now) noexcept TAPPET_REALTIME {
         const Duration every = map.frames[f].every;
         due_[f] += ((now - due_[f]) / every + 1) * every;
@@ -274,7 +278,7 @@ private:
         frame_received[f].emit();
     }
 
-    /// What the outputs say of the bus.
+    /// Values of the outputs that report the bus state.
     struct Status {
         State state = State::active;
         std::uint64_t lost = 0;
@@ -317,7 +321,7 @@ private:
         bus_recovered.emit();
     }
 
-    /// By the values of multiplexors that were read before it.
+    /// Returns whether the multiplexors read before this signal select it.
     [[nodiscard]] bool is_selected(const FrameRow& row, std::size_t s) const noexcept TAPPET_REALTIME {
         return map.holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME {
             return to_raw_integer(map.signals[m], integers_[m]).bits;
@@ -338,7 +342,7 @@ private:
             if (is_on_demand(f)) found.writes += input.writes();
             found.fresh |= flow == Flow::fresh;
             if (is_now) return;
-            // Two values without a time were not written in one cycle, as far as anybody knows.
+            // Two values without a time cannot be known to be from one cycle.
             const Time at = input.claimed_stamp();
             found.agreed &= found.at == never || (at == found.at && at != before_all);
             found.at = at;
@@ -350,7 +354,7 @@ private:
         return found;
     }
 
-    /// Takes over what was read; false when one of the values is no number.
+    /// Stores the values read; returns false when one is not a number.
     bool keep_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         const FrameRow& row = map.frames[f];
         const std::uint64_t refused = store_.count.refused;
@@ -376,7 +380,7 @@ private:
         static_cast<void>(device_->send(store_.encode(f, now), Keep::latest));
     }
 
-    /// False: nothing was demanded.
+    /// Sends the demanded frames; returns false when there were none.
     bool send_on_demand(Time now) noexcept TAPPET_REALTIME {
         bool sent = false;
         for (std::size_t f = 0; f < frame_count; ++f) {
@@ -394,7 +398,7 @@ private:
             if (!keep_inputs(f)) continue;
             if (found.at != never) demand.at = found.at;
             demand.handled = found.writes;
-            // The end of a force shows the value of before.
+            // The end of a force shows the value from before the force.
             if (is_forgotten || (!is_new && store_.encode(f, now).data == before.data)) continue;
             if (now < demand.may_follow) sent_too_often.write(++too_often_);
             demand.may_follow = now + map.frames[f].apart;
@@ -410,7 +414,7 @@ private:
                 static_cast<void>(device_->send(frame, Keep::every));
         }
     }
-    /// What waited, what arrived and what was demanded while nobody served the bus.
+    /// Discards what was queued, arrived or demanded while the bus had no service.
     void forget_stopped_time() noexcept TAPPET_REALTIME {
         device_->purge();
         device_->drop_arrivals();
@@ -440,7 +444,7 @@ private:
     void arm(Time now) noexcept TAPPET_REALTIME {
         if (faulted(status_.state)) {
             next_send.cancel();
-            // The look keeps its time when something else wakes us meanwhile.
+            // Polling keeps its time when something else wakes the activity in between.
             if (next_service.when() <= now || next_service.when() > now + look_while_faulted)
                 next_service.arm(now + look_while_faulted);
             return;
@@ -449,7 +453,7 @@ private:
         for (const Time due : due_) next = due < next ? due : next;
         next_send.arm(next);
         Time service = std::max(device_->next_service(), now + shortest_wait);
-        // A frame that found no room has no confirmation to wait for: only time brings it out.
+        // A frame that found no room gets no confirmation, so only a retry by time sends it.
         const std::uint64_t before = std::exchange(pressed_, device_->counters().back_pressure);
         if (pressed_ != before) service = std::min(service, now + retry_after);
         next_service.arm(service);
@@ -460,7 +464,7 @@ private:
     std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
     std::array<Demand, frame_count> demands_{};
-    std::array<bool, frame_count> may_repeat_{}; // the values sent last were of one time
+    std::array<bool, frame_count> may_repeat_{}; // the values sent last had one time stamp
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
     std::uint64_t lost_ = 0, taken_ = 0, pressed_ = 0;

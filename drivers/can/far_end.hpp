@@ -1,4 +1,4 @@
-// The other end of a CAN bus: the nodes that a machine's signal map speaks of.
+// The other end of a CAN bus: the nodes in a machine's signal map.
 #pragma once
 
 #include "drivers/can/device.hpp"
@@ -11,18 +11,18 @@
 
 namespace tappet::can {
 
-/// The frames themselves, for a plant that makes them itself.
+/// Raw frames, for a plant that builds its own.
 class RawFarEnd : public FarEnd {
 public:
     RawFarEnd(FarEnds& of, std::string_view device) : FarEnd{of, device, "can"} {}
 
-    /// The next frame of the machine's; false: none is there.
+    /// Takes the machine's next frame. Returns false when there is none.
     bool receive(Frame& frame) noexcept {
         for (Receive got = wire_->receive(frame); got.what != Received::none; got = wire_->receive(frame))
             if (got.what == Received::frame) return true;
         return false;
     }
-    /// False, and counted: the bus does not take it.
+    /// Sends a frame. Returns false, and counts it, when the bus refuses the frame.
     bool send(const Frame& frame) noexcept {
         const Send sent = wire_->send(frame, Keep::every);
         const bool taken = sent == Send::queued || sent == Send::replaced;
@@ -48,12 +48,12 @@ private:
     std::uint64_t refused_ = 0;
 };
 
-/// By the names of the map, which the compiler checks:
-///     can.get("drive_command.speed")      as the machine sent it last, in the signal's unit; 0 before
-///     can.came("drive_command")           since the plant moved last
-///     can.set("drive.speed", 12.5)        goes out with the next frame "drive"
-///     can.send("drive")                   in this move
-///     can.send_every("encoder", 1ms)      from now on; 0: no more
+/// Access by the names of the map, which the compiler checks:
+///     can.get("drive_command.speed")      the last value the machine sent, in the signal's unit; 0 before
+///     can.came("drive_command")           whether it arrived since the plant's last step
+///     can.set("drive.speed", 12.5)        is sent with the next frame "drive"
+///     can.send("drive")                   sends it in this step
+///     can.send_every("encoder", 1ms)      sends it periodically; 0: stops
 template <const auto& map>
 class FarEnd final : public RawFarEnd, public NodeSignals<map> {
     using Signals = NodeSignals<map>;

@@ -1,4 +1,4 @@
-// A CAN frame (ISO 11898-1), classical or CAN FD, as the machine sees it, and its place in arbitration.
+// A CAN frame (ISO 11898-1), classical or CAN FD, and its priority in arbitration.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -9,12 +9,12 @@
 
 namespace tappet::can {
 
-/// What the controller says of the bus, in order of severity; from `unacknowledged` on nothing is sent.
+/// The state of the bus as the controller reports it, by severity; from `unacknowledged` on nothing is sent.
 enum class State : std::uint8_t {
     active,         ///< error active: fully working
     warning,        ///< an error counter reached 96
     passive,        ///< an error counter reached 128
-    unacknowledged, ///< frames were handed over and nobody acknowledged them in time
+    unacknowledged, ///< frames were handed over and not acknowledged in time
     bus_off,        ///< the controller left the bus; it stays away until restart()
     down,           ///< the interface is down or gone
 };
@@ -48,14 +48,15 @@ enum class Format : std::uint8_t {
     flexible_faster ///< CAN FD that switches to the data bit rate
 };
 
-/// What a frame holds of so many bytes: CAN FD knows no other lengths above 8. -1: more than any frame.
+/// Returns the least valid frame length for so many bytes; above 8, CAN FD has only certain lengths. -1:
+/// longer than any frame.
 constexpr int padded_length(unsigned bytes) noexcept {
     for (const int length : {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64})
         if (bytes <= static_cast<unsigned>(length)) return length;
     return -1;
 }
 
-/// Of the longest frame; behind a shorter one's length nothing is meant.
+/// Data of the longest frame; bytes behind a shorter frame's length have no meaning.
 using Payload = std::array<std::uint8_t, 64>;
 
 struct Frame {
@@ -63,16 +64,16 @@ struct Frame {
     bool extended = false;
     bool remote = false;
     bool fd = false;
-    bool bit_rate_switch = false;       ///< of CAN FD
-    bool error_state_indicator = false; ///< of CAN FD, received: its sender is error passive
+    bool bit_rate_switch = false;       ///< CAN FD only
+    bool error_state_indicator = false; ///< CAN FD only, received: its sender is error passive
     std::uint8_t length = 0;
     Payload data{};
-    Time stamp{};     ///< received: when it arrived; to send: when its contents were made
+    Time stamp{};     ///< received: time of arrival; to send: when its contents were made
     BusError error{}; ///< in error frames only
     bool operator==(const Frame&) const = default;
 };
 
-/// An identifier as a filter takes it: exactly this one, of this format.
+/// An identifier for a filter: matches exactly this number in this format.
 struct Identifier {
     std::uint32_t id = 0;
     bool extended = false;
@@ -82,14 +83,14 @@ struct Identifier {
 constexpr bool valid(Identifier identifier) noexcept {
     return identifier.id <= (identifier.extended ? 0x1FFF'FFFFu : 0x7FFu);
 }
-/// CAN FD has no remote frames, and classical CAN no second bit rate.
+/// CAN FD has no remote frames, and classical CAN has no second bit rate.
 constexpr bool valid(const Frame& frame) noexcept {
     if (!valid(Identifier{frame.id, frame.extended})) return false;
     return frame.fd ? !frame.remote && padded_length(frame.length) == frame.length
                     : frame.length <= 8 && !frame.bit_rate_switch;
 }
 constexpr Format format_of(const Frame& frame) noexcept {
-    // As the enumeration counts them, without a branch: every frame that arrives is asked.
+    // In the order of the enumeration and without a branch: called for every frame that arrives.
     return static_cast<Format>(unsigned{frame.fd} * (1u + unsigned{frame.bit_rate_switch}));
 }
 constexpr void set_format(Frame& frame, Format format) noexcept {
@@ -97,7 +98,7 @@ constexpr void set_format(Frame& frame, Format format) noexcept {
     frame.bit_rate_switch = format == Format::flexible_faster;
 }
 
-/// The bits of arbitration as a number: the lower one wins the bus.
+/// Returns the arbitration bits as a number; the lowest number wins the bus.
 /// Order on the wire: 11 bits of base, RTR (SRR when extended), IDE, 18 bits of extension, RTR.
 constexpr std::uint32_t arbitration(const Frame& frame) noexcept {
     if (!frame.extended) return (frame.id << 21) | ((frame.remote ? 1u : 0u) << 20);

@@ -1,4 +1,4 @@
-// A CAN bus in the rows of a board, and what the table's check asks of them.
+// A CAN bus in the rows of a board, and the checks of the board's table.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -13,12 +13,12 @@ namespace can {
 inline constexpr Word bit_rate_word{.name = "bit_rate", .kind = "can", .is_for_box = true};
 inline constexpr Word bus_errors_word{.name = "bus_errors", .kind = "can"};
 
-/// What a board says of a bus. Rates in bit/s; of nought: nobody says them.
+/// A board's facts about a bus. Rates in bit/s; 0: not stated.
 struct BusFacts {
     std::uint32_t bit_rate = 0;
-    std::uint32_t data_bit_rate = 0; ///< of CAN FD frames that switch; 0: classical CAN only
-    unsigned errors = 1;             ///< on the wire: so many at once,
-    Duration errors_every = 100ms;   ///< and one more after each of these times
+    std::uint32_t data_bit_rate = 0; ///< of CAN FD frames that switch bit rate; 0: classical CAN only
+    unsigned errors = 1;             ///< errors on the wire: this many at once ..
+    Duration errors_every = 100ms;   ///< .. and one more after each such time
 };
 constexpr BusFacts bus_facts(std::span<const Fact> of_board) noexcept {
     BusFacts bus;
@@ -50,13 +50,13 @@ inline constexpr DeviceKind device_kind{.name = "can", .check = &check_bus};
 
 } // namespace can
 
-/// What the bus is wired and terminated for, in bit/s; the second of CAN FD's data phase.
+/// States the bit rate in bit/s that the bus is wired and terminated for; the second is that of CAN FD's data
+/// phase.
 constexpr Fact bit_rate(std::uint32_t bits_per_second, std::uint32_t in_data_phase = 0) noexcept {
     return {&can::bit_rate_word, {}, {bits_per_second, in_data_phase}};
 }
-/// How many errors on the wire the response times of its frames allow for: so many at once, and one more
-/// after each of these times. Each costs an error frame and the frame that it spoilt. Without this row one in
-/// 100 ms.
+/// States how many errors on the wire the response times allow for: `at_once`, and one more after each
+/// `every`. Each error costs an error frame and the frame it destroyed. Without this row: one in 100 ms.
 constexpr Fact bus_errors(unsigned at_once, Duration every) noexcept {
     return {&can::bus_errors_word, {}, {at_once, every.count()}};
 }

@@ -1,4 +1,4 @@
-// A faulted bus comes back only when the machine asks for it, and only a bounded number of times.
+// A faulted bus restarts only at the machine's request, and only a limited number of times.
 #pragma once
 
 #include "drivers/can/device.hpp"
@@ -7,22 +7,22 @@
 
 namespace tappet::can {
 
-/// Between the activity that owns the device (fault, taken_up) and the background one that restarts it
+/// Shared by the activity that owns the device (fault, taken_up) and the background one that restarts it
 /// (begin, end).
 class Recovery {
 public:
-    /// Before either runs.
+    /// Called before either of them runs.
     void reset(std::uint32_t restarts_allowed) noexcept {
         left_.store(restarts_allowed, std::memory_order_relaxed);
         phase_.store(Phase::running, std::memory_order_release);
     }
 
-    /// Owner: the bus is faulted. False when it was already known.
+    /// Owner: reports that the bus is faulted. Returns false when it was already known.
     bool fault() noexcept TAPPET_REALTIME {
         Phase expected = Phase::running;
         return phase_.compare_exchange_strong(expected, Phase::faulted, std::memory_order_acq_rel);
     }
-    /// Owner: true once after a restart came through.
+    /// Owner: returns true once after a successful restart.
     bool taken_up() noexcept TAPPET_REALTIME {
         Phase expected = Phase::restarted;
         return phase_.compare_exchange_strong(expected, Phase::running, std::memory_order_acq_rel);
@@ -30,7 +30,7 @@ public:
     [[nodiscard]] bool running() const noexcept TAPPET_REALTIME {
         return phase_.load(std::memory_order_acquire) == Phase::running;
     }
-    /// Background: `done` means that the restart is now the caller's to carry out, and to end().
+    /// Background: on `done` the caller must carry out the restart and call end().
     Restart begin() noexcept {
         if (phase_.load(std::memory_order_acquire) != Phase::faulted) return Restart::not_needed;
         if (left_.load(std::memory_order_relaxed) == 0) return Restart::exhausted;

@@ -1,4 +1,4 @@
-// Frames of a bus that are no signals: those that the protocol above it takes and sends itself.
+// Frames of a bus without signals: those that a protocol above it receives and sends itself.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
@@ -8,19 +8,19 @@
 
 namespace tappet::can {
 
-/// The frames that a protocol keeps for itself, and those that make its nodes safe when the machine's process
-/// is no more. A row without a rate is no part of what the bus is proven for: it comes after a fault only.
+/// The frames that a protocol reserves, and those that make its nodes safe after the machine's process has
+/// ended. A row without a rate is not part of the bus's timing proof: it is sent only after a fault.
 template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
     std::array<FrameRow, N> frames{};
-    std::array<Signal, G> signals{}; ///< what stands in them, for tools: a row's first and how many
+    std::array<Signal, G> signals{}; ///< their signals, for tools; each row states its first and how many
     std::array<Frame, S> safe{};
-    std::uint32_t bit_rate = 0;         ///< that they were proven for; 0: the board's, whatever it is
-    std::uint32_t data_bit_rate = 0;    ///< likewise, of CAN FD
-    std::uint32_t restarts_allowed = 0; ///< of a faulted controller; 0: as few as any bus has
-    bool sends_itself = false;          ///< it stands beside the bus on the device; else by the bus's to_send
+    std::uint32_t bit_rate = 0;         ///< bit rate of their proof, in bit/s; 0: any rate of the board
+    std::uint32_t data_bit_rate = 0;    ///< the same for CAN FD's data phase
+    std::uint32_t restarts_allowed = 0; ///< of a faulted controller; 0: the least that any bus allows
+    bool sends_itself = false;          ///< uses the device next to the bus; else by the bus's to_send
     static constexpr bool any = N + S != 0;
 
-    /// Whether something of it leaves by the bus's input to_send.
+    /// Returns whether some of its frames are sent by the bus's input to_send.
     [[nodiscard]] constexpr bool sends_by_bus() const noexcept {
         return !sends_itself && std::ranges::count(frames, Direction::transmit, &FrameRow::direction) != 0;
     }
@@ -33,7 +33,7 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
 };
 inline constexpr Services<0, 0> no_services{};
 
-/// Of two protocols on one bus. Each takes what it knows; one of them at most may be proven for a rate of its
+/// Joins two protocols on one bus. Each receives its own frames; at most one is proven for a bit rate of its
 /// own, or both for the same.
 template <std::size_t N, std::size_t S, std::size_t G, std::size_t M, std::size_t T, std::size_t H>
 constexpr Services<N + M, S + T, G + H> together(const Services<N, S, G>& one,
@@ -53,7 +53,7 @@ constexpr Services<N + M, S + T, G + H> together(const Services<N, S, G>& one,
     return both;
 }
 
-/// What one end of the bus takes and sends, of a map and of services together.
+/// The frames that one end of the bus receives and sends, of map and services together.
 template <const auto& map, const auto& services> struct AllFrames {
     template <std::size_t N, class T, std::size_t M>
     static constexpr auto joined(std::span<const T> first, const std::array<T, M>& second) {
@@ -90,7 +90,7 @@ template <const auto& map, const auto& services> struct AllFrames {
     static constexpr bool is_fd(const FrameRow& row) { return row.format != Format::classical; }
     static constexpr bool has_fd = std::ranges::any_of(map.frames, &AllFrames::is_fd) ||
                                    std::ranges::any_of(services.frames, &AllFrames::is_fd);
-    /// What tools are told: of services the frames that say what stands in them.
+    /// Frames shown to tools: the map's, and the services' when they state their signals.
     static constexpr auto told_frames = [] {
         constexpr std::size_t own = map.frames.size();
         constexpr bool all = services.signals.size() != 0;
@@ -106,12 +106,12 @@ template <const auto& map, const auto& services> struct AllFrames {
         joined<map.signals.size()>(std::span<const Signal>{map.signals}, services.signals);
     static constexpr Identifiers value{
         receive, transmit, has_fd, safe, told_frames, told_signals, services.restarts_allowed};
-    /// What the bus is proven for.
+    /// The frames in the bus's timing proof.
     static constexpr auto traffic =
         joined<map.frames.size()>(std::span<const FrameRow>{map.frames}, chosen<rated>(&AllFrames::has_rate));
 };
 
-/// A port that is there when there are services.
+/// A port that exists only with services.
 template <bool any, class Port> struct NoPort {};
 template <bool any, class Port> using ServicePort = std::conditional_t<any, Port, NoPort<any, Port>>;
 

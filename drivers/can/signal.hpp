@@ -1,4 +1,4 @@
-// One signal inside a CAN frame: where its bits lie and what they mean, as the DBC format numbers them.
+// One signal inside a CAN frame: the place of its bits and their meaning, numbered as in the DBC format.
 #pragma once
 
 #include "drivers/can/frame.hpp"
@@ -41,7 +41,7 @@ struct Selection {
 /// when("page", 1, between(4, 7))
 constexpr Selection between(std::uint32_t first, std::uint32_t last) noexcept { return {first, last}; }
 
-/// What a value means, before factor and offset.
+/// The name of a raw value, before factor and offset.
 struct ValueName {
     std::int64_t value = 0;
     std::string_view name{};
@@ -60,24 +60,24 @@ struct Signal {
     double offset = 0;
     std::string_view unit{};
     double safe_value =
-        0; ///< of what is transmitted: sent when the bus stops or the machine's process is no more
+        0; ///< transmitted signals: sent when the bus stops or the machine's process has ended
     bool says_safe = false;
-    std::string_view safe_name{}; ///< instead of `safe_value`, which the map takes from `names`
-    bool is_bits = false;         ///< no number: a control word, a set of switches
-    bool has_range = false;       ///< of physical values, as they are sent: `least` and `most`
+    std::string_view safe_name{}; ///< instead of `safe_value`; the map looks it up in `names`
+    bool is_bits = false;         ///< not a number: a control word, a set of switches
+    bool has_range = false;       ///< `least` and `most` limit the physical values that are sent
     double least = 0;
     double most = 0;
-    /// The signal of the same frame that says by its value whether this one is in it; empty: it always is.
+    /// The signal of the same frame whose value selects this one; empty: it is in every frame.
     std::string_view multiplexor{};
     Bounded<Selection, most_selections> selections{};
-    std::span<const ValueName> names{}; ///< of some values
-    std::string_view in_file{};         ///< its name in its DBC file, where a row gives it another
+    std::span<const ValueName> names{}; ///< of some of its values
+    std::string_view in_file{};         ///< its name in its DBC file, when the row gives it another
 
     // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).in("rpm").safe(0)
     constexpr Signal as_signed() const noexcept {
         return copy_with(*this, &Signal::kind, Kind::signed_integer);
     }
-    /// For a written integer that is a set of bits: bits beyond the width are cut. Other integers saturate.
+    /// For an integer that is a set of bits: bits beyond the width are cut. Other integers saturate.
     constexpr Signal as_bits() const noexcept { return copy_with(*this, &Signal::is_bits, true); }
     constexpr Signal as_float() const noexcept {
         return copy_with(*this, &Signal::kind, bits == 64 ? Kind::float64 : Kind::float32);
@@ -96,26 +96,27 @@ struct Signal {
         return copy_with(*this, &Signal::safe_value, value, &Signal::safe_name, std::string_view{},
                          &Signal::says_safe, true);
     }
-    /// The value that its file calls so, or the list behind named(): safe("Neutral").
+    /// Takes the safe value with this name in its file or in the list of named(): safe("Neutral").
     constexpr Signal safe(std::string_view value_name) const noexcept {
         return copy_with(*this, &Signal::safe_name, value_name, &Signal::says_safe, true);
     }
-    /// What is sent beyond it becomes its nearest end, except values that have a name.
+    /// Limits what is sent to this range, except values that have a name.
     constexpr Signal range(double new_least, double new_most) const noexcept {
         return copy_with(*this, &Signal::least, new_least, &Signal::most, new_most, &Signal::has_range, true);
     }
-    /// In the frame only while its signal `of` has one of these values: when("page", 1, between(4, 7)).
+    /// The signal is in the frame only while signal `of` has one of these values: when("page", 1, between(4,
+    /// 7)).
     template <std::convertible_to<Selection>... S>
         requires(sizeof...(S) > 0 && sizeof...(S) <= most_selections)
     constexpr Signal when(std::string_view of, const S&... values) const noexcept {
         return copy_with(*this, &Signal::multiplexor, of, &Signal::selections,
                          Bounded<Selection, most_selections>{{Selection(values)...}, sizeof...(S)});
     }
-    /// Of a constant list that outlives the map.
+    /// Names its values by a constant list that outlives the map.
     constexpr Signal named(std::span<const ValueName> values) const noexcept {
         return copy_with(*this, &Signal::names, values);
     }
-    /// Its facet has this name, whatever its file calls it.
+    /// Gives its facet this name instead of its name in the file.
     constexpr Signal called(std::string_view facet) const noexcept {
         return copy_with(*this, &Signal::in_file, name, &Signal::name, facet);
     }
@@ -140,7 +141,7 @@ constexpr Signal signal(std::string_view name, std::uint16_t start, std::uint8_t
     return s;
 }
 
-/// A signal of a DBC file, which says where it lies and what it means.
+/// A signal whose place and meaning come from a DBC file.
 constexpr Signal signal(std::string_view name) noexcept { return signal(name, 0, 0); }
 
 /// A signal is a whole number unless a factor, an offset or a float makes it a physical value.
@@ -152,23 +153,24 @@ constexpr bool is_integer(const Signal& s) noexcept {
 /// The place of the signal's i-th bit, counted from the least significant, as 8 * byte + position. Real-time.
 constexpr unsigned bit_place(const Signal& s, unsigned i) noexcept TAPPET_REALTIME {
     if (s.order == Order::intel) return s.start + i;
-    // Read a byte from its left end and the bits of a Motorola signal follow each other: count in that
+    // The bits of a Motorola signal are consecutive when each byte is read from its left end: count in that
     // direction.
     const unsigned from_left = 8u * (s.start / 8u) + (7u - s.start % 8u) + (s.bits - 1u - i);
     return 8u * (from_left / 8u) + (7u - from_left % 8u);
 }
 
-/// Where a signal lies in eight bytes of its frame that are read as one number: the first byte the lowest, of
-/// a Motorola signal the highest. Its bits follow each other there. Of a signal of more than 57 bits some may
-/// go on in a ninth byte.
+/// The place of a signal in eight bytes of its frame that are read as one number, in which its bits are
+/// consecutive. The first byte is the lowest, or the highest for a Motorola signal. A signal of more than 57
+/// bits may continue in a ninth byte.
 struct Place {
     std::uint8_t byte = 0;  ///< the first of the eight, which end within the longest frame
-    std::uint8_t shift = 0; ///< of its lowest bit in the eight
-    std::uint8_t over = 0;  ///< bits in the ninth: the highest ones, of a Motorola signal the lowest
+    std::uint8_t shift = 0; ///< position of its lowest bit in the eight
+    std::uint8_t over = 0;  ///< number of bits in the ninth: the highest ones, or the lowest of a Motorola
+                            ///< signal
     std::uint8_t bits = 1;
     Order order = Order::intel;
 };
-/// Of a signal that lies inside its frame.
+/// Returns the place of a signal that lies inside its frame.
 constexpr Place place_of(const Signal& s) noexcept TAPPET_REALTIME {
     constexpr unsigned last = sizeof(Payload) - 8;
     const bool is_intel = s.order == Order::intel;
@@ -211,7 +213,7 @@ constexpr void put_eight_bytes(std::uint64_t number, std::uint8_t* to) noexcept 
 }
 } // namespace detail
 
-/// The raw bits of a signal that lies there. Real-time.
+/// Returns the raw bits at this place. Real-time.
 constexpr std::uint64_t extract(const Payload& data, Place at) noexcept TAPPET_REALTIME {
     const std::uint64_t whole = detail::in_order(detail::eight_bytes(&data[at.byte]), at.order);
     const std::uint64_t mask = detail::mask_of(at.bits);
@@ -222,12 +224,12 @@ constexpr std::uint64_t extract(const Payload& data, Place at) noexcept TAPPET_R
                                      : whole << at.over | ninth >> (8u - at.over)) &
            mask;
 }
-/// The same of a signal that lies inside the frame.
+/// Returns the raw bits of a signal that lies inside the frame. Real-time.
 constexpr std::uint64_t extract(const Payload& data, const Signal& s) noexcept TAPPET_REALTIME {
     return extract(data, place_of(s));
 }
 
-/// Bits beyond the signal's width are cut. Real-time.
+/// Writes raw bits into the frame; bits beyond the signal's width are cut. Real-time.
 constexpr void insert(Payload& data, Place at, std::uint64_t raw) noexcept TAPPET_REALTIME {
     std::uint64_t mask = detail::mask_of(at.bits);
     raw &= mask;
@@ -248,7 +250,7 @@ constexpr void insert(Payload& data, const Signal& s, std::uint64_t raw) noexcep
     insert(data, place_of(s), raw);
 }
 
-/// Raw bits as a whole number, sign extended. Real-time.
+/// Returns raw bits as a whole number, sign extended. Real-time.
 constexpr std::int64_t to_integer(const Signal& s, std::uint64_t raw) noexcept TAPPET_REALTIME {
     if (s.kind != Kind::signed_integer || s.bits >= 64) return static_cast<std::int64_t>(raw);
     const std::uint64_t sign = std::uint64_t{1} << (s.bits - 1u);
@@ -278,7 +280,8 @@ struct Raw {
 namespace detail {
 constexpr Raw to_any_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
     if (!is_number(physical)) return {.refused = true};
-    const double number = (physical - s.offset) / s.factor; // infinite, of a large one: its nearest end
+    const double number = (physical - s.offset) / s.factor; // infinite for a large number: becomes the
+                                                            // nearest limit
     if (s.kind == Kind::float64) {
         constexpr double most = 1.7976931348623157e308;
         const double kept = number > most ? most : number < -most ? -most : number;
@@ -294,7 +297,7 @@ constexpr Raw to_any_raw(const Signal& s, double physical) noexcept TAPPET_REALT
     const std::uint64_t high = is_signed ? all >> 1 : all;
     const std::uint64_t low = is_signed ? ~high : 0;                              // two's complement
     const double limit = high == 0 ? 1.0 : static_cast<double>(high / 2 + 1) * 2; // one above `high`, exactly
-    // Above 2^52 every double is whole, and half would be rounded.
+    // Above 2^52 every double is whole, and adding a half would round.
     const double half = number < 4503599627370496.0 && number > -4503599627370496.0 ? 0.5 : 0.0;
     if (number >= 0) {
         if (number + half >= limit) return {.bits = high, .saturated = true};
@@ -307,7 +310,7 @@ constexpr Raw to_any_raw(const Signal& s, double physical) noexcept TAPPET_REALT
 }
 } // namespace detail
 
-/// Real-time. Rounds to the nearest, halves away from zero.
+/// Returns the raw bits of a physical value, rounded to nearest, halves away from zero. Real-time.
 constexpr Raw to_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
     const Raw raw = detail::to_any_raw(s, physical);
     if (!s.has_range || (physical >= s.least && physical <= s.most) || raw.refused) return raw;
@@ -315,7 +318,8 @@ constexpr Raw to_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME 
     return {.bits = detail::to_any_raw(s, physical < s.least ? s.least : s.most).bits, .saturated = true};
 }
 
-/// For a signal without factor and offset. It saturates exactly; a set of bits (as_bits) is cut to its width.
+/// Returns the raw bits of an integer, for a signal without factor and offset. Saturates exactly; a set of
+/// bits (as_bits) is cut to its width. Real-time.
 constexpr Raw to_raw_integer(const Signal& s, std::int64_t value) noexcept TAPPET_REALTIME {
     const std::uint64_t mask = detail::mask_of(s);
     if (s.is_bits) return {.bits = static_cast<std::uint64_t>(value) & mask};
@@ -329,23 +333,23 @@ constexpr Raw to_raw_integer(const Signal& s, std::int64_t value) noexcept TAPPE
     return {.bits = static_cast<std::uint64_t>(kept) & mask, .saturated = kept != value};
 }
 
-/// How a refusal of a name ends: what was meant, or else what to do.
+/// Returns the end of a message about an unknown name: the nearest name, or else `otherwise`.
 constexpr Sentence or_meant(const Nearest& nearest, std::string_view otherwise) noexcept {
     return nearest.best().empty() ? Sentence{otherwise}
                                   : Sentence{"; did you mean \"", nearest.best(), "\"?"};
 }
 
-/// The first value that is called so; null: none.
+/// Returns the first value with this name; null: none.
 constexpr const ValueName* value_called(const Signal& s, std::string_view name) noexcept {
     for (const ValueName& each : s.names)
         if (each.name == name) return &each;
     return nullptr;
 }
-/// As its facet has it.
+/// Returns the named value as its facet has it.
 constexpr double physical_of(const Signal& s, const ValueName& value) noexcept {
     return static_cast<double>(value.value) * s.factor + s.offset;
 }
-/// Why a name does not say which value is meant.
+/// Returns why a name does not identify a value.
 constexpr Sentence name_fault(std::string_view frame, const Signal& s, std::string_view name) noexcept {
     const Sentence who{"signal \"", frame, ".", s.name, "\" calls "};
     const ValueName* const value = value_called(s, name);

@@ -1,4 +1,4 @@
-// The signals of a CAN bus as one constexpr table, and what the compiler finds wrong with it.
+// The signals of a CAN bus as one constexpr table, checked by the compiler.
 #pragma once
 
 #include "drivers/can/frame.hpp"
@@ -16,7 +16,7 @@ namespace tappet::can {
 enum class Direction : std::uint8_t {
     receive,
     transmit,
-    passing ///< between other nodes: no more than a part of what the bus is proven for
+    passing ///< frames between other nodes: only load on the bus, for the timing proof
 };
 
 /// A row of the table.
@@ -25,19 +25,19 @@ struct FrameRow {
     std::string_view name{};
     Direction direction = Direction::receive;
     std::uint8_t length = 0;
-    Duration every{};      ///< the period; 0: sent on demand, and all of them in order
-    Duration apart{};      ///< the least time between two; 0: the row does not say it
-    Duration jitter{};     ///< receive: by how much its node may be late
-    std::size_t first = 0; ///< its signals in the map's array
+    Duration every{};      ///< the period; 0: sent on demand, every one, in order
+    Duration apart{};      ///< the least time between two frames; 0: the row does not say
+    Duration jitter{};     ///< receive: how late its node may send it
+    std::size_t first = 0; ///< index of its first signal in the map's array
     std::size_t signals = 0;
     bool silence_is_safe = false; ///< transmit: no safe values are sent
-    bool multiplexed = false;     ///< not all of its signals are in every frame
-    std::string_view in_file{};   ///< its name in its DBC file, where a row gives it another
+    bool multiplexed = false;     ///< a frame holds only some of its signals
+    std::string_view in_file{};   ///< its name in its DBC file, when the row gives it another
     Format format = Format::classical;
-    bool is_proven = false; ///< of another node, whose own proof holds it in time: here it is load only
+    bool is_proven = false; ///< of another node whose own proof shows it is in time: only load here
 };
 
-/// Without contents.
+/// Returns the row's frame without contents.
 constexpr Frame frame_of(const FrameRow& row) noexcept TAPPET_REALTIME {
     Frame frame{.id = row.identifier.id, .extended = row.identifier.extended, .length = row.length};
     set_format(frame, row.format);
@@ -49,41 +49,42 @@ template <std::size_t N> struct FrameWithSignals {
     FrameRow row{};
     std::array<Signal, N> signals{};
 
-    /// Instead of safe values: whoever receives this frame is safe without it, by a time-out of its own.
+    /// Sends no safe values: the receiver's own time-out makes it safe when this frame stays away.
     constexpr FrameWithSignals safe_by_silence() const noexcept {
         return {copy_with(row, &FrameRow::silence_is_safe, true), signals};
     }
-    /// Its facets begin with this name, whatever its file calls it.
+    /// Lets the frame's facets begin with this name instead of its name in the file.
     constexpr FrameWithSignals called(std::string_view name) const noexcept {
         return {copy_with(row, &FrameRow::in_file, row.name, &FrameRow::name, name), signals};
     }
 };
 
-/// The identifier of a row: standard(0x181), extended(0x18FF0102).
+/// Identifier of a row, 11 bits: standard(0x181).
 constexpr Identifier standard(std::uint32_t id) noexcept { return {id, false}; }
-/// Likewise, of 29 bits.
+/// Identifier of a row, 29 bits: extended(0x18FF0102).
 constexpr Identifier extended(std::uint32_t id) noexcept { return {id, true}; }
 
 struct Bytes {
     std::uint8_t count = 0;
     Format format = Format::classical;
 
-    /// Of CAN FD: without the switch to the data bit rate.
+    /// CAN FD without the switch to the data bit rate.
     constexpr Bytes in_one_rate() const noexcept { return {count, Format::flexible}; }
 };
-/// Length of the frame, 8 at most.
+/// Length of a classical frame, 8 bytes at most.
 constexpr Bytes bytes(std::uint8_t count) noexcept { return {count, Format::classical}; }
-/// Of a CAN FD frame that switches to the data bit rate: 0 to 8, 12, 16, 20, 24, 32, 48 or 64. What no signal
-/// covers is sent as 0.
+/// Length of a CAN FD frame that switches to the data bit rate: 0 to 8, 12, 16, 20, 24, 32, 48 or 64 bytes.
+/// Bits that no signal covers are sent as 0.
 constexpr Bytes fd_bytes(std::uint8_t count) noexcept { return {count, Format::flexible_faster}; }
-/// How often a frame comes, which the bus's response times are computed from.
+/// How often a frame comes; the bus's response times are computed from this.
 struct Rate {
     Duration every{}, apart{}, jitter{};
 };
-/// With this period. Of a received one, how much later than that its node may send it.
+/// The frame has this period. A received frame may come later than that by `jitter`.
 constexpr Rate every(Duration period, Duration jitter = {}) noexcept { return {period, period, jitter}; }
-/// When one of its values was written, and all of them in order; of a received one, when its node has
-/// something to tell. Two of them are believed to be so far apart; of what is sent a breach is counted.
+/// Sends the frame when one of its values was written: every one, in order. A received frame comes when its
+/// node has something to send. The proof assumes `apart` between two frames; a breach by a sent frame is
+/// counted.
 constexpr Rate on_demand(Duration apart) noexcept { return {{}, apart, {}}; }
 
 namespace detail {
@@ -105,13 +106,13 @@ constexpr auto row(Identifier id, std::string_view name, Direction direction, By
 } // namespace detail
 
 /// receive(standard(0x181), "main_drive", bytes(6), every(2ms), signal("statusword", 0, 16), ...)
-/// How old a value may grow is said by the connection's row that reads it.
+/// The connection's row that reads a value states its maximum age.
 template <class... Signals>
 constexpr auto receive(Identifier id, std::string_view name, Bytes length, Rate rate,
                        const Signals&... signals) noexcept {
     return detail::row(id, name, Direction::receive, length, rate, signals...);
 }
-/// Without its rate, which the map's check asks for.
+/// A row without a rate; the map's check then asks for one.
 template <class... Signals>
     requires(std::same_as<Signals, Signal> && ...)
 constexpr auto receive(Identifier id, std::string_view name, Bytes length,
@@ -126,17 +127,17 @@ constexpr auto transmit(Identifier id, std::string_view name, Bytes length, Rate
     return detail::row(id, name, Direction::transmit, length, rate, signals...);
 }
 
-/// What one end of a bus takes and sends, and what it sends last.
+/// The identifiers that one end of a bus receives and sends, and its safe frames.
 struct Identifiers {
     std::span<const Identifier> receive{}, transmit{};
-    bool has_fd = false;                ///< there is a CAN FD frame among them
+    bool has_fd = false;                ///< at least one of them is a CAN FD frame
     std::span<const Frame> safe{};      ///< see SignalMap::safe_frames
-    std::span<const FrameRow> frames{}; ///< of a machine's end, for tools
+    std::span<const FrameRow> frames{}; ///< of a machine's end; read by tools
     std::span<const Signal> signals{};
-    std::uint32_t restarts_allowed = 0; ///< of its controller; 0: as few as any bus has
+    std::uint32_t restarts_allowed = 0; ///< of its controller; 0: the least that any bus allows
 };
 
-/// Of all multiplexed frames of a map together, beyond one frame each.
+/// Most safe frames of all multiplexed frames of a map together, beyond one frame each.
 inline constexpr std::size_t most_safe_pages = 16;
 
 template <std::size_t F, std::size_t S> struct SignalMap {
@@ -147,16 +148,16 @@ template <std::size_t F, std::size_t S> struct SignalMap {
     std::array<Place, S> places{};
     std::array<Identifier, F> received{}; ///< the first `received_count` are valid
     std::array<Identifier, F> transmitted{};
-    /// What makes the receivers safe when the machine's process is no more: the cyclic ones first, whose
-    /// receivers are told what to do before those on demand tell them what to be. Of a multiplexed one each
-    /// page, the one that its multiplexor's safe value selects as the last.
+    /// Frames that make the receivers safe after the machine's process has ended. The cyclic ones go first,
+    /// because a receiver must have its command before a frame on demand changes its mode. A multiplexed
+    /// frame has one for each page; the page that the multiplexor's safe value selects goes last.
     std::array<Frame, F + (S < most_safe_pages ? S : most_safe_pages)> safe{};
     std::size_t received_count = 0;
     std::size_t transmitted_count = 0;
     std::size_t safe_count = 0;
-    Sentence fault{}; ///< empty when the table is right
+    Sentence fault{}; ///< empty when the table is correct
 
-    /// What Settings::receive and Settings::transmit take; the map must outlive them.
+    /// Identifiers for Settings::receive and Settings::transmit; the map must outlive them.
     [[nodiscard]] constexpr std::span<const Identifier> receives() const noexcept {
         return std::span{received}.first(received_count);
     }
@@ -169,7 +170,7 @@ template <std::size_t F, std::size_t S> struct SignalMap {
     [[nodiscard]] constexpr Multiplexing multiplexing() const noexcept TAPPET_REALTIME {
         return {signals, multiplexor_of};
     }
-    /// Whether a frame of the row holds the signal; raw_of(m) is the value there of a multiplexor.
+    /// Returns whether a frame of the row holds the signal; raw_of(m) is the value of multiplexor m in it.
     template <class RawOf>
     [[nodiscard]] constexpr bool holds(const FrameRow& row, std::size_t s, const RawOf& raw_of) const noexcept
         TAPPET_REALTIME {
@@ -185,7 +186,7 @@ template <std::size_t F, std::size_t S> struct SignalMap {
             if (frames[f].name == name) return f;
         return no_such;
     }
-    /// By "frame.signal".
+    /// Finds a signal by "frame.signal".
     [[nodiscard]] constexpr std::size_t signal(std::string_view path) const noexcept {
         for (std::size_t s = 0; s < S; ++s) {
             const std::string_view owner = frames[frame_of[s]].name;
@@ -199,7 +200,7 @@ template <std::size_t F, std::size_t S> struct SignalMap {
 
 namespace detail {
 
-/// A sentence, and of which row and signal it speaks; no_such: of none.
+/// A sentence with the row and the signal it is about; no_such: neither.
 struct MapFault {
     Sentence text{};
     std::size_t frame = no_such;
@@ -281,7 +282,8 @@ constexpr Sentence rate_fault(const FrameRow& frame) noexcept {
     return {};
 }
 
-/// `before`: those of its frame that stand before it; its multiplexor must be among them.
+/// Checks the multiplexor of `s`. `before`: the signals of its frame ahead of it; the multiplexor must be
+/// among them.
 constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
                                      std::span<const Signal> before) noexcept {
     if (s.multiplexor.empty()) return {};
@@ -326,7 +328,7 @@ constexpr Sentence length_fault(const FrameRow& frame) noexcept {
 
 /// The bits of a signal in its frame.
 using Covered = std::array<std::uint64_t, sizeof(Payload) / 8>;
-/// The first bit of both, or one behind the frame's `bytes`.
+/// Returns the first bit in both, or the bit behind the frame's `bytes`.
 constexpr unsigned first_shared(const Covered& a, const Covered& b, unsigned bytes) noexcept {
     for (unsigned word = 0; 8u * word < bytes; ++word)
         if (const std::uint64_t shared = a[word] & b[word]; shared != 0)
@@ -336,7 +338,7 @@ constexpr unsigned first_shared(const Covered& a, const Covered& b, unsigned byt
 
 template <std::size_t F, std::size_t S>
 constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noexcept {
-    std::array<Covered, S> covered{}; // by its signals
+    std::array<Covered, S> covered{}; // indexed by signal
     for (std::size_t f = 0; f < frames; ++f) {
         const FrameRow& row = map.frames[f];
         const Sentence who{"frame \"", row.name, "\""};
@@ -385,7 +387,8 @@ constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noe
     return {};
 }
 
-/// The frame with the safe values that holds the signal; no_such: with what the safe values select.
+/// Returns the frame of safe values that holds the signal `wanted`; no_such: the page that the safe values
+/// select.
 template <std::size_t F, std::size_t S>
 constexpr Frame safe_frame(const SignalMap<F, S>& map, const FrameRow& row, std::size_t wanted,
                            std::array<bool, S>& held) noexcept {
@@ -405,7 +408,7 @@ constexpr Frame safe_frame(const SignalMap<F, S>& map, const FrameRow& row, std:
     return frame;
 }
 
-/// False when there is no room for the pages of the row.
+/// Returns false when there is no room for the row's pages.
 template <std::size_t F, std::size_t S>
 constexpr bool add_safe_frames(SignalMap<F, S>& map, const FrameRow& row, std::size_t& room) noexcept {
     std::array<bool, S> held{};
@@ -419,7 +422,7 @@ constexpr bool add_safe_frames(SignalMap<F, S>& map, const FrameRow& row, std::s
     return true;
 }
 
-/// What follows from the first `frames` rows, and what is wrong with them.
+/// Completes the map from its first `frames` rows and returns their first fault.
 template <std::size_t F, std::size_t S>
 constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
     map.multiplexor_of.fill(no_such);
@@ -461,7 +464,7 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
     return {};
 }
 
-/// Into `frames` and `signals` of a map or the like.
+/// Copies the rows into `frames` and `signals` of a map or a similar type.
 template <class Map, std::size_t... N>
 constexpr void flatten(Map& into, const FrameWithSignals<N>&... rows) noexcept {
     std::size_t f = 0;

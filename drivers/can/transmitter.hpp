@@ -1,5 +1,5 @@
-// The discipline of sending, the same for the real controller and its twin: few frames in flight, none of
-// them stale.
+// The rules of sending, the same for the real controller and its twin: few frames in flight, none of them
+// stale.
 #pragma once
 
 #include "drivers/can/frame_time.hpp"
@@ -12,8 +12,8 @@ namespace tappet::can {
 
 inline constexpr std::uint32_t most_in_flight = 8; // the kernel's own queue refuses the eleventh
 
-/// The fewest that keep the bus busy until the next one is handed over, which takes `hand_over`; more would
-/// only hold up what is more urgent. `shortest`: of this machine's frames, on the wire with all their
+/// Returns the fewest frames that keep the bus busy until the next is handed over, which takes `hand_over`;
+/// more would only delay urgent ones. `shortest`: the machine's shortest frame on the wire, with full bit
 /// stuffing.
 constexpr std::uint32_t frames_in_flight(Duration hand_over, Duration shortest) noexcept {
     const Duration least{least_time_ns(shortest.count())};
@@ -22,9 +22,9 @@ constexpr std::uint32_t frames_in_flight(Duration hand_over, Duration shortest) 
     return fewest;
 }
 
-/// Frames wait here, not in the kernel: what the kernel or the controller holds cannot be taken back, so at
-/// most `in_flight` of them are handed over before one is confirmed (a frame on the wire that somebody
-/// acknowledged).
+/// Frames are queued here, not in the kernel, because a frame in the kernel or the controller cannot be taken
+/// back. So at most `in_flight` frames are handed over before one is confirmed (sent and acknowledged on the
+/// wire).
 class Transmitter {
 public:
     constexpr void configure(const Settings& settings) noexcept {
@@ -32,12 +32,11 @@ public:
         max_age_ = settings.max_age;
         confirm_within_ = settings.confirm_within;
     }
-    /// Takes a frame whose contents were made at frame.stamp; what was made before the last restart stays
-    /// out.
+    /// Queues a frame whose contents were made at frame.stamp; refuses contents made before the last restart.
     constexpr Send push(const Frame& frame, Keep keep, Counters& count) noexcept TAPPET_REALTIME {
         Send answer = Send::refused_invalid;
         if (valid(frame)) {
-            // Last words are of now, though a restart was taken up in the same moment.
+            // A final frame counts as fresh, even if a restart was taken up at the same moment.
             const bool fresh =
                 keep == Keep::last || (frame.stamp > restarted_at_ && frame.stamp >= now_ - max_age_);
             answer = fresh ? queue_.push(frame, keep) : Send::refused_stale;
@@ -46,7 +45,7 @@ public:
         if (answer != Send::queued && answer != Send::replaced) ++count.refused;
         return answer;
     }
-    /// The frame to hand over now, or nothing.
+    /// Returns the frame to hand over now, or null.
     constexpr const Frame* next(Time now, Counters& count) noexcept TAPPET_REALTIME {
         now_ = now;
         count.dropped_stale += queue_.drop_older(now - max_age_);
@@ -71,9 +70,9 @@ public:
         Identifier identifier{};
         bool operator==(const Flight&) const = default;
     };
-    /// At `now` the controller confirmed the oldest frame in flight, which this is; made at Time{}: none.
+    /// Returns the oldest frame in flight, which the controller confirmed at `now`; made at Time{}: none.
     constexpr Flight confirmed(Time now, Counters& count) noexcept TAPPET_REALTIME {
-        if (in_flight_.empty() || now <= restarted_at_) return {}; // of a frame before the restart
+        if (in_flight_.empty() || now <= restarted_at_) return {}; // confirms a frame sent before the restart
         const Flight sent = in_flight_[0];
         ++count.sent;
         if (now - sent.made > max_age_) ++count.sent_late;
@@ -88,7 +87,7 @@ public:
         return in_flight_.empty() ? never : in_flight_[0].handed_over + confirm_within_ + 1ns;
     }
     constexpr void purge(Counters& count) noexcept TAPPET_REALTIME { count.dropped_stale += queue_.purge(); }
-    /// The controller forgot everything it held; so do we. What was made up to now is never sent.
+    /// Forgets the frames in flight, as the controller did. Contents made up to now are never sent.
     constexpr void restarted(Time now, Counters& count) noexcept TAPPET_REALTIME {
         purge(count);
         count.dropped_stale += in_flight_.size();

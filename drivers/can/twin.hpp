@@ -1,5 +1,4 @@
-// One end of an in-process CAN bus: what the machine, or its plant, has in place of a controller in the host
-// world.
+// One end of an in-process CAN bus: replaces a controller for the machine or its plant in the host world.
 #pragma once
 
 #include "drivers/can/controller.hpp"
@@ -11,31 +10,33 @@
 
 namespace tappet::can {
 
-/// Its owner uses it from one thread; the bus's thread may be another. Both sides meet in two rings only.
+/// Its owner uses it from one thread; the bus may run in another. Both sides share only two rings.
 class Twin final : public ControlledDevice {
 public:
-    static constexpr std::size_t inbox = 256; // of the size of Linux's default socket buffer: 278 frames
+    static constexpr std::size_t inbox = 256; // similar to Linux's default socket buffer: 278 frames
     static constexpr std::size_t outbox = 256;
     static_assert(outbox >= most_in_flight + 3 * TransmitQueue::capacity,
                   "what may be in flight fits, and the last words");
 
-    /// Not real-time, before the bus runs. `interface` is a name for messages only.
+    /// Opens the end. Not real-time, before the bus runs. `interface` is a name for messages only.
     std::expected<void, Sentence> open(const Settings& settings) noexcept;
 
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
-    /// At once, however many may be in flight: who stops under virtual time waits for no confirmation.
+    /// Sends everything at once, ignoring the limit in flight: under virtual time a stop cannot wait for
+    /// confirmations.
     bool finish(Time now) noexcept TAPPET_REALTIME override;
     Restart restart() noexcept override;
-    /// By the bus's thread.
+    /// Called by the bus's thread.
     [[nodiscard]] bool wakes(os::Waiter& waiter) noexcept override {
         waiter_ = &waiter;
         return true;
     }
 
-    /// Something has arrived that its owner has not taken; a confirmation lets it send more.
+    /// Returns true when an arrival waits for the owner; a confirmation counts, since it lets the owner send
+    /// more.
     [[nodiscard]] bool has_arrivals() const noexcept TAPPET_REALTIME { return inbox_.front() != nullptr; }
-    /// Fault: restart() fails from now on (or works again).
+    /// Fault injection: restart() fails from now on (or works again).
     void make_restarts_fail(bool fail) noexcept { restart_fails_.store(fail, std::memory_order_relaxed); }
 
 private:
@@ -56,7 +57,7 @@ private:
     [[nodiscard]] bool wants(const Frame& frame) const noexcept TAPPET_REALTIME;
     void hand_over(Time now) noexcept TAPPET_REALTIME;
     bool put_out(const Frame& frame, Time now) noexcept TAPPET_REALTIME;
-    // The bus's side.
+    // Called by the bus.
     void arrive(Happened what, const Frame& frame) noexcept TAPPET_REALTIME;
     const Departure* head() noexcept TAPPET_REALTIME;
     void wake() noexcept TAPPET_REALTIME;
@@ -71,8 +72,8 @@ private:
     std::atomic<bool> restart_fails_{false};
     std::uint32_t lost_ = 0; // the bus's: arrivals that found the inbox full
     bool arrived_ = false;   // the bus's: the listener is to be called
-    bool starved_ = false;   // the bus's: it was told that nobody acknowledges
-    bool muted_ = false;     // the bus's: nobody hears what it sends
+    bool starved_ = false;   // the bus's: this end knows that nobody acknowledges
+    bool muted_ = false;     // the bus's: what it sends reaches no other end
     os::Waiter* waiter_ = nullptr;
 };
 

@@ -1,5 +1,5 @@
-// An in-process CAN bus: arbitration and bit times between twins, deterministic, with every fault of a bus on
-// demand.
+// An in-process CAN bus: arbitration and bit times between twins, deterministic, with injection of every bus
+// fault.
 #pragma once
 
 #include "drivers/can/frame_time.hpp"
@@ -10,75 +10,75 @@
 
 namespace tappet::can {
 
-/// How often a fault strikes: the next `next` frames, and one in `one_in` of the others (0: none).
+/// Probability of a fault: the next `next` frames, and one in `one_in` of the others (0: none).
 struct Chance {
     std::uint32_t next = 0;
     std::uint32_t one_in = 0;
 };
 
 struct BusFaults {
-    Chance spoil{};          ///< an error on the wire: behind an error frame it is sent again
-    Chance lose{};           ///< acknowledged by another node, but it never reaches ours
+    Chance spoil{};          ///< an error on the wire: sent again after an error frame
+    Chance lose{};           ///< acknowledged by another node, but never delivered to this end
     Chance duplicate{};      ///< delivered twice: a sender that missed the last bit repeats
     Chance corrupt_length{}; ///< arrives with the next shorter length, or one byte long when empty
     Chance delay{};
     Duration delay_by = 5ms;
-    std::optional<Identifier> only{}; ///< strikes this identifier only
+    std::optional<Identifier> only{}; ///< only frames with this identifier are affected
 };
 
-/// One thread, the bus's, calls deliver_until and the faults; it is real-time.
+/// Only the bus's thread calls deliver_until and the faults. Real-time.
 class TwinBus {
 public:
-    /// A nominal rate of 0: frames take no time on the wire. A data rate of 0: it is the nominal one.
+    /// Nominal rate 0: frames take no time on the wire. Data rate 0: the same as the nominal one.
     explicit TwinBus(std::uint64_t seed, BitRates rates = {}) noexcept : random_{seed} {
         set_bit_rates(rates);
     }
     void set_bit_rates(BitRates rates) noexcept TAPPET_REALTIME {
         rates_ = {rates.nominal, rates.data != 0 ? rates.data : rates.nominal};
     }
-    /// When the next frame is through the wire; never: none waits, or none takes time.
+    /// Returns when the next frame is completely on the wire; never: none is queued, or frames take no time.
     [[nodiscard]] Time next() noexcept TAPPET_REALTIME {
         const auto winner = rates_.nominal == 0 || !acknowledged_ ? std::nullopt : arbitrate(never - 1ns);
         return winner ? winner->start + wire_time(*winner->frame) : never;
     }
 
     static constexpr std::size_t most_ends = 8;
-    /// What was on the wire, as it arrived; its owner takes it out after each call that moves the bus.
+    /// Frames from the wire as they arrived; the owner empties it after each call that advances the bus.
     using Tap = twin::Ring<Frame, 2 * 4 * most_ends * Twin::outbox>;
-    /// Not real-time, before the bus runs. None: nobody looks.
+    /// Sets the tap. Not real-time, before the bus runs. Null: no tap.
     void set_tap(Tap* tap) noexcept { tap_ = tap; }
-    /// Not real-time, before the bus runs: what this end sends is confirmed and reaches nobody.
+    /// Confirms what this end sends, but delivers it to nobody. Not real-time, before the bus runs.
     void mute(Twin& end) noexcept { end.muted_ = true; }
-    /// Sent by a node that is no end, at that moment, whatever else is on the wire; no fault strikes it.
+    /// Delivers a frame of a node without an end at that moment, independent of arbitration and of faults.
     void put(const Frame& frame, Time at) noexcept TAPPET_REALTIME;
-    /// Frames that found the tap full.
+    /// Returns the number of frames that found the tap full.
     [[nodiscard]] std::uint64_t frames_untapped() const noexcept TAPPET_REALTIME { return untapped_; }
 
-    /// Not real-time, before the bus runs. False when eight ends are there already.
+    /// Connects an end. Not real-time, before the bus runs. Returns false when there are already eight.
     [[nodiscard]] bool attach(Twin& end) noexcept { return ends_.push(&end); }
 
-    /// Everything that is on the wire by `now` arrives, in the order of arbitration; then the listeners are
-    /// called.
+    /// Delivers every frame that is on the wire by `now`, in the order of arbitration; then calls the
+    /// listeners.
     void deliver_until(Time now) noexcept TAPPET_REALTIME;
 
     BusFaults faults{};
-    /// Nobody acknowledges: frames stay in the controllers, which turn error passive.
+    /// Stops acknowledgement: frames stay in the controllers, which become error passive.
     void set_acknowledged(bool acknowledged) noexcept TAPPET_REALTIME { acknowledged_ = acknowledged; }
-    /// The end's controller leaves the bus; `restart()` brings it back.
+    /// Puts the end's controller bus-off; `restart()` brings it back.
     void bus_off(Twin& end) noexcept TAPPET_REALTIME;
     void set_state(Twin& end, State state) noexcept TAPPET_REALTIME;
-    /// The next `frames` to this end find its buffer full.
+    /// Lets the next `frames` frames to this end find its buffer full.
     void overflow(Twin& end, std::uint32_t frames) noexcept TAPPET_REALTIME { end.lost_ += frames; }
-    /// A node that does not stop sending: this frame, every `period` from `from` on; period 0 silences it.
+    /// Simulates a babbling node: sends this frame every `period` from `from` on; period 0 silences it.
     void babble(const Frame& frame, Duration period, Time from) noexcept TAPPET_REALTIME;
 
-    /// Nobody has anything to send or to hear of.
+    /// Returns true when nothing is queued at any end and no event is pending.
     [[nodiscard]] bool is_silent() const noexcept TAPPET_REALTIME {
         for (const Twin* end : ends_)
             if (end->arrived_ || end->starved_ || end->outbox_.front() != nullptr) return false;
         return next_babble_ == never && delayed_.empty();
     }
-    /// Nothing is on its way that the next deliver_until() could bring.
+    /// Returns true when the next deliver_until() cannot deliver anything by time alone.
     [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME {
         return acknowledged_ && rates_.nominal == 0 && next_babble_ == never && delayed_.empty();
     }
@@ -92,7 +92,7 @@ private:
         bool operator==(const Delayed&) const = default;
     };
     struct Contender {
-        Twin* end = nullptr; // none: the babbler
+        Twin* end = nullptr; // null: the babbling node
         const Frame* frame = nullptr;
         Time start{};
     };

@@ -1,5 +1,5 @@
-// Frames as Linux writes them (struct canfd_frame, whose beginning is a struct can_frame), to and from the
-// machine's.
+// Converts between the machine's frames and those of Linux (struct canfd_frame, which begins like struct
+// can_frame).
 #pragma once
 
 #include "drivers/can/frame.hpp"
@@ -12,12 +12,13 @@
 
 namespace tappet::can::wire {
 
-/// State changes and losses only. A frame per bus error or missing acknowledgement would cost a processor on
-/// an unplugged bus; what they lead to is reported as a state, or by the time-out of a confirmation.
+/// State changes and losses only. One frame per bus error or missing acknowledgement would use a whole
+/// processor on an unplugged bus; their consequences are reported as a state or by a confirmation's time-out.
 inline constexpr can_err_mask_t error_mask =
     CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED | CAN_ERR_TX_TIMEOUT;
 
-/// The mask holds all flags: a bare identifier mask would let the other format and remote frames through.
+/// Filters one identifier. The mask holds all flags: a bare identifier mask would pass the other format and
+/// remote frames.
 constexpr can_filter exactly(Identifier one) noexcept {
     return one.extended ? can_filter{one.id | CAN_EFF_FLAG, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_EFF_MASK}
                         : can_filter{one.id, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK};
@@ -26,23 +27,23 @@ constexpr can_filter exactly(Identifier one) noexcept {
 static_assert(offsetof(canfd_frame, len) == offsetof(can_frame, len) &&
               offsetof(canfd_frame, data) == offsetof(can_frame, data));
 
-/// How many bytes the kernel takes and gives for it.
+/// Returns the bytes that the kernel reads and writes for this frame.
 constexpr std::size_t bytes_of(const Frame& frame) noexcept TAPPET_REALTIME {
     return frame.fd ? CANFD_MTU : CAN_MTU;
 }
 
-/// As many of its bytes as bytes_of() says are written.
+/// Writes as many bytes as bytes_of() returns.
 inline void encode(const Frame& frame, canfd_frame& raw) noexcept TAPPET_REALTIME {
     raw.can_id = frame.id | (frame.extended ? CAN_EFF_FLAG : 0u) | (frame.remote ? CAN_RTR_FLAG : 0u);
     raw.len = frame.length;
     raw.flags = frame.bit_rate_switch ? std::uint8_t{CANFD_BRS} : std::uint8_t{0};
     raw.__res0 = raw.__res1 = 0;
-    // Two lengths that the compiler knows, instead of one that it does not.
+    // Two constant lengths, because the compiler optimises these better than a variable one.
     std::memcpy(raw.data, frame.data.data(), CAN_MAX_DLEN);
     if (frame.fd) std::memcpy(raw.data, frame.data.data(), CANFD_MAX_DLEN);
 }
 
-/// The state that an error frame leaves, from the one before it.
+/// Returns the state after an error frame, given the state before it.
 inline BusError decode_error(const canfd_frame& raw, State before) noexcept TAPPET_REALTIME {
     BusError error{.state = before};
     if ((raw.can_id & CAN_ERR_CRTL) != 0) {
@@ -60,8 +61,8 @@ inline BusError decode_error(const canfd_frame& raw, State before) noexcept TAPP
     return error;
 }
 
-/// Into a frame that is as it was made. `bytes`, as the kernel gave them, say which kind it is; false for
-/// what is none.
+/// Decodes into a default-constructed frame. `bytes`, the kernel's length, gives the format. Returns false
+/// when it is not a frame.
 inline bool decode(const canfd_frame& raw, std::size_t bytes, State before, Frame& frame) noexcept
     TAPPET_REALTIME {
     frame.fd = bytes == CANFD_MTU;

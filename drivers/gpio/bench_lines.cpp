@@ -1,5 +1,5 @@
-// Levels between a plant and gpio-sim. The files speak of the wire, the plant of what it means: a line that
-// is active low is turned over here.
+// Levels between a plant and gpio-sim. The files hold wire levels, the plant uses logical ones: active-low
+// lines are inverted here.
 #include "drivers/gpio/bench_lines.hpp"
 
 #include <cerrno>

@@ -19,9 +19,9 @@ public:
     BenchLines();
     ~BenchLines() override;
 
-    /// The bench makes /dev/NAME for the machine, and /sim/NAME for who stands at the other end.
+    /// The bench provides /dev/NAME for the machine, and /sim/NAME for the plant.
     std::expected<void, Sentence> open(const DevicePlace& place) override;
-    /// `folder` is where sim_gpio<n>/pull and sim_gpio<n>/value lie; the lines stand where the binding says.
+    /// `folder` holds sim_gpio<n>/pull and sim_gpio<n>/value; the binding states the lines' offsets.
     std::expected<void, Sentence> open_at(const std::string& folder, std::span<const LineRow> map,
                                           std::span<const Fact> bound);
     ProvidedDevice provided(std::string_view name) noexcept override {
@@ -29,10 +29,11 @@ public:
     }
 
     bool drive(std::size_t line, bool active, Time at) noexcept override;
-    /// Actuators at each look, what follows a port each `slow_period`: looking takes an emulator some time.
+    /// Reads the actuators at each call, outputs of a port each `slow_period`: reading takes an emulator some
+    /// time.
     void look(Time now) override;
     [[nodiscard]] Mask outputs() const noexcept override { return outputs_; }
-    /// Somewhere between two looks: half-way is the best guess.
+    /// The change was between two readings: the middle is the best estimate.
     [[nodiscard]] Time changed_at(Time) const noexcept override { return last_ + (looked_ - last_) / 2; }
     [[nodiscard]] std::uint64_t failures() const noexcept override { return failures_; }
 
@@ -46,7 +47,7 @@ private:
     bool pull(std::size_t line, bool active) noexcept;
 
     std::span<const LineRow> map_{};
-    std::array<int, most_lines> files_; ///< of an input its pull, of an output its value
+    std::array<int, most_lines> files_; ///< of an input its pull file, of an output its value file
     std::vector<Later> later_{};
     Mask outputs_ = 0;
     Time last_{}, looked_{}, slow_at_{};

@@ -1,4 +1,4 @@
-// Chips are numbered as they appear, so a board names them by label where it can.
+// Chips are numbered in the order of their detection, so a board names them by label where it can.
 #include "drivers/gpio/chip.hpp"
 
 #include <cerrno>

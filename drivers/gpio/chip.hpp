@@ -1,4 +1,4 @@
-// Finding a GPIO chip by path or label, and seeing beforehand whether the lines wanted are there and free.
+// Finds a GPIO chip by path or label, and checks in advance that the wanted lines exist and are free.
 #pragma once
 
 #include "drivers/gpio/device.hpp"

@@ -1,4 +1,5 @@
-// Digital lines as drivers' components see them; the kernel's character device and the twin stand behind it.
+// Digital lines as the drivers' components see them; implemented by the kernel's character device and by the
+// twin.
 #pragma once
 
 #include "drivers/gpio/kind.hpp"
@@ -13,8 +14,8 @@
 
 namespace tappet::gpio {
 
-/// One bit per line, in the order of Settings::lines. Values are logical: active-low lines are inverted
-/// already.
+/// One bit per line, in the order of Settings::lines. Values are logical: active-low lines are already
+/// inverted.
 using Mask = std::uint64_t;
 inline constexpr std::size_t most_lines = 64; // of one request
 
@@ -28,12 +29,12 @@ struct Line {
     bool active_low = false;
     Bias bias = Bias::as_is;
     Duration debounce{};     ///< inputs: done by the kernel; 0: none
-    bool safe_value = false; ///< outputs: written at open, at make_safe and at close
+    bool safe_value = false; ///< outputs: written by open(), make_safe() and close()
 };
 
 struct Settings {
     std::string_view chip{};       ///< "/dev/gpiochip0", or the chip's label
-    std::span<const Line> lines{}; ///< at least two: with one alone the kernel hides the edges it lost
+    std::span<const Line> lines{}; ///< at least two: with a single line the kernel hides lost edges
     std::string_view consumer = "tappet";
 };
 
@@ -42,12 +43,12 @@ struct Edge {
     std::uint32_t line = 0;   ///< index in Settings::lines
     bool rising = false;      ///< became active
     Time stamp{};             ///< when the kernel's interrupt handler saw it
-    std::uint32_t seqno = 0;  ///< of the request
-    std::uint32_t missed = 0; ///< edges lost just before this one, of any line
+    std::uint32_t seqno = 0;  ///< sequence number in the request
+    std::uint32_t missed = 0; ///< edges lost just before this one, on any line
     bool operator==(const Edge&) const = default;
 };
 
-/// Edges were lost. Then the levels are read anew, and stand for what the lost edges left.
+/// Edges were lost; the levels are then read again and replace the lost edges.
 struct Gap {
     std::uint32_t missed = 0;
     bool levels_known = false;
@@ -80,23 +81,23 @@ class Device {
 public:
     virtual ~Device() = default;
 
-    /// Fills `edges` from its start with what happened since the last call, oldest first.
+    /// Fills `edges` from its start with the edges since the last call, oldest first.
     virtual EdgeBatch read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME = 0;
-    /// All lines as they are now.
+    /// Returns the present levels of all lines.
     virtual Levels levels() noexcept TAPPET_REALTIME = 0;
-    /// Sets the outputs in `mask` to their bits in `values`, all at once; inputs in `mask` are left out.
+    /// Sets the outputs in `mask` to their bits in `values`, all at once; ignores inputs in `mask`.
     virtual bool write(Mask mask, Mask values) noexcept TAPPET_REALTIME = 0;
     /// Writes the safe value of every output.
     virtual bool make_safe() noexcept TAPPET_REALTIME = 0;
     [[nodiscard]] virtual Counters counters() const noexcept TAPPET_REALTIME = 0;
 
-    /// The descriptor to wait on; -1 for a twin, which calls its listener instead.
+    /// Returns the descriptor to wait on; -1 for a twin, which calls its listener instead.
     [[nodiscard]] virtual int wait_handle() const noexcept TAPPET_REALTIME = 0;
     using Listener = void (*)(void*) noexcept TAPPET_REALTIME;
     virtual void set_listener(Listener ready, void* context) noexcept = 0;
 
 protected:
-    OneActivity belongs_to_; ///< checked by every call that belongs to the activity; no copy has it
+    OneActivity belongs_to_; ///< checked by every call that belongs to the activity; copies do not have it
 };
 
 } // namespace tappet::gpio

@@ -1,4 +1,4 @@
-// The other end of digital lines: the switches, valves and lamps that a machine's line map speaks of.
+// The other end of digital lines: the switches, valves and lamps in a machine's line map.
 #pragma once
 
 #include "drivers/gpio/line_map.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::gpio {
 
-/// Lines from outside of the chip. Levels are logical, lines counted as in the machine's map.
+/// Lines as seen from outside the chip. Levels are logical; lines are numbered as in the machine's map.
 class Wires {
 public:
     Wires() = default;
@@ -16,17 +16,18 @@ public:
     Wires& operator=(const Wires&) = delete;
     virtual ~Wires() = default;
 
-    /// An input of the machine changes at `at`. False: it is no input, or the wire does not take it.
+    /// Changes an input of the machine at `at`. Returns false when it is no input or the wire refuses the
+    /// change.
     virtual bool drive(std::size_t line, bool active, Time at) noexcept = 0;
-    /// The outputs as the machine drives them, in their bits.
+    /// Returns the outputs as the machine drives them, one bit per line.
     [[nodiscard]] virtual Mask outputs() const noexcept = 0;
-    /// When what outputs() shows at `now` changed, as well as this wire can tell.
+    /// Returns when the outputs shown at `now` changed, as exactly as this wire can tell.
     [[nodiscard]] virtual Time changed_at(Time now) const noexcept { return now; }
 };
 
-/// By the names of the map, which the compiler checks:
+/// Access by the names of the map, which the compiler checks:
 ///     io.get("valve")                     as the machine drives it
-///     io.set("bottle_present", true)      at this move, or at a time not before it
+///     io.set("bottle_present", true)      in this step, or at a given time not before it
 template <const auto& map>
 class FarEnd final : public tappet::FarEnd {
     TAPPET_ACCEPTED(map.fault);
@@ -53,18 +54,18 @@ public:
     FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "gpio"} {}
 
     [[nodiscard]] bool get(Output line) const noexcept { return (outputs_ >> line.index & 1u) != 0; }
-    /// True when the machine changed it since the plant moved last.
+    /// Returns true when the machine changed it since the plant's last step.
     [[nodiscard]] bool changed(Output line) const noexcept {
         return ((outputs_ ^ before_) >> line.index & 1u) != 0;
     }
-    /// Of what changed() tells.
+    /// Returns the time of the change that changed() reports.
     [[nodiscard]] Time changed_at() const noexcept { return changed_at_; }
     void set(Input line, bool active) noexcept { set(line, active, now_); }
     void set(Input line, bool active, Time at) noexcept {
         const Mask bit = Mask{1} << line.index;
         if (((inputs_ & bit) != 0) == active) return;
         inputs_ ^= bit;
-        if (wires_ == nullptr) return; // so it stands when the wires are there
+        if (wires_ == nullptr) return; // applied once the wires exist
         refused_ += wires_->drive(line.index, active, at) ? 0u : 1u;
     }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }

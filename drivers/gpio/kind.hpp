@@ -1,4 +1,4 @@
-// A GPIO chip in the rows of boards and bindings, and what the table's check asks of them.
+// A GPIO chip in the rows of boards and bindings, and the checks of the table.
 #pragma once
 
 #include "kernel/base/nearest.hpp"
@@ -11,7 +11,7 @@ namespace gpio {
 inline constexpr Word lines_word{.name = "lines", .kind = "gpio", .is_for_box = true};
 inline constexpr Word line_word{.name = "line", .kind = "gpio", .is_of_parts = true};
 
-/// Where the line of that name stands on the chip; the table's check has found it.
+/// Returns the offset on the chip of the line with that name; the table's check has made sure that it exists.
 constexpr unsigned offset_of(std::span<const Fact> bound, std::string_view line) noexcept {
     return static_cast<unsigned>(said(bound, line_word, line)->numbers[0]);
 }
@@ -54,9 +54,9 @@ inline constexpr DeviceKind device_kind{.name = "gpio", .check = &check_chip};
 
 } // namespace gpio
 
-/// Of a board: how many lines a GPIO chip has for wires.
+/// Board row: the number of lines that the GPIO chip has for wires.
 constexpr Fact lines(unsigned count) noexcept { return {&gpio::lines_word, {}, {count}}; }
-/// Of a binding: a line of the map, and its offset on the chip.
+/// Binding row: a line of the map, and its offset on the chip.
 constexpr Fact line(std::string_view name, unsigned offset) noexcept {
     return {&gpio::line_word, name, {offset}};
 }

@@ -1,5 +1,5 @@
-// The lines a machine uses of one GPIO chip, by logical name: what they are is the machine's, where they lie
-// is the board's.
+// The lines a machine uses of one GPIO chip, by logical name: the machine says what they are, the board says
+// where they are.
 #pragma once
 
 #include "drivers/gpio/device.hpp"
@@ -25,7 +25,7 @@ struct LineRow {
 struct Debounce {
     Duration time{};
 };
-/// An edge counts when the level has stood so long.
+/// Counts an edge only when the level has been stable for this time.
 constexpr Debounce debounce(Duration time) noexcept { return {time}; }
 struct ActiveLow {};
 /// The line is active when its wire is low.
@@ -33,8 +33,8 @@ inline constexpr ActiveLow active_low{};
 struct Safe {
     bool active = false;
 };
-/// What an output is set to before the machine arms, when it stops, and when its process is no more: true for
-/// a brake that must hold then. Each output says it.
+/// Sets an output's value before the machine arms, when it stops and when its process has ended; true for a
+/// brake that must hold then. Every output must state it.
 constexpr Safe safe(bool active) noexcept { return {active}; }
 
 namespace detail {
@@ -59,22 +59,22 @@ constexpr LineRow row(std::string_view name, Role role, Driven driven, Options..
 
 } // namespace detail
 
-/// Is read: its level, and its edges with their times.
+/// A line that is read: its level, and its edges with their times.
 template <class... Options> constexpr LineRow sensor(std::string_view name, Options... options) {
     return detail::row(name, Role::input, Driven::by_port, options...);
 }
-/// Follows an input port of the component: lamps, contactors.
+/// A line that follows an input port of the component: lamps, contactors.
 template <class... Options> constexpr LineRow output(std::string_view name, Options... options) {
     return detail::row(name, Role::output, Driven::by_port, options...);
 }
-/// Set and cleared by events: valves and brakes, which act at an angle.
+/// A line that events set and clear: valves and brakes that act at an angle.
 template <class... Options> constexpr LineRow actuator(std::string_view name, Options... options) {
     return detail::row(name, Role::output, Driven::by_events, options...);
 }
 
 template <std::size_t N> struct LineMap {
     std::array<LineRow, N> rows{};
-    Sentence fault{}; ///< empty when the map is right
+    Sentence fault{}; ///< empty when the map is correct
 
     [[nodiscard]] constexpr std::size_t index(std::string_view name) const noexcept {
         for (std::size_t i = 0; i < N; ++i)
@@ -83,7 +83,7 @@ template <std::size_t N> struct LineMap {
     }
 };
 
-/// Checks what the compiler can: static_assert(map.fault.empty()).
+/// Makes a map and checks it at compile time: static_assert(map.fault.empty()).
 template <class... Rows> constexpr LineMap<sizeof...(Rows)> line_map(const Rows&... rows) {
     LineMap<sizeof...(Rows)> map{{rows...}, {}};
     static_assert(sizeof...(Rows) >= 2,
@@ -105,7 +105,7 @@ template <class... Rows> constexpr LineMap<sizeof...(Rows)> line_map(const Rows&
     return map;
 }
 
-/// The lines of a map as they are requested of a chip, each at the offset that `offset_of(name)` answers.
+/// Writes the map's lines as a chip request, each at the offset that `offset_of(name)` returns.
 template <class OffsetOf>
 constexpr void place(std::span<const LineRow> map, OffsetOf&& offset_of, std::span<Line> lines) {
     for (std::size_t i = 0; i < map.size(); ++i) {

@@ -1,4 +1,4 @@
-// What both worlds derive from the list of lines: masks, safe values, and whether the list can work at all.
+// Derived from the list of lines in both worlds: masks, safe values, and whether the list is valid.
 #pragma once
 
 #include "drivers/gpio/device.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::gpio {
 
-/// The lines of one chip as they are requested; they stay where they are while the chip is open.
+/// The lines of one chip as they are requested; they must not move while the chip is open.
 using PlacedLines = std::array<Line, most_lines>;
 
 struct LinePlan {
@@ -17,7 +17,7 @@ struct LinePlan {
     Mask safe = 0;
 };
 
-/// Not real-time. The error names the line and the cure.
+/// Derives the plan. Not real-time. The error names the line and the cure.
 constexpr std::expected<LinePlan, Sentence> plan(const Settings& settings) {
     const Sentence who{"GPIO chip \"", settings.chip, "\""};
     if (settings.lines.size() < 2)
@@ -46,12 +46,13 @@ constexpr std::expected<LinePlan, Sentence> plan(const Settings& settings) {
     return result;
 }
 
-/// Finds lost edges from the numbers of those that came: the kernel counts every interrupt of the request.
+/// Finds lost edges by the sequence numbers of the delivered ones: the kernel counts every interrupt of the
+/// request.
 class EdgeSequence {
 public:
-    /// How many were lost before this one. Real-time.
+    /// Returns the number of edges lost before this one. Real-time.
     constexpr std::uint32_t missed_before(std::uint32_t seqno) noexcept TAPPET_REALTIME {
-        const std::uint32_t missed = seqno - last_ - 1; // wraps with the kernel's own count
+        const std::uint32_t missed = seqno - last_ - 1; // wraps like the kernel's own count
         last_ = seqno;
         return missed;
     }
@@ -60,14 +61,14 @@ private:
     std::uint32_t last_ = 0; // the first edge of a request is number 1
 };
 
-/// Real lines and simulated ones write their safe values and count their edges in the same way.
+/// Common part of real and simulated lines: safe values and edge counting.
 class PlannedLines : public Device {
 public:
     bool make_safe() noexcept TAPPET_REALTIME final { return write(plan_.outputs, plan_.safe); }
     [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME final { return count_; }
 
 protected:
-    /// These edges were read, the oldest first.
+    /// Counts these edges, read oldest first, and the lost ones between them.
     EdgeBatch judge(std::span<Edge> edges) noexcept TAPPET_REALTIME {
         EdgeBatch batch{.count = edges.size()};
         for (Edge& edge : edges) {

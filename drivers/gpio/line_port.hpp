@@ -31,20 +31,20 @@ template <const auto& map> struct LineNames {
         array_of<map.rows.size()>([](std::size_t i) { return map.rows[i].line.name; });
 };
 
-/// For each sensor: an output with its level and the edge's time, and the events rises and falls with that
-/// time. For each lamp: a required input, whose row should wake this activity. For each actuator: the
-/// required operations set and clear. Runs in an activity that is on_device. All real-time.
+/// Each sensor has an output with its level and the edge's time, and the events rises and falls with that
+/// time. Each lamp has a required input, whose row should wake this activity. Each actuator has the required
+/// operations set and clear. Runs in an activity that is on_device. All real-time.
 ///
-/// A line that is active already when the machine starts has no edge: its output tells it, `rises` is silent.
-/// Lost edges are counted and told before what follows them. Once the kernel's buffer is empty the levels are
-/// read anew; one that differs from what the edges said is told as an edge of that moment, and the true edge,
-/// should it come after all, is not told again.
+/// A line that is already active when the machine starts has no edge: its output shows it, `rises` is silent.
+/// Lost edges are counted and reported before the edges after them. When the kernel's buffer is empty after a
+/// loss, the levels are read again. A level that differs from the edges' is reported as an edge at that
+/// moment; if the true edge arrives later, it is not reported again.
 ///
-/// A call that the chip refuses, be it to write or to read, is a fault: `faulted` and `line_fault` tell it.
-/// What was asked of an output last is written as soon as the chip takes it; a faulted port looks for that
-/// every now and then and rests in between.
+/// When the chip refuses a write or a read, that is a fault: `faulted` and `line_fault` report it. The last
+/// value requested of an output is written as soon as the chip accepts it; a faulted port polls for that and
+/// rests in between.
 ///
-/// At start, as after stop, every output has its safe value; after stop it keeps it.
+/// At the start and after stop() every output has its safe value.
 template <const auto& map> struct LinePort {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.rows.size();
@@ -52,7 +52,7 @@ template <const auto& map> struct LinePort {
     static constexpr std::span<const LineRow> device_map{map.rows};
     static constexpr std::span<const std::string_view> device_lines() { return LineNames<map>::plain; }
     static constexpr std::size_t edges_per_cycle = 64;
-    static constexpr std::size_t most_batches_before_start = 32; ///< twice what the kernel's buffer holds
+    static constexpr std::size_t most_batches_before_start = 32; ///< twice the size of the kernel's buffer
     static constexpr Duration look_while_faulted = 20ms;
 
     std::array<Output<bool>, count> level{};
@@ -86,12 +86,12 @@ template <const auto& map> struct LinePort {
         edges_lost.write(0);
         is_faulted.write(false);
         drive(outputs, safe_values);
-        // What happened before the start is told by the levels, not by edges of another time.
+        // The levels report what happened before the start; edges would carry an older time.
         for (std::size_t n = 0; n < most_batches_before_start; ++n)
             if (device_->read_edges(edges_).count < edges_.size()) break;
         read_levels(cycle.now);
         judge(cycle.now);
-        waiter_->wake(); // for what arrives in between
+        waiter_->wake(); // for edges that arrive in between
     }
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
@@ -106,7 +106,7 @@ template <const auto& map> struct LinePort {
             take(edges_[i]);
         }
         if (!loss_told) tell_loss(batch.gap.missed);
-        doubtful_ |= faulted_; // whether the chip answers again
+        doubtful_ |= faulted_; // check whether the chip answers again
         if (n == edges_.size())
             waiter_->wake();
         else if (doubtful_)
@@ -118,8 +118,8 @@ template <const auto& map> struct LinePort {
     void stop(const Cycle&) noexcept TAPPET_REALTIME {
         stopped_ = true;
         drive(outputs, safe_values);
-        if (refused_ != 0) drive(outputs, safe_values); // nobody tries again while it stands
-        // Lines that nobody drives cannot be relied on, though the chip be well.
+        if (refused_ != 0) drive(outputs, safe_values); // there is no further retry once it is stopped
+        // Lines without a driver cannot be relied on, even if the chip is healthy.
         if (!faulted_) line_fault.emit();
     }
 
@@ -223,7 +223,7 @@ private:
         edges_were_lost.emit();
     }
 
-    // An edge that waits in the kernel while the levels are read shows in them already.
+    // The levels already include an edge that is still queued in the kernel.
     void read_levels(Time now) noexcept TAPPET_REALTIME {
         const Levels read = device_->levels();
         read_at_ = clock_->now();
@@ -251,7 +251,7 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             if (map.rows[i].line.role != Role::output || map.rows[i].driven != Driven::by_port) continue;
             bool value = false;
-            // Stale: the row's own answer, which is the last value or its substitute.
+            // Stale: the row decides, by the last value or its substitute.
             if (wanted[i].read(value) == Flow::never_written) continue;
             if (wanted[i].is_abandoned()) value = map.rows[i].line.safe_value;
             if (bit(driven_, i) == value) continue;
@@ -267,15 +267,15 @@ private:
         judge(clock_->now());
     }
 
-    /// With it, all that was refused before.
+    /// Writes these outputs, and with them all that were refused before.
     void drive(Mask mask, Mask values) noexcept TAPPET_REALTIME {
         refused_ |= mask;
         driven_ = (driven_ & ~mask) | (values & mask);
         if (refused_ != 0 && device_->write(refused_, driven_)) refused_ = 0;
     }
 
-    /// After calls of the device: a fault lasts until it refuses nothing, and the outputs and levels are
-    /// known.
+    /// Called after calls of the device: a fault lasts until the device refuses nothing and the outputs and
+    /// levels are known.
     void judge(Time now) noexcept TAPPET_REALTIME {
         const std::uint64_t failures = device_->counters().failures;
         const bool bad = failures != failures_ || (faulted_ && (doubtful_ || refused_ != 0));
@@ -291,17 +291,17 @@ private:
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;
     os::Clock* clock_ = nullptr;
-    Time read_at_{};        // the levels, last
-    Mask levels_ = 0;       // as told
-    Mask from_reading_ = 0; // told from the levels, and no edge came since
-    Mask driven_ = 0;       // what was asked of the outputs
-    Mask refused_ = 0;      // and of which of them the chip did not take it
-    bool known_ = false;    // the levels were read once
+    Time read_at_{};        // when the levels were last read
+    Mask levels_ = 0;       // as reported
+    Mask from_reading_ = 0; // reported from a reading, with no edge since
+    Mask driven_ = 0;       // the values requested of the outputs
+    Mask refused_ = 0;      // the outputs whose value the chip refused
+    bool known_ = false;    // the levels were read at least once
     bool doubtful_ = false; // edges were lost since, or the levels could not be read
     bool faulted_ = false;
     bool stopped_ = false;
     std::int64_t lost_ = 0;
-    std::uint64_t failures_ = 0; // the device's, when it was looked at last
+    std::uint64_t failures_ = 0; // the device's count at the last check
 };
 
 } // namespace tappet::gpio

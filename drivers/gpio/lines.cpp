@@ -1,4 +1,4 @@
-// libgpiod's calls in order. Its reads, gets and sets work on the caller's memory and allocate nothing.
+// libgpiod's calls in order. Its reads, gets and sets use the caller's memory and do not allocate.
 #include "drivers/gpio/lines.hpp"
 
 #include "drivers/gpio/chip.hpp"
@@ -32,7 +32,7 @@ gpiod_line_bias to_gpiod(Bias bias) {
     return GPIOD_LINE_BIAS_AS_IS;
 }
 
-/// False with errno when libgpiod refuses.
+/// Adds a line to the request; returns false with errno when libgpiod refuses.
 bool add_line(gpiod_line_config* config, const Line& line) {
     const OwnedSettings settings{gpiod_line_settings_new()};
     if (!settings) return false;
@@ -80,7 +80,7 @@ std::expected<void, Sentence> Lines::open(const Settings& settings) {
     }
     if (ok) {
         gpiod_request_config_set_consumer(request.get(), std::string{settings.consumer}.c_str());
-        gpiod_request_config_set_event_buffer_size(request.get(), 1024); // the most that Linux grants
+        gpiod_request_config_set_event_buffer_size(request.get(), 1024); // the largest that Linux grants
         request_.reset(gpiod_chip_request_lines(chip->get(), request.get(), config.get()));
     }
     const int fd = request_ ? gpiod_line_request_get_fd(request_.get()) : -1;

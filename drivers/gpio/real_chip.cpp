@@ -1,4 +1,4 @@
-// Where each line of the map stands, by the binding.
+// Takes the offset of each line of the map from the binding.
 #include "drivers/gpio/real_chip.hpp"
 
 #include "drivers/gpio/line_map.hpp"

@@ -6,7 +6,7 @@
 
 namespace tappet::gpio {
 
-/// Opened for the lines of its driver's line map, each where the binding says.
+/// Opens the chip for the lines of its driver's line map, each at the binding's offset.
 class RealChip final : public RealDevice {
 public:
     static constexpr const DeviceKind& kind = device_kind;

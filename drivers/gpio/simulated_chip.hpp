@@ -1,4 +1,4 @@
-// A GPIO chip of the host: its twin has one line behind the other, as the map lists them.
+// A GPIO chip of the host: its twin has the lines in the order of the map.
 #pragma once
 
 #include "drivers/gpio/line_map.hpp"

@@ -1,4 +1,4 @@
-// A twin of the kernel's line requests: debounce, numbering and losses happen here as they do there.
+// A twin of the kernel's line requests, with the same debounce, numbering and losses.
 #include "drivers/gpio/twin.hpp"
 
 namespace tappet::gpio {
@@ -108,7 +108,7 @@ void Twin::deliver_until(Time now) noexcept TAPPET_REALTIME {
 }
 
 void Twin::settle(Time now) noexcept TAPPET_REALTIME {
-    // Edges of different lines get their numbers in the order of time, as their interrupts would.
+    // Edges of different lines are numbered in the order of time, as their interrupts would be.
     for (std::size_t round = 0; round < lines_.size(); ++round) {
         const Mask unsettled = raw_ ^ inputs_.load(std::memory_order_relaxed);
         std::uint32_t next = most_lines;
@@ -137,7 +137,7 @@ void Twin::commit(std::uint32_t line, bool active, Time at) noexcept TAPPET_REAL
     }
     if (drawn) return;
     const Edge edge{.line = line, .rising = active, .stamp = at, .seqno = seqno_};
-    // What is delayed holds up what follows: the kernel's queue keeps its order.
+    // A delayed edge delays the edges after it: the kernel's queue keeps its order.
     const Time due =
         late_.empty() ? at + faults.delay : std::max(at + faults.delay, late_[late_.size() - 1].due);
     if (due == at || !late_.push({edge, due})) deliver(edge);
@@ -154,7 +154,7 @@ void Twin::deliver_late(Time now) noexcept TAPPET_REALTIME {
 }
 
 void Twin::deliver(const Edge& edge) noexcept TAPPET_REALTIME {
-    if (edges_.push(edge)) arrived_ = true; // a full buffer loses it, and the next number shows it
+    if (edges_.push(edge)) arrived_ = true; // a full buffer loses the edge, and the next number shows it
 }
 
 } // namespace tappet::gpio

@@ -1,5 +1,4 @@
-// Digital lines of the host world: the machine reads and writes them as a Device, the plant drives the other
-// ends.
+// Digital lines of the host world: the machine uses them as a Device, the plant drives the other ends.
 #pragma once
 
 #include "drivers/gpio/far_end.hpp"
@@ -12,66 +11,66 @@
 
 namespace tappet::gpio {
 
-/// What goes wrong at one input.
+/// Injected faults of one input.
 struct LineFaults {
     std::uint32_t lose_next = 0;     ///< the next edges are lost: counted by the kernel, never delivered
-    std::uint32_t lose_one_in = 0;   ///< and one in so many of the others; 0: none
+    std::uint32_t lose_one_in = 0;   ///< and one in this many of the others; 0: none
     std::uint32_t bounces = 0;       ///< extra pairs of edges after each change ...
     Duration bounce_spacing = 200us; ///< ... this far apart
-    Duration delay{};                ///< edges are delivered this much later; their stamps stay right
+    Duration delay{};                ///< edges are delivered this much later, with correct stamps
 };
 
-/// The Device's calls belong to the machine's thread, drive(), deliver_until() and the faults to the plant's;
-/// they meet in a ring and two words only. Levels are logical on both sides.
+/// The Device's calls belong to the machine's thread; drive(), deliver_until() and the faults belong to the
+/// plant's. They share only a ring and two words. Levels are logical on both sides.
 class Twin final : public PlannedLines, public Wires {
 public:
-    static constexpr std::size_t event_buffer = 1024; // as large as Linux grants one
+    static constexpr std::size_t event_buffer = 1024; // the largest that Linux grants
 
     explicit Twin(std::uint64_t seed = 1) noexcept : random_{seed} {}
 
-    /// Not real-time, before either thread runs.
+    /// Opens the twin. Not real-time, before either thread runs.
     std::expected<void, Sentence> open(const Settings& settings);
 
     EdgeBatch read_edges(std::span<Edge> edges) noexcept TAPPET_REALTIME override;
     Levels levels() noexcept TAPPET_REALTIME override;
     bool write(Mask mask, Mask values) noexcept TAPPET_REALTIME override;
     [[nodiscard]] int wait_handle() const noexcept TAPPET_REALTIME override { return -1; }
-    /// `ready` is called by the plant's thread.
+    /// `ready` is called in the plant's thread.
     void set_listener(Listener ready, void* context) noexcept override;
 
     // The plant's side; real-time.
-    /// An input changes at `at`, which lies at or after the last deliver_until. False when 64 changes wait
-    /// already.
+    /// Changes an input at `at`, which is not before the last deliver_until. Returns false when 64 changes
+    /// are already queued.
     bool drive(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME override;
-    /// Carries out the changes due by `now`: bounce, debounce, edges, then the listener.
+    /// Processes the changes due by `now`: bounce, debounce, edges, then the listener.
     void deliver_until(Time now) noexcept TAPPET_REALTIME;
-    /// The outputs as the machine wrote them, in their bits.
+    /// Returns the outputs as the machine wrote them, one bit per line.
     [[nodiscard]] Mask outputs() const noexcept TAPPET_REALTIME override {
         return driven_.load(std::memory_order_acquire);
     }
-    /// Fault: the chip is gone. Writes are refused and change no output, levels are unknown, reads fail; the
-    /// listener is told, as a descriptor hangs up. Or it is back, as it was, and nobody is told.
+    /// Fault: removes the chip. Writes are refused and change no output, levels are unknown, reads fail, and
+    /// the listener is called, as a descriptor hangs up. `false` brings it back unchanged, without a call.
     void set_removed(bool removed) noexcept TAPPET_REALTIME {
         removed_.store(removed, std::memory_order_release);
         arrived_ |= removed;
     }
-    /// Fault: the chip refuses the machine's next calls, so many of them.
+    /// Fault: the chip refuses this many of the machine's next calls.
     void refuse(std::uint32_t calls) noexcept TAPPET_REALTIME {
         refusals_.store(calls, std::memory_order_release);
     }
-    /// No change or edge waits for its time.
+    /// Returns true when no change or edge is pending.
     [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME {
         return changes_.empty() && late_.empty() && raw_ == inputs_.load(std::memory_order_relaxed);
     }
     LineFaults& faults(std::size_t line) noexcept TAPPET_REALTIME { return faults_[line]; }
-    /// The input stays at this level whatever drives it, until released; then it is what it is driven to.
+    /// Holds the input at this level, whatever drives it, until release(); then it takes the driven level.
     void stick(std::size_t line, bool active, Time at) noexcept TAPPET_REALTIME;
     void release(std::size_t line, Time at) noexcept TAPPET_REALTIME;
 
 private:
     struct Change {
         Time at{};
-        std::uint32_t order = 0; // changes of one time keep their order
+        std::uint32_t order = 0; // keeps the order of changes at the same time
         std::uint32_t line = 0;
         bool active = false;
         bool operator==(const Change&) const = default;
@@ -81,7 +80,7 @@ private:
         Time due{};
         bool operator==(const Late&) const = default;
     };
-    /// True, and counted, when the chip refuses the machine's call.
+    /// Returns true, and counts it, when the chip refuses the machine's call.
     [[nodiscard]] bool refuses() noexcept TAPPET_REALTIME {
         const std::uint32_t left = refusals_.load(std::memory_order_acquire);
         if (left != 0) refusals_.store(left - 1, std::memory_order_release);
@@ -103,12 +102,12 @@ private:
     std::atomic<Mask> driven_{0};
     std::atomic<std::uint32_t> refusals_{0};
     std::atomic<bool> removed_{false};
-    // The plant's.
+    // Of the plant's thread.
     Random random_;
     std::array<LineFaults, most_lines> faults_{};
     std::array<Time, most_lines> raw_since_{}; // when the undebounced level last changed
     Mask raw_ = 0;
-    Mask driven_to_ = 0; // what a stuck line would be
+    Mask driven_to_ = 0; // the level that a stuck line is driven to
     Mask stuck_ = 0;
     Bounded<Change, 64> changes_{};
     Bounded<Late, 64> late_{};

@@ -1,4 +1,4 @@
-// An IPv4 address and a port as the system wants them.
+// Converts an IPv4 address and a port to the system's form.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -13,9 +13,9 @@
 
 namespace tappet::udp {
 
-/// False: it is none.
+/// Returns false when it is not an address.
 inline bool read_address(std::string_view numbers, std::uint16_t port, sockaddr_in& into) noexcept {
-    std::array<char, INET_ADDRSTRLEN> text{}; // ended by a nought
+    std::array<char, INET_ADDRSTRLEN> text{}; // NUL-terminated
     if (numbers.size() >= text.size()) return false;
     std::ranges::copy(numbers, text.begin());
     into = {};

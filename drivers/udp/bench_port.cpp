@@ -1,4 +1,4 @@
-// The address of the binding is the machine's.
+// The binding's address is the machine's.
 #include "drivers/udp/bench_port.hpp"
 
 #include "kernel/base/address.hpp"

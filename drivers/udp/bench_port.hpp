@@ -1,4 +1,4 @@
-// The plant's end of a UDP port on the bench: it sends to where the machine listens.
+// The plant's end of a UDP port on the bench: it sends to the port where the machine listens.
 #pragma once
 
 #include "drivers/twin/bench_end.hpp"
@@ -6,7 +6,7 @@
 
 namespace tappet::udp {
 
-/// What the machine sends is not heard: machines reach each other themselves on a bench.
+/// Does not receive the machine's datagrams: machines reach each other directly on a bench.
 class BenchPort final : public BenchEnd {
 public:
     static constexpr const DeviceKind& kind = device_kind;

@@ -1,5 +1,5 @@
-// How far another machine's clock is ahead, from questions and answers between the two: what is certain, not
-// what is likely.
+// How far another machine's clock is ahead, from requests and replies between the two: guaranteed bounds, not
+// estimates.
 #pragma once
 
 #include "kernel/base/clock_bounds.hpp"
@@ -12,17 +12,17 @@
 
 namespace tappet::udp {
 
-/// The four times of a question and its answer: two of the clock of who asks, two of the other one.
+/// The four times of a request and its reply: two of the requester's clock, two of the other one.
 struct ClockTimes {
     Time asked{}, received{}, answered{}, got{};
 };
 
-/// A question reaches the other machine after it was asked, and the answer this one after it was given, so
-/// that the other clock is ahead by no less than `answered - got` and no more than `received - asked`. Each
-/// exchange narrows what is known; as it ages it widens by as much as the two clocks may drift. Real-time.
+/// A request arrives after it was sent, and so does its reply. Therefore the other clock is ahead by no less
+/// than `answered - got` and no more than `received - asked`. Each exchange narrows these bounds; with age
+/// they widen by the possible drift of the two clocks. Real-time.
 class ClockExchange : public ClockBounds {
 public:
-    /// `drift`: between the two clocks, seconds in a second.
+    /// `drift`: between the two clocks, in seconds per second.
     void take(const ClockTimes& times, double drift) noexcept TAPPET_REALTIME {
         age(times.got, drift);
         narrow(times.answered - times.got,
@@ -30,14 +30,15 @@ public:
     }
 };
 
-/// A question and its answer have one form, little-endian: u32 "clk1", u32 number, and of the times three in
-/// ns; those of the other clock are nought in a question.
+/// Request and reply have the same form, little-endian: u32 "clk1", u32 number, and three of the times in ns;
+/// those of the other clock are 0 in a request.
 namespace clock_packet {
 
 inline constexpr std::uint32_t mark = 0x316b6c63;
 inline constexpr std::size_t bytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(std::int64_t);
 using Packet = std::array<std::byte, bytes>;
-inline constexpr Duration longest = 36500 * 24h; ///< that a machine runs: their differences are numbers
+inline constexpr Duration longest = 36500 * 24h; ///< the longest a machine runs, so that differences cannot
+                                                 ///< overflow
 
 struct Content {
     std::uint32_t number = 0;
@@ -54,7 +55,7 @@ inline Packet write(const Content& content) noexcept TAPPET_REALTIME {
     std::memcpy(packet.data() + sizeof head, times.data(), sizeof times);
     return packet;
 }
-/// False: it is none.
+/// Returns false when it is not a clock packet.
 [[nodiscard]] inline bool read(std::span<const std::byte> packet, Content& content) noexcept TAPPET_REALTIME {
     std::array<std::uint32_t, 2> head{};
     std::array<std::int64_t, 3> times{};

@@ -1,5 +1,5 @@
-// Datagrams, as a driver sees them: instruments on Ethernet that tell their measurements unasked, and
-// machines that ask each other.
+// Datagrams as a driver sees them: Ethernet instruments that send measurements unasked, and machines that
+// query each other.
 #pragma once
 
 #include "drivers/udp/kind.hpp"
@@ -10,16 +10,17 @@
 
 namespace tappet::udp {
 
-inline constexpr std::size_t most_bytes = 512; ///< of a datagram; a driver states the most of its own
+inline constexpr std::size_t most_bytes = 512; ///< of a datagram; each driver states its own maximum
 
-/// All real-time, from one activity. What the system dropped is missing from the sender's numbers.
+/// All real-time, from one activity. Datagrams dropped by the system show as gaps in the sender's numbers.
 class Device {
 public:
     virtual ~Device() = default;
-    /// The next one; nothing: none is there. Of what is longer than `into` the beginning is given, and its
-    /// whole size.
+    /// Takes the next datagram; returns 0 when there is none. Of one longer than `into` it copies the
+    /// beginning and returns the whole size.
     virtual std::size_t receive(std::span<std::byte> into) noexcept TAPPET_REALTIME = 0;
-    /// To whom it asks, else to whoever sent the last one that was received. False: it did not go out.
+    /// Sends to the address it asks, or else to the sender of the last received datagram. Returns false when
+    /// it was not sent.
     virtual bool send(std::span<const std::byte> datagram) noexcept TAPPET_REALTIME = 0;
 
 protected:
@@ -28,8 +29,8 @@ protected:
     Device& operator=(const Device&) = default;
 };
 
-/// What a driver's `device_map` says: the longest datagram that it takes; and whether it asks: then its
-/// binding says whom, else where this box listens.
+/// Contents of a driver's `device_map`: its longest datagram, and whether it asks. If it asks, the binding
+/// states the address to ask, else the address where this box listens.
 struct Longest {
     std::size_t bytes;
     bool asks = false;

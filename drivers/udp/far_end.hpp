@@ -1,4 +1,4 @@
-// The other end of datagrams: the instrument that sends them, or who is asked, as a plant holds it.
+// The other end of datagrams for a plant: the instrument that sends them, or the box that is asked.
 #pragma once
 
 #include "drivers/twin/far_end.hpp"
@@ -14,12 +14,12 @@ class FarEnd final : public tappet::FarEnd {
 public:
     FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "udp"} {}
 
-    /// Now. What does not go out is counted.
+    /// Sends at once. Counts datagrams that could not be sent.
     void send(std::span<const std::byte> datagram) {
         if (wires_ == nullptr || !wires_->tell(datagram)) ++refused_;
     }
-    /// The next one that the machine sent; nothing: there is none. On the bench, where machines reach each
-    /// other themselves, there never is.
+    /// Takes the machine's next datagram; returns 0 when there is none. On the bench, where machines reach
+    /// each other directly, it always returns 0.
     std::size_t receive(std::span<std::byte> into) { return wires_ == nullptr ? 0 : wires_->hear(into); }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 

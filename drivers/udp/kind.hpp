@@ -1,4 +1,4 @@
-// A UDP port of this box, or of another one that is asked: reached by an address.
+// A UDP port by its address: of this box, or of another box that is asked.
 #pragma once
 
 #include "kernel/component/device_kind.hpp"

@@ -1,5 +1,5 @@
-// One time over several machines: each keeps its own clock, and knows how far another one's is ahead, and how
-// surely.
+// One time for several machines: each keeps its own clock, and knows how far another clock is ahead, and with
+// what error.
 #pragma once
 
 #include "drivers/udp/clock_exchange.hpp"
@@ -8,8 +8,8 @@
 
 namespace tappet::udp {
 
-/// Answers whoever asks for this machine's time: component<udp::ClockAnswers>("time", device("time-port")),
-/// bound to where the box listens. Real-time.
+/// Answers every request for this machine's time: component<udp::ClockAnswers>("time", device("time-port")),
+/// bound to the address where the box listens. Real-time.
 struct ClockAnswers {
     static constexpr const DeviceKind& device_kind = udp::device_kind;
     static constexpr Longest device_map{.bytes = clock_packet::bytes};
@@ -53,9 +53,9 @@ private:
     Device* datagrams_ = nullptr;
 };
 
-/// Asks another machine for its time, again and again: component<udp::PeerClock>("other_clock",
-/// device("other-time")), bound to where that one listens. A question is answered in the other machine's step
-/// and its answer seen in one of the own, so that `error` is about a period of the slower of the two.
+/// Asks another machine for its time repeatedly: component<udp::PeerClock>("other_clock",
+/// device("other-time")), bound to the address where that one listens. The other machine answers in its step,
+/// and this one sees the answer in its own step, so `error` is about one period of the slower machine.
 /// Real-time.
 struct PeerClock {
     static constexpr const DeviceKind& device_kind = udp::device_kind;
@@ -112,7 +112,7 @@ private:
         clock_packet::Content content;
         if (!clock_packet::read(packet, content) || !is_open_ || content.number != number_ ||
             content.asked != asked_ || content.is_question() || content.answered < content.received)
-            return; // of a question before this one it says less than the next one's
+            return; // a late answer; the next one is more exact
         is_open_ = false;
         known_.take({asked_, content.received, content.answered, clock_->now()}, drift.get());
         exchanges.write(exchanges.last() + 1);
@@ -137,7 +137,7 @@ private:
     ClockExchange known_{};
     std::uint32_t number_ = 0;
     Time asked_{}, next_{};
-    bool is_open_ = false; ///< the question waits for its answer
+    bool is_open_ = false; ///< the question has no answer yet
 };
 
 } // namespace tappet::udp

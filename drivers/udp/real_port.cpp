@@ -1,4 +1,4 @@
-// What a binding's address means: the port listens there, or asks there.
+// Listens at the binding's address, or asks there.
 #include "drivers/udp/real_port.hpp"
 
 #include "kernel/base/address.hpp"

@@ -1,4 +1,4 @@
-// A port of this box at which datagrams come in, or one of another box that is asked.
+// A port of this box that receives datagrams, or one of another box that is asked.
 #pragma once
 
 #include "drivers/udp/socket.hpp"

@@ -1,4 +1,4 @@
-// Sent at once, to whoever listens; nobody does before the machine is there.
+// Sends at once to the listener; before the machine runs there is none.
 #include "drivers/udp/sender.hpp"
 
 #include "drivers/udp/address.hpp"

@@ -1,4 +1,4 @@
-// Datagrams to a port at which somebody listens: of plants, where machines run in processes of their own.
+// Sends datagrams to a listening port, for plants whose machines run in processes of their own.
 #pragma once
 
 #include "drivers/udp/twin.hpp"
@@ -15,7 +15,7 @@ class Sender final : public Wires {
 public:
     Sender() = default;
     ~Sender() override;
-    /// A machine that listens at each address of its box does so at this one's own.
+    /// A machine that listens at every address of its box is reached at this box's own.
     std::expected<void, Sentence> open(std::string_view address, std::uint16_t port);
     bool tell(std::span<const std::byte> datagram) noexcept override;
     std::size_t hear(std::span<std::byte>) noexcept override { return 0; }

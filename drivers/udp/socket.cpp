@@ -1,4 +1,4 @@
-// A socket that is asked and never waits.
+// A non-blocking socket.
 #include "drivers/udp/socket.hpp"
 
 #include "drivers/udp/address.hpp"

@@ -1,4 +1,4 @@
-// Datagrams of the network that are addressed to this box.
+// Datagrams of the network for this box.
 #pragma once
 
 #include "drivers/udp/device.hpp"
@@ -20,9 +20,9 @@ public:
     Socket& operator=(const Socket&) = delete;
     ~Socket() override;
 
-    /// Listens at that address of this box; 0.0.0.0: at each of them. Not real-time.
+    /// Listens at that address of this box; 0.0.0.0: at every address. Not real-time.
     std::expected<void, Sentence> open(std::string_view address, std::uint16_t port);
-    /// Asks at that address of another box, and hears its answers only. Not real-time.
+    /// Asks at that address of another box, and receives only its answers. Not real-time.
     std::expected<void, Sentence> ask(std::string_view address, std::uint16_t port);
     std::size_t receive(std::span<std::byte> into) noexcept TAPPET_REALTIME override;
     bool send(std::span<const std::byte> datagram) noexcept TAPPET_REALTIME override;
@@ -31,7 +31,7 @@ private:
     void make_anew();
 
     int socket_ = -1;
-    sockaddr_in to_{}; ///< of no family: to nobody yet
+    sockaddr_in to_{}; ///< family 0: no receiver yet
 };
 
 } // namespace tappet::udp

@@ -1,4 +1,4 @@
-// The stand-in of a socket in the host world: datagrams of a plant.
+// Replaces a socket in the host world: datagrams of a plant.
 #pragma once
 
 #include "drivers/twin/ring.hpp"
@@ -10,16 +10,16 @@
 
 namespace tappet::udp {
 
-/// The machine's end is a Device; this is the plant's. One thread each.
+/// The machine's end is a Device; this is the plant's end. One thread each.
 class Wires {
 public:
     Wires() = default;
     Wires(const Wires&) = delete;
     Wires& operator=(const Wires&) = delete;
     virtual ~Wires() = default;
-    /// To the machine. False: it did not go out.
+    /// Sends to the machine. Returns false when it was not sent.
     virtual bool tell(std::span<const std::byte> datagram) noexcept = 0;
-    /// What the machine sent, as Device::receive gives it.
+    /// Takes the machine's next datagram, as Device::receive does.
     virtual std::size_t hear(std::span<std::byte> into) noexcept = 0;
 };
 
@@ -47,7 +47,7 @@ private:
         std::memcpy(into.data(), next.bytes.data(), std::min(next.size, into.size()));
         return next.size;
     }
-    /// As a socket drops what nobody takes, so does this.
+    /// Drops datagrams that nobody takes, as a socket does.
     template <std::size_t N>
     static bool put(twin::Ring<Datagram, N>& ring, std::span<const std::byte> datagram) noexcept
         TAPPET_REALTIME {

@@ -1,6 +1,6 @@
-// Angles of a shaft, exact: whole numbers of 2^-32 turn, so that a turn wraps by itself and nothing drifts.
-// Angle is a place within one turn, ShaftPosition a place on the unwound shaft, Rotation the way between two
-// places.
+// Exact angles of a shaft: integers of 2^-32 turn, so that a turn wraps by itself and nothing drifts. Angle
+// is a position within one turn, ShaftPosition a position on the unwound shaft, Rotation the distance between
+// two positions.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -22,7 +22,7 @@ public:
     [[nodiscard]] static constexpr Rotation turns(std::int64_t turns) noexcept TAPPET_REALTIME {
         return Rotation{turns * units_per_turn};
     }
-    /// Rounded to the nearest unit; what is no number or beyond 2^30 turns is cut to that range.
+    /// Rounds to the nearest unit; NaN and values beyond 2^30 turns are clamped to that range.
     [[nodiscard]] static constexpr Rotation degrees(double degrees) noexcept TAPPET_REALTIME {
         const double units = degrees * units_per_degree;
         constexpr double limit = 0x1p62;
@@ -47,7 +47,7 @@ private:
     friend class ShaftPosition;
     static constexpr double units_per_degree = 0x1p32 / 360.0;
     explicit constexpr Rotation(std::int64_t units) noexcept : units_(units) {}
-    // Modulo 2^64, so that a shaft may turn on for ever: only ways between near places are ever compared.
+    // Modulo 2^64, so that a shaft may turn forever: only distances between near positions are compared.
     static constexpr std::int64_t wrap(std::int64_t a, std::int64_t b, int sign) noexcept TAPPET_REALTIME {
         const auto x = static_cast<std::uint64_t>(a);
         const auto y = static_cast<std::uint64_t>(b);
@@ -56,22 +56,22 @@ private:
     std::int64_t units_ = 0;
 };
 
-/// A place within one turn, in [0, 360) degrees.
+/// A position within one turn, in [0, 360) degrees.
 class Angle {
 public:
     constexpr Angle() noexcept = default;
-    /// The place a rotation from zero leads to. Implicit: `Angle stop = 310_deg;`
+    /// The position that a rotation from zero leads to. Implicit: `Angle stop = 310_deg;`
     constexpr Angle(Rotation from_zero) noexcept // NOLINT(google-explicit-constructor)
         : units_(static_cast<std::uint32_t>(from_zero.in_units())) {}
     [[nodiscard]] static constexpr Angle degrees(double degrees) noexcept TAPPET_REALTIME {
         return Angle{Rotation::degrees(degrees)};
     }
-    /// In 2^-32 turn.
+    /// Returns units of 2^-32 turn.
     [[nodiscard]] constexpr std::uint32_t in_units() const noexcept TAPPET_REALTIME { return units_; }
     [[nodiscard]] constexpr double in_degrees() const noexcept TAPPET_REALTIME {
         return Rotation::units(units_).in_degrees();
     }
-    /// The shortest way from b to a, in [-180, 180) degrees.
+    /// Returns the shortest rotation from b to a, in [-180, 180) degrees.
     friend constexpr Rotation operator-(Angle a, Angle b) noexcept TAPPET_REALTIME {
         return Rotation::units(static_cast<std::int32_t>(a.units_ - b.units_));
     }
@@ -87,13 +87,13 @@ private:
     std::uint32_t units_ = 0;
 };
 
-/// The way forward from `from` to `to`, in [0, 360) degrees.
+/// Returns the forward rotation from `from` to `to`, in [0, 360) degrees.
 constexpr Rotation forward_way(Angle from, Angle to) noexcept TAPPET_REALTIME {
     return Rotation::units(static_cast<std::uint32_t>(to.in_units() - from.in_units()));
 }
 
-/// A place on the unwound shaft: whole turns and the angle. It wraps after 2^31 turns (two years at 2000
-/// rpm), which differences do not notice; there is therefore no `<`: compare `a - b` with a Rotation.
+/// A position on the unwound shaft: whole turns and the angle. It wraps after 2^31 turns (two years at 2000
+/// rpm); differences stay right. There is therefore no `<`: compare `a - b` with a Rotation.
 class ShaftPosition {
 public:
     constexpr ShaftPosition() noexcept = default;
@@ -141,7 +141,7 @@ private:
 };
 
 inline namespace literals {
-// A rotation, not an angle: 400_deg keeps its whole turn, so that a table can be told that it means nothing.
+// A rotation, not an angle: 400_deg keeps its whole turn, so that a table's check can reject it.
 constexpr Rotation operator""_deg(unsigned long long value) noexcept {
     return Rotation::degrees(static_cast<double>(value));
 }

@@ -1,4 +1,4 @@
-// The Kalman filter behind ShaftEstimator, on Eigen's fixed-size matrices.
+// The Kalman filter of ShaftEstimator, with Eigen's fixed-size matrices.
 #include "kernel/cam/estimator.hpp"
 
 #include <Eigen/Core>
@@ -31,8 +31,7 @@ double clamp(double value, double limit) noexcept TAPPET_REALTIME {
     return std::max(-limit, std::min(limit, value));
 }
 
-// How many deviations away a sample shows that the shaft is being accelerated, and how many make it an
-// outlier.
+// Deviations from which a sample shows that the shaft accelerates, and from which it is an outlier.
 constexpr double manoeuvre_deviations = 3.5;
 constexpr double outlier_deviations = 6.0;
 static_assert(
@@ -114,7 +113,7 @@ void ShaftEstimator::start(const Reading& now) noexcept TAPPET_REALTIME {
 }
 
 void ShaftEstimator::reset(const Reading& now) noexcept TAPPET_REALTIME {
-    // The turn is the nearest to where the shaft would be had nothing happened.
+    // Selects the turn nearest to the predicted position.
     const ShaftPosition expected = motion_.at(now.stamp).position;
     motion_.state.position = expected + (now.centre - expected.angle());
     ++counters_.resets;
@@ -143,8 +142,8 @@ void ShaftEstimator::open(double velocity_deviation) noexcept TAPPET_REALTIME {
 void ShaftEstimator::filter(const Reading& now) noexcept TAPPET_REALTIME {
     Eigen::Map<Matrix> covariance{covariance_.data()};
     const double dt = to_seconds(now.stamp - last_.stamp);
-    if (standing_) { // off again: as fast as one sample's acceleration and a creep below the notice of
-                     // standing_
+    if (standing_) { // off again: as fast as one sample's acceleration and a creep below standing_'s
+                     // threshold
         standing_ = false;
         open(properties_.max_acceleration_deg_s2 * dt + step_deg_ / to_seconds(properties_.standstill_after));
     }
@@ -173,7 +172,7 @@ void ShaftEstimator::filter(const Reading& now) noexcept TAPPET_REALTIME {
             outliers_in_a_row_ = 1;
             return;
         }
-        if (outlier) { // it persists: the shaft does what was held impossible, so nothing known of it holds
+        if (outlier) { // it persists: the shaft does what was ruled out, so the estimate is void
             open(0.5 * properties_.max_speed.in_deg_s());
             spread = covariance;
             spread(0, 0) += surprise * surprise;
@@ -185,7 +184,7 @@ void ShaftEstimator::filter(const Reading& now) noexcept TAPPET_REALTIME {
     state = predicted + gain * surprise;
     covariance = spread - total * (gain * gain.transpose());
 
-    // A code is a bound, not only a measurement: the shaft was within it, but for the stamp's jitter.
+    // A code is a bound, not only a measurement: the shaft was within it, apart from the stamp's jitter.
     const double centre = predicted(0) + surprise;
     const double bound = 0.5 * step_deg_ + 2.0 * std::fabs(state(1)) * jitter_s_;
     state(0) = centre + clamp(state(0) - centre, bound);
@@ -217,7 +216,7 @@ void ShaftEstimator::settle(const Reading& now) noexcept TAPPET_REALTIME {
         return;
     }
     if (still <= Duration::zero()) return;
-    // Within one code for so long: no faster than twice its width over that time, even when just setting off.
+    // Within one code for so long: at most twice its width over that time, even when just setting off.
     const double fastest = 2.0 * step_deg_ / to_seconds(still);
     double& velocity = motion_.state.velocity_deg_s;
     if (std::fabs(velocity) > fastest) {

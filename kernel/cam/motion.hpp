@@ -1,5 +1,4 @@
-// How a shaft goes on from what is known of it at one instant: where it will be, and when it will be
-// somewhere.
+// Extrapolates a shaft's motion from one instant: its position at a time, and the time of a position.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -18,14 +17,14 @@ struct ShaftState {
     double acceleration_deg_s2 = 0.0;
 };
 
-/// A shaft's motion from `stamp` on: the acceleration holds for `horizon_s`, then the velocity stays; a shaft
-/// that is braked stops and does not turn back. Before `stamp` the velocity is taken as constant.
+/// A shaft's motion from `stamp` on: the acceleration holds for `horizon_s`, then the velocity stays
+/// constant; a braking shaft stops and does not turn back. Before `stamp` the velocity is taken as constant.
 struct ShaftMotion {
     ShaftState state;
     Time stamp{};
     double horizon_s = 0.02;
 
-    /// Real-time.
+    /// Returns the state at `t`. Real-time.
     [[nodiscard]] ShaftState at(Time t) const noexcept TAPPET_REALTIME {
         const double v = state.velocity_deg_s;
         const double a = state.acceleration_deg_s2;
@@ -37,14 +36,15 @@ struct ShaftMotion {
         return {state.position + Rotation::degrees(moved), reached_v, bent < dt ? 0.0 : a};
     }
 
-    /// The same motion, seen from `t` or from its stamp, whichever is later. Real-time.
+    /// Returns the same motion, starting at `t` or at its stamp, whichever is later. Real-time.
     [[nodiscard]] ShaftMotion from(Time t) const noexcept TAPPET_REALTIME {
         if (t <= stamp) return *this;
         return {at(t), t, std::max(0.0, horizon_s - to_seconds(t - stamp))};
     }
 
-    /// The first time from `stamp` on at which the shaft is at `target`, moving on in its present direction;
-    /// `never` when it stands, stops before, or has passed already. Real-time: one square root, no loop.
+    /// Returns the first time from `stamp` on at which the shaft is at `target`, moving on in its present
+    /// direction; `never` when it stands, stops before, or has already passed. Real-time: one square root, no
+    /// loop.
     [[nodiscard]] Time when(ShaftPosition target) const noexcept TAPPET_REALTIME {
         const bool backward = state.velocity_deg_s < 0.0;
         const double way_forward = (target - state.position).in_degrees();
@@ -57,20 +57,20 @@ struct ShaftMotion {
         if (v + a * horizon_s <= 0.0 || way <= bent_way) {
             const double square = v * v + 2.0 * a * way;
             if (square < 0.0) return never;
-            after_s = 2.0 * way / (v + std::sqrt(square)); // the stable form: no difference of near numbers
+            after_s = 2.0 * way / (v + std::sqrt(square)); // stable: no difference of near numbers
         } else {
             after_s = horizon_s + (way - bent_way) / (v + a * horizon_s);
         }
         if (!(after_s < longest_s)) return never;
         return stamp + Duration{static_cast<std::int64_t>(after_s * 1e9 + 0.5)};
     }
-    /// The same, from `not_before` on when that is later than `stamp`.
+    /// Returns the same, from `not_before` on when that is later than `stamp`.
     [[nodiscard]] Time when(ShaftPosition target, Time not_before) const noexcept TAPPET_REALTIME {
         return from(not_before).when(target);
     }
 
 private:
-    static constexpr double longest_s = 3600.0; // beyond an hour a prediction means nothing
+    static constexpr double longest_s = 3600.0; // beyond an hour a prediction is meaningless
 
     static double stop_after_s(double v, double a) noexcept TAPPET_REALTIME {
         return v * a < 0.0 ? -v / a : longest_s;

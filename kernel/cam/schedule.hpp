@@ -1,6 +1,6 @@
-// The cam table at work: from the shaft's motion, the time of the next firing; at that time, what is to be
-// fired. On a sample: estimator.sample(); schedule.update(estimator, now); arm a one-shot timer at
-// schedule.next_due(). On the timer: schedule.advance(now, fire); arm it again.
+// Executes a cam table: predicts the next firing from the shaft's motion, and fires what is due. On a sample:
+// estimator.sample(); schedule.update(estimator, now); arm a one-shot timer at schedule.next_due(). On the
+// timer: schedule.advance(now, fire); arm it again.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -21,51 +21,51 @@ namespace tappet {
 
 enum class CamKind : std::uint8_t { point, enter, leave };
 
-/// What is handed to the caller's `fire`.
+/// The argument of the caller's `fire`.
 struct CamEvent {
     std::size_t row = 0;
     CamKind kind = CamKind::point;
     bool forward = true;
-    bool forced = false;    // left although no angle says so: the shaft stands, is lost or is elsewhere now
-    ShaftPosition target;   // the crossing: the row's angle in the turn it was fired for
+    bool forced = false;    // left without reaching its angle: the shaft stands, is lost or is elsewhere
+    ShaftPosition target;   // the crossing: the row's angle in the turn of this firing
     ShaftPosition position; // of the shaft, at the firing
     ShaftPosition effect;   // predicted, at the end of the dead time
-    double late_deg = 0.0;  // effect behind target in the direction of turning; negative: before it
+    double late_deg = 0.0;  // effect behind target in the direction of turning; negative: ahead of it
 };
 
 struct CamProperties {
-    /// How far the shaft turns back before a crossing counts again: more than one step of the encoder.
+    /// How far the shaft must turn away before a crossing counts again: more than one step of the encoder.
     Rotation hysteresis = Rotation::degrees(3.0);
     Rotation late_from = Rotation::degrees(1.0);  // counted as late from here on
-    Rotation skip_from = Rotation::degrees(90.0); // later than this, it is skipped and counted, not fired
+    Rotation skip_from = Rotation::degrees(90.0); // beyond this it is skipped and counted, not fired
 };
 
 struct CamCounters {
     std::uint64_t fired = 0;
     std::uint64_t late = 0;
     std::uint64_t skipped_late = 0;  // beyond skip_from
-    std::uint64_t skipped_slow = 0;  // crossed below min_speed, or while coming to a stand
-    std::uint64_t skipped_reset = 0; // jumped over when the encoder started anew
-    std::uint64_t forced = 0;        // windows left although their angle had not come
+    std::uint64_t skipped_slow = 0;  // crossed below min_speed, or while stopping
+    std::uint64_t skipped_reset = 0; // jumped over when the encoder restarted
+    std::uint64_t forced = 0;        // windows left before their angle came
     double latest_deg = 0.0;
     constexpr bool operator==(const CamCounters&) const = default;
 };
 
 /// The rows of one table at run time. Each crossing fires exactly once, in the order of the angles. All calls
-/// take time bounded by the number of rows; one activity owns it. A window in which the shaft stands at the
-/// beginning is not entered: events come from crossings only. What was entered is left, once: by its angle,
-/// or at once when that angle will not come, because the shaft stands or the estimate is stale. Else nothing
-/// is fired on a stale estimate.
+/// take time bounded by the number of rows; one activity owns it. A window that contains the shaft at the
+/// beginning is not entered: only crossings cause events. An entered window is left exactly once: at its
+/// angle, or at once when the angle will not come because the shaft stands or the estimate is stale. Nothing
+/// else fires on a stale estimate.
 template <std::size_t N> class CamSchedule {
 public:
-    /// check(table.view()) is empty.
+    /// Contract: check(table.view()) is empty.
     explicit constexpr CamSchedule(const CamTable<N>& table, const CamProperties& properties = {}) noexcept
         : properties_(properties) {
         for (std::size_t i = 0; i < N; ++i) {
             const CamRow& row = table.rows[i];
             longest_dead_ = std::max({longest_dead_, row.dead_time, row.leave_dead_time});
             if (row.is_window) {
-                // Forward, the beginning enters and the end leaves; backward, the end enters.
+                // Forward, begin enters and end leaves; backward, end enters.
                 insert(row, i, End::begin, row.enter, row.dead_time, row.leave_dead_time);
                 insert(row, i, End::end, row.leave, row.leave_dead_time, row.dead_time);
             } else {
@@ -74,7 +74,7 @@ public:
         }
     }
 
-    /// Takes the shaft's motion over and predicts every row anew. Fires nothing. Real-time, O(N).
+    /// Takes over the shaft's motion and predicts every row again. Fires nothing. Real-time, O(N).
     void update(const ShaftEstimator& estimator, Time now) noexcept TAPPET_REALTIME {
         good_until_ = estimator.valid_until();
         if (now > good_until_) {
@@ -95,11 +95,11 @@ public:
         find_next_due();
     }
 
-    /// When to call advance() next: at or before now means at once. `never` when nothing is due for as long
-    /// as the present estimate is good and no window is open: the next update will tell. Real-time.
+    /// Returns when to call advance() next: at or before now means at once. `never` when nothing is due while
+    /// the present estimate is good and no window is open: the next update decides. Real-time.
     [[nodiscard]] Time next_due() const noexcept TAPPET_REALTIME { return next_due_; }
 
-    /// Calls fire(const CamEvent&) for every event that is due at `now`. Real-time when `fire` is, O(N).
+    /// Calls fire(const CamEvent&) for every event due at `now`. Real-time when `fire` is, O(N).
     template <class Fire> void advance(Time now, Fire&& fire) noexcept TAPPET_REALTIME {
         if (next_due_ > now) return;
         if (now > good_until_) {
@@ -117,23 +117,22 @@ public:
         find_next_due();
     }
 
-    /// Leaves every open window, for who does not follow the shaft any longer. Real-time when `fire` is,
-    /// O(N).
+    /// Leaves every open window, for a caller that stops following the shaft. Real-time when `fire` is, O(N).
     template <class Fire> void leave_all(Fire&& fire) noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < used_; ++i)
             if (is_open_end(edges_[i])) leave(edges_[i], fire);
     }
 
-    /// True between the entering and the leaving of a window. Real-time.
+    /// Returns whether a window was entered and not yet left. Real-time.
     [[nodiscard]] bool inside(std::size_t row) const noexcept TAPPET_REALTIME { return inside_[row]; }
     [[nodiscard]] const CamCounters& counters() const noexcept TAPPET_REALTIME { return counters_; }
 
 private:
     enum class End : std::uint8_t { point, begin, end };
-    // After a crossing, the way back over it counts only once the shaft has turned `hysteresis` away from it.
+    // After a crossing, crossing back counts only once the shaft has turned `hysteresis` away from it.
     enum class Closed : std::uint8_t { none, below, above };
 
-    // One angle of one row. The shaft is between `below` and one turn above it, both being at `angle`.
+    // One angle of one row. The shaft is between `below` and one turn above it; both are at `angle`.
     struct Edge {
         Angle angle;
         std::size_t row = 0;
@@ -147,13 +146,13 @@ private:
         ShaftPosition below{};
         Closed closed = Closed::none;
         ShaftPosition
-            furthest{}; // since the crossing, but not beyond the angle: where turning back is measured from
-        std::int8_t side = 1; // the crossing planned: 1 forward over the turn's end, -1 backward over `below`
+            furthest{}; // since the crossing, but not beyond the angle: turning back is measured from here
+        std::int8_t side = 1; // the planned crossing: 1 forward over the turn's end, -1 backward over `below`
         bool must_leave = false;
         Time due = never;
     };
 
-    // By angle; at one angle what ends comes before what begins, so that neighbours are never open together.
+    // Sorted by angle; at one angle ends precede begins, so that adjacent windows are never open together.
     constexpr void insert(const CamRow& row, std::size_t index, End end, Rotation angle,
                           Duration forward_dead, Duration backward_dead) noexcept {
         Edge edge;
@@ -187,7 +186,7 @@ private:
     static constexpr Duration dead(const Edge& e) noexcept TAPPET_REALTIME {
         return e.side > 0 ? e.forward_dead : e.backward_dead;
     }
-    // Of a window that is open, the one edge of the two by which it is left without its angle.
+    // Returns whether the edge is the one of two by which an open window is left without its angle.
     [[nodiscard]] constexpr bool is_open_end(const Edge& e) const noexcept TAPPET_REALTIME {
         return e.end == End::end && inside_[e.row];
     }
@@ -196,7 +195,7 @@ private:
             if (open) return true;
         return false;
     }
-    // The estimate grows stale unseen: whoever has a window open looks again just then.
+    // The estimate may become stale without a call: with an open window, check again at that time.
     void find_next_due() noexcept TAPPET_REALTIME {
         next_due_ = is_any_open() ? good_until_ + Duration{1} : never;
         for (std::size_t i = 0; i < used_; ++i) next_due_ = std::min(next_due_, edges_[i].due);
@@ -205,8 +204,8 @@ private:
         return e.closed != (e.side > 0 ? Closed::above : Closed::below);
     }
 
-    // Takes the place of an edge from the shaft's position alone: at the start and after the encoder started
-    // anew.
+    // Sets the place of an edge from the shaft's position alone: at the start and after the encoder
+    // restarted.
     constexpr void jump_to(ShaftPosition here) noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < used_; ++i) {
             Edge& e = edges_[i];
@@ -216,7 +215,7 @@ private:
             if (started_ && turns != 0 && kind(e, side) != CamKind::leave && allows(e, side))
                 counters_.skipped_reset += static_cast<std::uint64_t>(turns > 0 ? turns : -turns);
             e.below = below;
-            // Just over the angle: a tremble back over it is no crossing.
+            // Just past the angle: jitter back over it is no crossing.
             e.closed = here - below < properties_.hysteresis ? Closed::below : Closed::none;
             e.furthest = below;
             const bool within = forward_way(e.begin, here.angle()) < e.width;
@@ -224,7 +223,7 @@ private:
         }
     }
 
-    // Reopens a crossing once the shaft is far enough from it.
+    // Reopens a crossing once the shaft is far enough away.
     constexpr void track(Edge& e, ShaftPosition here) noexcept TAPPET_REALTIME {
         if (e.closed == Closed::below) {
             if (here - e.below >= properties_.hysteresis)
@@ -240,7 +239,7 @@ private:
         }
     }
 
-    // The next crossing of an edge and when it is due. A crossing nobody is told of is only noted.
+    // Plans the next crossing of an edge and its time. A crossing without an event is only recorded.
     void plan(Edge& e) noexcept TAPPET_REALTIME {
         const ShaftPosition here = motion_.state.position;
         const Time now = motion_.stamp;
@@ -261,7 +260,7 @@ private:
         if (!passed && (e.side > 0 ? target - reach_ : reach_ - target) > Rotation{}) return;
         const bool slow = v == 0.0 || (v < 0.0 ? -v : v) < e.min_speed_deg_s;
         const CamKind what = kind(e, e.side);
-        // Leaving is always planned: its window may be entered before it comes.
+        // Leaving is always planned: its window may be entered first.
         if (what != CamKind::leave && (slow || !allows(e, e.side))) {
             if (!passed) return;
             if (allows(e, e.side)) ++counters_.skipped_slow;
@@ -270,7 +269,7 @@ private:
             e.due = now;
         } else {
             const Time crossing = motion_.when(target);
-            // A crossing that is closed still is fired when the shaft is there, not ahead.
+            // A crossing that is still closed fires when the shaft is there, not ahead.
             e.due = crossing == never || !open_ahead(e) ? crossing : crossing - dead(e);
         }
     }
@@ -297,7 +296,7 @@ private:
             const Edge& e = edges_[i];
             if (e.due > now) continue;
             const Rotation way = forward ? above(e) - here : here - e.below;
-            // At one angle the order of the edges holds, from the last to the first when turning backward.
+            // At one angle the order of the edges applies, from last to first when turning backward.
             if (way < least || (way == least && !forward)) {
                 least = way;
                 first = i;
@@ -354,7 +353,7 @@ private:
     std::array<bool, N> inside_{};
     Duration longest_dead_ = Duration::zero();
     ShaftMotion motion_;
-    ShaftPosition reach_{}; // what lies beyond cannot be due before the motion is stale
+    ShaftPosition reach_{}; // positions beyond it cannot be due before the motion is stale
     std::uint32_t epoch_ = 0;
     Time next_due_ = never;
     Time good_until_ = Time::min(); // of the motion

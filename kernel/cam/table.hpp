@@ -1,5 +1,4 @@
-// The cam table: which event falls on which angle of the shaft, as flat constexpr rows, and its compile-time
-// checks.
+// The cam table: events at angles of the shaft, as flat constexpr rows, and its compile-time checks.
 //     constexpr auto cams = cam_table(700_rpm,
 //         cam("pick_window", at(80_deg)),
 //         cam("main_nozzle", window(60_deg, 180_deg), dead_time(2500us, 1800us), exclusive("nozzles")));
@@ -16,10 +15,10 @@
 
 namespace tappet {
 
-/// The direction of turning in which a row acts. A window that was entered is left in any direction.
+/// The direction of turning in which a row acts. An entered window is left in either direction.
 enum class Direction : std::uint8_t { forward, backward, both };
 
-/// One row. A point has one event; a window [enter, leave) has two, and turning backward it is entered at its
+/// One row. A point has one event; a window [enter, leave) has two; turning backward, it is entered at its
 /// end.
 struct CamRow {
     std::string_view name;
@@ -30,7 +29,7 @@ struct CamRow {
     Duration leave_dead_time = Duration::zero(); // of leaving
     Duration dead_time_jitter = Duration::zero();
     Direction direction = Direction::forward;
-    Speed min_speed;        // slower than this nothing is fired, except leaving
+    Speed min_speed;        // below this speed only leaving fires
     std::string_view group; // rows of one group never overlap
 };
 
@@ -39,7 +38,7 @@ struct CamTableView {
     Speed max_speed;
 };
 
-/// N rows and the fastest speed they are meant for.
+/// N rows and their maximum speed.
 template <std::size_t N> struct CamTable {
     std::array<CamRow, N> rows{};
     Speed max_speed;
@@ -64,15 +63,15 @@ struct CamGroup {
 struct CamMinSpeed {
     Speed value;
 };
-/// An event at one angle.
+/// One event at one angle.
 constexpr CamPlace at(Rotation angle) noexcept { return {angle, angle, false}; }
-/// Two events: entering and leaving. It may reach over 0: window(300_deg, 60_deg).
+/// Two events: entering and leaving. May span 0: window(300_deg, 60_deg).
 constexpr CamPlace window(Rotation enter, Rotation leave) noexcept { return {enter, leave, true}; }
-/// The actuator answers so much later: it is fired that much earlier, so that the effect falls on the angle.
+/// Delay of the actuator: the row fires that much earlier, so that the effect is at the angle.
 constexpr CamDeadTime dead_time(Duration both) noexcept { return {both, both}; }
-/// Opening and closing take different times.
+/// Different delays for opening and closing.
 constexpr CamDeadTime dead_time(Duration enter, Duration leave) noexcept { return {enter, leave}; }
-/// How much the dead time varies from one firing to the next, at most.
+/// Maximum variation of the dead time from one firing to the next.
 constexpr CamJitter dead_time_jitter(Duration most) noexcept { return {most}; }
 /// Windows of one group are never open together.
 constexpr CamGroup exclusive(std::string_view group) noexcept { return {group}; }
@@ -102,14 +101,14 @@ constexpr CamRow cam(std::string_view name, CamPlace place, Words... words) noex
     return row;
 }
 
-/// The table: the fastest speed the dead times must be good for, and the rows.
+/// The table: the maximum speed for which the dead times must hold, and the rows.
 template <class... Rows>
 constexpr CamTable<sizeof...(Rows)> cam_table(Speed max_speed, const Rows&... rows) noexcept {
     return {{rows...}, max_speed};
 }
 
-/// The first fault of the table in one sentence that names the row, the fault and the cure; empty when there
-/// is none.
+/// Returns the first fault of the table in one sentence that names the row, the fault and the cure; empty
+/// when there is none.
 constexpr Sentence check(const CamTableView& table);
 
 namespace cam_check {
@@ -160,8 +159,7 @@ constexpr Sentence check_window(const CamRow& row, Speed max_speed) {
         return about(row).add("the window opens and closes at one angle; give two angles, or write at(...)");
     const double blur = moved_deg(max_speed, row.dead_time_jitter);
     const double closing_ahead = moved_deg(max_speed, row.leave_dead_time - row.dead_time);
-    // Closing is fired before opening when it needs so much longer that the window is used up; and the other
-    // way.
+    // Closing fires before opening when its longer dead time uses up the window; and vice versa.
     const double open = width - (closing_ahead > 0.0 ? closing_ahead : 0.0);
     const double shut = 360.0 - width + (closing_ahead < 0.0 ? closing_ahead : 0.0);
     const bool too_short = open <= blur;

@@ -1,5 +1,5 @@
-// Buffered data flow ports (thesis 4.4): every value arrives, in order, or is counted. Each row is a ring of
-// its own, so that many writers on one input and many readers of one output stay wait-free.
+// Buffered data flow ports (thesis 4.4): every value arrives in order, or its loss is counted. Each row is a
+// ring of its own, so that many writers of one input and many readers of one output stay wait-free.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -10,11 +10,11 @@
 
 namespace tappet {
 
-/// How many rows one buffered port may stand in; the table's check says so by name.
+/// Most rows that may name one buffered port; the table's check refuses more, by name.
 inline constexpr std::size_t max_buffer_rows = 8;
 
 /// The rings of a port's rows: plain ones inside its activity, wait-free ones to or from others. Two lists,
-/// so that each is gone through by a loop that does nothing but count.
+/// so that the loop over each is a counted loop.
 template <class T>
 struct BufferRings {
     Bounded<LocalRing<T>*, max_buffer_rows> inside{};
@@ -26,15 +26,15 @@ class BufferOutput {
 public:
     using Value = T;
 
-    /// Gives the value to every connected reader. False when one of them had no room (its row says what is
-    /// lost), or the component does not run.
+    /// Gives the value to every connected reader. Returns false when one of them had no room (its row says
+    /// what is lost), or when the component does not run.
     bool push(const T& value) noexcept TAPPET_REALTIME {
         if (dropped_ != nullptr) [[unlikely]] {
             dropped_->fetch_add(1, std::memory_order_relaxed); // no step: counted for the report
             return false;
         }
         bool all = true;
-        // Bounds that no push can move: counted loops.
+        // No push can change these bounds, so both loops are counted loops.
         const std::size_t inside = rings_.inside.size(), across = rings_.across.size();
         for (std::size_t i = 0; i < inside; ++i) all &= rings_.inside[i]->push(value);
         for (std::size_t i = 0; i < across; ++i) all &= rings_.across[i]->push(value);
@@ -54,8 +54,8 @@ class BufferInput {
 public:
     using Value = T;
 
-    /// The oldest value of the first row that has one, those inside the activity before others. False when
-    /// all are empty.
+    /// Takes the oldest value of the first row that has one; rows inside the activity come before others.
+    /// Returns false when all are empty.
     bool pop(T& into) noexcept TAPPET_REALTIME {
         const std::size_t inside = rings_.inside.size(), across = rings_.across.size();
         for (std::size_t i = 0; i < inside; ++i)

@@ -1,6 +1,6 @@
-// What set something off: the time stamp of the edge or the frame that a driver took in. It goes along with
-// each message and with each value that wakes, from activity to activity, so that every row knows how long
-// what it leads to took from there.
+// The cause of an execution: the time stamp of the edge or the frame that a driver received. It travels with
+// each message and with each value that wakes, from activity to activity, so that every row knows the time
+// from the cause to its own end.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -14,7 +14,7 @@
 
 namespace tappet {
 
-/// Nothing did, or the machine itself: a period, a timer, an operator.
+/// No cause, or the machine itself: a period, a timer, an operator.
 inline constexpr Time no_cause{};
 
 namespace detail {
@@ -23,7 +23,7 @@ inline constinit thread_local Time running_cause = no_cause;
 
 } // namespace detail
 
-/// Of what the calling thread does now. Real-time.
+/// Returns the cause of what the calling thread does now. Real-time.
 inline Time running_cause() noexcept TAPPET_REALTIME {
     Time found = no_cause;
     TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
@@ -35,7 +35,7 @@ inline void set_running_cause(Time stamp) noexcept TAPPET_REALTIME {
                   detail::running_cause = stamp);
 }
 
-/// While it lives, what the calling thread does was set off at `stamp`. Real-time; made by drivers.
+/// Sets the cause of what the calling thread does, until destroyed. Real-time; made by drivers.
 class CausedBy {
 public:
     explicit CausedBy(Time stamp) noexcept TAPPET_REALTIME : before_{running_cause()} {
@@ -49,8 +49,8 @@ private:
     Time before_;
 };
 
-/// How long a row took: from the edge's or the frame's stamp to the end of what the row had to have done,
-/// outputs written included. One thread adds, any may read; whole between two cycles of the receiving
+/// How long a row took: from the stamp of the edge or the frame to the end of the row's work, including the
+/// writes of outputs. One thread adds, any thread may read; consistent between two cycles of the receiving
 /// activity. The layout is part of the machine's map.
 struct ReactionTimes {
     static constexpr std::size_t bins = 16;
@@ -58,12 +58,12 @@ struct ReactionTimes {
     std::uint64_t count = 0;
     Duration total{};
     Duration longest{};
-    /// The first counts those below 1 us, each further one twice the time of the one before it, the last also
-    /// all from 16 ms on.
+    /// The first bin counts times below 1 us, each further one covers twice the time of the one before it,
+    /// the last also counts all from 16 ms on.
     std::array<std::uint32_t, bins> histogram{};
 
     void add(Duration took) noexcept TAPPET_REALTIME {
-        took = std::max(took, Duration::zero()); // what set it off arrived after the last stamp
+        took = std::max(took, Duration::zero()); // the cause arrived after the last stamp
         const auto us = static_cast<std::uint64_t>(took.count() / 1000);
         ++histogram[std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(us)), bins - 1)];
         ++count;

@@ -1,6 +1,6 @@
-// Commands (thesis 4.5): a goal that a component reaches upon a peer's request, in its own engine and time.
-// The receiver gives an action, which accepts or rejects, and a completion condition; the sender holds the
-// command as an object, sends it and asks how far it is. Each object is one slot, so nothing can overflow.
+// Commands (thesis 4.5): a component reaches a goal at a peer's request, in its own engine and time. The
+// receiver provides an action, which accepts or rejects, and a completion condition. The sender holds the
+// command as an object, sends it and polls its state. Each object is one slot, so nothing can overflow.
 //
 //     struct Axis {
 //         bool move_to(double position, int& steps) noexcept TAPPET_REALTIME;         // false: rejected
@@ -24,15 +24,15 @@
 
 namespace tappet {
 
-/// How far a command is. From `sent` to the end the receiver writes it, otherwise the sender.
+/// The state of a command. The receiver writes it from `sent` to the end, otherwise the sender.
 enum class CommandState : std::uint8_t {
     ready,     ///< not sent, or made ready again
     sent,      ///< in the receiver's mailbox
-    accepted,  ///< its action ran and said yes; the completion was not asked yet
-    rejected,  ///< its action said no, or its receiver does not run
-    executing, ///< its completion was asked and said: not yet
-    failed,    ///< its completion said so, or its receiver stopped
-    done       ///< its results are there
+    accepted,  ///< its action ran and accepted; the completion was not polled yet
+    rejected,  ///< its action refused, or its receiver does not run
+    executing, ///< its completion was polled: not done yet
+    failed,    ///< its completion reported failure, or its receiver stopped
+    done       ///< its results are available
 };
 
 constexpr std::string_view to_text(CommandState state) noexcept {
@@ -48,7 +48,7 @@ constexpr std::string_view to_text(CommandState state) noexcept {
     return "?";
 }
 
-/// Between send() and the end: the receiver has it.
+/// Returns whether the receiver has the command: between send() and the end.
 constexpr bool in_flight(CommandState state) noexcept TAPPET_REALTIME {
     constexpr unsigned at_the_receiver = 1u << static_cast<unsigned>(CommandState::sent) |
                                          1u << static_cast<unsigned>(CommandState::accepted) |
@@ -56,18 +56,18 @@ constexpr bool in_flight(CommandState state) noexcept TAPPET_REALTIME {
     return (at_the_receiver >> static_cast<unsigned>(state) & 1u) != 0;
 }
 
-/// What a completion condition says.
+/// The result of a completion condition.
 enum class CommandProgress : std::uint8_t { executing, done, failed };
 
-/// What a facet knows of the command behind it. All of it runs in the receiver's engine.
+/// A facet's access to the command behind it. All of it runs in the receiver's engine.
 struct CommandOperations {
-    TypeId arguments = nullptr; ///< of an Arguments<...>: what is sent
-    TypeId results = nullptr;   ///< of an Arguments<...>: what comes back
+    TypeId arguments = nullptr; ///< of the Arguments<...> that are sent
+    TypeId results = nullptr;   ///< of the Arguments<...> that come back
     std::size_t argument_bytes = 0;
     std::size_t result_bytes = 0; ///< packed after the arguments
-    /// False: it is rejected, or its component does not run.
+    /// Runs the action. Returns false when it rejects, or when the component does not run.
     bool (*begin)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
-    /// Null: it is done when its action has run.
+    /// Polls the completion. Null: the command is done when its action has run.
     CommandProgress (*progress)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
 
     /// Of a setter or a getter: the `at` of the property's facet.
@@ -79,7 +79,8 @@ struct CommandOperations {
     [[nodiscard]] constexpr std::size_t value_bytes() const noexcept { return argument_bytes + result_bytes; }
 };
 
-/// The functions of a component behind its gate: a command is rejected, or fails, when it does not run.
+/// The functions of a component behind its gate. When the component does not run, a command is rejected or
+/// fails.
 template <bool (*Begin)(void* component, std::byte* values) noexcept TAPPET_REALTIME,
           CommandProgress (*Progress)(void* component, std::byte* values) noexcept TAPPET_REALTIME>
 struct GatedCommand {
@@ -97,32 +98,34 @@ struct GatedCommand {
     }
 };
 
-/// One command on its way, whatever its signature: its state and its packed values have one writer at a time,
-/// the sender until `sent` is posted, the receiver until an end is stored, which hands them back. Wait-free.
+/// One command in flight, of any signature. Its state and its packed values have one writer at a time: the
+/// sender until `sent` is posted, then the receiver until it stores an end state, which hands them back.
+/// Wait-free.
 class CommandSlot {
 public:
-    /// Where a slot is sent to and who waits for it; by start-up.
+    /// The receiver of a slot and the waiting sender; set by start-up.
     struct Route {
         const CommandOperations* command = nullptr;
         GatedComponent* receiver = nullptr;
-        std::uint32_t part = 0; ///< of the component in its engine
+        std::uint32_t part = 0; ///< number of the component in its engine
         CommandInbox* inbox = nullptr;
         std::size_t sender = 0; ///< the sending activity's mailbox there
         std::uint32_t sending_activity = no_activity;
         Waker wake_receiver{};
-        Waker wake_sender{}; ///< when it has ended
+        Waker wake_sender{}; ///< when the command has ended
         const os::Clock* clock = nullptr;
-        bool planned = true; ///< by a row of the table, not bound while the machine runs
+        bool planned = true; ///< connected by a row of the table, not bound while the machine runs
     };
 
     CommandSlot() = default;
     CommandSlot(const CommandSlot&) = delete;
     CommandSlot& operator=(const CommandSlot&) = delete;
 
-    /// Before anybody sends. `values` has room for the command's value_bytes() and outlives the slot.
+    /// Sets route and values, before anybody sends. `values` has room for the command's value_bytes() and
+    /// outlives the slot.
     void place(const Route& route, std::byte* values) noexcept { route_ = route, values_ = values; }
-    /// What wait() sleeps on; before anybody sends. Not in the slot, whose memory may be another's at its
-    /// end.
+    /// Sets the waiter that wait() sleeps on, before anybody sends. The waiter is not in the slot, because
+    /// the slot's memory may be reused when the command ends.
     void wait_on(os::Waiter& ended) noexcept { ended_ = &ended; }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return route_.command != nullptr; }
 
@@ -131,44 +134,45 @@ public:
     [[nodiscard]] CommandState state() const noexcept TAPPET_REALTIME {
         return state_.load(std::memory_order_acquire); // command.state
     }
-    /// Whether values() are the sender's now.
+    /// Returns whether values() belong to the sender now.
     [[nodiscard]] bool is_mine() const noexcept TAPPET_REALTIME { return !in_flight(state()); }
-    /// Sends it with the arguments that stand in values(). False: it is on its way already, or no row
-    /// connects it.
+    /// Sends the command with the arguments in values(). Returns false when it is in flight already, or when
+    /// no row connects it.
     [[nodiscard]] bool send() noexcept TAPPET_REALTIME {
         if (!connected() || !is_mine()) return false;
         post();
         return true;
     }
-    /// The same of one that is connected and the sender's.
+    /// As send(), of a command that is connected and belongs to the sender.
     void post() noexcept TAPPET_REALTIME {
-        // An engine that was stopped serves nobody: its answer is given here.
+        // A stopped engine serves nobody: the answer is given here.
         const ComponentState receiver =
             route_.receiver->state.load(std::memory_order_acquire); // command.look
         if (receiver >= ComponentState::stopped) {
             state_.store(CommandState::rejected, std::memory_order_relaxed); // command.refuse
             return;
         }
-        // Before the message: from then on the receiver writes it.
+        // Stored before the message is posted: from then on the receiver writes it.
         state_.store(CommandState::sent, std::memory_order_relaxed); // command.send
         if (route_.inbox->post(route_.sender, {this, route_.part}))
             route_.wake_receiver();
         else // the mailbox has a place for each of its slots
             state_.store(CommandState::rejected, std::memory_order_relaxed); // command.refuse
     }
-    /// Forgets how it ended. False while the receiver has it.
+    /// Makes the command ready again. Returns false while the receiver has it.
     bool reset() noexcept TAPPET_REALTIME {
         if (!is_mine()) return false;
         state_.store(CommandState::ready, std::memory_order_relaxed); // command.reset
         return true;
     }
-    /// Sleeps until it has ended, at most so long; after wait_on(), for activities that are not_real_time.
-    /// True: it has ended, or was never sent. Under virtual time nothing may sleep: it answers at once.
+    /// Sleeps until the command has ended, for `at_most` at most; after wait_on(), for activities that are
+    /// not_real_time. Returns true when it has ended or was never sent. Under virtual time nothing may sleep:
+    /// it returns at once.
     [[nodiscard]] bool wait(Duration at_most) noexcept {
         if (is_mine()) return true;
         if (route_.clock->is_virtual()) return false;
         const Time end = route_.clock->now() + at_most;
-        // A wake of an earlier sending may be left over.
+        // A wake of an earlier send may be left over.
         while (!is_mine() && route_.clock->now() < end) static_cast<void>(ended_->wait(end));
         return is_mine();
     }
@@ -178,7 +182,7 @@ public:
 
     // ---- the receiver's side: its engine's thread, real-time
 
-    /// Takes the message up: runs the action. Returns whether it is to be followed.
+    /// Runs the action. Returns whether the command was accepted and must be followed.
     [[nodiscard]] bool begin() noexcept TAPPET_REALTIME {
         const bool accepted = route_.command->begin(*route_.receiver, values_);
         if (accepted)
@@ -187,11 +191,11 @@ public:
             reject();
         return accepted;
     }
-    /// Its completion is a function of the component.
+    /// Returns whether the component has a completion function.
     [[nodiscard]] bool has_completion() const noexcept TAPPET_REALTIME {
         return route_.command->progress != nullptr;
     }
-    /// Asks the completion condition. Returns how it stands.
+    /// Polls the completion condition. Returns the new state.
     [[nodiscard]] CommandState follow() noexcept TAPPET_REALTIME {
         switch (route_.command->ask(*route_.receiver, values_)) {
         case CommandProgress::executing:
@@ -206,8 +210,8 @@ public:
     void reject() noexcept TAPPET_REALTIME { static_cast<void>(end(CommandState::rejected)); }
 
 private:
-    // The results are read after the state. From the store on the slot is the sender's, which may use its
-    // memory for something else: nothing of it is touched any more.
+    // The sender reads the results after the state. From the store on the slot belongs to the sender, which
+    // may reuse its memory, so nothing of it is touched any more.
     CommandState end(CommandState how) noexcept TAPPET_REALTIME {
         const Waker wake_sender = route_.wake_sender;
         os::Waiter* const ended = ended_;
@@ -226,9 +230,9 @@ private:
 template <class... P>
 class CommandCall;
 
-/// A command as something to hand on: an argument of an event, an operation or another command. Whoever gets
-/// it may send it only if the row says sent_by(...) its component. Trivially copyable; outlived by the
-/// machine.
+/// A command that can be passed on: an argument of an event, an operation or another command. A component
+/// that gets it may send it only if the row says sent_by(...) with that component. Trivially copyable; the
+/// machine outlives it.
 template <class... P>
 class CommandRef {
 public:
@@ -241,8 +245,9 @@ private:
     CommandCall<P...>* command_ = nullptr;
 };
 
-/// The sender's side: the command as an object. P as the receiver's action spells them, a result as T&. Sent,
-/// asked and reset by one activity only: its component's, or that of the row's sent_by(...).
+/// The sender's side: the command as an object. P: the parameters as the receiver's action spells them, a
+/// result as T&. Only one activity sends, polls and resets it: its component's, or that of the row's
+/// sent_by(...).
 template <class... P>
 class CommandCall {
     using Pack = detail::Packing<P...>;
@@ -265,8 +270,8 @@ public:
     CommandCall(const CommandCall&) = delete;
     CommandCall& operator=(const CommandCall&) = delete;
 
-    /// Sends it with the arguments: of P those that are no results. False, and nothing happens, while it is
-    /// still on its way or when no row connects it. Real-time.
+    /// Sends the command with the arguments: those of P that are not results. Returns false, without effect,
+    /// while it is still in flight or when no row connects it. Real-time.
     template <class... Given>
     [[nodiscard]] bool send(const Given&... arguments) noexcept TAPPET_REALTIME {
         if (!slot_.connected() || !prepare(arguments...)) return false;
@@ -274,7 +279,8 @@ public:
         slot_.post();
         return true;
     }
-    /// Sets the arguments for a send_prepared() of whoever it is handed on to. False while it is on its way.
+    /// Sets the arguments for a send_prepared() by the component that it is passed on to. Returns false while
+    /// it is in flight.
     template <class... Given>
     bool prepare(const Given&... arguments) noexcept TAPPET_REALTIME {
         if (!slot_.is_mine()) return false;
@@ -290,17 +296,17 @@ public:
     [[nodiscard]] CommandState state() const noexcept TAPPET_REALTIME { return slot_.state(); }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return slot_.connected(); }
     bool reset() noexcept TAPPET_REALTIME { return slot_.reset(); }
-    /// See CommandSlot::wait: not real-time.
+    /// See CommandSlot::wait. Not real-time.
     [[nodiscard]] bool wait(Duration at_most) noexcept { return slot_.wait(at_most); }
 
-    /// The Nth result; what the receiver left there once state() is done.
+    /// Returns the Nth result: the receiver's value once state() is done.
     template <std::size_t N = 0>
     [[nodiscard]] auto result() const noexcept TAPPET_REALTIME {
         using R = Nth<N, typename Pack::Results>;
         return detail::load_packed<typename R::Type>(values_.data() + Pack::input_bytes + R::offset);
     }
-    /// As a completion condition: for a command whose action sent this one. Copies the results when it is
-    /// done.
+    /// Returns the progress as a completion condition does, for a command whose action sent this one. Copies
+    /// the results when it is done.
     template <class... R>
     [[nodiscard]] CommandProgress progress(R&... results) const noexcept TAPPET_REALTIME {
         static_assert(std::is_same_v<Arguments<R...>, typename Pack::Results>,
@@ -313,7 +319,7 @@ public:
         return now;
     }
 
-    /// As send() and progress(), of packed values.
+    /// As send() and progress(), with packed values.
     [[nodiscard]] bool send_packed(const std::byte* arguments) noexcept TAPPET_REALTIME {
         if (!slot_.connected() || !slot_.is_mine()) return false;
         std::memcpy(values_.data(), arguments, Pack::input_bytes);
@@ -328,12 +334,12 @@ public:
         return CommandProgress::done;
     }
 
-    /// For start-up: the slot, and its values' place.
+    /// For start-up: the slot, and the place of its values.
     [[nodiscard]] CommandSlot& slot() noexcept { return slot_; }
     [[nodiscard]] std::byte* values() noexcept { return values_.data(); }
 
 private:
-    // Each mailbox has one writer. A thread outside the activities, like a test's, is trusted.
+    // Each mailbox has one writer. A thread outside the activities, such as a test's, is trusted.
     void check_sender() const noexcept TAPPET_REALTIME {
         const std::uint32_t sender = slot_.route().sending_activity;
         const std::uint32_t here = running_activity();
@@ -353,7 +359,7 @@ private:
     os::Waiter ended_{};
 };
 
-/// What start-up does with the sender's side.
+/// Start-up's access to the sender's side.
 struct CommandCallOperations {
     CommandSlot* (*slot)(void* command_call) = nullptr;
     std::byte* (*values)(void* command_call) = nullptr;
@@ -402,7 +408,7 @@ template <auto Function, class Component, class R, class... P>
 struct CommandFunction<Function, R (Component::*)(P...) const noexcept TAPPET_REALTIME>
     : CommandFunctionOf<Function, false, Component, R, P...> {};
 
-/// Of one that may_block: `Function` is a `R (Component::*)(P...) noexcept`.
+/// The function of a command that may_block: `Function` is a `R (Component::*)(P...) noexcept`.
 template <auto Function, class = decltype(Function)>
 struct BlockingCommand : CommandFunction<nullptr> {};
 template <auto Function, class Component, class R, class... P>

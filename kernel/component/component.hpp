@@ -1,5 +1,5 @@
-// What the framework knows of a component type: its size, its interface and the functions of its life, as
-// plain data.
+// A component type as the framework knows it: its size, its interface and the functions of its life, as plain
+// data.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -58,46 +58,51 @@ struct ScriptUnit;    ///< kernel/script/unit.hpp
 struct LineFunctions; ///< kernel/machine/instance/line_functions.hpp
 
 // clang-format off
-/// A component is a plain struct. What it has of the following is used, in this order of its life; a member
-/// of such a name, or nearly, that is spelled otherwise is refused by the table's check:
-///     Sentence configure(Setup&)                          once, before arming; not real-time; an empty sentence is consent
-///     Sentence initialise()                               before each start of its activity, on the makers' thread; not real-time
-///     void start(const Cycle&) noexcept TAPPET_REALTIME   in its activity, before the first step; again after each stop
-///     void step(const Cycle&) noexcept TAPPET_REALTIME    each cycle of its activity
-///     void work(const Cycle&)                             instead of step: may block; for activities that are not_real_time
-///     Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME   before properties change, together; an empty sentence is consent
-///     void changed() noexcept TAPPET_REALTIME             after they did, between two steps
-///     void loop(LoopControl&)                             instead of step: decides itself when it runs; alone in its activity
-///     void break_loop()                                   lets loop() return although it blocks; on a thread for that alone
-///     void stop(const Cycle&) noexcept TAPPET_REALTIME    leaves safe values behind; also when an input kept it from its start
-///     bool stopped_safely() const noexcept TAPPET_REALTIME   of a driver: false after a stop() whose safe values did not reach the device
-///     void finalise()                                     after its activity stopped, on the makers' thread; not real-time
+/// A component is a plain struct. The framework uses those of the following members that it has, in this
+/// order of its life. The table's check refuses a member with such a name, or nearly such a name, that is
+/// spelled otherwise:
+///     Sentence configure(Setup&)  once, before arming; not real-time; an empty sentence is consent
+///     Sentence initialise()       before each start of its activity, on the makers' thread; not real-time
+///     void start(const Cycle&) noexcept TAPPET_REALTIME   in its activity, before the first step; also
+///                            after each stop
+///     void step(const Cycle&) noexcept TAPPET_REALTIME    in each cycle of its activity
+///     void work(const Cycle&)     instead of step: may block; for activities that are not_real_time
+///     Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME  before properties
+///                            change, together; an empty sentence is consent
+///     void changed() noexcept TAPPET_REALTIME             after properties changed, between two steps
+///     void loop(LoopControl&)     instead of step: decides itself when it runs; alone in its activity
+///     void break_loop()           makes a blocked loop() return; on a thread for that alone
+///     void stop(const Cycle&) noexcept TAPPET_REALTIME    leaves safe values behind; also
+///                            when an input kept it from its start
+///     bool stopped_safely() const noexcept TAPPET_REALTIME  of a driver: false after a stop() whose
+///                            safe values did not reach the device
+///     void finalise()             after its activity stopped, on the makers' thread; not real-time
 // clang-format on
 struct ComponentType {
-    /// What a component that its row makes the master of another one controls there.
+    /// The aspect of another component that this one controls when its row makes it that one's master.
     enum class Controls : std::uint8_t { nothing, life, behaviour };
     TypeId tag = nullptr;
     std::size_t size = 0;
     std::size_t align = 0;
     std::span<const Facet> facets{};
-    const DeviceKind* device_kind = nullptr;          ///< of the device it drives, null for none
-    std::span<const std::string_view> device_lines{}; ///< the lines it wants of that device, by logical name
-    /// What is wrong with what stands on that device; the table's check says it.
+    const DeviceKind* device_kind = nullptr;          ///< kind of the device that it drives; null: none
+    std::span<const std::string_view> device_lines{}; ///< lines of that device that it needs, by logical name
+    /// The fault of what is on that device; the table's check reports it.
     std::string_view device_fault{};
     const void* device_map =
-        nullptr; ///< what stands on that device, as a start-up that knows the kind reads it
-    DeviceTraffic device_traffic{}; ///< whether that device can carry it
-    bool shares_device = false;     ///< it may stand beside the device's driver; what it calls is safe there
+        nullptr; ///< map of what is on that device; only a start-up that knows the kind reads it
+    DeviceTraffic device_traffic{}; ///< the traffic of that device, and whether it can carry it
+    bool shares_device = false;     ///< it may share the device with its driver; what it calls is safe there
     bool behaviour_required = false;
-    bool sees_machine = false;   ///< it is given the machine: a service that shows, stores or changes it
-    bool records_cycles = false; ///< it is given the tapes of all activities
-    const LineFunctions* lines = nullptr;  ///< it sees the machine, and executes lines of the script language
-    bool watches_life = false;             ///< its row names an activity or an output with watches(...)
-    bool slot_required = false;            ///< room for a behaviour that is loaded later
+    bool sees_machine = false;            ///< it gets the machine: a service that shows, stores or changes it
+    bool records_cycles = false;          ///< it gets the tapes of all activities
+    const LineFunctions* lines = nullptr; ///< it sees the machine, and executes lines of the script language
+    bool watches_life = false;            ///< its row names an activity or an output with watches(...)
+    bool slot_required = false;           ///< it needs room for a behaviour that is loaded later
     Controls controls = Controls::nothing; ///< its row names another component with controls(...)
-    const ScriptUnit* script = nullptr;    ///< of the behaviour that it controls; null: whatever there is
-    std::string_view instance{};           ///< in that script
-    NeverRun never_run{};                  ///< what the table's check refuses
+    const ScriptUnit* script = nullptr;    ///< script of the behaviour that it controls; null: any
+    std::string_view instance{};           ///< name of the instance in that script
+    NeverRun never_run{};                  ///< a member that the table's check refuses
     void (*construct)(void* memory) = nullptr;
     Sentence (*configure)(void* component, Setup&) = nullptr;
     Sentence (*initialise)(void* component) = nullptr;
@@ -113,9 +118,9 @@ struct ComponentType {
     void (*changed)(void* component) noexcept TAPPET_REALTIME = nullptr;
     void (*control)(void* component, const Controlled&) = nullptr; ///< before its properties are set
 
-    /// The one way to a property once it is configured. Checks the ranges, asks the component and, when it
-    /// consents, gives it all values together. The answer says why it does not. Where the component runs, or
-    /// while it stands still. Real-time.
+    /// Changes properties: the only way once they are configured. Checks the ranges, asks the component and,
+    /// when it consents, sets all values together. Returns why it refuses; empty: done. Called where the
+    /// component runs, or while it is stopped. Real-time.
     Sentence change(void* component, std::span<const ProposedValue> values) const noexcept TAPPET_REALTIME {
         for (const ProposedValue& each : values)
             if (const Sentence fault = check_range(facets[each.facet], each.value); !fault.empty())

@@ -1,5 +1,5 @@
-// Which activity the calling thread runs. An event that several activities emit finds each one's share of its
-// rows by it; in virtual time, where one thread runs every engine, it changes with the engine.
+// The activity that the calling thread runs. An event that several activities emit uses it to find the
+// emitter's share of its rows. In virtual time one thread runs every engine, so it changes with the engine.
 #pragma once
 
 #include "kernel/base/contract.hpp"
@@ -9,18 +9,18 @@
 
 namespace tappet {
 
-/// Of a thread that runs no activity.
+/// The number of a thread that runs no activity.
 inline constexpr std::uint32_t no_activity = 0xffffffffu;
 
 namespace detail {
 
 inline constinit thread_local std::uint32_t running_activity = no_activity;
-/// Its time of the cycle, by which the ports of its components know it; null: it was not said.
+/// The activity's time of the cycle, by which ports recognise their own activity; null: not stated.
 inline constinit thread_local const Time* running_clock = nullptr;
 
 } // namespace detail
 
-/// The number, in the order of the table, of the activity that the calling thread runs. Real-time.
+/// Returns the number, in the order of the table, of the activity that the calling thread runs. Real-time.
 inline std::uint32_t running_activity() noexcept TAPPET_REALTIME {
     std::uint32_t found = no_activity;
     TAPPET_ESCAPE("thread-local memory of the main program is there from the thread's start",
@@ -28,7 +28,7 @@ inline std::uint32_t running_activity() noexcept TAPPET_REALTIME {
     return found;
 }
 
-/// Whether the thread that runs the activity of this clock calls, or one that runs none: a test, a start-up.
+/// Returns whether the calling thread runs the activity of this clock, or no activity: a test, a start-up.
 /// Real-time.
 inline bool runs_by(const Time* clock) noexcept TAPPET_REALTIME {
     const Time* found = nullptr;
@@ -37,7 +37,8 @@ inline bool runs_by(const Time* clock) noexcept TAPPET_REALTIME {
     return found == nullptr || found == clock;
 }
 
-/// While it lives, the calling thread runs this activity, whose time of the cycle `clock` is. Real-time.
+/// Marks the calling thread as running this activity, until destroyed. `clock`: the activity's time of the
+/// cycle. Real-time.
 class RunsActivity {
 public:
     explicit RunsActivity(std::uint32_t activity, const Time* clock = nullptr) noexcept TAPPET_REALTIME {

@@ -1,4 +1,4 @@
-// What a component is told in each cycle.
+// The times of a cycle, as its components get them.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -10,9 +10,8 @@ struct Cycle {
     Time release{};    ///< when it should have begun: the period's time, the timer's time, or the wake
     Duration period{}; ///< of a periodic activity; zero for the others
 
-    /// When a timer is to fire that goes on after this one: so long from when it was due, which keeps its
-    /// grid. When that is past, so long from now: turns that were missed are not made up for, all at one
-    /// instant.
+    /// Returns the time for which a repeating timer is armed next: `time` after it was due, which keeps its
+    /// grid. If that is past, it returns `time` from now: missed turns are not made up for all at once.
     [[nodiscard]] constexpr Time after(Duration time) const noexcept {
         const Time on_grid = release + time;
         return on_grid > now ? on_grid : now + time;

@@ -1,5 +1,5 @@
-// What a driver's device has to carry, and whether it can: asked by the table's check, told by charts and
-// summaries.
+// The traffic of a driver's device, and whether the device can carry it. The table's check analyses it;
+// charts and summaries show it.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -10,33 +10,33 @@
 
 namespace tappet {
 
-/// The device as the board has it, and how it is driven.
+/// The device as the board describes it, and the response of its driver's activity.
 struct DeviceUse {
-    std::string_view device{};     ///< as the board calls it
-    std::span<const Fact> facts{}; ///< what the board says of it
-    Duration response{};           ///< the worst one of the activity that runs its driver
+    std::string_view device{};     ///< the board's name of it
+    std::span<const Fact> facts{}; ///< facts of the board about it
+    Duration response{};           ///< worst response of the activity that runs its driver
 };
 
-/// What a driver may name; so few, that a row for each fits onto a stack.
+/// Most names of a driver's traffic; so few that a row for each fits onto a stack.
 inline constexpr std::size_t most_traffic_rows = 128;
 
-/// What crosses the device under one name.
+/// The traffic under one name.
 struct TrafficRow {
     std::string_view name{};
     bool sent = false;
-    Duration period{};    ///< the least time between two
-    Duration wire_time{}; ///< the longest that one takes
+    Duration period{};    ///< shortest time between two
+    Duration wire_time{}; ///< longest time that one takes
     Duration deadline{};  ///< from its release
     Duration worst{};     ///< proven: from its release to its end on the wire; never: there is no bound
 };
 
-/// What a driver says of its device's traffic: the member `device_traffic` of its type.
+/// A driver's description of its device's traffic: the member `device_traffic` of its type.
 struct DeviceTraffic {
-    std::size_t rows = 0; ///< as many names cross it
-    /// In the order in which they win the device. The first fault, with its cure; empty: all deadlines hold.
-    /// `into` has as many rows, or is empty: nobody reads them.
+    std::size_t rows = 0; ///< number of names that cross it
+    /// Analyses the names in the order in which they win the device. Returns the first fault, with its cure;
+    /// empty: all deadlines hold. `into` has that many rows, or is empty when nobody reads them.
     Sentence (*analyse)(const DeviceUse&, std::span<TrafficRow> into) = nullptr;
-    /// Of what is sent under that name: the longest that was seen. Any thread.
+    /// Returns the longest time that was seen of what is sent under that name. Any thread.
     Duration (*longest_seen)(const void* component, std::string_view name) = nullptr;
 };
 

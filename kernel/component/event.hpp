@@ -1,5 +1,5 @@
-// Events (thesis 4.6): an emission runs every connected reaction: synchronous ones here and now, asynchronous
-// ones in the receiver's engine. Every possible subscriber is a row of the table; connecting one is one
+// Events (thesis 4.6): an emission runs every connected reaction: synchronous ones in place, asynchronous
+// ones in the receiver's engine. Every possible subscriber is a row of the table, and connecting one is one
 // atomic bit.
 #pragma once
 
@@ -13,18 +13,18 @@
 
 namespace tappet {
 
-/// One reaction row as the emitter sees it. The same size for every signature, so that the planner can place
-/// it.
+/// One reaction row as the emitter sees it. It has the same size for every signature, so that the planner can
+/// place it.
 template <class... A>
 struct Subscriber {
     void (*react)(void* context, A... arguments) noexcept TAPPET_REALTIME;
     void* context;
 };
 
-/// So many rows, triggers and observers one event can have.
+/// Most rows, triggers and observers of one event.
 inline constexpr std::size_t max_subscribers = 64;
 
-/// An event. Emitted by its own component only, from each activity that runs functions of that component.
+/// An event. Emitted only by its own component, from each activity that runs functions of that component.
 /// Real-time; emissions from several activities may overlap.
 template <class... A>
 class Event {
@@ -32,8 +32,9 @@ class Event {
                   "arguments of an event are copied between activities");
 
 public:
-    /// Synchronous reactions first, then asynchronous ones, the most urgent receiver's first (4.6.2). A row
-    /// is asked for just before it is run: what a reaction disconnects does not run in this emission either.
+    /// Runs synchronous reactions first, then asynchronous ones, the most urgent receiver's first (4.6.2).
+    /// Each row's connection is checked just before it runs, so a row that a reaction disconnects does not
+    /// run in this emission either.
     void emit(A... arguments) noexcept TAPPET_REALTIME {
         std::uint64_t rows = connected_.load(std::memory_order_acquire); // emit.row
         if (rows == 0) return;
@@ -49,8 +50,8 @@ public:
 
 private:
     friend struct PortAccess;
-    /// From the third row on. Aligned: a short loop that lies across two blocks of the processor's fetch
-    /// takes a fifth longer.
+    /// Runs the reactions from the third row on. Aligned, because a short loop that lies across two blocks of
+    /// the processor's fetch takes a fifth longer.
     [[gnu::noinline, gnu::aligned(64)]] void emit_to_the_rest(A... arguments) const noexcept TAPPET_REALTIME {
         const std::size_t count = count_; // a bound that no handler can move: a counted loop
         const Subscriber<A...>* const subscribers = subscribers_;

@@ -9,27 +9,26 @@
 
 namespace tappet {
 
-/// A member of a component that a row names by handled_by(...). A copy stands for the same row. Everything is
-/// real-time and wait-free, from any thread, out of a reaction of the same or another event too.
-///
-/// After disconnect() returned, no emission begun later reaches the reaction, and what was caught before is
-/// dropped when its turn comes. What the guarantee leaves open: a reaction that another thread has begun to
-/// run may still be running; an emission that another thread is in the middle of may run a synchronous
-/// reaction that it already found connected. Of connect() and disconnect() at the same time the one whose
+/// A member of a component that a row names with handled_by(...). A copy stands for the same row. Everything
+/// is real-time and wait-free, from any thread, also from a reaction of the same or another event.
+/// After disconnect() returned, no emission begun later reaches the reaction, and waiting earlier emissions
+/// are dropped when their turn comes. The guarantee has two limits: a reaction that another thread has begun
+/// to run may still be running, and an emission in progress on another thread may run a synchronous reaction
+/// that it already found connected. When connect() and disconnect() run at the same time, the one whose
 /// atomic operation comes last holds, and an emission in between may be dropped.
 class EventHandle {
 public:
     EventHandle() = default;
-    /// `epoch`: of an asynchronous row, else null. Start-up makes the handles that rows name.
+    /// `epoch`: that of an asynchronous row, else null. Start-up makes the handles that rows name.
     EventHandle(std::atomic<std::uint64_t>& connected, std::uint64_t bit,
                 std::atomic<std::uint32_t>* epoch) noexcept
         : connected_{&connected}, bit_{bit}, epoch_{epoch} {}
 
-    /// No effect on a row that is connected, or on a handle that no row names.
+    /// Connects the row. No effect on a row that is connected, or on a handle that no row names.
     void connect() const noexcept TAPPET_REALTIME {
         if (connected_ == nullptr) return;
-        // Here and below the result stays unused: with it both compilers would emit a loop of
-        // compare-and-exchange.
+        // Here and below the result stays unused: with it both compilers would emit a compare-and-exchange
+        // loop.
         connected_->fetch_or(bit_, std::memory_order_release); // connect.bit
     }
     void disconnect() const noexcept TAPPET_REALTIME {
@@ -43,7 +42,7 @@ public:
             connected_->load(std::memory_order_acquire); // no step: nobody acts upon it
         return (rows & bit_) != 0;
     }
-    /// Whether it stands for a row.
+    /// Returns whether the handle stands for a row.
     [[nodiscard]] bool valid() const noexcept TAPPET_REALTIME { return connected_ != nullptr; }
 
 private:
@@ -52,7 +51,7 @@ private:
     std::atomic<std::uint32_t>* epoch_ = nullptr;
 };
 
-/// Connected as long as it lives.
+/// Keeps a row connected as long as it lives.
 class ScopedEventHandle {
 public:
     ScopedEventHandle() = default;

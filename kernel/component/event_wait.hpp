@@ -1,5 +1,5 @@
-// Waiting for an event (thesis 4.6.1): an activity that is not real-time blocks until it comes or a time is
-// over; any other looks whether it came.
+// Waiting for an event (thesis 4.6.1): an activity that is not real-time blocks until the event or a
+// time-out; any other activity polls.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -14,11 +14,12 @@
 
 namespace tappet {
 
-/// What an EventWait keeps, whatever its arguments. One row tells it of one event; the emissions wait in
-/// mailboxes of its own, as many as the row's queue says.
+/// The state of an EventWait, for any arguments. One row brings it one event; the emissions wait in mailboxes
+/// of its own, as many as the row's queue says.
 class EventWaitState {
 public:
-    /// Start-up's. `activity`: wakes it for an emission, also while nobody waits.
+    /// Sets up the wait; called by start-up. `activity`: the activity that an emission wakes, also while
+    /// nobody waits.
     void place(Waker activity, const os::Clock& clock, std::span<Mailbox> mailboxes,
                std::size_t capacity) noexcept {
         activity_ = activity;
@@ -27,18 +28,18 @@ public:
         inbox_.place(mailboxes);
     }
     [[nodiscard]] Inbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
-    /// An emission is in the inbox. Real-time, any thread.
+    /// Wakes after an emission was put into the inbox. Real-time, any thread.
     static void wake(void* self) noexcept TAPPET_REALTIME {
         auto& state = *static_cast<EventWaitState*>(self);
         state.waiter_.wake();
         state.activity_();
     }
-    /// Ends the wait that is under way, or the next one: for break_loop(). Real-time, any thread.
+    /// Ends the wait in progress, or the next one: for break_loop(). Real-time, any thread.
     void interrupt() noexcept TAPPET_REALTIME {
         interrupted_.store(true, std::memory_order_release);
         waiter_.wake();
     }
-    /// Message::Run of its row.
+    /// The Message::Run of its row.
     static void receive(void* self, const std::byte* arguments) noexcept TAPPET_REALTIME {
         static_cast<EventWaitState*>(self)->arrived_ = arguments;
     }
@@ -46,7 +47,7 @@ public:
 protected:
     EventWaitState() = default;
 
-    /// The packed arguments of the next emission, or null; they stay where they are until the next call.
+    /// Returns the packed arguments of the next emission, or null. They stay in place until the next call.
     [[nodiscard]] const std::byte* next() noexcept TAPPET_REALTIME {
         arrived_ = nullptr;
         const std::size_t most = capacity_;
@@ -62,7 +63,7 @@ protected:
         const std::byte* came = next();
         if (clock_ == nullptr || clock_->is_virtual()) return came;
         const Time end = clock_->now() + at_most;
-        // A wake for what was taken already may be left over: it costs one more look.
+        // A wake for an emission that was already taken may be left over: it costs one more poll.
         while (came == nullptr && !interrupted_.exchange(false, std::memory_order_acq_rel) &&
                clock_->now() < end) {
             static_cast<void>(waiter_.wait(end));
@@ -82,28 +83,29 @@ private:
     std::atomic<bool> interrupted_{false};
 };
 
-/// An EventWait of whatever arguments, for a component that has it because a table says so.
+/// An EventWait with any arguments, for a component whose waits follow from a table.
 class PackedEventWait : public EventWaitState {
 public:
     PackedEventWait() = default;
-    /// The packed arguments of the oldest emission that waits, until the next call; null: there is none.
+    /// Takes the oldest waiting emission. Returns its packed arguments, valid until the next call; null:
+    /// there is none.
     [[nodiscard]] const std::byte* take() noexcept TAPPET_REALTIME { return next(); }
 };
 
-/// A member of a component, told by a row of its own: when("shaft.beat_up", tell("console.beat")). Used in
-/// its component's activity only.
+/// A member of a component, with a row of its own: when("shaft.beat_up", tell("console.beat")). Used only in
+/// its component's activity.
 template <class... A>
 class EventWait : public EventWaitState {
 public:
     EventWait() = default;
 
-    /// Takes the oldest emission that waits. False: there is none. Real-time.
+    /// Takes the oldest waiting emission. Returns false when there is none. Real-time.
     [[nodiscard]] bool take(A&... into) noexcept TAPPET_REALTIME { return unpack(next(), into...); }
 
-    /// As take(), but waits up to `at_most` for one. False: the time is over, or interrupt() was called. Not
-    /// real-time. Meanwhile its activity serves nothing else: a time below the patience of a stop keeps it
-    /// willing, a loop() has its break_loop() interrupt. Under virtual time it never blocks: while a
-    /// component runs, time stands still.
+    /// As take(), but waits up to `at_most` for an emission. Returns false at the time-out or after
+    /// interrupt(). Not real-time. Meanwhile its activity serves nothing else: choose a time below the
+    /// patience of a stop, so that the activity can stop in time; in a loop(), break_loop() calls
+    /// interrupt(). Under virtual time it never blocks, because time stands still while a component runs.
     [[nodiscard]] bool wait(Duration at_most, A&... into) noexcept {
         return unpack(wait_for_next(at_most), into...);
     }

@@ -44,49 +44,51 @@ enum class FacetKind : std::uint8_t {
     wait
 };
 
-/// What start-up does with data and buffer ports of one value type.
+/// Start-up's access to data and buffer ports of one value type.
 struct PortOperations {
     std::size_t shared_bytes;
     std::size_t shared_align;
     void (*place_shared)(void* output, void* memory);
-    /// Also while both run by turns with others: in their activity, between two steps. `writer`: of the
-    /// component whose output it is; null: it never stops.
+    /// Links an input to an output of its activity; also while both run by turns with others, then in their
+    /// activity between two steps. `writer`: the stops of the output's component; null: it never stops.
     void (*link_local)(void* input, const void* output, const Stops* writer) noexcept TAPPET_REALTIME;
-    /// After link_local, when the turn was not refused to the writer.
+    /// Called after link_local, when the turn was not refused to the writer.
     void (*hand_force_to)(void* input, const Stops* writer) noexcept TAPPET_REALTIME;
-    /// The output is as if it had never been written, for readers of its own activity; likewise.
+    /// Resets the output to never written, for readers of its own activity. Called as link_local.
     void (*forget)(void* output) noexcept TAPPET_REALTIME;
     void (*link_shared)(void* input, const void* output, const Stops* writer);
     void (*set_clock)(void* port, bool is_input, const Time* now);
     void (*set_waker)(void* output, Waker waker);
-    /// Of an output: null opens it. In the port's activity. A close wakes whom a value would wake.
+    /// Closes an output; null opens it. In the port's activity. Closing wakes what a value would wake.
     void (*close)(void* output, DroppedWrites* counter) noexcept TAPPET_REALTIME;
     void (*set_filter)(void* output, PortFilter* filter);
     void (*set_policy)(void* input, const InputPolicy&);
-    /// An abandoned value counts by its age alone here: it keeps no component from its start.
+    /// Returns the flow of an input. An abandoned value counts by its age alone: it keeps no component from
+    /// its start.
     Flow (*flow)(void* input) noexcept TAPPET_REALTIME;
-    /// Also behind a force.
+    /// Returns whether an output was ever written; a force does not count.
     bool (*is_written)(const void* output) noexcept TAPPET_REALTIME;
     Time (*expires)(const void* input) noexcept TAPPET_REALTIME;
-    /// How many values a shared data object was given; any thread.
+    /// Returns the number of values that a shared data object was given; any thread.
     std::uint64_t (*written)(const void* shared) noexcept TAPPET_REALTIME;
     PortPlaces (*places)(const void* port, bool is_input) noexcept TAPPET_REALTIME;
-    /// A value from outside, as bytes, in place of what flows; between two steps of the port's activity.
+    /// Forces a value from outside, as bytes, in place of what flows; between two steps of the port's
+    /// activity.
     bool (*force)(void* port, bool is_input, const std::byte* value) noexcept TAPPET_REALTIME;
     void (*release)(void* port, bool is_input) noexcept TAPPET_REALTIME;
-    /// Ends the force of a port, because its component stops. Nobody wants what the force hid.
+    /// Ends the force of a port because its component stops. The hidden value is abandoned.
     void (*end_force)(void* port, bool is_input) noexcept TAPPET_REALTIME;
-    /// The component of this output begins to stop: from here on it writes in the life `life`.
+    /// The component of this output begins to stop: from here on the output writes in the life `life`.
     void (*begin_life)(void* output, Life life) noexcept TAPPET_REALTIME;
     /// The component of this input starts.
     void (*resume)(void* input) noexcept TAPPET_REALTIME;
-    /// What an input gives its component, or what an output was given last, as bytes. In the port's activity.
-    /// `looks`: what is fresh there stays fresh.
+    /// Reads the value that an input gives its component, or that its component last gave an output, as
+    /// bytes. In the port's activity. `looks`: a fresh value stays fresh.
     Flow (*read)(void* port, bool is_input, bool looks, std::byte* into) noexcept TAPPET_REALTIME;
     void (*write)(void* output, const std::byte* value) noexcept TAPPET_REALTIME;
-    /// Of a value that was true at `stamp`.
+    /// Writes a value that was true at `stamp`.
     void (*write_at)(void* output, const std::byte* value, Time stamp) noexcept TAPPET_REALTIME;
-    // For a component that has such ports because a table says so: room for one, on a line of its own.
+    // For a component whose ports follow from a table: memory for one port, on a cache line of its own.
     std::size_t input_bytes, output_bytes;
     void (*construct)(void* memory, bool is_input);
 };
@@ -108,20 +110,20 @@ struct BufferOperations {
 struct EventOperations {
     std::size_t subscriber_bytes; ///< of one subscriber
     void (*give_storage)(void* event, void* subscribers);
-    /// The next row; `call` points at a typed function pointer. Answers the word of the event's connections,
-    /// in which the row has the bit of its turn.
+    /// Adds the next row; `call` points at a typed function pointer. Returns the word of the event's
+    /// connections, in which the n-th row has the n-th bit.
     std::atomic<std::uint64_t>& (*subscribe)(void* event, const void* call, void* context);
-    const void* post;  ///< of the asynchronous reaction, likewise
-    const void* count; ///< of a reaction that counts in a std::atomic<std::uint64_t>, likewise
-    /// With packed arguments, for emitters that know no C++ type.
+    const void* post;  ///< points at the call of the asynchronous reaction, as above
+    const void* count; ///< points at that of a reaction that counts in a std::atomic<std::uint64_t>
+    /// Emits with packed arguments, for emitters that know no C++ type.
     void (*emit)(void* event, const std::byte* packed) noexcept TAPPET_REALTIME;
-    std::size_t event_bytes; ///< and construct(): as of a port
+    std::size_t event_bytes; ///< with construct(): as for a port
     void (*construct)(void* memory);
 };
 
 struct OperationOperations {
     const void* enter; ///< points at a `void (*const)(void* gated, A...)`: a GatedComponent
-    /// False: the component cannot be reached that way, and nothing ran.
+    /// Returns false when the component cannot be reached that way; then nothing ran.
     bool (*run)(GatedComponent&, Entry, const std::byte* packed) noexcept TAPPET_REALTIME;
 };
 
@@ -129,7 +131,7 @@ struct TimerOperations {
     void (*fire)(void* component, const Cycle&) noexcept TAPPET_REALTIME;
 };
 
-/// The value of an output of bool while its component is stopped. A driver has to state it.
+/// The value of an output of bool while its component is stopped. A driver must state it.
 enum class AtRest : std::uint8_t { unsaid, as_it_was, says_false, says_true };
 
 struct Facet {
@@ -143,15 +145,15 @@ struct Facet {
     bool valid_to_start = false;      ///< an input: its component does not start before it has a valid value
     bool grows_stale = false;         ///< an input: its row says when its value is stale
     AtRest at_rest = AtRest::unsaid;  ///< of an output of bool
-    std::uint8_t least_reactions = 0; ///< of an event: so many reaction rows must name it
+    std::uint8_t least_reactions = 0; ///< of an event: least number of reaction rows that must name it
     bool any_thread = false;          ///< an operation or a method that any activity may call
     bool may_block = false;           ///< a method or a command; never in a real-time activity
-    Role least_role = Role::engineer; ///< that may ask for a property, an operation, a method or a command
+    Role least_role = Role::engineer; ///< lowest role for a property, an operation, a method or a command
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array
-    std::size_t members = 0; ///< of a bag: so many facets after it are in it, those of bags in it too
+    std::size_t members = 0; ///< of a bag: number of facets after it that are in it, with those of inner bags
     void* (*at)(void* component, std::size_t index) noexcept = nullptr;
-    // One of these, by kind.
+    // One of these is set, by kind.
     const PortOperations* port = nullptr;
     const BufferOperations* buffer = nullptr;
     const EventOperations* event = nullptr;
@@ -199,9 +201,9 @@ constexpr std::string_view to_text(FacetKind kind) noexcept {
     return "a facet";
 }
 
-/// What only the start-up may do with a port.
+/// Access to ports for start-up only.
 struct PortAccess {
-    /// A checked row's value; the default where it gives none.
+    /// Returns the value of a checked row, or the default where the row gives none.
     template <class T>
     static T value_in(const RowValue& row) {
         if (row.constant != nullptr) return *static_cast<const T*>(row.constant);
@@ -351,7 +353,7 @@ struct PortAccess {
             },
     };
 
-    /// Where a ring's storage begins after the ring itself.
+    /// Offset of a ring's storage behind the ring itself.
     template <class AnyRing>
     static constexpr std::size_t storage_at =
         (sizeof(AnyRing) + AnyRing::alignment - 1) / AnyRing::alignment * AnyRing::alignment;

@@ -1,4 +1,4 @@
-// A facet's name that the compiler puts together, for components whose facets follow from a constexpr map.
+// A facet's name assembled by the compiler, for components whose facets follow from a constexpr map.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace tappet {
 
-/// Of pieces, one behind the other; more than 63 characters do not compile.
+/// Joins pieces of text; more than 63 characters do not compile.
 class FacetName {
 public:
     static constexpr std::size_t most = 63;

@@ -20,29 +20,29 @@
 
 namespace tappet {
 
-/// Marks an input that may stay unconnected, and says what any_thread says of operations: callable from any
-/// activity.
+/// Marks an input that may stay unconnected. any_thread marks an operation that any activity may call.
 struct Optional {};
 inline constexpr Optional optional{};
 struct AnyThread {};
 inline constexpr AnyThread any_thread{};
-/// Marks a method or a command whose function waits for something, and is declared noexcept without
-/// TAPPET_REALTIME (thesis 4.5.2): a method is then called from activities only that are not_real_time, and a
-/// command runs in such a one. A completion never blocks. Meanwhile that activity serves nothing else.
+/// Marks a method or a command whose function blocks, and is declared noexcept without TAPPET_REALTIME
+/// (thesis 4.5.2). Only activities that are not_real_time call such a method or run such a command. A
+/// completion never blocks. Meanwhile that activity serves nothing else.
 struct MayBlock {};
 inline constexpr MayBlock may_block{};
 /// Marks an operation that at least one reaction of the table must name.
 struct Required {};
 inline constexpr Required required{};
 /// Marks an input without whose valid value its component does not start, not even with the machine: it waits
-/// for it. (One that is started while the machine runs needs all its required inputs, circles apart.)
+/// for the value. (A component that is started while the machine runs needs all its required inputs, except
+/// those in a circle of connections.)
 struct ValidToStart {};
 inline constexpr ValidToStart valid_to_start{};
-/// Marks an input by whose age its component tells a silence: its row must say stale_after(...).
+/// Marks an input whose component needs staleness to detect silence: its row must say stale_after(...).
 struct GrowsStale {};
 inline constexpr GrowsStale grows_stale{};
-/// The value of an output of bool while its component is stopped, for example `connected` is false. The
-/// engine writes it after stop(). A driver states it for each of its outputs of bool, or marks the output
+/// States the value of an output of bool while its component is stopped, for example `connected` is false.
+/// The engine writes it after stop(). A driver states it for each of its outputs of bool, or marks the output
 /// as_it_was.
 struct WhileStopped {
     AtRest says;
@@ -51,13 +51,13 @@ constexpr WhileStopped while_stopped(bool value) noexcept {
     return {value ? AtRest::says_true : AtRest::says_false};
 }
 inline constexpr WhileStopped as_it_was{AtRest::as_it_was};
-/// An event that means something to the machine's safety: at least so many reaction rows must name it.
+/// Marks an event that matters to the machine's safety: at least so many reaction rows must name it.
 struct HeardBy {
     std::uint8_t reactions = 1;
 };
 constexpr HeardBy heard_by(std::uint8_t reactions) noexcept { return {reactions}; }
-/// Marks an operation, a method or a command that a person at the machine may ask for, who has this role at
-/// least. Without it only an engineer may: it is a part of something that the machine does by itself.
+/// Marks an operation, a method or a command that people at the machine may ask for, if they have at least
+/// this role. Unmarked, it is for engineers only: it is a part of something that the machine does by itself.
 struct ForPeople {
     Role least;
 };
@@ -78,7 +78,7 @@ struct WaitArguments;
 template <class... A>
 struct WaitArguments<EventWait<A...>> {
     using Signature = Arguments<A...>;
-    /// Answers the EventWaitState.
+    /// Returns the EventWaitState.
     template <auto Member>
     static void* at(void* component, std::size_t index) noexcept {
         return static_cast<EventWaitState*>(
@@ -92,7 +92,7 @@ inline constexpr OperationOperations operation_of = {&operation_entry<Method>, &
 template <auto Method>
 struct TimerCall {
     static constexpr bool is_run = false;
-    static constexpr TimerOperations operations{}; // so that saying so stays the only error
+    static constexpr TimerOperations operations{}; // so that the static_assert stays the only error
 };
 template <class Component, void (Component::*Method)(const Cycle&) noexcept>
 struct TimerCall<Method> {
@@ -203,7 +203,7 @@ constexpr Facet operation(std::string_view name, std::string_view doc, Options..
                         options...);
 }
 
-/// A member EventHandle; a row must name it by handled_by(...) unless `optional`.
+/// A member EventHandle; a row must name it with handled_by(...) unless `optional`.
 template <auto Member, class... Options>
 constexpr Facet handle(std::string_view name, std::string_view doc, Options... options) {
     using M = detail::MemberOf<Member>;
@@ -217,7 +217,7 @@ constexpr Facet handle(std::string_view name, std::string_view doc, Options... o
                         options...);
 }
 
-/// A member EventWait<A...>; a row must tell it of an event unless `optional`.
+/// A member EventWait<A...>; a row must tell it an event unless `optional`.
 template <auto Member, class... Options>
 constexpr Facet awaits(std::string_view name, std::string_view doc, Options... options) {
     using M = detail::MemberOf<Member>;
@@ -244,7 +244,7 @@ constexpr Facet timer(std::string_view name, std::string_view doc) {
             .timer = &detail::TimerCall<Method>::operations};
 }
 
-/// The list itself, of facets and bags.
+/// Makes the list of facets and bags.
 template <class... F>
 constexpr auto facets(const F&... each) {
     if constexpr ((std::same_as<F, Facet> && ...)) {

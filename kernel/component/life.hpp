@@ -1,4 +1,4 @@
-// The states of a component's life (thesis 3.1.3), as anybody may read them, and how a change is asked for.
+// The states of a component's life (thesis 3.1.3), which any thread may read, and requests to change them.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -10,15 +10,15 @@
 
 namespace tappet {
 
-/// Written by the component's engine alone, or by the supervisor once it has given up its thread; read by any
-/// thread.
+/// Written by the component's engine alone, or by the supervisor once it has given up that engine's thread.
+/// Any thread may read it.
 enum class ComponentState : std::uint8_t {
     inactive, ///< constructed, perhaps configured; its activity never ran
     waiting,  ///< its activity has started; an input that it needs has no valid value yet
-    starting, ///< start() runs, or is about to, behind that of others of its activity
-    running,  ///< it is stepped, and messages reach it
-    stopping, ///< stop() leaves the safe values, and nothing else reaches it
-    stopped,  ///< its outputs hold the safe values; it does nothing, and from here on nothing reaches it
+    starting, ///< start() runs, or is about to run after those of other components of its activity
+    running,  ///< it runs its steps, and messages reach it
+    stopping, ///< stop() writes the safe values, and nothing else reaches it
+    stopped,  ///< its outputs hold the safe values; it does nothing, and nothing reaches it any more
     failed    ///< it could not be initialised, or its thread broke a contract: it is not started again
 };
 
@@ -44,29 +44,29 @@ struct ComponentType; ///< component.hpp
 using AtomicComponentState = std::atomic<ComponentState>;
 static_assert(AtomicComponentState::is_always_lock_free);
 
-/// Whether steps and messages reach it. Real-time, any thread.
+/// Returns whether steps and messages reach it. Real-time, any thread.
 inline bool is_running(const AtomicComponentState& state) noexcept TAPPET_REALTIME {
     return state.load(std::memory_order_acquire) == ComponentState::running;
 }
 
-/// How a call comes to a component.
+/// How a call reaches a component.
 enum class Entry : std::uint8_t {
-    at_once, ///< in the caller's thread: while it runs, starts or stops just now, or waits for its turn
+    at_once, ///< in the caller's thread: while it starts, runs, or waits for its turn
     queued,  ///< by a message: only while it runs
-    always   ///< a const method, or properties: its own outputs are shut while it stands
+    always   ///< a const method, or properties: its own outputs are closed while it is stopped
 };
 
-/// The one way into a component for everybody but its engine: reactions, method calls, commands, scripts,
-/// lines and requests of browsers. It asks for the component's state as it runs the call; nothing else has
-/// the address. Any thread; real-time.
+/// The gate of a component: the only way in for everything but its engine, such as reactions, method calls,
+/// commands, scripts, lines and requests of browsers. It checks the component's state when it runs the call;
+/// nothing else has the address. Any thread; real-time.
 class GatedComponent {
 public:
     GatedComponent() = default;
-    /// `component` outlives it.
+    /// `component` must outlive it.
     explicit GatedComponent(void* component, ComponentState now = ComponentState::inactive) noexcept
         : state{now}, component_{component} {}
 
-    /// Before anybody enters.
+    /// Sets the component, before anybody enters.
     void place(void* component) noexcept { component_ = component; }
 
     [[nodiscard]] bool admits(Entry entry) const noexcept TAPPET_REALTIME {
@@ -80,8 +80,8 @@ public:
         }
         return true;
     }
-    /// Runs `call(void* component)`. False: the component cannot be reached, and nothing ran. A call that has
-    /// begun when a stop begins ends as it would.
+    /// Runs `call(void* component)`. Returns false when the component cannot be reached; then nothing ran. A
+    /// call that has begun when a stop begins ends normally.
     template <class Call>
     [[nodiscard]] bool enter(Entry entry, Call&& call) noexcept TAPPET_REALTIME {
         if (!admits(entry)) return false;
@@ -93,8 +93,8 @@ public:
     const ComponentType* type = nullptr;                  ///< of the table's row; set before anybody enters
     /// By turns with others (thesis 3.1.3): it stands, its outputs are shut, and its peers may ask it.
     std::atomic<bool> waits_for_its_turn{false};
-    std::atomic<std::uint32_t> dropped{0};        ///< synchronous reactions that were not let in
-    std::atomic<std::uint32_t> dropped_writes{0}; ///< to its outputs, while it did not run
+    std::atomic<std::uint32_t> dropped{0};        ///< synchronous reactions that the gate refused
+    std::atomic<std::uint32_t> dropped_writes{0}; ///< writes to its outputs while it did not run
 
 private:
     friend class Engine;
@@ -105,7 +105,7 @@ private:
 
 enum class LifeChange : std::uint8_t { start, stop, restart };
 
-/// What became of a request. Superseded: another one came after it, which is the one that counts.
+/// The outcome of a request. Superseded: a later request replaced it, and counts.
 enum class LifeOutcome : std::uint8_t { pending, done, refused, superseded };
 
 /// Why a start is refused.
@@ -113,19 +113,19 @@ enum class LifeRefusal : std::uint8_t {
     none,
     input_never_written,
     input_stale,
-    not_initialised,    ///< initialise() refused, or nobody called it since the failure
+    not_initialised,    ///< initialise() refused, or was not called since the failure
     activity_stopped,   ///< the activity that runs it does not run
     thread_lost,        ///< its thread hangs or broke a contract
-    waits_for_its_turn, ///< it runs by turns with others, and one of those runs now
+    waits_for_its_turn, ///< it runs by turns with others, and one of them runs now
     left_unsafe         ///< it has stopped, but its safe values did not reach its device
 };
 
-/// The answer to a request: the refusal, and where it lies.
+/// The answer to a request: the refusal, and its place.
 struct LifeAnswer {
     LifeOutcome outcome = LifeOutcome::pending;
     LifeRefusal refusal = LifeRefusal::none;
     std::uint8_t part = 0;   ///< the component's number in its engine
-    std::uint16_t facet = 0; ///< of an input
+    std::uint16_t facet = 0; ///< the input's number
 };
 
 struct LifeTicket {
@@ -133,7 +133,7 @@ struct LifeTicket {
 };
 
 /// Requests to one component or activity. Any thread asks, one serves; the last request counts. Wait-free for
-/// both: a ticket, and one word each for what is wanted and what came of it. Real-time.
+/// both: a ticket, one word for the wanted change and one for the answer. Real-time.
 class LifeRequests {
 public:
     LifeTicket ask(LifeChange change) noexcept TAPPET_REALTIME {
@@ -142,7 +142,7 @@ public:
                       std::memory_order_release);
         return {number};
     }
-    /// The serving thread only: true when there is a request that it has not taken yet.
+    /// Takes a request. Returns false when there is none that was not taken yet. The serving thread only.
     [[nodiscard]] bool take(LifeTicket& ticket, LifeChange& change) noexcept TAPPET_REALTIME {
         const std::uint64_t wanted = wanted_.load(std::memory_order_acquire);
         if (wanted == taken_) return false;
@@ -151,7 +151,7 @@ public:
         change = static_cast<LifeChange>(wanted & 3);
         return true;
     }
-    /// The serving thread only.
+    /// Answers a request. The serving thread only.
     void answer(LifeTicket ticket, LifeAnswer answer) noexcept TAPPET_REALTIME {
         answered_.store(std::uint64_t{ticket.number} << 32 | std::uint64_t{answer.facet} << 16 |
                             std::uint64_t{answer.part} << 8 |

@@ -1,5 +1,5 @@
-// The functions of a component's life: how each is spelled, and what was probably meant as one. A member that
-// is spelled otherwise would never run, so it is found here and the table's check refuses it.
+// The functions of a component's life: the spelling of each, and the names that were probably meant as one. A
+// member that is spelled otherwise would never run, so the table's check refuses it.
 #pragma once
 
 #include "kernel/component/cycle.hpp"
@@ -18,7 +18,7 @@ namespace tappet {
 /// A member that looks like a function of its component's life and would never run.
 struct NeverRun {
     std::string_view member{};   ///< empty: there is none
-    std::string_view spelling{}; ///< of the function it was probably meant to be
+    std::string_view spelling{}; ///< spelling of the function that was probably meant
 };
 
 // clang-format off
@@ -108,7 +108,7 @@ struct NeverRun {
 
 namespace detail {
 
-// What a requires-expression lists cannot stand in parentheses.
+// The items of a requires-expression cannot be put in parentheses.
 // NOLINTBEGIN(bugprone-macro-parentheses)
 #define TAPPET_X(name, parameters, call, spelling)                                                           \
     template <class T>                                                                                       \
@@ -129,7 +129,7 @@ struct LifeNames {
 #undef TAPPET_X
 };
 
-/// In it a name of LifeNames is ambiguous when T has a member of that name, of whatever kind, overloaded or
+/// A name of LifeNames is ambiguous in it when T has a member of that name, of any kind, overloaded or
 /// private.
 template <class T>
 struct WithLifeNames : T, LifeNames {};
@@ -147,7 +147,7 @@ constexpr NeverRun first_never_run(std::span<const Facet> facets) {
     TAPPET_LIFE_FUNCTIONS(TAPPET_X)
 #undef TAPPET_X
 #define TAPPET_X(name, ...) &Probe::name;
-    // All at once first: hardly any component has one of them.
+    // First all at once, because hardly any component has one of them.
     constexpr bool none_is_misspelt = requires { TAPPET_MISSPELT_LIFE_FUNCTIONS(TAPPET_X) };
     constexpr bool none_is_otherwise_named = requires { TAPPET_OTHERWISE_NAMED_LIFE_FUNCTIONS(TAPPET_X) };
 #undef TAPPET_X

@@ -1,5 +1,5 @@
 // Methods (thesis 4.5): an algorithm of a component that a peer runs in its own thread, with typed arguments
-// and a result. The peer holds a MethodCall; a row of the table says whose method it is.
+// and a result. The peer holds a MethodCall; a row of the table says whose method it calls.
 //
 //     struct Restarter {                                       struct Bus {
 //         MethodCall<bool(int)> restart;                           bool restart(int tries) noexcept
@@ -18,14 +18,14 @@
 
 namespace tappet {
 
-/// The answer to a method call: a result, or none when the component that was called does not run. The caller
-/// says what it does then. A const method is always answered. Real-time.
+/// The answer to a method call: a result, or none when the called component does not run. The caller decides
+/// what to do then. A const method is always answered. Real-time.
 template <class R>
 class [[nodiscard("the component that was called may not run: say what happens then")]] Answer {
 public:
     Answer() = default;
     Answer(const R& result) noexcept : result_{result}, given_{true} {}
-    /// False: the component does not run, and nothing of it was called.
+    /// Returns false when the component does not run; then nothing of it was called.
     [[nodiscard]] bool given() const noexcept TAPPET_REALTIME { return given_; }
     [[nodiscard]] R value_or(const R& otherwise) const noexcept TAPPET_REALTIME {
         return given_ ? result_ : otherwise;
@@ -45,37 +45,39 @@ private:
     bool given_;
 };
 
-/// What a facet knows of the method behind it.
+/// A facet's access to the method behind it.
 struct MethodOperations {
     const void* call = nullptr; ///< points at a `Answer<R> (*const)(GatedComponent&, const A&...)`
     TypeId result = nullptr;    ///< of Arguments<> when it returns nothing
     std::size_t argument_bytes = 0;
     std::size_t result_bytes = 0;
-    /// From packed arguments, for callers that know no C++ type. In the caller's thread; real-time. False:
-    /// the component cannot be reached that way; nothing ran, and there is no result.
+    /// Runs the method with packed arguments, for callers that know no C++ type. In the caller's thread;
+    /// real-time. Returns false when the component cannot be reached that way; then nothing ran, and there is
+    /// no result.
     bool (*call_packed)(GatedComponent&, Entry, const std::byte* arguments, std::byte* result) noexcept
         TAPPET_REALTIME = nullptr;
-    bool is_const = false; ///< it only looks at its component
+    bool is_const = false; ///< it only reads its component
 };
 
-/// Whose method a call runs. `call` is that of its MethodOperations.
+/// The method that a call runs. `call` is that of its MethodOperations.
 struct MethodGoal {
     const void* call = nullptr;
     GatedComponent* component = nullptr;
 };
 
-/// What start-up does with the caller's side, and who hands over between components that answer by turns.
+/// Access to the caller's side for start-up, and for hand-overs between components that answer by turns.
 struct MethodCallOperations {
     TypeId result = nullptr;
     void (*bind)(void* method_call, const MethodGoal& goal) = nullptr;
-    /// From now on; a call that is under way ends where it began. `goal` stays. Real-time, from any thread.
+    /// Redirects later calls; a call in progress ends at the old goal. `goal` must stay valid. Real-time, any
+    /// thread.
     void (*aim)(void* method_call, const MethodGoal* goal) noexcept TAPPET_REALTIME = nullptr;
 };
 
 template <class Signature>
 class MethodCall;
 
-/// The caller's side. Called by its own component only. Real-time, as the method is.
+/// The caller's side. Called only by its own component. Real-time, as the method is.
 template <class R, class... A>
 class MethodCall<R(A...)> {
     static_assert((!detail::Parameter<A>::is_result && ...),
@@ -85,15 +87,15 @@ public:
     using Function = Answer<R> (*)(GatedComponent&, const std::remove_cvref_t<A>&...) noexcept
         TAPPET_REALTIME;
 
-    /// Calling what no row connects breaks a contract: an optional one is asked first. No result is given by
-    /// a component that does not run.
+    /// Runs the method. A call that no row connects breaks a contract: for an optional one check connected()
+    /// first. A component that does not run gives no result.
     Answer<R> operator()(const std::remove_cvref_t<A>&... arguments) const noexcept TAPPET_REALTIME {
         const MethodGoal* const goal = goal_.load(std::memory_order_acquire);
         TAPPET_CONTRACT(goal != nullptr, Contract::precondition, 0);
         if (goal == nullptr) return Answer<R>();
         return (*static_cast<const Function*>(goal->call))(*goal->component, arguments...);
     }
-    /// Whether a row connects it. Always true of one that is not optional.
+    /// Returns whether a row connects it. Always true if it is not optional.
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return goal_.load(std::memory_order_relaxed) != nullptr;
     }
@@ -120,30 +122,32 @@ private:
 template <auto Method, class = decltype(Method)>
 struct MethodFunction {
     static constexpr bool is_method = false;
-    // So that saying so stays the only error.
+    // So that the static_assert stays the only error.
     using Signature = Arguments<>;
     static constexpr MethodOperations operations{};
 };
 
-/// A method that runs once in its component's engine for one that knows no types: there it needs not be
-/// any_thread. Packed arguments first, the result after them. One at a time.
+/// A request to run a method once in its component's engine, for callers that know no types; so the method
+/// need not be any_thread. Packed arguments first, the result after them. One request at a time.
 class MethodRequest {
 public:
-    /// Between place() and done() the engine has it. Any thread, real-time.
+    /// Returns whether the engine is done with it; the engine has it between place() and done(). Any thread,
+    /// real-time.
     [[nodiscard]] bool done() const noexcept TAPPET_REALTIME {
         return !asked_.load(std::memory_order_acquire);
     }
-    /// Once done: whether it ran. False: its component did not run then.
+    /// Returns, once done, whether the method ran. False: its component did not run then.
     [[nodiscard]] bool given() const noexcept TAPPET_REALTIME { return given_; }
-    /// Before it is posted. `values` has room for arguments and result and outlives the request.
+    /// Fills the request, before it is posted. `values` has room for arguments and result and outlives the
+    /// request.
     void place(const MethodOperations& method, GatedComponent& component, std::byte* values) noexcept
         TAPPET_REALTIME {
         method_ = &method, component_ = &component, values_ = values;
         asked_.store(true, std::memory_order_relaxed);
     }
-    /// It could not be posted.
+    /// Withdraws a request that could not be posted.
     void withdraw() noexcept TAPPET_REALTIME { asked_.store(false, std::memory_order_relaxed); }
-    /// As a message's call, in the engine.
+    /// Runs the request: a message's call, in the engine.
     static void run(void* self, const std::byte*) noexcept TAPPET_REALTIME {
         auto& request = *static_cast<MethodRequest*>(self);
         const MethodOperations& method = *request.method_;
@@ -177,7 +181,7 @@ struct MethodOf {
         else
             return (static_cast<Component*>(component)->*Method)(arguments...);
     }
-    /// One that only looks is answered by a component that stands, too: whether it is ready, for instance.
+    /// A method that only reads is answered by a stopped component too: whether it is ready, for instance.
     static constexpr Entry by(Entry entry) noexcept { return is_const ? Entry::always : entry; }
     static Answer<R> call(GatedComponent& at, const std::remove_cvref_t<A>&... arguments) noexcept
         TAPPET_REALTIME {
@@ -227,7 +231,7 @@ template <auto Method, class Component, class R, class... A>
 struct MethodFunction<Method, R (Component::*)(A...) const noexcept TAPPET_REALTIME>
     : detail::MethodOf<Method, false, true, Component, R, A...> {};
 
-/// Of one that may_block: `Method` is a `R (Component::*)(A...) noexcept`.
+/// The function of a method that may_block: `Method` is a `R (Component::*)(A...) noexcept`.
 template <auto Method, class = decltype(Method)>
 struct BlockingMethod : MethodFunction<nullptr> {};
 template <auto Method, class Component, class R, class... A>

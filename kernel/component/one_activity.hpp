@@ -1,4 +1,4 @@
-// What belongs to one activity: a device, or whatever else is not shared.
+// Ownership by one activity: of a device, or of anything else that is not shared.
 #pragma once
 
 #include "kernel/component/current.hpp"
@@ -7,11 +7,11 @@
 
 namespace tappet {
 
-/// The first activity that uses it is its owner from then on. A thread that runs none is let through: a
-/// start-up, that of the makers, a test.
+/// The first activity that uses it owns it from then on. Threads that run no activity may use it: start-up,
+/// the makers' thread, a test.
 class OneActivity {
 public:
-    /// Another activity than the owner breaks contract 109. Real-time.
+    /// Checks a use. An activity other than the owner breaks contract 109. Real-time.
     void used() noexcept TAPPET_REALTIME {
         const std::uint32_t here = running_activity();
         if (here == no_activity) return;

@@ -1,13 +1,13 @@
-// How an interface spells methods and commands, and the calls by which a component reaches its peers' (thesis
-// 4.5.3).
+// How an interface spells methods and commands, and the calls with which a component uses those of its peers
+// (thesis 4.5.3).
 #pragma once
 
 #include "kernel/component/interface.hpp"
 
 namespace tappet {
 
-/// A member function `R f(A...) noexcept TAPPET_REALTIME` that peers run in their own thread: those of its
-/// own activity, or any if it is declared any_thread. One that may_block is declared noexcept alone.
+/// A member function `R f(A...) noexcept TAPPET_REALTIME` that peers run in their own thread: peers of its
+/// own activity, or any peer if it is declared any_thread. A method that may_block is declared only noexcept.
 template <auto Method, class... Options>
 constexpr Facet method(std::string_view name, std::string_view doc, Options... options) {
     constexpr bool blocks = detail::says_may_block<Options...>;
@@ -42,10 +42,10 @@ constexpr Facet calls(std::string_view name, std::string_view doc, Options... op
                         options...);
 }
 
-/// A goal that the component reaches for others. `Action`: `bool f(P...) noexcept TAPPET_REALTIME`, false
-/// rejects. `Completion`: the same parameters or none, returns CommandProgress or bool; asked in each cycle
-/// of the component's activity after its action. Without it the command is done when its action has run. The
-/// action of one that may_block is declared noexcept alone.
+/// A goal that the component reaches for others. `Action`: `bool f(P...) noexcept TAPPET_REALTIME`; false
+/// rejects. `Completion`: the same parameters or none, returns CommandProgress or bool; polled in each cycle
+/// of the component's activity after its action. Without a completion the command is done when its action has
+/// run. The action of a command that may_block is declared only noexcept.
 template <auto Action, auto Completion = nullptr, class... Options>
 constexpr Facet command(std::string_view name, std::string_view doc, Options... options) {
     constexpr bool blocks = detail::says_may_block<Options...>;
@@ -77,7 +77,7 @@ inline constexpr CommandCallOperations command_call_of{
 
 namespace detail {
 
-/// A command that is another one, sent by its component: its arguments go there, its results come back.
+/// A command that its component forwards as another one: the arguments go there, the results come back.
 template <auto Member, class Call = typename MemberOf<Member>::Type>
 struct ForwardedCommand;
 template <auto Member, class... P>
@@ -102,10 +102,10 @@ struct ForwardedCommand<Member, CommandCall<P...>> {
 
 } // namespace detail
 
-/// A command that wraps the one behind a member CommandCall<P...> as it is: rejected while that one is on its
-/// way, done with its results when it is done, failed when it was rejected or failed. For one that changes
-/// arguments, write an action that sends it and a completion that returns its progress(...). The call itself
-/// needs its sends<...>(...) and its row too.
+/// A command that wraps the one behind a member CommandCall<P...> unchanged: rejected while that one is in
+/// flight, done with its results when it is done, failed when it was rejected or failed. To change arguments,
+/// write an action that sends it and a completion that returns its progress(...). The call itself also needs
+/// its sends<...>(...) and its row.
 template <auto Member, class... Options>
 constexpr Facet forwards(std::string_view name, std::string_view doc, Options... options) {
     return detail::with({.name = name,

@@ -1,5 +1,5 @@
 // Properties that peers may set and read (thesis 4.1.2, 4.7). The owner declares a setter, a getter, or both;
-// a row of the table says whose commands they are.
+// a row of the table connects a peer's command to each.
 //
 //     struct Pump {                                            struct Tuner {
 //         Property<double> limit{4.0};                             CommandCall<double> set;
@@ -61,9 +61,9 @@ struct PeerProperty {
 
 } // namespace detail
 
-/// A command by which a peer sets a property, sent with its value. It is rejected, and nothing changes, when
-/// the value is outside of the property's range or no number, when the owner's accepts() refuses it, and
-/// while the owner does not run. Real-time.
+/// A command with which a peer sets a property; its argument is the value. It is rejected, and nothing
+/// changes, when the value is out of the property's range or not a number, when the owner's accepts() refuses
+/// it, and while the owner does not run. Real-time.
 template <auto Member, class... Options>
 constexpr Facet setter(std::string_view name, std::string_view doc, Options... options) {
     using P = detail::PeerProperty<Member>;
@@ -75,7 +75,7 @@ constexpr Facet setter(std::string_view name, std::string_view doc, Options... o
                         options...);
 }
 
-/// A command by which a peer reads a property: the value is its result. It is rejected while the owner does
+/// A command with which a peer reads a property: the value is its result. It is rejected while the owner does
 /// not run. Real-time.
 template <auto Member, class... Options>
 constexpr Facet getter(std::string_view name, std::string_view doc, Options... options) {

@@ -1,5 +1,5 @@
-// Data flow ports (thesis 4.4): an output keeps the last value, an input reads it. What stands between them
-// is decided by the machine table: inside one activity nothing, across activities a wait-free data object.
+// Data flow ports (thesis 4.4): an output keeps the last value, an input reads it. The machine table decides
+// what is between them: inside one activity nothing, across activities a wait-free data object.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -22,10 +22,10 @@
 
 namespace tappet {
 
-/// What reading an input tells about the value.
+/// The state of the value that an input reads.
 enum class Flow : std::uint8_t { never_written, old, fresh, stale };
 
-/// What a stale value means for the reader: keep it, use the row's substitute, or stop the machine.
+/// The reader's policy for a stale value: keep it, use the row's substitute, or stop the machine.
 enum class WhenStale : std::uint8_t { hold, substitute, stop };
 
 /// A value that a table's row gives: a number, or a constant with static storage.
@@ -36,47 +36,47 @@ struct RowValue {
     TypeId type = nullptr; ///< of the constant
 };
 
-/// What a connection's row says to the input.
+/// The input's part of a connection's row.
 struct InputPolicy {
     Duration max_age{}; ///< 0: no value is ever stale
     WhenStale when_stale = WhenStale::hold;
     RowValue substitute{};
     RowValue before_first{};
-    double scale = 1;                 ///< of a floating number that comes from another data object
-    BetweenValues* between = nullptr; ///< likewise; null: the last value is held
+    double scale = 1;                 ///< for a floating number that comes from another data object
+    BetweenValues* between = nullptr; ///< for the same; null: the last value is held
 };
 
-/// Of an input: what each new value is multiplied by, and what is made of it between two. What is no floating
-/// number has neither.
+/// For an input: the factor of each new value, and the values between two. Only floating numbers have them.
 struct Scale {
     double factor = 1;
     BetweenValues* between = nullptr;
 };
 struct NoScale {};
 
-/// A value and the time it was true.
+/// A value and the time at which it was true.
 template <class T>
 struct Sample {
     T value = default_value<T>();
     Time stamp{};
-    Life life = never_lived; ///< of its writer, as it wrote it
+    Life life = never_lived; ///< life of its writer, as the writer wrote it
 };
 
 template <class T>
 inline constexpr bool copied_as_bytes<Sample<T>> = copied_as_bytes<T>;
 
-/// Of what a port holds: a larger value begins on a line, so that it touches no more of them than it must.
+/// Alignment of the contents of a port: a larger value begins on a cache line, so that it touches no more
+/// lines than it must.
 template <class T>
 inline constexpr std::size_t place_alignment = std::max(alignof(T), std::size_t{sizeof(T) < 96 ? 1 : 64});
 
-/// Where an observer finds what a port holds; null where there is nothing. They change in the port's own
-/// activity only.
+/// Addresses of a port's contents for an observer; null: there is none. They change only in the port's own
+/// activity.
 struct PortPlaces {
     const void* value = nullptr;
     const Time* stamp = nullptr;
-    const std::uint64_t* writes = nullptr; ///< how many values came so far
+    const std::uint64_t* writes = nullptr; ///< number of values so far
     const bool* forced = nullptr;
-    const void* forced_value = nullptr; ///< an input's, while it is forced
+    const void* forced_value = nullptr; ///< for an input, while it is forced
 };
 
 /// A place to wake: the engine of an activity that a connection row wakes.
@@ -88,17 +88,18 @@ struct Waker {
     }
 };
 
-/// What each value that a component writes passes on its way out, and may be changed by. In the port's own
-/// activity.
+/// A filter that each value a component writes passes on its way out; it may change the value. In the port's
+/// own activity.
 struct PortFilter {
     void (*pass)(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME = nullptr;
 };
 
-/// Not null: the component does not run, and what it writes is dropped and counted here.
+/// The counter of dropped writes; not null: the component does not run, and its writes are dropped and
+/// counted here.
 using DroppedWrites = std::atomic<std::uint32_t>;
 
-/// An output port. Written by its own component only, from its own activity. From the end of the component's
-/// stop() to its next start() a write is dropped and counted: what stop() left there stands. Real-time.
+/// An output port. Written only by its own component, from its own activity. From the end of the component's
+/// stop() to its next start() a write is dropped and counted: the values that stop() left stay. Real-time.
 template <class T>
 class Output {
     static_assert(Exchangeable<T>, "what flows between activities is copied word by word");
@@ -108,12 +109,12 @@ public:
 
     /// Writes a value that is true now, at the time of the cycle.
     void write(const T& value) noexcept TAPPET_REALTIME { put(value, *now_); }
-    /// Writes a value that was true at `stamp`; more than ahead_at_most after the cycle's time it cannot be,
-    /// and such a value is as old as can be.
+    /// Writes a value that was true at `stamp`. A stamp more than ahead_at_most after the cycle's time is
+    /// impossible, and such a value counts as old as can be.
     void write(const T& value, Time stamp) noexcept TAPPET_REALTIME {
         put(value, judged_stamp(stamp, *now_));
     }
-    /// What the component wrote last, also while readers get a forced value instead.
+    /// Returns the value that the component wrote last, also while readers get a forced value instead.
     [[nodiscard]] const T& last() const noexcept TAPPET_REALTIME { return forced_ ? hidden_ : last_.value; }
 
 private:
@@ -135,7 +136,7 @@ private:
         }
         if constexpr (std::is_arithmetic_v<T>)
             if (filter_ != nullptr) [[unlikely]] {
-                T passed = value; // whoever looks from outside sees what passed only
+                T passed = value; // observers see only what passed
                 filter_->pass(*filter_, &passed, std::min(stamp, *now_));
                 return store(passed, stamp);
             }
@@ -152,7 +153,7 @@ private:
         }
         publish(life_);
     }
-    /// After each change of what a write has to look at.
+    /// Updates the fast path's condition, after each change of what a write depends on.
     void settle() noexcept TAPPET_REALTIME {
         inside_only_ = !forced_ && dropped_ == nullptr && shared_ == nullptr && waker_.wake == nullptr &&
                        filter_ == nullptr && last_.life == life_;
@@ -166,13 +167,13 @@ private:
         if (shared_ != nullptr) shared_->write(last_);
         waker_();
     }
-    /// Its component begins to stop.
+    /// The component begins to stop.
     void begin_life(Life next) noexcept TAPPET_REALTIME {
         life_ = next;
         settle();
     }
-    /// In the port's own activity, between two steps. False, and nothing is forced: its component never wrote
-    /// it, so that a release would have to make a value up.
+    /// Forces a value, in the port's own activity, between two steps. Returns false, and forces nothing, when
+    /// its component never wrote the port: a release would have to invent a value.
     bool force(const T& value) noexcept TAPPET_REALTIME {
         if (last_.life == never_lived) return false;
         if (!forced_) {
@@ -189,7 +190,8 @@ private:
     }
     /// Publishes what the component wrote last, before the force or meanwhile, with its own time stamp.
     void release() noexcept TAPPET_REALTIME { show_hidden(hidden_life_); }
-    /// Its component has stopped. What it did not write in its stop, nobody wants; see Input::is_abandoned().
+    /// Ends the force because its component has stopped. A hidden value that was not written in that stop is
+    /// abandoned; see Input::is_abandoned().
     void end_force() noexcept TAPPET_REALTIME { show_hidden(hidden_life_ == life_ ? life_ : unwanted); }
     void show_hidden(Life life) noexcept TAPPET_REALTIME {
         if (!forced_) return;
@@ -203,29 +205,29 @@ private:
     alignas(place_alignment<Sample<T>>) Sample<T> last_{};
     std::uint64_t generation_ = 0;
     const Time* now_ = &detail_epoch;
-    bool inside_only_ = false; ///< nobody but readers of the own activity, and the value is the component's
+    bool inside_only_ = false; ///< only readers of its own activity, and the value is the component's
     bool forced_ = false;
     DataObject<Sample<T>>* shared_ = nullptr;
     Waker waker_{};
     PortFilter* filter_ = nullptr;
     DroppedWrites* dropped_ = nullptr;
     alignas(place_alignment<T>) T hidden_ =
-        default_value<T>(); ///< of a forced port: what its component wrote
-    Time hidden_stamp_{};   ///< and when it was true
+        default_value<T>(); ///< of a forced port: the value that its component wrote
+    Time hidden_stamp_{};   ///< and the time at which it was true
     Life hidden_life_ = never_lived;
-    Life life_ = first_life; ///< of what its component writes
+    Life life_ = first_life; ///< of the values that its component writes
 
     static constexpr Time detail_epoch{};
 };
 
-/// An input port. Read by its own component only, from its own activity. Real-time.
+/// An input port. Read only by its own component, from its own activity. Real-time.
 template <class T>
 class Input {
 public:
     using Value = T;
 
-    /// Copies the value into `into` and tells what it is. Never written: what the row gives before the first
-    /// value, or its substitute, or zero.
+    /// Copies the value into `into` and returns its state. If never written, it gives the row's value before
+    /// the first one, or the row's substitute, or zero.
     Flow read(T& into) noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
         if (!inside_only_ || local_->last_.life < first_life) return read_further(into);
@@ -234,31 +236,32 @@ public:
         seen_ = local_->generation_;
         return seen == seen_ ? Flow::old : Flow::fresh;
     }
-    /// The value alone, with the row's staleness policy applied.
+    /// Returns the value alone, with the row's staleness policy applied.
     [[nodiscard]] T get() noexcept TAPPET_REALTIME {
         TAPPET_THREAD_CONTRACT(runs_by(now_), Contract::single_reader, running_activity());
         if (!inside_only_ || local_->last_.life < first_life) return get_further();
         seen_ = local_->generation_;
         return local_->last_.value;
     }
-    /// When the value read last was true; a forced one always is, an abandoned one was before all. Not after
-    /// the first look at it: who writes with a time ahead is not believed for longer.
+    /// Returns the time at which the value read last was true: now for a forced value, before all for an
+    /// abandoned one. It is never later than the first look at the value: a time ahead does not keep a value
+    /// valid for longer.
     [[nodiscard]] Time stamp() const noexcept TAPPET_REALTIME {
         return forced_ ? *now_ : is_abandoned() ? before_all : true_at();
     }
-    /// As its writer said it, also when that lies ahead.
+    /// Returns the time as its writer stated it, also when it is ahead.
     [[nodiscard]] Time claimed_stamp() const noexcept TAPPET_REALTIME {
         return forced_ ? *now_ : local_ != nullptr ? local_->last_.stamp : cache_.stamp;
     }
-    /// Tells what the value is, without copying it out; a fresh value stays fresh for read().
+    /// Returns the state of the value without copying it; a fresh value stays fresh for read().
     [[nodiscard]] Flow flow() noexcept TAPPET_REALTIME { return look(least_life_); }
-    /// There is a value, and it is not stale: what get() gives may be relied on.
+    /// Returns whether there is a value that is not stale: get() can be relied on.
     [[nodiscard]] bool good() noexcept TAPPET_REALTIME {
         const Flow now = flow();
         return now == Flow::fresh || now == Flow::old;
     }
-    /// When what was read last becomes stale if nothing comes, or nothing came for as long; never: it does
-    /// not.
+    /// Returns when the value read last becomes stale if nothing newer comes, or if nothing came at all;
+    /// never: it does not become stale.
     [[nodiscard]] Time expires() const noexcept TAPPET_REALTIME {
         if (max_age_ == Duration::zero()) return never;
         return (forced_ || life() == never_lived ? *now_ : true_at()) + max_age_ + 1ns;
@@ -266,20 +269,21 @@ public:
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME {
         return local_ != nullptr || shared_ != nullptr;
     }
-    /// A force ended with a stop, and what stands at the other end is still what it hid: nobody wants it any
-    /// longer. It is stale, and was true before all; who acts on stale values asks. After read().
+    /// Returns whether a force ended with a stop, and the value at the other end is still the one that it
+    /// hid: then nobody wants that value any longer. It is stale, and was true before all; readers that act
+    /// on stale values must check this. Call it after read().
     [[nodiscard]] bool is_abandoned() const noexcept TAPPET_REALTIME {
         return !forced_ && life() != never_lived && life() < least_life_;
     }
-    /// How many values came to the other end until the one that was read last; of a forced one until now.
+    /// Returns how many values reached the other end until the one read last; for a forced input until now.
     [[nodiscard]] std::uint64_t writes() const noexcept TAPPET_REALTIME {
         return before_turn_ + (forced_ ? written() : generation());
     }
-    /// In place of a stale value its row gives one that is true now.
+    /// Returns whether its row substitutes stale values: the substitute is true now.
     [[nodiscard]] bool has_substitute() const noexcept TAPPET_REALTIME {
         return when_stale_ == WhenStale::substitute;
     }
-    /// Its component gets a forced value in place of what is written.
+    /// Returns whether its component gets a forced value in place of what is written.
     [[nodiscard]] bool forced() const noexcept TAPPET_REALTIME { return forced_; }
 
 private:
@@ -287,7 +291,7 @@ private:
 
     [[gnu::noinline]] Flow read_further(T& into) noexcept TAPPET_REALTIME {
         if (fetch() && max_age_ == Duration::zero() && cache_.life >= least_life_) {
-            // Out of the registers that the value has just come in.
+            // From the registers into which the value was just loaded.
             copy_value(cache_.value, into);
             seen_ = cached_generation_;
             return Flow::fresh;
@@ -296,7 +300,7 @@ private:
         into = value_of(flow);
         return flow;
     }
-    /// A value of an earlier life than `least` is stale.
+    /// Returns the state of the value; one of an earlier life than `least` is stale.
     Flow look(Life least) noexcept TAPPET_REALTIME {
         const std::uint64_t seen = seen_;
         static_cast<void>(fetch());
@@ -310,9 +314,9 @@ private:
         static_cast<void>(fetch());
         return judge(least_life_);
     }
-    /// True: there was a newer value in another activity, and now it is here. A read that lost against a fast
-    /// writer leaves the last good value, which is then old; one after a force leaves the forced value,
-    /// stale.
+    /// Gets a newer value from another activity. Returns true when there was one. A read that lost against a
+    /// fast writer leaves the last good value, which is then old; a read after a force leaves the forced
+    /// value, stale.
     [[gnu::always_inline]] bool fetch() noexcept TAPPET_REALTIME {
         if (forced_ && writer_has_stopped()) {
             end_force();
@@ -344,7 +348,7 @@ private:
         seen_ = generation;
         return Flow::fresh;
     }
-    /// After each change of what a read has to look at.
+    /// Updates the fast path's condition, after each change of what a read depends on.
     void settle() noexcept TAPPET_REALTIME {
         least_life_ = local_ == abandoned_of_ ? wanted_from_ : first_life;
         if (stands_ && local_ == hides_of_) least_life_ = std::max(least_life_, life_after(stops_before_));
@@ -356,8 +360,8 @@ private:
         if (flow == Flow::stale && when_stale_ == WhenStale::substitute) return substitute_;
         return local_ != nullptr && !forced_ ? local_->last_.value : cache_.value;
     }
-    /// By turns another one writes it. What is forced stays, and is still the one's before: the turn may be
-    /// refused to the other.
+    /// Links the output that writes it from now on, by turns. A forced value stays, and still belongs to the
+    /// writer before: the turn may be refused to the new one.
     void link(const Output<T>* output, const Stops* writer) noexcept TAPPET_REALTIME {
         linked_ = writer;
         turned_from_ = local_ != output ? local_ : nullptr;
@@ -368,26 +372,26 @@ private:
         local_ = output;
         settle();
     }
-    /// The turn is that one's now: what is forced ends with its stop, if the one before had not stopped by
-    /// itself when the input was linked.
+    /// Gives the turn to that writer: the force ends with that one's stop, unless the writer before had
+    /// stopped by itself when the input was linked.
     void hand_force_to(const Stops* writer) noexcept TAPPET_REALTIME {
         if (turned_from_ != nullptr) before_turn_ += turned_from_->generation_;
         turned_from_ = nullptr;
         if (forced_ && !ends_before_turn_) hide_from(writer);
     }
-    /// What its writer wrote, and writes until it begins to stop.
+    /// Starts to hide the writer's values: those written so far, and until it begins to stop.
     void hide_from(const Stops* writer) noexcept TAPPET_REALTIME {
         writer_ = writer;
         stops_before_ = stops_of_writer();
         hides_of_ = local_;
         ends_before_turn_ = false;
     }
-    /// In the port's own activity, between two steps. The component reads this value, whatever comes, fresh
-    /// once and never stale, until it is released, or its writer stops: that one's safe values count then;
-    /// see is_abandoned().
+    /// Forces a value, in the port's own activity, between two steps. Whatever comes, the component reads
+    /// this value, fresh once and never stale, until it is released or its writer stops: then the writer's
+    /// safe values count; see is_abandoned().
     bool force(const T& value) noexcept TAPPET_REALTIME {
         if (forced_ && writer_has_stopped()) end_force();
-        resume(); // by what it wants now
+        resume(); // by the values that it wants now
         hide_from(linked_);
         cache_ = {value, *now_};
         seen_ = 0;
@@ -395,21 +399,22 @@ private:
         settle();
         return true;
     }
-    /// With its writer's stop, or the stop of its own component, if that comes first: then what its writer
-    /// wants, who does not stop, is wanted again when the component starts.
+    /// Ends the force, with the stop of its writer or of its own component, whichever is first. In the second
+    /// case, values of a writer that does not stop are wanted again when the component starts.
     [[gnu::noinline, gnu::cold]] void end_force() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         stands_ = true;
         if (writer_has_stopped()) resume();
         let_go();
     }
-    /// By who forced it: what its writer wants, if that has not stopped meanwhile, is wanted again.
+    /// Ends the force at its owner's request: the writer's values are wanted again, unless the writer has
+    /// stopped since.
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         if (writer_has_stopped()) return end_force();
         let_go();
     }
-    /// Its component starts again.
+    /// The component starts again.
     void resume() noexcept TAPPET_REALTIME {
         if (!std::exchange(stands_, false)) return;
         if (life_after(stops_of_writer()) != life_after(stops_before_)) {
@@ -421,11 +426,11 @@ private:
     void let_go() noexcept TAPPET_REALTIME {
         forced_ = false;
         settle();
-        seen_ = cached_generation_ = 0; // what stands at the other end is read again
+        seen_ = cached_generation_ = 0; // the value at the other end is read again
         cache_ = {};
     }
 
-    /// Of the value that was read last, if it is not forced; 0: there is none.
+    /// Returns the number of the value that was read last, if it is not forced; 0: there is none.
     [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
         return local_ != nullptr ? local_->generation_ : cached_generation_;
     }
@@ -450,7 +455,7 @@ private:
     [[nodiscard]] std::uint64_t stops_of_writer() const noexcept TAPPET_REALTIME {
         return writer_ == nullptr ? 0 : writer_->count.load(std::memory_order_acquire);
     }
-    /// In the unit of the reader. A value too large for T becomes its largest one; no number stays none.
+    /// Converts into the unit of the reader. A value too large for T becomes its largest one; NaN stays NaN.
     [[nodiscard]] T scaled(T value) const noexcept TAPPET_REALTIME
         requires std::is_floating_point_v<T>
     {
@@ -467,21 +472,21 @@ private:
     [[no_unique_address]] std::conditional_t<std::is_floating_point_v<T>, Scale, NoScale> scale_{};
     bool inside_only_ = false; ///< the value is the one at the other end, of any age
     bool forced_ = false;
-    bool stands_ = false;           ///< its component does, with whose stop a force ended
+    bool stands_ = false;           ///< its component is stopped, and a force ended with that stop
     bool ends_before_turn_ = false; ///< the writer had stopped when another one was linked
     WhenStale when_stale_ = WhenStale::hold;
     std::uint64_t seen_ = 0;
     const Output<T>* local_ = nullptr;
-    const Stops* linked_ = nullptr;           ///< who writes what stands at the other end
-    const Stops* writer_ = nullptr;           ///< with whose stop a force ends
-    const Output<T>* hides_of_ = nullptr;     ///< whose values a force hides
-    const Output<T>* abandoned_of_ = nullptr; ///< whose values nobody wants that are ..
+    const Stops* linked_ = nullptr;           ///< of the component that writes the other end
+    const Stops* writer_ = nullptr;           ///< of the component with whose stop a force ends
+    const Output<T>* hides_of_ = nullptr;     ///< the output whose values a force hides
+    const Output<T>* abandoned_of_ = nullptr; ///< the output whose values are abandoned when they are ..
     Life wanted_from_ = first_life;           ///< .. of an earlier life than this
     std::uint64_t stops_before_ = 0;          ///< of writer_, when the force began
-    Life least_life_ = first_life;            ///< of what is wanted of the one who writes it now
-    const Output<T>* turned_from_ = nullptr;  ///< until the turn is taken
-    std::uint64_t before_turn_ = 0;           ///< so many values others had written
-    mutable Time ahead_{}, seen_ahead_at_{};  ///< the last stamp that lay ahead, and when it was seen first
+    Life least_life_ = first_life;            ///< least life of wanted values of the present writer
+    const Output<T>* turned_from_ = nullptr;  ///< until the turn is accepted
+    std::uint64_t before_turn_ = 0;           ///< number of values that other writers had written
+    mutable Time ahead_{}, seen_ahead_at_{};  ///< the last stamp that was ahead, and when it was seen first
     mutable std::uint64_t ahead_of_ = 0;      ///< the number of that value
     Duration max_age_{};
     const Time* now_ = &Output<T>::detail_epoch;

@@ -1,5 +1,5 @@
-// Properties (thesis 4.7): configuration of a component, with its default in the component, its value in the
-// table, and what the commissioning engineer made of it in a file.
+// Properties (thesis 4.7): configuration of a component, with a default in the component, a value in the
+// table, and the commissioning engineer's changes in a file.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -19,7 +19,7 @@
 
 namespace tappet {
 
-/// Up to N values of one kind, in place: a property whose length may change.
+/// Up to N values of one kind, in place: for a property whose length may change.
 template <class T, std::size_t N>
 using Sequence = Bounded<T, N>;
 
@@ -60,8 +60,8 @@ template <class T>
 concept PropertyValue =
     detail::PropertyScalar<T> || detail::PropertyScalar<typename detail::ListElement<T>::Type>;
 
-/// Read by its own component, from its own activity. Once the machine runs it is changed by a
-/// PropertyTransaction only, between two steps.
+/// A property. Read by its own component, from its own activity. Once the machine runs, only a
+/// PropertyTransaction changes it, between two steps.
 template <PropertyValue T>
 class Property {
 public:
@@ -91,43 +91,42 @@ struct PropertySetting {
     const ListSetting* list = nullptr;
 };
 
-/// The elements of a list that stands in a constant of the program.
+/// The elements of a list, which is a constant of the program.
 struct ListSetting {
     std::size_t size = 0;
     PropertySetting (*at)(std::size_t i) = nullptr;
 };
 
-/// The range a property's value lies in, both ends included; of a time in seconds, of a list for each
-/// element.
+/// The range of a property's value, both ends included: of a time in seconds, of a list for each element.
 struct Range {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
 
-    /// Whether a property may have this value. Every way to a property asks here: also a range without an end
-    /// holds numbers only.
+    /// Returns whether a property may have this value. Every change of a property is checked here; even an
+    /// unbounded range holds numbers only.
     [[nodiscard]] constexpr bool holds(double value) const noexcept TAPPET_REALTIME {
         return is_number(value) && value >= low && value <= high;
     }
 };
 
-/// What start-up, transactions and files do with a property's value of one type. A property lies where its
-/// value lies: the functions take the value's bytes, in place or as a copy.
+/// Functions for a property's value of one type, for start-up, transactions and files. A property has the
+/// address of its value: the functions take the value's bytes, in place or as a copy.
 struct PropertyOperations {
     PropertySetting::Kind kind = PropertySetting::Kind::real; ///< of the value, or of a list's elements
     bool is_list = false;
-    TypeId element = nullptr; ///< of a list; else the value's own
+    TypeId element = nullptr; ///< type of a list's elements; else the value's own
     std::size_t least_size = 1;
     std::size_t most_size = 1;
-    std::int64_t least = 0; ///< what a whole number of this type can hold
+    std::int64_t least = 0; ///< least whole number that this type can hold
     std::int64_t most = 0;
     std::size_t most_characters = 0; ///< of a text
-    /// The value that a table's row gives; a setting that was checked to fit.
+    /// Sets the value from a table's row. The setting was checked to fit.
     void (*set)(std::byte* value, const PropertySetting&) noexcept = nullptr;
     std::size_t (*size)(const std::byte* value) noexcept TAPPET_REALTIME = nullptr;
-    /// False when the type does not have room for so many, or always has another number of elements.
+    /// Returns false when the type has no room for so many elements, or has another fixed number of them.
     bool (*resize)(std::byte* value, std::size_t size) noexcept TAPPET_REALTIME = nullptr;
     std::byte* (*at)(std::byte* value, std::size_t i) noexcept TAPPET_REALTIME = nullptr;
-    /// Element i as a number in the range's unit; 0 for what has no number.
+    /// Returns element i as a number in the range's unit; 0 for a type without numbers.
     double (*number)(const std::byte* value, std::size_t i) noexcept TAPPET_REALTIME = nullptr;
 };
 

@@ -145,7 +145,7 @@ struct PropertyAccess {
 
 constexpr void apply(Facet& facet, Range within) noexcept { facet.range = within; }
 
-/// What a list of facets takes as one of its items: a facet, or a bag of them.
+/// The number of facets in one item of a list of facets: a facet, or a bag of them.
 template <class F>
 inline constexpr std::size_t facet_count = 1;
 template <std::size_t N>
@@ -160,7 +160,7 @@ constexpr void put(std::array<Facet, N>& into, std::size_t& at, const std::array
     for (const Facet& facet : each) into[at++] = facet;
 }
 
-/// As the component spells it: a facet in a bag by its own name alone.
+/// The facets as the component spells them: a facet in a bag only by its own name.
 template <class T>
 inline constexpr auto spelled_facets = T::interface();
 
@@ -245,7 +245,7 @@ constexpr const auto& full_facets() noexcept {
         return spelled_facets<T>;
 }
 
-/// The facets of a member that is a struct of properties, found through that member.
+/// The facets of a member that is a struct of properties, reached through that member.
 template <auto Member>
 struct BagMember {
     using Struct = typename MemberOf<Member>::Type;
@@ -279,7 +279,7 @@ constexpr Facet property(std::string_view name, std::string_view unit, std::stri
     return facet;
 }
 
-/// A bag of properties and bags; their names stand after its own and a dot.
+/// A bag of properties and bags; their names are prefixed by its own and a dot.
 template <class... Members>
 constexpr auto bag(std::string_view name, std::string_view doc, const Members&... members) {
     constexpr std::size_t count = (std::size_t{0} + ... + detail::facet_count<Members>);

@@ -1,5 +1,5 @@
-// Several properties of one component changed as one (thesis 4.7.1): checked where they are proposed, then
-// offered to the component between two of its steps, which takes all of them or none.
+// A change of several properties of one component as one (thesis 4.7.1): checked where they are proposed,
+// then offered between two steps to the component, which accepts all of them or none.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -11,8 +11,9 @@
 
 namespace tappet {
 
-/// Filled by one thread, which then posts message() to the component's engine and leaves the object alone
-/// until finished(). Also holds a copy of what is, taken in the engine or of a component that stands still.
+/// One thread fills it, posts message() to the component's engine, and then leaves the object alone until
+/// finished(). It also holds a copy of the present values, taken in the engine or from a component that is
+/// stopped.
 class PropertyTransaction {
 public:
     static constexpr std::size_t max_values = 64;
@@ -25,7 +26,7 @@ public:
         return (facet.type->size + alignment - 1) / alignment * alignment;
     }
 
-    /// Empties it; what is proposed next is for this component. `name` lives as long as it.
+    /// Empties it for proposals to this component. `name` must outlive it.
     void begin(std::string_view name, const ComponentType& type, void* component) noexcept {
         name_ = name, type_ = &type, component_ = component;
         count_ = used_ = 0;
@@ -33,8 +34,8 @@ public:
         state_.store(State::open, std::memory_order_relaxed);
     }
 
-    /// Room for a new value of that property: zeros, or what was proposed before. Null: no property, or no
-    /// room, which the table's check rules out for one component's own.
+    /// Returns room for a new value of that property: zeros, or the earlier proposal. Null: not a property,
+    /// or no room, which the table's check rules out for one component's own properties.
     [[nodiscard]] std::byte* change(std::size_t facet_index) noexcept {
         const Facet& facet = type_->facets[facet_index];
         if (facet.kind != FacetKind::property) return nullptr;
@@ -50,7 +51,7 @@ public:
         used_ += needed;
         return place;
     }
-    /// The change that was asked for last is none after all.
+    /// Withdraws the last change().
     void withdraw_last() noexcept {
         --count_;
         used_ -= bytes_for(type_->facets[values_[count_].facet]);
@@ -65,21 +66,21 @@ public:
         for (std::size_t f = 0; f < type_->facets.size(); ++f) static_cast<void>(change(f));
     }
 
-    /// Asks the component and, when it consents, gives it all of them. Only
-    /// where the component runs, or while it stands still. Real-time.
+    /// Asks the component and, when it consents, sets all values. Only where the component runs, or while it
+    /// is stopped. Real-time.
     void commit() noexcept TAPPET_REALTIME {
         refusal_ = type_->change(component_, values());
         state_.store(refusal_.empty() ? State::done : State::refused, std::memory_order_release);
     }
-    /// Takes a copy of what the properties are that there is room for, and asks the component whether it
-    /// would consent to them: refusal(). Where the component runs, or while it stands still. Real-time.
+    /// Copies the present values of the properties that it has room for, and asks the component whether it
+    /// would consent to them: refusal(). Where the component runs, or while it is stopped. Real-time.
     void capture() noexcept TAPPET_REALTIME {
         for (const ProposedValue& each : values()) std::memcpy(place_of(each), each.target, each.size);
         if (type_->accepts != nullptr) refusal_ = type_->accepts(component_, Proposal{values()});
         state_.store(State::done, std::memory_order_release);
     }
 
-    /// The calls to post to the component's engine; `part` is the component's number there.
+    /// Return the calls to post to the component's engine; `part` is the component's number there.
     [[nodiscard]] Message commit_message(std::uint32_t part) noexcept {
         return message(part, [](void* self, const std::byte*) noexcept
                        TAPPET_REALTIME { static_cast<PropertyTransaction*>(self)->commit(); });
@@ -94,15 +95,15 @@ public:
     [[nodiscard]] bool finished() const noexcept TAPPET_REALTIME {
         return state() == State::done || state() == State::refused;
     }
-    /// What is wrong with the values in it, by their ranges or by the component that was asked: who proposed
-    /// them would be refused. Empty: nothing.
+    /// Returns the fault of its values, by their ranges or by the component that was asked: a proposal of
+    /// them would be refused. Empty: none.
     [[nodiscard]] Sentence check() const noexcept {
         for (const ProposedValue& each : values())
             if (Sentence fault = check_range(type_->facets[each.facet], each.value); !fault.empty())
                 return fault;
         return refusal_;
     }
-    /// Why the component did not consent; once refused.
+    /// Returns why the component did not consent; once refused.
     [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }
 
     [[nodiscard]] std::span<const ProposedValue> values() const noexcept TAPPET_REALTIME {

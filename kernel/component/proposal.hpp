@@ -1,4 +1,4 @@
-// What a component is asked before its properties change (thesis 4.7): the values as they would be.
+// The question to a component before its properties change (thesis 4.7): the values as they would be.
 #pragma once
 
 #include "kernel/component/property.hpp"
@@ -8,21 +8,21 @@
 
 namespace tappet {
 
-/// One proposed value: where it would go, and its bytes.
+/// One proposed value: its destination and its bytes.
 struct ProposedValue {
     std::byte* target = nullptr;
     const std::byte* value = nullptr;
     std::uint32_t size = 0;
-    std::uint32_t facet = 0; ///< of the component's type
+    std::uint32_t facet = 0; ///< number of the facet in the component's type
 };
 
-/// Given to `Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME`: an empty sentence is consent,
-/// another one is told to whoever asked. Real-time.
+/// The argument of `Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME`: an empty sentence is
+/// consent; any other is the answer to the request. Real-time.
 class Proposal {
 public:
     explicit Proposal(std::span<const ProposedValue> values) noexcept TAPPET_REALTIME : values_{values} {}
 
-    /// The value that this property of the component would have: the proposed one, or the one it keeps.
+    /// Returns the value that this property would have: the proposed one, or the present one.
     template <class T>
     [[nodiscard]] T of(const Property<T>& property) const noexcept TAPPET_REALTIME {
         T value = property.get();

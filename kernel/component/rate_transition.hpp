@@ -1,5 +1,5 @@
-// What an input makes of a slower writer's values in its own cycles (Franklin, Powell and Workman, Digital
-// Control of Dynamic Systems, 1998, chapter 6: holds of order nought and one).
+// An input's values in its own cycles from those of a slower writer (Franklin, Powell and Workman, Digital
+// Control of Dynamic Systems, 1998, chapter 6: holds of order zero and one).
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -14,18 +14,18 @@ namespace tappet {
 enum class RateTransition : std::uint8_t {
     unsaid,      ///< as hold
     hold,        ///< the last value: steps, without delay
-    interpolate, ///< a line to the last value, in one period of the writer: no steps, late by that period
-    extrapolate  ///< the line on from the last two, for one period and by no more than their distance:
-                 ///< neither, and beyond what was written
+    interpolate, ///< a line to the last value, in one period of the writer: no steps, one period late
+    extrapolate ///< the line through the last two continued, for one period and by at most their distance: no
+                ///< steps and no delay, but beyond what was written
 };
 
-/// Of one floating input. Real-time, in its activity.
+/// The values of one floating input. Real-time, in its activity.
 class BetweenValues {
 public:
     BetweenValues(RateTransition how, Duration period) noexcept : how_{how}, period_{period} {}
 
-    /// The value at `now`, after `written` came, which was true at `stamp`; or after none did. `begins`: it
-    /// does not go on from the one before, which its writer wrote before it stopped.
+    /// Returns the value at `now`. `is_new`: `written` came, which was true at `stamp`. `begins`: `written`
+    /// does not continue the one before, which its writer wrote before it stopped.
     [[nodiscard]] double at(Time now, bool is_new, double written, Time stamp, bool begins = false) noexcept
         TAPPET_REALTIME {
         is_first_ |= begins;
@@ -37,7 +37,7 @@ public:
 private:
     void take(Time now, double written, Time stamp) noexcept TAPPET_REALTIME {
         const double seconds = to_seconds(period_);
-        // Nobody read it meanwhile: a line from there leads from the past.
+        // Nobody read it meanwhile: a line from that value would start in the past.
         is_first_ |= now - began_ > 2 * period_;
         if (how_ == RateTransition::interpolate) {
             from_ = is_first_ ? written
@@ -45,15 +45,15 @@ private:
             slope_ = (written - from_) / seconds;
             began_ = now;
         } else {
-            // Not by the distance of two stamps that lie closer than a period: what is measured twice at
-            // almost one time would lead anywhere.
+            // Not over the distance of two stamps closer than a period: two measurements at almost one time
+            // would give any slope.
             slope_ = is_first_ || stamp <= began_
                          ? 0.0
                          : (written - from_) / to_seconds(std::max(stamp - began_, period_));
             from_ = written;
             began_ = stamp;
         }
-        // From no number a line leads nowhere, and two may lie farther apart than any number says.
+        // A line from NaN has no value, and the distance of two numbers may exceed every number.
         if (!is_number(slope_)) from_ = written, slope_ = 0.0;
         is_first_ = false;
     }
@@ -62,7 +62,7 @@ private:
     Duration period_;
     bool is_first_ = true;
     double from_ = 0.0;
-    double slope_ = 0.0; ///< for each second
+    double slope_ = 0.0; ///< per second
     Time began_{};
 };
 

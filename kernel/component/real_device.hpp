@@ -1,5 +1,5 @@
-// A device of the box: how it is opened when the machine starts, and how a guardian makes it safe when the
-// machine's process is no more. A driver implements it for its kind.
+// A device of the box: how the machine opens it at start-up, and how a guardian makes it safe after the
+// machine's process has ended. A driver implements it for its kind.
 #pragma once
 
 #include "kernel/component/device_traffic.hpp"
@@ -11,18 +11,18 @@
 
 namespace tappet {
 
-/// What a driver's row is bound to; the table's check has found all of it.
+/// The place to which a driver's row is bound; the table's check has found all of it.
 struct DevicePlace {
-    std::string_view address{};    ///< where Linux has it: "can0"; or an address: "192.168.7.2:502"
-    bool is_on_board = true;       ///< false: it is reached by that address alone
-    std::span<const Fact> bound{}; ///< what the binding says of it
+    std::string_view address{};    ///< the name in Linux: "can0"; or an address: "192.168.7.2:502"
+    bool is_on_board = true;       ///< false: it is reached only by that address
+    std::span<const Fact> bound{}; ///< facts of the binding about it
     std::span<const Fact> of_board{};
     const void* map = nullptr; ///< the driver's `device_map`
     DeviceTraffic traffic{};   ///< the driver's `device_traffic`
-    DeviceUse use{};           ///< without a name: nothing is proven of it
+    DeviceUse use{};           ///< without a name: nothing is proven about it
 };
 
-/// Called between the steps of what may take long.
+/// A call between the steps of an operation that may take long.
 struct Meanwhile {
     void* context = nullptr;
     void (*call)(void* context) noexcept = nullptr;
@@ -31,7 +31,8 @@ struct Meanwhile {
     }
 };
 
-/// Not real-time. A device that drives nothing overrides nothing of what makes safe.
+/// The base of a driver's device. Not real-time. A device without outputs need not override the functions
+/// that make it safe.
 class RealDevice {
 public:
     RealDevice() = default;
@@ -39,33 +40,35 @@ public:
     RealDevice& operator=(const RealDevice&) = delete;
     virtual ~RealDevice() = default;
 
-    /// The error says what is wrong and how to cure it, not which device it is.
+    /// Opens the device. The error says what is wrong and how to cure it, but does not name the device.
     virtual std::expected<void, Sentence> open(const DevicePlace& place) = 0;
-    /// For the driver's Setup::device().
+    /// Returns the device for the driver's Setup::device().
     [[nodiscard]] virtual ProvidedDevice provided(std::string_view name) noexcept = 0;
-    /// What open() found and who answers. It may take a server's time-out.
+    /// Reports what open() found and which peers answer. It may take a server's time-out.
     virtual void report(os::ArmingReport&, std::string_view /*name*/) {}
     virtual void count(WireCounters&) const noexcept {}
 
-    // ---- the guardian's, whose process is a copy of the machine's from before it armed
+    // ---- for the guardian, whose process is a copy of the machine's from before it armed
 
-    /// A descriptor of those that were opened; -1: the guardian needs none.
+    /// Returns an open descriptor that the guardian keeps; -1: it needs none.
     [[nodiscard]] virtual int kept_by_guardian() const noexcept { return -1; }
-    /// Opens what the guardian needs for itself, and rehearses: nothing has moved, and every output has its
-    /// safe value. Nothing leaves the box. The error names the device and the cure.
+    /// Opens the guardian's own resources, and rehearses: nothing has moved, and every output has its safe
+    /// value. Nothing leaves the box. The error names the device and the cure.
     virtual std::expected<void, Sentence> prepare_safe_ending() { return {}; }
-    /// Of outputs that take their safe values at once: false when they did not.
+    /// Writes the safe values of outputs that act at once. Returns false when that failed.
     virtual bool write_safe_lines() noexcept { return true; }
-    /// Of what is sent, and confirmed later: from here on all of it is wanted anew.
+    /// Starts to send safe values that are confirmed later: from here on all of them are to be confirmed
+    /// anew.
     virtual void begin_safe_frames() noexcept {}
-    /// Sends what is due, and again what was lost. Called every few milliseconds.
+    /// Sends the frames that are due, and lost ones again. Called every few milliseconds.
     virtual void send_safe_frames() noexcept {}
-    /// How many are not confirmed.
+    /// Returns how many are not confirmed.
     [[nodiscard]] virtual std::size_t safe_frames_left() noexcept { return 0; }
-    /// Whether it has outputs that are made safe by requests, which wait for their answers.
+    /// Returns whether it has outputs that are made safe by requests, which wait for their answers.
     [[nodiscard]] virtual bool has_safe_requests() const noexcept { return false; }
-    /// Until each of them was confirmed, or that time: whether they are. On a thread of its own where the box
-    /// has one to give. `meanwhile` is called at least every 50 ms, without a thread between two requests.
+    /// Sends the requests until each was confirmed, or until `end`. Returns whether all were confirmed. On a
+    /// thread of its own if the box has one to spare. `meanwhile` is called at least every 50 ms; without
+    /// such a thread, between two requests.
     virtual bool make_safe_requests(Time /*end*/, const Meanwhile&) noexcept { return true; }
 };
 

@@ -1,5 +1,5 @@
-// Who asks something of a machine from outside. An interface says which of its operations, methods and
-// commands are for people at the machine; a board says who is what.
+// The roles of users who ask something of a machine from outside. An interface says which of its operations,
+// methods and commands are for people at the machine; a board assigns roles to users.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace tappet {
 
-/// What a peer of the machine's socket may do; each role may do all that the ones before it may.
+/// The rights of a peer of the machine's socket; each role includes those of the ones before it.
 enum class Role : std::uint8_t { observer, machine_operator, engineer };
 
-/// How many of `of` places somebody of this role leaves free for higher ones: half of them are for those who
-/// are more than observers, a quarter for engineers. Nobody keeps a higher role from being served.
+/// Returns how many of `of` places a user of this role must leave free for higher roles: half of them are for
+/// higher roles than observer, a quarter for engineers. So no lower role can keep a higher one from being
+/// served.
 constexpr std::size_t kept_from(Role role, std::size_t of) noexcept {
     return role == Role::observer ? of / 2 : role == Role::machine_operator ? of / 4 : 0;
 }

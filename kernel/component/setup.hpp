@@ -1,5 +1,5 @@
-// What a component may ask for while it is configured: the devices of this world and what its activity sleeps
-// on.
+// The requests of a component while it is configured: the devices of this world, and the waiter of its
+// activity.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -18,7 +18,7 @@ namespace scope {
 struct Directory;
 } // namespace scope
 
-/// A device as this world has it: the real one, or its twin. `type` is the abstract device class.
+/// A device of this world: the real one, or its twin. `type` is the abstract device class.
 struct ProvidedDevice {
     TypeId type = nullptr;
     std::string_view name{}; ///< the logical name, as in the board and in the machine table
@@ -35,7 +35,7 @@ struct Setup {
     MachineInstance* machine = nullptr; ///< only for a type that says `sees_machine = true`
     scope::Directory* scope = nullptr;  ///< only for a type that says `records_cycles = true`
 
-    /// The row's device, or null when this world has none of that name and class.
+    /// Returns the row's device, or null when this world has none of that name and class.
     template <class Device>
     [[nodiscard]] Device* device() const {
         for (const auto& each : devices)
@@ -43,7 +43,7 @@ struct Setup {
                 return static_cast<Device*>(each.device);
         return nullptr;
     }
-    /// What configure() answers when device() found nothing.
+    /// Returns the answer for configure() when device() found nothing.
     [[nodiscard]] Sentence no_device() const {
         return Sentence{
             "component \"", component, "\": this world provides no device \"", device_name,

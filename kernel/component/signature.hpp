@@ -1,5 +1,5 @@
-// The parameters of methods and commands as plain data: what goes in, what comes out, and how both lie packed
-// one after the other.
+// The parameters of methods and commands as plain data: arguments, results, and how both are packed one after
+// the other.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -13,7 +13,7 @@
 
 namespace tappet {
 
-/// How a result stands in a signature's name: the T of a parameter `T&`.
+/// A result in a signature's name: the T of a parameter `T&`.
 template <class T>
 struct Result {
     T value;
@@ -21,7 +21,7 @@ struct Result {
 
 namespace detail {
 
-/// A parameter taken by value or by const reference is an argument, one by reference a result.
+/// A parameter by value or by const reference is an argument, one by reference is a result.
 template <class P>
 struct Parameter {
     using Value = std::remove_cvref_t<P>;
@@ -57,7 +57,7 @@ inline constexpr std::size_t list_bytes = 0;
 template <class... T>
 inline constexpr std::size_t list_bytes<Arguments<T...>> = (std::size_t{0} + ... + sizeof(T));
 
-/// The places of a parameter list in packed bytes: arguments first, results after them.
+/// The offsets of a parameter list in packed bytes: arguments first, results after them.
 template <class... P>
 struct Packing {
     using Inputs = typename Select<false, Arguments<>, P...>::Type;
@@ -67,7 +67,7 @@ struct Packing {
     static constexpr std::size_t result_bytes = list_bytes<Results>;
     static constexpr std::size_t bytes = input_bytes + result_bytes;
 
-    /// Of each parameter.
+    /// Offset of each parameter.
     static constexpr std::array<std::size_t, sizeof...(P) + 1> offsets = [] {
         std::array<std::size_t, sizeof...(P) + 1> at{};
         const std::array<std::size_t, sizeof...(P) + 1> sizes{sizeof(typename Parameter<P>::Value)..., 0};
@@ -93,7 +93,7 @@ void store_packed(std::byte* into, const T& value) noexcept TAPPET_REALTIME {
     std::memcpy(into, &value, sizeof(T));
 }
 
-/// A parameter on its way out of packed bytes, and back if it is a result.
+/// A parameter read from packed bytes, and written back if it is a result.
 template <class P>
 struct Unpacked {
     using Value = typename Parameter<P>::Value;

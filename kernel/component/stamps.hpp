@@ -1,4 +1,4 @@
-// When a value was true, as far as its writer is believed.
+// The time at which a value was true, and how far its writer is believed.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -10,14 +10,16 @@ namespace tappet {
 
 /// Earlier than every time stamp of a machine: the value is as old as can be.
 inline constexpr Time before_all{-std::chrono::hours{24 * 365 * 100}};
-/// A cycle may be long, and what arrives during it has a later time than the cycle's.
+/// Longest lead of a stamp over the cycle's time: a cycle may be long, and a value that arrives during it has
+/// a later time than the cycle.
 inline constexpr Duration ahead_at_most = 1s;
-/// A value may arrive while a cycle runs: then its time lies so much after the begin of the cycle at most.
+/// Longest lead of a value that arrives while a cycle runs, after the begin of that cycle.
 inline constexpr Duration arrives_within = 1ms;
-/// The time of a value that is written in the cycle at `now`. A time further ahead than ahead_at_most, or
-/// before all, comes from no clock of this machine: nobody knows when such a value was true.
+/// Returns the stamp of a value that is written in the cycle at `now`. A stamp further ahead than
+/// ahead_at_most, or before all, comes from no clock of this machine: the time of such a value is unknown,
+/// and before_all is returned.
 constexpr Time judged_stamp(Time stamp, Time now) noexcept TAPPET_REALTIME {
-    // Both at once, in four instructions: what is ahead wraps round to more than an age can be.
+    // Both comparisons in one, in four instructions: a stamp too far ahead wraps round to more than any age.
     const auto number = [](auto time) { return static_cast<std::uint64_t>(time.count()); };
     const std::uint64_t age =
         number(now.time_since_epoch()) + number(ahead_at_most) - number(stamp.time_since_epoch());

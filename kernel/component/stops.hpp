@@ -1,5 +1,5 @@
-// The lives of a component, which begin with its stops: by them a reader tells what a stop left from what
-// stood there before.
+// The lives of a component, each of which begins with a stop. A reader uses them to tell what a stop left
+// from earlier values.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,14 +9,16 @@
 
 namespace tappet {
 
-/// To the next one belongs what a stop leaves, and what is written after the next start.
+/// The number of a life: it begins with the values that a stop leaves, and includes those written after the
+/// next start.
 using Life = std::uint64_t;
 inline constexpr Life never_lived = 0; ///< of a value that was never written
-inline constexpr Life unwanted = 1;    ///< of one that a force hid, and that nobody wants any longer
+inline constexpr Life unwanted = 1;    ///< of a value that a force hid and that is abandoned
 inline constexpr Life first_life = 2;
 
-/// How often a component was stopped, also while it stood, and how many lives ended so: in one number, so
-/// that nobody reads one without the other. And how many ports are forced, for who looks at it from outside.
+/// How often a component was stopped, also while it was stopped already, and how many lives ended with that:
+/// in one number, so that nobody reads one without the other. `forced` counts the machine's forced ports, for
+/// observers.
 struct Stops {
     std::atomic<std::uint64_t> count{0};
     std::atomic<std::uint32_t>* forced = nullptr;

@@ -1,5 +1,5 @@
-// An asynchronous subscription (thesis 4.6.2): it catches the arguments of an emission for another engine. It
-// is connected by one bit, and its epoch tells what was caught before it was last disconnected.
+// An asynchronous subscription (thesis 4.6.2): it catches the arguments of an emission for another engine.
+// One bit connects it. Its epoch identifies emissions caught before it was last disconnected.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -19,7 +19,7 @@
 
 namespace tappet {
 
-/// One thread counts, any may read.
+/// A counter: one thread counts, any thread may read.
 class Counter {
 public:
     void add() noexcept TAPPET_REALTIME { set(value() + 1); }
@@ -36,28 +36,31 @@ private:
 
 struct AsyncReaction;
 
-/// Arguments that a message has no room for. Of an event that has such, each lane keeps them beside the
-/// mailbox, in so many places of so many bytes that what is handled stays where it is while the quota waits.
+/// Arguments for which a message has no room. For an event that has such arguments, each lane keeps them
+/// beside the mailbox. It has so many places of this size that an emission being handled stays in place while
+/// the quota waits.
 struct Parcel {
     const void* arguments = nullptr;
     void (*pack)(std::byte* into, const void* arguments) noexcept TAPPET_REALTIME = nullptr;
 };
-/// Multiples of a word; nought: a message has room.
+/// Returns the bytes of a place, a multiple of a word; 0: a message has room.
 constexpr std::size_t parcel_bytes(std::size_t argument_bytes) noexcept {
     constexpr std::size_t word = sizeof(std::uint64_t);
     return argument_bytes <= sizeof(Message::arguments) ? 0 : (argument_bytes + word - 1) / word * word;
 }
-/// A power of two, so that counters of 32 bits find their place also when they begin anew.
+/// Returns the number of places: a power of two, so that 32-bit counters find their place also after they
+/// wrap.
 constexpr std::uint32_t parcel_places(std::uint32_t quota, bool keeps_latest) noexcept {
     return std::bit_ceil(keeps_latest ? LatestMessage::places : quota + 1);
 }
 static_assert(parcel_places(1, false) == 2 && parcel_places(3, false) == 4 && parcel_places(4, false) == 8);
 
-/// The share of one emitting activity in an asynchronous subscription: emitters of one event never meet.
+/// The share of one emitting activity in an asynchronous subscription. Emitters of one event never share a
+/// lane.
 struct EventLane {
     AsyncReaction* row = nullptr;
     std::size_t sender = 0;          ///< the activity's number at the receiving inbox
-    LatestMessage* latest = nullptr; ///< of a row that keeps the latest only
+    LatestMessage* latest = nullptr; ///< for a row that keeps the latest only
     std::byte* parcels = nullptr;    ///< null: the arguments stand in the message
     // Counted by the emitter.
     Counter posted{};
@@ -65,51 +68,52 @@ struct EventLane {
     Counter high_water{};
     // Counted by the receiver.
     alignas(64) std::atomic<std::uint32_t> served{0};
-    Counter outdated{}; ///< dropped: caught before the row was disconnected
+    Counter outdated{}; ///< dropped, because they were caught before the row was disconnected
     Counter dropped{};  ///< they reached a component that does not run
 };
 
-/// What the lanes of a subscription counted, added up.
+/// The sum of the counts of a subscription's lanes.
 struct SubscriptionCounts {
     std::uint64_t posted = 0;
-    std::uint64_t served = 0; ///< those below included
+    std::uint64_t served = 0; ///< includes those below
     std::uint64_t lost = 0;
     std::uint64_t outdated = 0;
     std::uint64_t dropped = 0;
-    std::uint64_t stray = 0;      ///< lost too: emitted by an activity from which no row leads to the event
-    std::uint32_t high_water = 0; ///< of the lane that was filled most
+    std::uint64_t stray = 0; ///< in lost too: emitted by an activity from which no row leads to the event
+    std::uint32_t high_water = 0; ///< of the fullest lane
 };
 
-/// An asynchronous reaction row. Each of its lanes holds at most `quota` unserved emissions, or the latest
-/// alone; one more is counted as lost and named in the report.
+/// An asynchronous reaction row. Each of its lanes holds at most `quota` unserved emissions, or only the
+/// latest one. Any more are counted as lost and named in the report.
 struct AsyncReaction {
     static constexpr std::uint8_t no_lane = 0xff;
 
     Inbox* inbox = nullptr;
     Waker waker{};
     GatedComponent* receiver = nullptr; ///< the component that reacts
-    /// Its operation. Null: `run` with `object` is what reacts in its place, the trigger of a behaviour.
+    /// Its operation. Null: `run` with `object` reacts in its place, which is the trigger of a behaviour.
     bool (*operation)(GatedComponent&, Entry, const std::byte*) noexcept TAPPET_REALTIME = nullptr;
     Message::Run run = nullptr;
     void* object = nullptr;
     std::atomic<std::uint64_t>* connected = nullptr; ///< of the event: one bit for each of its rows
     std::uint64_t bit = 0;
     EventLane* lanes = nullptr;
-    const std::uint8_t* lane_of = nullptr; ///< of each activity
-    std::uint8_t outside = no_lane; ///< of who runs no activity: none but in virtual time, in its one thread
+    const std::uint8_t* lane_of = nullptr; ///< the lane of each activity
+    std::uint8_t outside = no_lane;        ///< lane of a thread without activity: only virtual time's has one
     std::uint32_t activities = 0;
     std::uint32_t lane_count = 0;
     std::uint32_t part = 0; ///< the receiver's number for the component it is timed as
     std::uint32_t quota = 0;
     std::uint32_t parcel_bytes = 0;
-    std::uint32_t parcel_mask = 0;       ///< their places but one
+    std::uint32_t parcel_mask = 0;       ///< number of places minus one
     std::atomic<std::uint32_t> stray{0}; ///< any thread counts
-    bool has_run = false;  ///< the receiver's: the message served last was neither outdated nor dropped
+    bool has_run = false;  ///< the receiver's: the last served message was neither outdated nor dropped
     ReactionTimes times{}; ///< the receiver's
     alignas(64) std::atomic<std::uint32_t> epoch{0};
 
-    /// In the emitter. The epoch is read before the bit: what is posted with an epoch found the row connected
-    /// in it, and disconnect() clears the bit before it moves on. Real-time.
+    /// Posts an emission, in the emitter. The epoch is read before the bit: a message posted with an epoch
+    /// found the row connected in that epoch, and disconnect() clears the bit before it advances the epoch.
+    /// Real-time.
     void post(Message& message, const Parcel* parcel = nullptr) noexcept TAPPET_REALTIME {
         message.epoch = epoch.load(std::memory_order_acquire);               // emit.epoch
         if ((connected->load(std::memory_order_acquire) & bit) == 0) return; // emit.bit
@@ -125,8 +129,8 @@ struct AsyncReaction {
         message.cause = running_cause();
         post_to(lanes[index], message, parcel);
     }
-    /// In the receiver, before it is served: what it carries, as whole words. Of a row that keeps the latest
-    /// there is nothing yet to be seen.
+    /// Returns the arguments of a message as whole words, in the receiver, before the message is served. For
+    /// a row that keeps the latest they cannot be seen yet.
     [[nodiscard]] static std::span<const std::byte> arguments_of(const Message& message) noexcept
         TAPPET_REALTIME {
         if (message.run != &serve) return message.arguments;
@@ -135,7 +139,7 @@ struct AsyncReaction {
         const std::uint32_t next = lane.served.load(std::memory_order_relaxed); // no step: its own counter
         return {lane.row->place_of(lane, next), lane.row->parcel_bytes};
     }
-    /// In the receiver: the row that the message came by has done what it had to, at `end`.
+    /// Notes, in the receiver, that the reaction to this message ended at `end`.
     static void note_end(const Message& message, Time end) noexcept TAPPET_REALTIME {
         if (message.run != &serve) return;
         AsyncReaction& row = *static_cast<EventLane*>(message.object)->row;
@@ -181,7 +185,7 @@ private:
     }
     void post_latest(EventLane& lane, const Message& message, const Parcel* parcel) noexcept TAPPET_REALTIME {
         if (parcel != nullptr) parcel->pack(place_of(lane, lane.latest->place_of_next()), parcel->arguments);
-        if (!lane.latest->put(message)) { // the one it replaced was announced: nobody needs to be told again
+        if (!lane.latest->put(message)) { // the replaced one was announced: no second wake is needed
             lane.lost.add();
             return;
         }
@@ -192,7 +196,7 @@ private:
         notice.cause = message.cause;
         lane.posted.add();
         lane.high_water.set(1);
-        if (inbox->post(lane.sender, notice)) waker(); // there is room: one notice is on its way at most
+        if (inbox->post(lane.sender, notice)) waker(); // there is room: at most one notice is waiting
     }
 
     static void serve(void* self, const std::byte* arguments) noexcept TAPPET_REALTIME {
@@ -224,7 +228,7 @@ namespace detail {
 template <class... A>
 inline constexpr std::size_t packed_bytes = (std::size_t{0} + ... + sizeof(A));
 
-/// Puts the arguments one after the other into a message.
+/// Packs the arguments one after the other into a message.
 template <class... A>
 void pack(std::byte* into, const A&... arguments) noexcept TAPPET_REALTIME {
     std::size_t at = 0;
@@ -239,7 +243,7 @@ T unpack_one(const std::byte*& from) noexcept TAPPET_REALTIME {
     return value;
 }
 
-/// Those that a message has no room for are packed where they wait, once it is known that there is room.
+/// Posts an emission. Arguments without room in a message are packed in their place, once room is certain.
 template <class... A>
 void post(void* reaction, A... arguments) noexcept TAPPET_REALTIME {
     auto& row = *static_cast<AsyncReaction*>(reaction);

@@ -9,13 +9,13 @@
 
 namespace tappet {
 
-/// Owned by a component, served by its engine because the component's interface names it. From its own
-/// activity only. Real-time.
+/// Owned by a component; its engine serves it because the component's interface names it. Used only from its
+/// own activity. Real-time.
 class Timer {
 public:
-    /// Once, at `when`; a time that is past fires at the engine's next look. Arming again moves it. Whoever
-    /// goes on in its firing takes Cycle::after(). One that no engine serves would never fire: that breaks a
-    /// contract.
+    /// Fires once, at `when`; a time in the past fires at the engine's next look. Arming again moves it. To
+    /// repeat, arm it for Cycle::after() when it fires. A timer that no engine serves would never fire: that
+    /// breaks a contract.
     void arm(Time when) noexcept TAPPET_REALTIME {
         TAPPET_CONTRACT(is_served_, Contract::timer_unserved, to_ns(when), running_activity());
         when_ = when;
@@ -23,7 +23,7 @@ public:
     void cancel() noexcept TAPPET_REALTIME { when_ = never; }
     [[nodiscard]] Time when() const noexcept TAPPET_REALTIME { return when_; }
 
-    /// By the engine that looks at it from now on.
+    /// Called by the engine that serves it from now on.
     void serve() noexcept { is_served_ = true; }
 
 private:

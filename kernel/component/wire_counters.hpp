@@ -1,4 +1,4 @@
-// What devices count of their wires, under the names that the summary of a run has.
+// Counters of devices for their wires, under the names that the summary of a run uses.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -9,9 +9,9 @@
 
 namespace tappet {
 
-/// What was lost on the wires, or came and was not as it must be: of all devices of a kind together.
+/// A count of losses or of wrong receptions on the wires, for all devices of a kind together.
 struct WireCounter {
-    std::string_view name{}; ///< "can_frames_lost": as the summary of a run has it
+    std::string_view name{}; ///< "can_frames_lost": the name in the summary of a run
     std::uint64_t count = 0;
 };
 struct WireCounters {

@@ -1,5 +1,5 @@
-// The component that hands over between chains of which one runs (thesis 3.1.3, 4.2: the switch looks atomic
-// to all others).
+// The component that switches between chains of which one runs (thesis 3.1.3, 4.2: the switch looks atomic to
+// all others).
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -11,27 +11,27 @@ namespace tappet {
 /// In the table: component<ChainSwitch>("mode"), first in the activity of its level, and the row
 /// exclusive("mode", ...). `do mode.run("jog")` in a script, uses("panel.jog", "mode.run") in a row.
 ///
-/// A hand-over happens at the beginning of a cycle: those who come are started from what they read, outputs
-/// that they share are theirs, those who go are stopped; then the cycle's steps run. When one cannot start
-/// because an input has no valid value, or because a start() before it did not write what it reads, all stays
-/// as it was. Real-time.
+/// A hand-over happens at the beginning of a cycle: members of the next chain start from the values that they
+/// read and take over shared outputs, members of the last chain stop; then the cycle's steps run. When a
+/// member cannot start because an input has no valid value, or because an earlier start() did not write what
+/// it reads, nothing changes. Real-time.
 class ChainSwitch {
 public:
-    Output<ScriptText> chain;    ///< the one that runs
-    Output<ScriptText> hindered; ///< "component.input" without which the last hand-over did not happen
+    Output<ScriptText> chain;    ///< the running chain
+    Output<ScriptText> hindered; ///< "component.input" that prevented the last hand-over
     Event<> handed_over;
     Event<> fell_back;
 
     void start(const Cycle&) noexcept TAPPET_REALTIME;
     void step(const Cycle&) noexcept TAPPET_REALTIME;
-    /// Nobody hands over any more: no chain runs.
+    /// Ends switching: no chain runs.
     void stop(const Cycle&) noexcept TAPPET_REALTIME;
 
     bool run(const ScriptText& name) noexcept TAPPET_REALTIME;
     CommandProgress has_run(const ScriptText& name) noexcept TAPPET_REALTIME;
     bool is_running(const ScriptText& name) const noexcept TAPPET_REALTIME;
 
-    /// At start-up, by the section. It outlives the component.
+    /// Called at start-up, by the section. `turns` must outlive the component.
     void place(control_detail::Turns& turns) noexcept { turns_ = &turns; }
 
     static constexpr auto interface() {
@@ -48,7 +48,7 @@ public:
     }
 
 private:
-    /// The part that hinders it; nobody: it is done.
+    /// Returns the part that prevents it; nobody: it is done.
     std::uint32_t take_over(std::size_t next) noexcept TAPPET_REALTIME;
     void tell() noexcept TAPPET_REALTIME;
 

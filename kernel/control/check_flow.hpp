@@ -1,5 +1,5 @@
-// Checks of the data flow between roles (thesis 3.1.2, 3.1.3): who may read what, who may call whom, and that
-// everybody leaves something safe behind.
+// Checks of the data flow between roles (thesis 3.1.2, 3.1.3): who may read and call what, and that every
+// component leaves safe values behind.
 #pragma once
 
 #include "kernel/control/seats.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::control_detail {
 
-/// From a level's point of view: where the reader sits.
+/// From a level's point of view: the place of the reader.
 enum class Reader : std::uint8_t { same_level, any_level, level_below };
 
 struct DataPath {
@@ -19,7 +19,7 @@ struct DataPath {
     bool of_last_step = false; ///< within one activity the row says delayed
 };
 
-/// All that flows (thesis figures 3.1 and 3.6). What is no line here is refused.
+/// All permitted data flow (thesis figures 3.1 and 3.6). Any other path is refused.
 inline constexpr DataPath data_paths[] = {
     {ControlRole::sensor, ControlRole::estimator, Reader::any_level, "inputs"},
     {ControlRole::sensor, ControlRole::generator, Reader::any_level, "inputs"},
@@ -36,7 +36,7 @@ inline constexpr DataPath data_paths[] = {
     {ControlRole::effector, ControlRole::generator, Reader::any_level, "what was sent", true},
 };
 
-/// What is written wrongly most, and what was meant.
+/// Frequent mistakes and their corrections.
 struct WrongPath {
     ControlRole from;
     ControlRole to;
@@ -69,7 +69,7 @@ constexpr bool reaches(const DataPath& path, const Seat& from, const Seat& to) n
     return path.where == Reader::any_level || to.level == from.level + 1;
 }
 
-/// By any of the roles that the two components have; null: nothing flows there.
+/// Returns the path by any of the roles of the two components; null: nothing flows there.
 constexpr const DataPath* path_between(const Seats& seats, std::size_t from, std::size_t to) noexcept {
     for (const Seat& a : seats)
         for (const Seat& b : seats) {
@@ -102,7 +102,7 @@ constexpr bool is_driver(const MachineView& m, std::size_t component) noexcept {
     return m.components[component].type->device_kind != nullptr;
 }
 
-/// One end has a role at least.
+/// At least one end has a role.
 constexpr Sentence check_outside(const ConnectionRow& row, const MachineView& m, const Seats& seats,
                                  std::size_t from, std::size_t to) {
     const bool from_seat = has_seat(seats, from), to_seat = has_seat(seats, to);
@@ -137,7 +137,7 @@ constexpr Sentence check_row(const ControlView& c, const MachineView& m, const T
     const ConnectionRow& row = m.connections[x];
     const std::size_t from = r.connections[x].from.component, to = r.connections[x].to.component;
     const bool crosses = r.activity[from] != r.activity[to];
-    if (level_of(seats, from) == no_level && level_of(seats, to) == no_level) return {}; // nothing of a loop
+    if (level_of(seats, from) == no_level && level_of(seats, to) == no_level) return {}; // no loop
     const bool is_looked_at =
         has_seat(seats, to) && level_of(seats, to) == no_level; // by a process component
     if (crosses && !row.buffered && row.max_age == Duration::zero() && !is_looked_at)
@@ -170,7 +170,8 @@ constexpr Sentence check_row(const ControlView& c, const MachineView& m, const T
     return {};
 }
 
-/// Data-flow components call process components and services; process components call anybody (thesis 3.1.3).
+/// Data-flow components call process components and services; process components call any component (thesis
+/// 3.1.3).
 constexpr Sentence check_calls(const MachineView& m, const TableIndexView& r, const Seats& seats) {
     for (std::size_t i = 0; i < m.reactions.size(); ++i) {
         const ReactionRow& row = m.reactions[i];
@@ -192,7 +193,7 @@ constexpr Sentence check_calls(const MachineView& m, const TableIndexView& r, co
     return {};
 }
 
-/// Each writes for somebody and reads from somebody, and leaves safe values when it stops.
+/// Each component writes for a reader, reads from a writer, and leaves safe values when it stops.
 constexpr Sentence check_seat(const ControlView& c, const MachineView& m, const TableIndexView& r,
                               const Seats& seats, const Seat& seat) {
     const LevelRow& level = c.levels[seat.level];

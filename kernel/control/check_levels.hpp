@@ -1,5 +1,5 @@
-// Checks of levels: each runs in one periodic activity, has what a control action needs, and the levels of a
-// cascade fit each other in time (thesis 3.1.2, 3.1.3, 3.2.3).
+// Checks of levels: each runs in one periodic activity and has what a control action needs; the periods of a
+// cascade fit each other (thesis 3.1.2, 3.1.3, 3.2.3).
 #pragma once
 
 #include "kernel/control/seats.hpp"
@@ -7,13 +7,13 @@
 
 namespace tappet::control_detail {
 
-/// The activity of a level, whose first component is there.
+/// Returns the activity of a level, which is that of its first component.
 constexpr std::size_t activity_of_level(const LevelRow& row, const MachineView& m,
                                         const TableIndexView& r) noexcept {
     return r.activity[find_component(m, row.roles[0].component)];
 }
 
-/// One thread a level, serialised (thesis 3.2.3).
+/// One thread for each level, serialised (thesis 3.2.3).
 constexpr Sentence check_activity(const LevelRow& row, const MachineView& m, const TableIndexView& r) {
     const std::size_t own = activity_of_level(row, m, r);
     for (const RoleRow& role : row.roles) {
@@ -38,7 +38,7 @@ constexpr bool has_role(const Seats& seats, std::size_t level, ControlRole role)
     return false;
 }
 
-/// A level is insufficient without these (thesis: a component fails to load in an insufficient kernel).
+/// A level without these is insufficient (thesis: a component fails to load in an insufficient kernel).
 constexpr Sentence check_complete(const ControlView& c, const Seats& seats) {
     bool has_sensor = false;
     for (std::size_t l = 0; l < c.levels.size(); ++l) {
@@ -57,7 +57,7 @@ constexpr Sentence check_complete(const ControlView& c, const Seats& seats) {
     return {};
 }
 
-/// An outer level commands the one below it, which is as fast or faster by a whole number.
+/// An outer level commands the next inner one, which is as fast, or faster by an integer factor.
 constexpr Sentence check_rates(const ControlView& c, const MachineView& m, const TableIndexView& r) {
     for (std::size_t l = 1; l < c.levels.size(); ++l) {
         const Duration outer = m.activities[activity_of_level(c.levels[l - 1], m, r)].period;

@@ -1,5 +1,5 @@
-// Checks of loops: gain times period times delay. A loop that cannot be stable does not compile, and one that
-// will overshoot says so.
+// Checks of loops: gain times period times delay. An unstable loop does not compile; a loop that will
+// overshoot is reported.
 #pragma once
 
 #include "kernel/base/decimal.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet::control_detail {
 
-/// Three digits, with a power of ten where the number is small: 0.148, 7.4e-4.
+/// Formats three digits, with a power of ten for small numbers: 0.148, 7.4e-4.
 constexpr Sentence in_digits(double value) {
     std::int64_t tens = 0;
     if (value > 0.0 && value < 0.1)
@@ -24,7 +24,7 @@ constexpr Sentence of_loop(const LoopRow& row, const Pieces&... fault) {
     return Sentence{"loop \"", row.name, "\": ", fault...};
 }
 
-/// The value that the table gives a property of a number.
+/// Finds the value that the table gives to a numeric property.
 constexpr Sentence find_value(const MachineView& m, std::string_view path, End& end, double& value) {
     if (Sentence fault = resolve(m, path, FacetKind::property, end); !fault.empty()) return fault;
     const Facet& facet = facet_at(m, end);
@@ -46,7 +46,7 @@ constexpr Sentence find_value(const MachineView& m, std::string_view path, End& 
                     "\""};
 }
 
-/// Steps of the Controller's period, and how many of them come and go from step to step.
+/// Steps of the Controller's period, and how many of them vary from step to step.
 struct Delay {
     std::size_t steps = 0, varying = 0;
 };
@@ -55,8 +55,8 @@ constexpr std::size_t in_steps_of(Duration period, Duration late) {
     return static_cast<std::size_t>(late / period + (late % period > Duration::zero() ? 1 : 0));
 }
 
-/// By how much a row makes a value late. What was written in another activity is as old as that activity's
-/// period and response just before the next value comes; what is written for one waits for its next cycle.
+/// Returns the delay that a row causes. A value from another activity is as old as that activity's period and
+/// response just before the next value arrives; a value for another activity waits for its next cycle.
 constexpr Delay delay_of(const MachineView& m, const TableIndexView& r, std::size_t x, bool along,
                          Duration period) {
     const ConnectionRow& row = m.connections[x];
@@ -70,8 +70,8 @@ constexpr Delay delay_of(const MachineView& m, const TableIndexView& r, std::siz
     return {in_steps_of(period, always + varying), in_steps_of(period, varying)};
 }
 
-/// Of all ways from a Controller against the flow to Sensors, or along it to Effectors, of any level: the
-/// most steps by which rows make values late.
+/// Returns the largest delay in steps over all paths from a Controller: against the flow to Sensors, or along
+/// it to Effectors, of any level.
 constexpr Delay most_delayed(const MachineView& m, const TableIndexView& r, const Seats& seats,
                              std::size_t component, bool along, Duration period, std::size_t depth = 0) {
     if (depth > 8) return {};
@@ -80,7 +80,7 @@ constexpr Delay most_delayed(const MachineView& m, const TableIndexView& r, cons
     for (std::size_t x = rows.first[component]; x != nowhere; x = rows.next[x]) {
         const Link& link = r.connections[x];
         const DataPath* path = path_between(seats, link.from.component, link.to.component);
-        // What was sent, set points and the model of outputs close other loops.
+        // Sent values, set points and the model of outputs close other loops.
         if (path == nullptr || path->of_last_step || (!along && path->from == ControlRole::generator))
             continue;
         Delay late = delay_of(m, r, x, along, period);
@@ -94,7 +94,7 @@ constexpr Delay most_delayed(const MachineView& m, const TableIndexView& r, cons
     return most;
 }
 
-/// The dead time in steps beyond the one that sampling takes: rows that delay, and what the wires take.
+/// Returns the dead time in steps beyond the one that sampling takes: delayed rows and transport time.
 constexpr Delay dead_samples(const LoopRow& row, const MachineView& m, const TableIndexView& r,
                              const Seats& seats, std::size_t component, Duration period) {
     const Delay before = most_delayed(m, r, seats, component, false, period);
@@ -156,8 +156,8 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     const auto [dead, varying] = dead_samples(row, m, r, seats, component, activity.period);
     if (dead > max_dead_samples)
         return of_loop(row, "its transport is more than ", max_dead_samples, " periods; sample more slowly");
-    // A step may send at once, and the next one at the end of its response: the first value then lasts
-    // longer by that.
+    // A step may send at once, and the next one at the end of its response: the first value then lasts longer
+    // by that time.
     const Duration jitter{r.worst_response_ns[r.activity[component]]};
     const double period = to_seconds(activity.period), longest = to_seconds(activity.period + jitter);
     const auto with = [&](double seconds) {

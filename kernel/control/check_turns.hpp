@@ -1,5 +1,5 @@
-// Checks of components that run by turns (thesis 3.1.3: some need to be executed exclusively): each value has
-// exactly one writer whichever chain runs, and who takes over starts from what is.
+// Checks of components that run in turns (thesis 3.1.3: some need to be executed exclusively): each value has
+// exactly one writer whichever chain runs, and a member that takes over starts from the current values.
 #pragma once
 
 #include "kernel/control/check_flow.hpp"
@@ -11,8 +11,9 @@ constexpr Sentence of_exclusive(const ExclusiveRow& row, const Pieces&... fault)
     return Sentence{"exclusive \"", row.by, "\": ", fault...};
 }
 
-/// Inputs of one row that several write by turns, and calls that several answer, which a hand-over links
-/// anew; and inputs that come from other activities, whose growing stale makes a chain fall back.
+/// Maximum number, for one row, of inputs that several members write in turns and calls that several members
+/// answer (a hand-over links both again), and of inputs from other activities (a chain falls back when one
+/// becomes stale).
 inline constexpr std::size_t max_links = 16;
 inline constexpr std::size_t max_calls = 8;
 inline constexpr std::size_t max_watched = 16;
@@ -21,7 +22,7 @@ constexpr bool is_member(const ExclusiveRow& row, const MachineView& m, std::siz
     return chains_of(row, m.components[component].name) != 0;
 }
 
-/// Whether a row's input is written by turns: another row leads there too.
+/// Returns whether several rows write the same input in turns.
 constexpr bool is_shared(const TableIndexView& r, std::size_t x) noexcept {
     const Link& link = r.connections[x];
     for (std::size_t j = r.connections_into.first[link.to.component]; j != nowhere;
@@ -30,7 +31,7 @@ constexpr bool is_shared(const TableIndexView& r, std::size_t x) noexcept {
     return false;
 }
 
-/// Whether a row leads a call to a member, and another row leads it elsewhere.
+/// Returns whether a row binds a call to a member, and another row binds it elsewhere.
 constexpr bool is_answered_by_turns(const ExclusiveRow& row, const MachineView& m, const TableIndexView& r,
                                     std::size_t x) noexcept {
     if (m.reactions[x].kind != ReactionKind::uses || !is_member(row, m, r.reactions[x].to.component))
@@ -98,7 +99,7 @@ constexpr Sentence check_member(const ControlView& c, const ExclusiveRow& row, c
     return {};
 }
 
-/// Of an input that members write: each chain has one writer of it.
+/// Checks an input that members write: each chain has exactly one writer.
 constexpr Sentence check_one_writer(const ExclusiveRow& row, const MachineView& m, const TableIndexView& r,
                                     std::size_t x) {
     const Link& link = r.connections[x];
@@ -117,7 +118,7 @@ constexpr Sentence check_one_writer(const ExclusiveRow& row, const MachineView& 
     return {};
 }
 
-/// Of a call that members answer: each chain has one who does.
+/// Checks a call that members answer: each chain has exactly one answering member.
 constexpr Sentence check_shared_calls(const ExclusiveRow& row, const MachineView& m,
                                       const TableIndexView& r) {
     std::size_t calls = 0;
@@ -184,8 +185,8 @@ constexpr Sentence check_shared_inputs(const ExclusiveRow& row, const MachineVie
     return {};
 }
 
-/// What is tracked is what one of the Controller's own outputs would have been, in the same unit: rows see to
-/// it that the Effector's unit is that of the input.
+/// The tracked value must be what one of the Controller's own outputs would have been, in the same unit: rows
+/// ensure that the Effector's unit is that of the input.
 constexpr Sentence check_tracked_unit(const Seat& seat, const ControlView& c, const ComponentRow& own,
                                       std::size_t facet) {
     const Facet& tracked = own.type->facets[facet];
@@ -204,8 +205,8 @@ constexpr Sentence check_tracked_unit(const Seat& seat, const ControlView& c, co
                     "; give both the unit of what is sent");
 }
 
-/// A Controller that takes over begins with what the Effector sent last. Of Estimators that take turns each
-/// tells of the same world: what they write is no reason to begin anew.
+/// A Controller that takes over starts from the value that the Effector sent last. Estimators that take turns
+/// estimate the same world: their values are no reason to start again.
 constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const MachineView& m,
                                   const TableIndexView& r, const Seats& seats) {
     const ComponentRow& own = m.components[seat.component];

@@ -1,4 +1,4 @@
-// How components that run by turns are wired, and how one chain hands over to another.
+// Wiring of components that run in turns, and the hand-over from one chain to another.
 #include "kernel/control/control.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr Engine::Parts bit(std::uint32_t part) noexcept TAPPET_REALTIME { return Engine::Parts{1} << part; }
 
-/// Parts of the row's level, by chain, and those that always run.
+/// Finds the parts of the row's level, by chain, and those that always run.
 void find_parts(const ControlView& control, const AcceptedMachine& accepted, std::size_t activity,
                 Turns& turns) {
     const MachineView& m = accepted.table;
@@ -49,7 +49,7 @@ void find_inputs(const ControlView& control, MachineInstance& machine, Turns& tu
         const PortOperations* const port = facet_at(accepted.table, link.to).port;
         if (is_member(*turns.rows, accepted.table, link.to.component) &&
             accepted.index.activity[link.from.component] != accepted.index.activity[link.to.component])
-            static_cast<void>( // they were counted by the check
+            static_cast<void>( // the check counted them
                 turns.watched.push({input, port, accepted.plan.part_of[link.to.component]}));
         const unsigned writer = chains_of(*turns.rows, accepted.table.components[link.from.component].name);
         bool is_shared = false;
@@ -86,7 +86,7 @@ void find_calls(MachineInstance& machine, Turns& turns) {
         for (SharedCall& each : turns.calls)
             if (each.call == call) place = &each;
         if (place == nullptr) {
-            static_cast<void>( // they were counted by the check
+            static_cast<void>( // the check counted them
                 turns.calls.push(
                     {.call = call, .operations = facet_at(accepted.table, link.from).method_call}));
             place = turns.calls.end() - 1;
@@ -141,7 +141,7 @@ LifeAnswer Turns::hand_over(std::size_t next) noexcept TAPPET_REALTIME {
     LifeAnswer answer = engine->enter(entering);
     if (answer.outcome != LifeOutcome::refused) {
         answer = find_unwritten(next);
-        // From what was sent, so that a set point that is another's makes no jump.
+        // From the sent value, so that a set point from another writer causes no jump.
         if (answer.outcome != LifeOutcome::refused) answer = engine->begin_anew(again);
         if (answer.outcome == LifeOutcome::refused) engine->leave(entering);
     }
@@ -296,7 +296,7 @@ std::uint32_t ChainSwitch::take_over(std::size_t next) noexcept TAPPET_REALTIME 
 void ChainSwitch::stop(const Cycle&) noexcept TAPPET_REALTIME { turns_->engine->leave(turns_->all()); }
 
 void ChainSwitch::step(const Cycle&) noexcept TAPPET_REALTIME {
-    // Those of the fallback started with their activity, unless this component was started alone.
+    // Members of the fallback started with their activity, unless this component was started alone.
     if (is_first_step_ && turns_->failed_part(turns_->members[0]) != Turns::nobody)
         static_cast<void>(turns_->engine->enter(turns_->members[0])); // or it has failed: see below
     is_first_step_ = false;
@@ -305,7 +305,7 @@ void ChainSwitch::step(const Cycle&) noexcept TAPPET_REALTIME {
         return turns_->ask_stop(part);
     if (const std::uint32_t part = turns_->failed_part(turns_->members[running]); part != Turns::nobody) {
         wanted_ = 0;
-        if (running != 0) static_cast<void>(take_over(0)); // looked at below
+        if (running != 0) static_cast<void>(take_over(0)); // checked below
         if (running == 0 || turns_->running.load(std::memory_order_relaxed) != 0)
             return turns_->ask_stop(part);
         fell_back.emit();
@@ -313,7 +313,7 @@ void ChainSwitch::step(const Cycle&) noexcept TAPPET_REALTIME {
     }
     if (wanted_ == running) return;
     const std::uint32_t hinders = take_over(wanted_);
-    // Who wants the fallback wants rest: what runs is not to run on.
+    // A request for the fallback is a request for rest: the running chain must not continue.
     if (hinders != Turns::nobody && wanted_ == 0) turns_->ask_stop(hinders);
     wanted_ = turns_->running.load(std::memory_order_relaxed);
     if (wanted_ != running) handed_over.emit();

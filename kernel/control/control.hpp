@@ -1,6 +1,6 @@
-// The feedback control kernel (thesis chapter 3): a section of the machine table that says which component
-// has which role in the control action. The compiler checks who reads, who writes, who calls, that values
-// written by turns have one writer at a time, and that the loops can be stable.
+// The feedback control kernel (thesis chapter 3): a section of the machine table that gives components their
+// roles in the control action. The compiler checks readers, writers and calls, that values written in turns
+// have one writer at a time, and that the loops can be stable.
 #pragma once
 
 #include "kernel/control/chain_switch.hpp"
@@ -64,7 +64,7 @@ struct Control final : ExtraSection {
                                             std::size_t other) const override {
         return control_detail::take_turns(exclusives, m.components[one].name, m.components[other].name);
     }
-    /// What is in a loop waits for all it reads but for what is of the step before: an invalid zero would
+    /// A component in a loop waits for all its inputs except those of the step before: an invalid zero would
     /// move the axis (thesis 3.1.3: starting).
     [[nodiscard]] constexpr bool awaits(const MachineView& m, std::size_t from,
                                         std::size_t to) const override {

@@ -1,4 +1,4 @@
-// The rows of the control kernel with their names found: which component sits where.
+// The rows of the control kernel with names resolved: the roles of each component.
 #pragma once
 
 #include "kernel/control/rows.hpp"
@@ -16,7 +16,7 @@ struct ControlView {
     std::span<const LoopRow> loops;
 };
 
-/// With its article.
+/// Returns the role's name with its article.
 constexpr std::string_view a_role(ControlRole role) noexcept {
     switch (role) {
     case ControlRole::sensor: return "a Sensor";
@@ -36,7 +36,7 @@ constexpr std::string_view to_text(ControlRole role) noexcept {
 
 inline constexpr std::size_t no_level = static_cast<std::size_t>(-1);
 
-/// A component in a role. One that is merged of two roles has two seats.
+/// A component in a role. A component with two merged roles has two seats.
 struct Seat {
     std::size_t component = nowhere;
     ControlRole role = ControlRole::process;
@@ -56,7 +56,7 @@ constexpr Sentence too_many(std::string_view what, std::size_t most) {
     return Sentence{"it has more than the ", most, " ", what, " that it may have; make two of it"};
 }
 
-/// Fills the seats, or says which name is wrong.
+/// Fills the seats; returns the first unknown name as a fault.
 constexpr Sentence take_seats(const ControlView& c, const MachineView& m, Seats& seats) {
     const auto seat = [&](const RoleRow& role, std::size_t level) -> Sentence {
         const std::size_t component = find_component(m, role.component);
@@ -106,14 +106,14 @@ constexpr bool has_seat(const Seats& seats, std::size_t component) noexcept {
     return false;
 }
 
-/// The level of a component; no_level: it has no role in one.
+/// Returns the level of a component; no_level: it has no role in one.
 constexpr std::size_t level_of(const Seats& seats, std::size_t component) noexcept {
     for (const Seat& each : seats)
         if (each.component == component) return each.level;
     return no_level;
 }
 
-/// Of an exclusive row: a bit for each chain that the component is in.
+/// Returns a bit for each chain of an exclusive row that contains the component.
 constexpr unsigned chains_of(const ExclusiveRow& row, std::string_view component) noexcept {
     unsigned in = 0;
     for (std::size_t i = 0; i < row.chains.size(); ++i)
@@ -122,7 +122,7 @@ constexpr unsigned chains_of(const ExclusiveRow& row, std::string_view component
     return in;
 }
 
-/// Both are members of one row, and no chain has both.
+/// Returns whether both are members of one row, and no chain contains both.
 constexpr bool take_turns(std::span<const ExclusiveRow> rows, std::string_view one,
                           std::string_view other) noexcept {
     for (const ExclusiveRow& row : rows) {

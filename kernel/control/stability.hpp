@@ -1,6 +1,6 @@
-// Whether a sampled loop is stable and whether it overshoots: an integrator behind a dead time of whole
-// samples, under proportional and integral control (Astrom and Wittenmark, Computer-Controlled Systems, 1997,
-// chapter 3; Jury 1964).
+// Stability and overshoot of a sampled loop: an integrator behind a dead time of whole samples, under
+// proportional and integral control (Astrom and Wittenmark, Computer-Controlled Systems, 1997, chapter 3;
+// Jury 1964).
 #pragma once
 
 #include <array>
@@ -8,15 +8,15 @@
 
 namespace tappet::control_detail {
 
-/// Samples of dead time that the analysis looks at, at most.
+/// Maximum dead time of the analysis in samples.
 inline constexpr std::size_t max_dead_samples = 32;
 
 /// x(k+1) = x(k) + T v(k-d), v = Kp e + Ki T sum(e): proportional is Kp T, integral Ki T T.
 struct SampledLoop {
     double proportional = 0.0;
     double integral = 0.0;
-    std::size_t dead_samples = 0;    ///< at most
-    std::size_t varying_samples = 0; ///< of them: these come and go, in any order
+    std::size_t dead_samples = 0;    ///< upper bound
+    std::size_t varying_samples = 0; ///< part of them that varies, in any order
 };
 
 namespace stability_detail {
@@ -31,9 +31,9 @@ struct Complex {
     [[nodiscard]] constexpr double square() const noexcept { return re * re + im * im; }
 };
 
-/// With an integral: whatever the delay does between d and d + N samples, |T(z)| N |z - 1| < 1 on the unit
-/// circle keeps the loop stable, where T is the closed loop at d (Kao and Lincoln, Simple stability criteria
-/// for systems with time-varying delays, Automatica 40, 2004).
+/// Stability with an integral part: whatever the delay does between d and d + N samples, |T(z)| N |z - 1| < 1
+/// on the unit circle keeps the loop stable, where T is the closed loop at d (Kao and Lincoln, Simple
+/// stability criteria for systems with time-varying delays, Automatica 40, 2004).
 constexpr bool is_stable_at_any_delay(const SampledLoop& loop) noexcept {
     constexpr Complex turn{0.99998117528260111, 0.0061358846491544753}; // a 512th of half a circle
     const auto most = static_cast<double>(loop.varying_samples);
@@ -52,15 +52,15 @@ constexpr bool is_stable_at_any_delay(const SampledLoop& loop) noexcept {
 
 } // namespace stability_detail
 
-/// The largest proportional gain times period that is stable, without an integral, whatever the delay does
-/// between none and so many samples: 2, 0.875, 0.556, .. (Erbe, Xia and Yu 1995).
+/// Returns the largest stable proportional gain times period, without an integral part, for a delay that
+/// varies between 0 and `dead_samples`: 2, 0.875, 0.556, .. (Erbe, Xia and Yu 1995).
 constexpr double most_stable_at_any_delay(std::size_t dead_samples) noexcept {
     const auto n = static_cast<double>(dead_samples + 1);
     return (1.5 + 0.5 / n) / n;
 }
 
-/// Jury's test of z^d (z-1) + L, and with an integral of z^d (z-1)(z-1) + L (z-1) + Li z: all roots inside
-/// the unit circle. It proves nothing of a delay that varies, for which there are the two above.
+/// Applies Jury's test to z^d (z-1) + L, and with an integral part to z^d (z-1)(z-1) + L (z-1) + Li z: all
+/// roots inside the unit circle. It proves nothing for a varying delay; the two functions above do.
 constexpr bool is_stable(const SampledLoop& loop) noexcept {
     if (loop.dead_samples > max_dead_samples) return false;
     if (loop.varying_samples != 0 && loop.integral == 0.0 &&
@@ -68,7 +68,7 @@ constexpr bool is_stable(const SampledLoop& loop) noexcept {
         return false;
     if (loop.varying_samples != 0 && loop.integral != 0.0 && !stability_detail::is_stable_at_any_delay(loop))
         return false;
-    std::array<double, max_dead_samples + 3> a{}; // of z to the power of its place
+    std::array<double, max_dead_samples + 3> a{}; // coefficient of z to the power of its index
     const std::size_t d = loop.dead_samples;
     std::size_t degree = d + 1;
     if (loop.integral == 0.0) {
@@ -83,7 +83,7 @@ constexpr bool is_stable(const SampledLoop& loop) noexcept {
         a[1] += loop.proportional + loop.integral;
         a[0] -= loop.proportional;
     }
-    // Each round takes the highest power off; what is left has its roots inside only if this one had.
+    // Each round removes the highest power; the rest has its roots inside only if this one had.
     for (; degree > 0; --degree) {
         const double top = a[degree], bottom = a[0];
         if (!(bottom < top && bottom > -top)) return false;
@@ -94,8 +94,8 @@ constexpr bool is_stable(const SampledLoop& loop) noexcept {
     return true;
 }
 
-/// The largest proportional gain times period that is stable, without an integral and at this delay: 2, 1,
-/// 0.618, 0.445, ..
+/// Returns the largest stable proportional gain times period, without an integral part and at this constant
+/// delay: 2, 1, 0.618, 0.445, ..
 constexpr double most_stable(std::size_t dead_samples) noexcept {
     double low = 0.0, high = 2.0;
     for (int i = 0; i < 40; ++i) {
@@ -105,7 +105,7 @@ constexpr double most_stable(std::size_t dead_samples) noexcept {
     return low;
 }
 
-/// The largest one that does not overshoot: d^d / (d+1)^(d+1).
+/// Returns the largest one without overshoot: d^d / (d+1)^(d+1).
 constexpr double most_without_overshoot(std::size_t dead_samples) noexcept {
     double bound = 1.0;
     const auto d = static_cast<double>(dead_samples);

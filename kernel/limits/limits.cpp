@@ -1,4 +1,4 @@
-// What a limited port does with each value, and how it is wired.
+// How a limited port handles each value, and how it is wired.
 #include "kernel/limits/limits.hpp"
 
 #include "kernel/base/decimal.hpp"
@@ -25,7 +25,7 @@ void write_as(void* value, double number) noexcept TAPPET_REALTIME {
 template <class T>
 constexpr Conversion conversion{&read_as<T>, &write_as<T>};
 
-/// Of a type that the check accepts.
+/// Returns the conversion of a type that the check accepts.
 Conversion conversion_of(const TypeTag& type) noexcept {
     if (type.kind == ValueKind::real) return type.size == 8 ? conversion<double> : conversion<float>;
     const bool is_signed = type.kind == ValueKind::integer;
@@ -34,13 +34,13 @@ Conversion conversion_of(const TypeTag& type) noexcept {
     return is_signed ? conversion<std::int32_t> : conversion<std::uint32_t>;
 }
 
-/// What goes out in the place of what is no number.
+/// Returns the value that replaces NaN or infinity.
 double without_number(const LimitRow& row, const Limited& port) noexcept TAPPET_REALTIME {
     if (port.has_last) return port.last;
     return row.is_rate ? 0.0 : std::clamp(0.0, row.low, row.high);
 }
 
-/// The nearest value to `wanted` that a row allows: always a number.
+/// Returns the value nearest to `wanted` that a row allows: always a number.
 double allowed(const LimitRow& row, const Limited& port, double wanted, Time stamp) noexcept TAPPET_REALTIME {
     if (!is_number(wanted)) return without_number(row, port);
     if (!row.is_rate) return wanted > row.high ? row.high : wanted < row.low ? row.low : wanted;
@@ -54,12 +54,12 @@ double allowed(const LimitRow& row, const Limited& port, double wanted, Time sta
 void pass(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME {
     auto& port = static_cast<Limited&>(self);
     double number = port.convert.read(value);
-    // The rows hold for values at work. The safe value of a stop passes them, if it is a number.
+    // The rows limit values in operation. The safe value of a stop passes, if it is a number.
     const ComponentState state = port.machine->life().state_of(port.component);
     const bool is_left = state != ComponentState::running && state != ComponentState::starting;
     if (is_left) port.has_last = false;
     if (is_left && is_number(number)) return;
-    // The range first: what is then reached at the rate lies between two values of the range.
+    // The range first: the value that the rate then allows lies between two values of the range.
     std::array<std::size_t, 2> order{port.row, port.other};
     if (port.other != nowhere && port.rows[port.row].is_rate) std::swap(order[0], order[1]);
     bool changed = false;
@@ -92,7 +92,7 @@ void connect(std::span<const LimitRow> rows, MachineInstance& machine, std::size
         port->rows = rows;
         std::size_t first = 0;
         while (!same_text(rows[first].output, rows[i].output)) ++first;
-        if (first != i) { // one filter for a port, of both rows
+        if (first != i) { // one filter for both rows of a port
             places[first].other = i;
             continue;
         }

@@ -1,4 +1,4 @@
-// Limits of what a component writes (thesis 4.4.2: a connector may constrain the flow of data in value and in
+// Limits of a component's outputs (thesis 4.4.2: a connector may constrain the flow of data in value and in
 // bandwidth): a section of the machine table.
 //     limits(limit("warp.target", 0.0, 40.0), rate("main.target", 500.0, stop_on_breach))
 #pragma once
@@ -17,35 +17,35 @@
 
 namespace tappet {
 
-/// What happens to a value that its row does not allow; each is counted.
+/// Handling of a value that its row does not allow; each is counted.
 enum class OnBreach : std::uint8_t {
-    clamp, ///< the nearest value that is allowed goes out
-    count, ///< it goes out as it is
-    stop   ///< the nearest value goes out, and the machine stops
+    clamp, ///< sends the nearest allowed value
+    count, ///< sends the value unchanged
+    stop   ///< sends the nearest allowed value and stops the machine
 };
-/// The nearest value that is allowed goes out. The default.
+/// Sends the nearest allowed value. The default.
 inline constexpr OnBreach clamp_on_breach = OnBreach::clamp;
-/// The value goes out as it is.
+/// Sends the value unchanged.
 inline constexpr OnBreach count_on_breach = OnBreach::count;
-/// The nearest value that is allowed goes out, and the machine stops.
+/// Sends the nearest allowed value and stops the machine.
 inline constexpr OnBreach stop_on_breach = OnBreach::stop;
 
 struct LimitRow {
     std::string_view output; ///< "component.output", of a number
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
-    double per_second = 0.0; ///< of a rate: it may change by, up or down
+    double per_second = 0.0; ///< of a rate: maximum change, up or down
     bool is_rate = false;
     OnBreach on_breach = OnBreach::clamp;
 };
 
-/// The value lies between `low` and `high`, both allowed, in the port's unit.
+/// Limits the value to `low`..`high`, both included, in the port's unit.
 constexpr LimitRow limit(std::string_view output, double low, double high,
                          OnBreach on_breach = clamp_on_breach) noexcept {
     return {.output = output, .low = low, .high = high, .on_breach = on_breach};
 }
-/// The value changes by at most `per_second` of the port's unit, from write to write by their stamps. The
-/// first value after a start is free.
+/// Limits the change to `per_second` of the port's unit, from write to write by their stamps. The first value
+/// after a start is not limited.
 constexpr LimitRow rate(std::string_view output, double per_second,
                         OnBreach on_breach = clamp_on_breach) noexcept {
     return {.output = output, .per_second = per_second, .is_rate = true, .on_breach = on_breach};
@@ -53,7 +53,7 @@ constexpr LimitRow rate(std::string_view output, double per_second,
 
 namespace limits_detail {
 
-/// Whether a port of that type can be given the number itself: a bound that it cannot is no bound of it.
+/// Returns whether a port of that type can hold the number exactly; otherwise it cannot be a bound.
 constexpr bool holds(const TypeTag& type, double number) noexcept {
     if (type.kind == ValueKind::real) {
         constexpr double most = std::numeric_limits<float>::max();
@@ -66,13 +66,13 @@ constexpr bool holds(const TypeTag& type, double number) noexcept {
            static_cast<double>(static_cast<std::int64_t>(number)) == number;
 }
 
-/// Between a port's value and a double, which holds every value of these types.
+/// Converts between a port's value and a double, which holds every value of these types.
 struct Conversion {
     double (*read)(const void* value) noexcept TAPPET_REALTIME = nullptr;
     void (*write)(void* value, double number) noexcept TAPPET_REALTIME = nullptr;
 };
 
-/// Of the ports that rows name: what limits it now. In the machine's memory.
+/// The limits in effect of the ports that rows name. In the machine's memory.
 struct Limited : PortFilter {
     MachineInstance* machine = nullptr;
     std::size_t section = 0;
@@ -83,11 +83,11 @@ struct Limited : PortFilter {
     std::size_t component = 0;
     Conversion convert{};
     bool has_last = false;
-    double last = 0.0; ///< that went out, before an integer was made of it
+    double last = 0.0; ///< last value sent, before conversion to an integer
     Time at{};
-    std::atomic<std::uint64_t> breaches{0}; ///< of the row in whose place it lies
+    std::atomic<std::uint64_t> breaches{0}; ///< of the row with the same place
 
-    /// Rows' places lie in their order.
+    /// Places are in the order of the rows.
     [[nodiscard]] std::atomic<std::uint64_t>& count_of(std::size_t i) noexcept TAPPET_REALTIME {
         return (this - row + i)->breaches;
     }
@@ -163,8 +163,8 @@ struct Limits final : ExtraSection {
     }
 };
 
-/// The section: rows of limit(..) and rate(..). The safe values that a component leaves behind when it stops
-/// are not limited, nor is what somebody forces.
+/// The section: rows of limit(..) and rate(..). Not limited: the safe values that a component leaves behind
+/// when it stops, and forced values.
 template <class... Rows>
 constexpr Limits<sizeof...(Rows)> limits(const Rows&... rows) {
     static_assert(sizeof...(Rows) != 0, "limits() without a row limits nothing; leave the section out");

@@ -1,4 +1,4 @@
-// The tables of a machine's acceptance on the heap.
+// Holds the tables of a machine's acceptance on the heap.
 #include "kernel/machine/accept.hpp"
 
 #include "kernel/machine/check/check.hpp"
@@ -97,7 +97,7 @@ Accepted::Tables::Tables(const MachineView& m, const Board& board, const Binding
     make_plan(m, board, binding, machine.index, draw_map(), machine.plan);
     refusal = check_plan(m, board, machine.plan.subscriptions, machine.plan.bytes, machine.plan.stack_bytes);
     if (!refusal.empty()) return;
-    // Pages of its own: a machine that others see lays shared memory under them.
+    // Pages of its own: a machine that others see maps shared memory over them.
     machine.memory = os::map_pages(machine.plan.bytes);
     if (machine.memory.empty())
         refusal = Sentence{m.name, ": there is no memory for its ", machine.plan.bytes,

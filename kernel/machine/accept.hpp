@@ -1,7 +1,6 @@
-// A table, accepted while the program runs: the check, the plan and the map of Firmware, compiled once
-// instead of interpreted by the compiler in each file that has a table. For programs whose tables are not
-// known before, or whose refusals are read: tests and tools. A machine that is flashed is accepted by the
-// compiler.
+// Accepts a table at run time: the check, the plan and the map of Firmware are compiled once, instead of
+// being interpreted by the compiler in each file that has a table. For tests and tools: programs whose tables
+// are not known before, or that read refusals. The compiler accepts a machine that is flashed.
 #pragma once
 
 #include "kernel/machine/plan/places.hpp"
@@ -11,19 +10,19 @@
 
 namespace tappet {
 
-/// Not real-time; takes memory from the heap, and gives it back.
+/// Not real-time; allocates from the heap, and frees it.
 class Accepted {
 public:
-    /// `board`, `binding` and what the table's rows name outlive it.
+    /// `board`, `binding` and the objects that the table's rows name must outlive it.
     explicit Accepted(const MachineView& table, const Board& board, const Binding& binding = unbound);
     Accepted(Accepted&&) noexcept;
     Accepted& operator=(Accepted&&) noexcept;
     ~Accepted();
 
-    /// Why the table cannot work, in the words of the compiler; empty: it is accepted.
+    /// Says why the table is refused, in the words of the compiler; empty: it is accepted.
     [[nodiscard]] const Sentence& refusal() const noexcept;
-    /// For a MachineInstance, which this outlives. Of a table that is refused it ends the program with the
-    /// refusal.
+    /// Returns the machine for a MachineInstance, which must not outlive this object. For a refused table it
+    /// ends the program with the refusal.
     [[nodiscard]] AcceptedMachine machine();
 
 private:
@@ -31,7 +30,7 @@ private:
     std::unique_ptr<Tables> tables_;
 };
 
-/// In place of Firmware where the table is a constant all the same. As there, all that is made of it share
+/// Replaces Firmware where the table is a constant nevertheless. Like there, all instances made of it share
 /// one memory: one at a time.
 template <const auto& table, const Board& board, const Binding& binding = unbound>
 struct AtRunTime {

@@ -1,6 +1,5 @@
-// A machine, bound to a board: the table checked, planned and given its memory, all by the compiler. A table
-// that cannot work does not compile; the first error is one sentence that names the row, the fault and the
-// cure.
+// A machine, bound to a board: the compiler checks and plans the table and gives it its memory. A table that
+// cannot work does not compile; the first error is one sentence that names the row, the fault and the cure.
 #pragma once
 
 #include "kernel/machine/map/map.hpp"
@@ -8,7 +7,7 @@
 
 namespace tappet {
 
-/// The verdict on a table: the sentence, and what was found out on the way.
+/// The verdict on a table: the sentence, and the results of the checks.
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t R>
 struct Verdict {
     TableIndex<C, A, X, R> index{};
@@ -117,14 +116,14 @@ struct Firmware {
 #endif
 
     static AcceptedMachine machine() { return machine(table.view()); }
-    /// `view` is the table's. Of another object file it saves this one the code of all components, to which
-    /// the rows lead.
+    /// `view` is that of the table. A view from another object file saves this file the code of all
+    /// components, to which the rows lead.
     static AcceptedMachine machine(const MachineView& view) {
         return detail::Instance<table, board, binding, accepted>::machine(view);
     }
 
-    /// The machine's map (thesis 4.7.2) as a constant: map::Storage. Of any accepted table, also of one that
-    /// nothing sees.
+    /// The machine's map (thesis 4.7.2) as a constant: map::Storage. Available for any accepted table, even
+    /// when no component sees the machine.
     template <bool good = accepted>
     static constexpr const auto& map() {
         return detail::Mapped<table, board, binding, good>::drawn.map;

@@ -1,5 +1,5 @@
-// The plan's own sections, in the order in which a reader asks: who runs when, who writes to whom, and what
-// it takes.
+// Writes the sections of the plan in the order in which a reader asks: which activity runs when, which writes
+// to which, and what memory they use.
 #include "kernel/machine/plan_text.hpp"
 
 #include "kernel/machine/check/stop.hpp"
@@ -18,7 +18,7 @@ struct Writer {
     void say(const Sentence& text) const { line(to, text.view()); }
     [[nodiscard]] std::string_view activity(std::size_t a) const { return machine.table.activities[a].name; }
 
-    /// Each activity with its components in the order in which they step; the most urgent first.
+    /// Prints each activity with its components in the order in which they step; the most urgent first.
     void activities() const {
         const auto rows = machine.table.activities;
         for (std::size_t rank = 0; rank < rows.size(); ++rank)
@@ -40,7 +40,7 @@ struct Writer {
             }
     }
 
-    /// From whom to whom, and how many may wait there; then what observers may ask of each.
+    /// Prints each sender and receiver, and how many messages and commands may wait there.
     void mailboxes() const {
         const std::size_t n = machine.table.activities.size();
         for (std::size_t receiver = 0; receiver < n; ++receiver) {
@@ -67,7 +67,7 @@ struct Writer {
         for (std::size_t x = 0; x < machine.table.connections.size(); ++x) units(x);
     }
 
-    /// What no check could compare, and what is scaled on its way.
+    /// Prints units that no check could compare, and rows that are scaled.
     void units(std::size_t x) const {
         const ConnectionRow& row = machine.table.connections[x];
         const Facet& from = facet_at(machine.table, machine.index.connections[x].from);

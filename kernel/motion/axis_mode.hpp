@@ -1,5 +1,5 @@
-// The state diagram of an axis (PLCopen, Function blocks for motion control, part 1, 2.1): what an axis does,
-// and which command it takes meanwhile.
+// The state diagram of an axis (PLCopen, Function blocks for motion control, part 1, 2.1): its modes, and the
+// commands that each mode accepts.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -16,30 +16,30 @@
 namespace tappet::motion {
 
 enum class AxisMode : std::uint8_t {
-    disabled,            ///< without power
-    standstill,          ///< powered, and takes any motion
-    homing,              ///< looks for its reference
-    discrete_motion,     ///< to a position, where it ends
-    continuous_motion,   ///< at a speed, until told otherwise
-    synchronized_motion, ///< bound to a master
-    stopping,            ///< comes to rest and takes no motion until the stop is let go
-    error_stop           ///< a fault: nothing but a reset leads out
+    disabled,            ///< power off
+    standstill,          ///< power on, accepts any motion
+    homing,              ///< searches for its reference
+    discrete_motion,     ///< moves to a position
+    continuous_motion,   ///< moves at a speed, until another command
+    synchronized_motion, ///< follows a master
+    stopping,            ///< decelerates to rest; accepts no motion until the stop is released
+    error_stop           ///< a fault: only a reset leaves it
 };
 
-/// What is asked of an axis, and what happens to it. The last five are no function blocks of their own.
+/// Commands to an axis, and events. The last five have no function block of their own.
 enum class AxisCommand : std::uint8_t {
     power_on,    ///< MC_Power, Enable
     power_off,   ///< MC_Power, not Enable
     home,        ///< MC_Home
     move,        ///< MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive
     move_on,     ///< MC_MoveVelocity, MC_TorqueControl
-    superimpose, ///< MC_MoveSuperimposed: what runs goes on
+    superimpose, ///< MC_MoveSuperimposed: the present motion continues
     synchronize, ///< MC_GearIn, MC_CamIn
     release,     ///< MC_GearOut, MC_CamOut
     halt,        ///< MC_Halt
     stop,        ///< MC_Stop
-    reset,       ///< MC_Reset of an axis with power
-    done,        ///< the motion has ended; of a stop, also that it was let go
+    reset,       ///< MC_Reset of a powered axis
+    done,        ///< the motion has ended; of a stop, also that it was released
     error        ///< a fault was found
 };
 
@@ -90,7 +90,7 @@ inline constexpr auto axis_rows = [] {
 
 } // namespace detail
 
-/// What the axis does after the command. Refused: it does not take it in this mode. Real-time.
+/// Returns the mode after the command. Refused: this mode does not accept it. Real-time.
 constexpr std::expected<AxisMode, Refused> after(AxisMode mode, AxisCommand command) noexcept
     TAPPET_REALTIME {
     for (const detail::AxisRow& row : detail::axis_rows)
@@ -109,7 +109,7 @@ inline constexpr auto tappet::names_of<tappet::motion::AxisMode> =
 
 namespace tappet::motion {
 
-/// As PLCopen writes it.
+/// Returns the name in PLCopen's spelling.
 constexpr std::string_view to_text(AxisMode mode) noexcept TAPPET_REALTIME {
     return mode <= AxisMode::error_stop ? names_of<AxisMode>[static_cast<std::size_t>(mode)] : "?";
 }

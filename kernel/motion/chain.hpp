@@ -18,23 +18,23 @@ namespace tappet::motion {
 
 enum class Joint : std::uint8_t { revolute, prismatic };
 
-/// Of a link about its centre of mass, along the axes of its frame, kg m2: elements of the inertia tensor.
+/// Inertia tensor of a link about its centre of mass, along the axes of its frame, kg m2.
 struct Inertia {
     double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, xz = 0;
 };
 
-/// What drives a joint. `coulomb_*` holds at any speed in that direction of the joint, Nm at the motor.
+/// The drive of a joint. `coulomb_*` holds at any speed in that direction of the joint, Nm at the motor.
 struct Drive {
-    double gear = 0;            ///< motor's turns for one of the joint; of a prismatic joint rad/m
+    double gear = 0;            ///< turns of the motor per turn of the joint; of a prismatic joint rad/m
     double inertia_kg_m2 = 0;   ///< of the motor's rotor
-    double viscous_nm_s = 0;    ///< at the motor, Nm for one rad/s
-    double coulomb_forward = 0; ///< at least nought
+    double viscous_nm_s = 0;    ///< at the motor, Nm per rad/s
+    double coulomb_forward = 0; ///< not negative
     double coulomb_backward = 0;
 };
 
-/// One row. Frame i stands in frame i-1 at Rz(theta) Tz(d) Tx(a) Rx(alpha), standard parameters (Denavit and
-/// Hartenberg 1955; Corke, Robotics, Vision and Control, 7.2). A revolute joint adds its angle to theta, a
-/// prismatic one its way to d; a reversed one subtracts it.
+/// One row. Frame i is placed in frame i-1 at Rz(theta) Tz(d) Tx(a) Rx(alpha), standard parameters (Denavit
+/// and Hartenberg 1955; Corke, Robotics, Vision and Control, 7.2). A revolute joint adds its angle to theta,
+/// a prismatic one its travel to d; a reversed one subtracts it.
 struct Link {
     double a_m = 0;
     double alpha_deg = 0; ///< 90 and its multiples are exact
@@ -48,7 +48,7 @@ struct Link {
     Drive drive{};
 };
 
-/// From the frame Base to the frame End of the last link. One value for each joint: rad or m.
+/// A chain from the frame Base to the frame End of the last link. One value per joint: rad or m.
 template <class Base_, class End_, int joints_>
 struct Chain {
     static_assert(joints_ > 0, "a chain has a joint");
@@ -65,8 +65,8 @@ using Joints = Eigen::Matrix<double, joints, 1>;
 
 namespace detail {
 
-/// What the algorithms need of a link. `pxx`.. are the second moments of its mass about its frame's origin
-/// (kg m2), `hx`.. the first ones (kg m); those of the drive are seen from the joint.
+/// Parameters of a link for the algorithms. `pxx`.. are the second moments of its mass about its frame's
+/// origin (kg m2), `hx`.. the first ones (kg m); those of the drive refer to the joint.
 enum Of : std::uint8_t { // clang-format off
     ca, sa, c0, s0, a, d, sense, mass, hx, hy, hz, pxx, pyy, pzz, pxy, pyz, pxz, rotor, viscous, forward, backward, numbers
 }; // clang-format on
@@ -112,7 +112,7 @@ inline constexpr auto table_of = [] {
 
 } // namespace detail
 
-/// A chain that the compiler folds into the code: noughts vanish, quarter turns are exchanges of axes.
+/// A chain that the compiler folds into the code: zeros vanish, quarter turns become exchanges of axes.
 ///     inline constexpr Chain<World, Flange, 6> arm{...};
 ///     const auto pose = forward(folded<arm>, q);
 template <const auto& chain>
@@ -147,8 +147,7 @@ private:
 template <const auto& chain>
 inline constexpr Folded<chain> folded{};
 
-/// A chain whose numbers become known at run time: calibrated, or from properties. The same algorithms, about
-/// half as fast.
+/// A chain with parameters of run time: calibrated, or from properties. Same algorithms, about half as fast.
 template <class Base_, class End_, int joints_>
 class Loaded {
 public:
@@ -156,7 +155,7 @@ public:
     using End = End_;
     static constexpr int joints = joints_;
 
-    /// Real-time.
+    /// Copies the chain's parameters. Real-time.
     constexpr explicit Loaded(const Chain<Base_, End_, joints_>& chain) noexcept TAPPET_REALTIME
         : gravity_(chain.gravity_m_s2) {
         for (std::size_t i = 0; i < table_.size(); ++i) {
@@ -183,7 +182,7 @@ private:
     std::array<double, 3> gravity_;
 };
 
-/// Contract: each of them is a number. What comes from a sensor is looked at where it comes in.
+/// Contract: all values are finite. Check sensor values where they enter the program.
 template <int joints>
 void require_numbers(const Joints<joints>& values) noexcept TAPPET_REALTIME {
     double sum = 0.0;
@@ -195,7 +194,7 @@ void require_numbers(const Joints<joints>& values) noexcept TAPPET_REALTIME {
 
 namespace detail {
 
-/// Where a joint stands: the turn about z, the way along z, and which of both is its own.
+/// Position of a joint: the turn about z, the travel along z, and which of the two it moves.
 template <class Kind, sparse::Number C, sparse::Number S, sparse::Number D>
 struct Place {
     Kind is_revolute;
@@ -206,7 +205,7 @@ struct Place {
 template <int joints>
 using Turns = std::array<SineCosine, static_cast<std::size_t>(joints)>;
 
-/// Joints 2k and 2k + 1: those of turning ones, two at a time.
+/// Joints 2k and 2k + 1: revolute ones are computed in pairs.
 template <int k, class Robot>
 [[gnu::always_inline]] inline void turn_two(const Robot& robot, const Joints<Robot::joints>& q,
                                             Turns<Robot::joints>& turns) noexcept TAPPET_REALTIME {
@@ -226,7 +225,7 @@ template <int k, class Robot>
     of_b = sine_cosine(b);
 }
 
-/// Sines and cosines of all joints. Contract: q are numbers.
+/// Sines and cosines of all joints. Contract: q is finite.
 template <class Robot>
 [[gnu::always_inline]] inline Turns<Robot::joints> turns_of(const Robot& robot,
                                                             const Joints<Robot::joints>& q) noexcept

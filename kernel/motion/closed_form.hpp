@@ -1,5 +1,5 @@
-// Inverse kinematics in closed form, for arms of six turning joints whose last three axes meet in one point
-// (Pieper 1968), upper arm and forearm in one plane: most industrial robots.
+// Inverse kinematics in closed form, for arms of six revolute joints whose last three axes meet in one point
+// (Pieper 1968), with upper arm and forearm in one plane: most industrial robots.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -14,8 +14,8 @@
 
 namespace tappet::motion {
 
-/// Whether closed_form can be asked for this chain: axis 1 across axis 2, axes 2 and 3 along each other, and
-/// a wrist whose axes 4, 5 and 6 meet at right angles.
+/// Returns whether closed_form works for this chain: axis 1 perpendicular to axis 2, axes 2 and 3 parallel,
+/// and a wrist whose axes 4, 5 and 6 meet at right angles.
 template <class Base, class End, int joints>
 constexpr bool has_closed_form(const Chain<Base, End, joints>& chain) noexcept {
     if constexpr (joints != 6) {
@@ -35,14 +35,14 @@ constexpr bool has_closed_form(const Chain<Base, End, joints>& chain) noexcept {
 
 namespace detail {
 
-/// An angle by its cosine and sine, which need no more of it until it is told.
+/// An angle by its cosine and sine; the angle itself is computed only at the end.
 struct Bend {
     sparse::Turn<double, double> turn;
     explicit Bend(double angle) noexcept TAPPET_REALTIME {
         const auto [sine, cosine] = sine_cosine(angle);
         turn = {cosine, sine};
     }
-    /// Of numbers in that proportion; both nought are no angle, and taken for nought.
+    /// Normalises a cosine and a sine of any scale; both zero define no angle and give the angle zero.
     Bend(double cosine, double sine) noexcept TAPPET_REALTIME {
         const double length = std::sqrt(cosine * cosine + sine * sine);
         turn = length > 0.0 ? sparse::Turn{cosine / length, sine / length} : sparse::Turn{1.0, 0.0};
@@ -58,14 +58,14 @@ template <const auto& chain>
 double joint_of(std::size_t i, double theta) noexcept TAPPET_REALTIME {
     return table_of<chain>[i][Of::sense] * (theta - chain.links[i].theta_deg * (std::numbers::pi / 180.0));
 }
-/// As it is in `near`.
+/// Returns the angle of joint `i` in `near`, unchanged.
 template <const auto& chain>
 Bend as_it_is(const Joints<6>& near, std::size_t i) noexcept TAPPET_REALTIME {
     const double q = near[static_cast<int>(i)];
     return Bend{table_of<chain>[i][Of::sense] * q + chain.links[i].theta_deg * (std::numbers::pi / 180.0)};
 }
 
-/// The two turns of the wrist for the first three joints.
+/// The two solutions of the wrist for the first three joints.
 template <const auto& chain>
 void add_wrists(Bounded<Joints<6>, 8>& found, const Joints<6>& near, const Eigen::Matrix3d& rotation,
                 const std::array<Bend, 3>& arm) noexcept TAPPET_REALTIME {
@@ -73,7 +73,7 @@ void add_wrists(Bounded<Joints<6>, 8>& found, const Joints<6>& near, const Eigen
     constexpr const auto& table = table_of<chain>;
     constexpr double s1 = table[0][Of::sa], c2 = table[1][Of::ca], s3 = table[2][Of::sa];
     constexpr double s4 = table[3][Of::sa], s5 = table[4][Of::sa];
-    // The wrist's turn, by its first and its third column.
+    // The wrist's rotation, by its first and its third column.
     const auto into_arm = [&](const auto& v) {
         const sparse::Triple column{v(0), v(1), v(2)};
         const auto upper = back_about_x(Turn{0.0, s1}, back_about_z(arm[0].turn, column));
@@ -85,8 +85,8 @@ void add_wrists(Bounded<Joints<6>, 8>& found, const Joints<6>& near, const Eigen
     const double bent = std::sqrt(third.x * third.x + third.y * third.y);
     const Bend four = bent < 1e-10 ? as_it_is<chain>(near, 3) : Bend{s5 * third.x, s5 * third.y};
     const Bend five{-s4 * s5 * third.z, bent};
-    // The last turn is what is left: it makes good what is unsure about the fourth near a stretched
-    // wrist.
+    // The last joint takes the remaining rotation: it compensates the uncertainty of the fourth near a
+    // stretched wrist.
     const auto left = back_about_x(
         Turn{0.0, s5}, back_about_z(five.turn, back_about_x(Turn{0.0, s4}, back_about_z(four.turn, first))));
     const Bend six{left.x, left.y};
@@ -94,10 +94,9 @@ void add_wrists(Bounded<Joints<6>, 8>& found, const Joints<6>& near, const Eigen
     q << joint_of<chain>(0, arm[0].angle()), joint_of<chain>(1, arm[1].angle()),
         joint_of<chain>(2, arm[2].angle()), joint_of<chain>(3, four.angle()),
         joint_of<chain>(4, five.angle()), joint_of<chain>(5, six.angle());
-    if (!q.allFinite()) return; // the target's rotation is none
+    if (!q.allFinite()) return; // the target's rotation is not finite
     static_cast<void>(found.push(q));
-    // The wrist turned over is the same: half a turn before its bend, which goes the other way, and
-    // after.
+    // The flipped wrist is equivalent: half a turn before and after its bend, which is reversed.
     q[3] += std::numbers::pi;
     q[4] = joint_of<chain>(4, -five.angle());
     q[5] += std::numbers::pi;
@@ -106,11 +105,11 @@ void add_wrists(Bounded<Joints<6>, 8>& found, const Joints<6>& near, const Eigen
 
 } // namespace detail
 
-/// All joints that lead the end of a chain to `target`: shoulder in front or behind, elbow up or down, wrist
-/// turned over or not; none when it is out of reach. Where a turn is free, with the wrist stretched or above
-/// the first axis, it is that of `near`. Angles as they come; nearest(..) brings them to where the arm is.
-/// The target's rotation is a rotation. Contract: its numbers and `near` are numbers. Real-time: eight times
-/// the same.
+/// Returns all solutions that bring the end of a chain to `target`: shoulder in front or behind, elbow up or
+/// down, wrist flipped or not; none when it is out of reach. Where a joint is free, with the wrist stretched
+/// or above the first axis, it keeps its value of `near`. Angles are not normalised; nearest(..) moves them
+/// near the arm's present ones. The target's rotation must be a rotation matrix. Contract: the target and
+/// `near` are finite. Real-time: eight times the same computation.
 template <const auto& chain>
 Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<chain>>& target,
                                   const Joints<6>& near) noexcept TAPPET_REALTIME {
@@ -128,7 +127,7 @@ Bounded<Joints<6>, 8> closed_form(const Folded<chain>&, const FrameOf<Folded<cha
     require_numbers<3>(target.position);
     require_numbers<9>(target.rotation.reshaped());
 
-    // What follows the last turn is taken off, so that the position is that of the wrist.
+    // Removes the offset after the last joint, so that the position is that of the wrist.
     Frame<typename Folded<chain>::End, typename Folded<chain>::End> last;
     last.rotation << 1, 0, 0, 0, table[5][Of::ca], -table[5][Of::sa], 0, table[5][Of::sa], table[5][Of::ca];
     last.position = {table[5][Of::a], 0.0, table[5][Of::d]};

@@ -1,5 +1,5 @@
-// Inverse dynamics of a chain: the torques that a motion takes, by the recursive Newton-Euler algorithm (Luh,
-// Walker and Paul 1980), out along the links with their motion and back with their loads.
+// Inverse dynamics of a chain: the torques for a motion, by the recursive Newton-Euler algorithm (Luh, Walker
+// and Paul 1980): outward along the links for their motion, and back for their loads.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -14,14 +14,14 @@ namespace tappet::motion {
 
 namespace detail {
 
-/// What a motion is, and what came of it.
+/// Inputs and results of a computation.
 template <int joints>
 struct Motion {
     const Joints<joints>& q;
     const Turns<joints>& turns;
     const Joints<joints>& rates;
     const Joints<joints>& accelerations;
-    const Eigen::Vector3d& tip_force; ///< on what holds the end, along the axes of the end
+    const Eigen::Vector3d& tip_force; ///< that the end exerts, along the axes of the end
     const Eigen::Vector3d& tip_torque;
     Joints<joints>& torques;
 };
@@ -39,7 +39,8 @@ struct Loads {
 };
 
 /// `w`, `e` and `g` are the angular velocity, the angular acceleration and the acceleration of the origin of
-/// frame i, along its axes. Returned is what link i and those beyond it exert on frame i, in it.
+/// frame i, along its axes. Returns the load that link i and those beyond it exert on frame i, along its
+/// axes.
 template <int i, class Robot, class W, class E, class G>
 [[gnu::always_inline]] inline Loads loads(const Robot& robot, const Motion<Robot::joints>& motion, W w, E e,
                                           G g) noexcept TAPPET_REALTIME {
@@ -88,7 +89,7 @@ template <int i, class Robot, class W, class E, class G>
         const auto m = number.template operator()<Of::mass>();
         const Triple h{number.template operator()<Of::hx>(), number.template operator()<Of::hy>(),
                        number.template operator()<Of::hz>()};
-        // Second moments P: the moment of mass that moves so is the sum over r x (U r).
+        // Second moments P: the moment of mass in this motion is the sum over r x (U r).
         const auto pxy = number.template operator()<Of::pxy>();
         const auto pyz = number.template operator()<Of::pyz>();
         const auto pxz = number.template operator()<Of::pxz>();
@@ -114,9 +115,9 @@ template <int i, class Robot, class W, class E, class G>
 
 } // namespace detail
 
-/// Torques (Nm; of prismatic joints forces, N) that move a chain so, against its gravity, inertia, drives and
-/// friction, while its end exerts `on_surroundings`. `robot`: folded<chain>, or a Loaded one. Contract: q,
-/// rates (rad/s, m/s) and accelerations (rad/s2, m/s2) are numbers. Real-time.
+/// Returns the torques (Nm; of prismatic joints forces, N) for a motion of a chain, against its gravity,
+/// inertia, drives and friction, while its end exerts `on_surroundings`. `robot`: folded<chain>, or a Loaded
+/// one. Contract: q, rates (rad/s, m/s) and accelerations (rad/s2, m/s2) are finite. Real-time.
 template <class Robot>
 Joints<Robot::joints>
 inverse_dynamics(const Robot& robot, const Joints<Robot::joints>& q, const Joints<Robot::joints>& rates,
@@ -128,7 +129,7 @@ inverse_dynamics(const Robot& robot, const Joints<Robot::joints>& q, const Joint
     require_numbers<Robot::joints>(rates);
     require_numbers<Robot::joints>(accelerations);
     Joints<Robot::joints> torques;
-    // A base that is accelerated upwards feels like gravity.
+    // An upward acceleration of the base has the effect of gravity.
     detail::loads<0>(
         robot,
         detail::Motion<Robot::joints>{q, turns, rates, accelerations, on_surroundings.force,

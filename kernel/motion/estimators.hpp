@@ -1,4 +1,4 @@
-// What is behind noisy measurements: the alpha-beta estimator of one value and its speed, and the Kalman
+// Estimators for noisy measurements: the alpha-beta estimator of one value and its speed, and the Kalman
 // filter of fixed size.
 #pragma once
 
@@ -27,15 +27,15 @@ struct AlphaBetaGains {
     static constexpr AlphaBetaGains critically_damped(double memory) noexcept TAPPET_REALTIME {
         return {1.0 - memory * memory, (1.0 - memory) * (1.0 - memory)};
     }
-    /// Those of the Kalman filter at rest (Kalata 1984): `index` = deviation of the acceleration from sample
-    /// to sample * period2 / deviation of the measurement.
+    /// Gains of the stationary Kalman filter (Kalata 1984): `index` = deviation of the acceleration from
+    /// sample to sample * period2 / deviation of the measurement.
     static AlphaBetaGains for_tracking_index(double index) noexcept TAPPET_REALTIME {
         const double r = (4.0 + index - std::sqrt(8.0 * index + index * index)) / 4.0;
         return {1.0 - r * r, 2.0 * (1.0 + r * r) - 4.0 * r};
     }
 };
 
-/// Empty, or what is wrong with them and the cure.
+/// Returns the fault and its cure; empty: there is none.
 constexpr std::string_view check(const AlphaBetaGains& gains) noexcept TAPPET_REALTIME {
     if (gains.alpha > 0.0 && gains.beta > 0.0 && 2.0 * gains.alpha + gains.beta < 4.0) return {};
     return "these gains never settle; let alpha and beta be positive and 2 alpha + beta below 4";
@@ -50,9 +50,9 @@ public:
 
     static constexpr int most_before = 8;
 
-    /// A value that was true at `at`. One that is no number, or not later than the last one, is left out and
-    /// counts; more than `most_before` in a row that are not later show that the last one's time was wrong,
-    /// and it begins anew. Real-time.
+    /// Takes a value that was measured at `at`. A value that is not finite, or not later than the last one,
+    /// is ignored and counted; more than `most_before` in a row that are not later show that the last time
+    /// stamp was wrong, and the estimator restarts. Real-time.
     constexpr void sample(double value, Time at) noexcept TAPPET_REALTIME {
         const bool is_before = samples_ > 0 && at <= at_;
         before_ = is_number(value) && is_before ? before_ + 1 : 0;
@@ -63,11 +63,11 @@ public:
         }
         before_ = 0;
         const double h = to_seconds(at - at_);
-        // Not by h alone: the noise of a value that comes at almost the time of the last one is no speed.
+        // Not by h alone: shortly after the last value, noise gives no usable speed.
         usual_s_ = samples_ < 2 ? h : std::max(h, usual_s_ / 2.0);
         if (samples_ == 0) {
             value_ = value;
-        } else if (samples_ == 1) { // two values have no more to say
+        } else if (samples_ == 1) { // two values give no more information
             velocity_ = (value - value_) / h;
             value_ = value;
         } else {
@@ -78,13 +78,13 @@ public:
         at_ = at;
         if (samples_ < 2) ++samples_;
         if (is_number(value_) && is_number(velocity_)) return;
-        velocity_ = 0.0; // begins anew
+        velocity_ = 0.0; // restarts
         value_ = value;
         samples_ = 1;
     }
-    /// Both of them know nothing before the second sample.
+    /// Returns whether position and velocity are known: after the second sample.
     [[nodiscard]] constexpr bool good() const noexcept TAPPET_REALTIME { return samples_ == 2; }
-    /// Where it is, was or will be, straight on; where that is no number, it is the last value. Real-time.
+    /// Returns the past or future value, linearly extrapolated; if not finite, the last one. Real-time.
     [[nodiscard]] constexpr double at(Time when) const noexcept TAPPET_REALTIME {
         const double there = value_ + velocity_ * to_seconds(when - at_);
         return is_number(there) ? there : value_;
@@ -100,14 +100,14 @@ private:
     AlphaBetaGains gains_;
     double value_ = 0.0;
     double velocity_ = 0.0;
-    double usual_s_ = 0.0; ///< from sample to sample
+    double usual_s_ = 0.0; ///< interval between samples
     Time at_{};
     int samples_ = 0, before_ = 0;
     std::uint32_t refused_ = 0;
 };
 
 /// The Kalman filter of `states` numbers, with the covariance in Joseph's form, which stays symmetric and
-/// positive. When one of them grows beyond all numbers, it begins anew as it was made. Units are the owner's.
+/// positive. When a number overflows, it restarts from its initial state. Units are the owner's.
 template <int states>
 class Kalman {
 public:
@@ -117,16 +117,17 @@ public:
     Kalman(const State& state, const Covariance& covariance) noexcept
         : first_state_(state), first_covariance_(covariance) {}
 
-    /// One step of time: x = F x + u, with noise of covariance Q. One in which is what is no number is left
-    /// out. Real-time.
+    /// Predicts one step of time: x = F x + u, with noise of covariance Q. A step with arguments that are not
+    /// finite is ignored. Real-time.
     void predict(const Covariance& f, const Covariance& q, const State& u = State::Zero()) noexcept
         TAPPET_REALTIME {
         if (!f.allFinite() || !q.allFinite() || !u.allFinite()) return;
         const Covariance moved = f * covariance_;
         static_cast<void>(take(f * state_ + u, moved * f.transpose() + q));
     }
-    /// A measurement z = H x with noise of covariance R. Gives the squared distance from what was expected,
-    /// in deviations; one beyond `gate` is refused, as is what is no number, and changes nothing. Real-time.
+    /// Updates with a measurement z = H x with noise of covariance R. Returns the squared distance from the
+    /// expected value, in deviations; a distance beyond `gate` and a value that is not finite are refused and
+    /// change nothing. Real-time.
     template <int values>
     std::expected<double, Refused> update(const Eigen::Matrix<double, values, 1>& z,
                                           const Eigen::Matrix<double, values, states>& h,
@@ -143,7 +144,7 @@ public:
         solved.template rightCols<1>() = surprise;
         if (!solve_positive(total, solved)) return std::unexpected(Refused{Refusal::not_positive});
         double distance = surprise.dot(solved.template rightCols<1>());
-        if (!is_number(distance)) distance = std::numeric_limits<double>::max(); // its square is none
+        if (!is_number(distance)) distance = std::numeric_limits<double>::max(); // its square overflows
         if (!(distance <= gate)) return std::unexpected(Refused{Refusal::outlier});
         const Eigen::Matrix<double, states, values> gain = solved.template leftCols<states>().transpose();
         const Covariance rest = Covariance::Identity() - gain * h;

@@ -13,9 +13,9 @@
 
 namespace tappet::motion {
 
-/// First order, 1 / (1 + T s), by the backward difference: for any step, of which a negative one is none. The
-/// first value is taken as it is; what is no number is left out. A sum that becomes none begins anew with the
-/// value. T of nought or less is no filter. Real-time.
+/// First order, 1 / (1 + T s), by the backward difference: stable for any step; a negative step is ignored.
+/// The output starts at the first value; a value that is not finite is ignored. When the sum overflows, the
+/// filter restarts with the value. T of zero or less does not filter. Real-time.
 class LowPass {
 public:
     explicit constexpr LowPass(Duration time_constant) noexcept : constant_s_{to_seconds(time_constant)} {}
@@ -35,9 +35,9 @@ private:
     bool known_ = false;
 };
 
-/// (1 + T1 s) / (1 + T2 s), by Tustin's rule: T1 above T2 leads, below it lags. The first value is taken as
-/// one that has been there for long; what is no number is left out, and a sum that becomes none begins anew.
-/// A negative step is none. Real-time.
+/// (1 + T1 s) / (1 + T2 s), by Tustin's rule: T1 above T2 leads, below it lags. Starts settled at the first
+/// value; a value that is not finite is ignored, and a sum that overflows restarts the filter. A negative
+/// step is ignored. Real-time.
 class LeadLag {
 public:
     /// Contract: `lag` is positive, `lead` is not negative.
@@ -67,9 +67,9 @@ private:
     bool known_ = false;
 };
 
-/// Second order at a fixed sampling period, by Tustin's rule with the corner where it is wanted (transposed
-/// direct form II). The first value is taken as one that has been there for long; what is no number is left
-/// out, and behind a sum that becomes none the next value begins anew.
+/// Second order at a fixed sampling period, by Tustin's rule with exact corner frequency (transposed direct
+/// form II). Starts settled at the first value; a value that is not finite is ignored, and after a sum that
+/// overflows the next value restarts the filter.
 class Biquad {
 public:
     /// -3 dB at the corner with the usual damping of sqrt(1/2) (Butterworth).
@@ -85,7 +85,7 @@ public:
         return Biquad{k * k / a0, 2.0 * k * k / a0, k * k / a0, 2.0 * (k * k - 1.0) / a0,
                       (1.0 - 2.0 * damping * k + k * k) / a0};
     }
-    /// Takes `centre_hz` out; -3 dB over a band of about `width_hz`.
+    /// Removes `centre_hz`; -3 dB over a band of about `width_hz`.
     static constexpr std::expected<Biquad, Refused> notch(double centre_hz, double width_hz,
                                                           Duration period) noexcept TAPPET_REALTIME {
         const auto warped = warp(centre_hz, period);
@@ -98,10 +98,10 @@ public:
         return Biquad{(1.0 + k * k) / a0, 2.0 * (k * k - 1.0) / a0, (1.0 + k * k) / a0,
                       2.0 * (k * k - 1.0) / a0, (1.0 - wide + k * k) / a0};
     }
-    /// One value for each period. Real-time.
+    /// Filters one value each period. Real-time.
     constexpr double operator()(double value) noexcept TAPPET_REALTIME {
         if (!is_number(value)) return value_;
-        if (!known_) { // both give one at standstill
+        if (!known_) { // both have a gain of 1 at standstill
             second_ = (b2_ - a2_) * value;
             first_ = (b1_ - a1_) * value + second_;
         }

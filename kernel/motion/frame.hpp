@@ -1,5 +1,5 @@
-// Frames, points and vectors whose frame of reference is part of their type: what does not fit together does
-// not compile. A reference is any type, a declared one is enough: struct World; struct Flange;
+// Frames, points and vectors with the frame of reference in their type: mismatches do not compile. A
+// reference is any type, a declared one is enough: struct World; struct Flange;
 #pragma once
 
 #include "kernel/base/fixed_matrix.hpp"
@@ -11,7 +11,7 @@
 
 namespace tappet::motion {
 
-/// A place, by its coordinates in A, m.
+/// A position, by its coordinates in A, m.
 template <class A>
 struct Point {
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
@@ -23,14 +23,14 @@ struct Vector {
     Eigen::Vector3d along = Eigen::Vector3d::Zero();
 };
 
-/// Where the frame B stands in the frame A: its axes are the columns of `rotation`, its origin is `position`
-/// (m). Made without numbers it coincides with A. `rotation` is a rotation matrix; nobody looks.
+/// The pose of the frame B in the frame A: its axes are the columns of `rotation`, its origin is `position`
+/// (m). The default coincides with A. `rotation` must be a rotation matrix; this is not checked.
 template <class A, class B>
 struct Frame {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
 
-    /// C in A from B in A and C in B. Real-time.
+    /// Returns C in A from B in A and C in B. Real-time.
     template <class C>
     friend Frame<A, C> operator*(const Frame& ab, const Frame<B, C>& bc) noexcept TAPPET_REALTIME {
         Frame<A, C> ac;
@@ -38,15 +38,15 @@ struct Frame {
         ac.position = ab.rotation * bc.position + ab.position;
         return ac;
     }
-    /// The same place, seen from A. Real-time.
+    /// Returns the same position, seen from A. Real-time.
     friend Point<A> operator*(const Frame& ab, const Point<B>& b) noexcept TAPPET_REALTIME {
         return {ab.rotation * b.at + ab.position};
     }
-    /// The same direction, along the axes of A. Real-time.
+    /// Returns the same direction, along the axes of A. Real-time.
     friend Vector<A> operator*(const Frame& ab, const Vector<B>& b) noexcept TAPPET_REALTIME {
         return {ab.rotation * b.along};
     }
-    /// A in B. Real-time.
+    /// Returns A in B. Real-time.
     friend Frame<B, A> inverse(const Frame& ab) noexcept TAPPET_REALTIME {
         Frame<B, A> ba;
         ba.rotation = ab.rotation.transpose();
@@ -66,7 +66,7 @@ Point<A> operator+(const Point<A>& from, const Vector<A>& by) noexcept TAPPET_RE
 
 } // namespace tappet::motion
 
-// Ports carry them, and observers see their numbers; another reference is another type to a connection.
+// Ports can carry them, observers see their numbers; each reference is a different type to a connection.
 namespace tappet {
 
 template <class A>

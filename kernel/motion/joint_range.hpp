@@ -1,4 +1,4 @@
-// How far joints may go, and the solutions of an inverse that lie within.
+// Limits of joints, and the solutions of an inverse within them.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -15,7 +15,7 @@
 
 namespace tappet::motion {
 
-/// rad or m; without numbers there is no end.
+/// rad or m; unlimited by default.
 struct JointRange {
     double lowest = -std::numeric_limits<double>::infinity();
     double highest = std::numeric_limits<double>::infinity();
@@ -23,7 +23,7 @@ struct JointRange {
 template <int joints>
 using JointRanges = std::array<JointRange, static_cast<std::size_t>(joints)>;
 
-/// False of what is no number, and for a range that holds nothing. Real-time.
+/// Returns false for a value that is not finite, and for an empty range. Real-time.
 template <int joints>
 bool is_within(const Joints<joints>& q, const JointRanges<joints>& ranges) noexcept TAPPET_REALTIME {
     for (int i = 0; i < joints; ++i) {
@@ -33,14 +33,14 @@ bool is_within(const Joints<joints>& q, const JointRanges<joints>& ranges) noexc
     return true;
 }
 
-/// The same angle, whole turns away, nearest to `near`. Real-time.
+/// Returns the same angle modulo whole turns, nearest to `near`. Real-time.
 inline double same_angle_near(double angle, double near) noexcept TAPPET_REALTIME {
     constexpr double turn = 2.0 * std::numbers::pi;
     return angle - turn * std::floor((angle - near) / turn + 0.5);
 }
 
-/// Of solutions for revolute joints the one with the least sum of squares of ways from `near`, within the
-/// ranges. Refused: none is there, or the joint which leaves its range in the last one that was looked at.
+/// Returns the solution for revolute joints with the least sum of squared distances from `near`, within the
+/// ranges. Refused: there is no solution, or the joint that leaves its range in the last one examined.
 /// Real-time: one pass.
 template <int joints, std::size_t most>
 std::expected<Joints<joints>, Refused> nearest(const Bounded<Joints<joints>, most>& solutions,

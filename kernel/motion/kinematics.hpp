@@ -10,7 +10,7 @@
 
 namespace tappet::motion {
 
-/// From rates of joints to the twist of Body in Reference, at the origin of At, along the axes of In: the
+/// Maps rates of joints to the twist of Body in Reference, at the origin of At, along the axes of In: the
 /// upper three rows m/s (linear), the lower three rad/s.
 template <class Body, class Reference, class At, class In, int joints>
 struct Jacobian {
@@ -21,7 +21,7 @@ struct Jacobian {
         return {jacobian.matrix.template topRows<3>() * rates,
                 jacobian.matrix.template bottomRows<3>() * rates};
     }
-    /// What the joints have to give against this load, Nm or N: the transpose. Real-time.
+    /// Returns the joint torques against this load, Nm or N: the transpose. Real-time.
     [[nodiscard]] Joints<joints> torques(const Wrench<Body, At, In>& wrench) const noexcept TAPPET_REALTIME {
         return matrix.template topRows<3>().transpose() * wrench.force +
                matrix.template bottomRows<3>().transpose() * wrench.torque;
@@ -36,7 +36,7 @@ template <class Robot>
 using JacobianOf = Jacobian<typename Robot::End, typename Robot::Base, typename Robot::End,
                             typename Robot::Base, Robot::joints>;
 
-/// Where a chain's end stands, and how it moves with the joints.
+/// The pose of a chain's end, and how it moves with the joints.
 template <class Robot>
 struct Pose {
     FrameOf<Robot> frame;
@@ -90,7 +90,7 @@ template <class Robot>
 
 } // namespace detail
 
-/// Where the end of a chain stands. `robot`: folded<chain>, or a Loaded one. Contract: q are numbers.
+/// Returns the pose of the end of a chain. `robot`: folded<chain>, or a Loaded one. Contract: q is finite.
 /// Real-time.
 template <class Robot>
 FrameOf<Robot> forward(const Robot& robot, const Joints<Robot::joints>& q) noexcept TAPPET_REALTIME {
@@ -99,7 +99,7 @@ FrameOf<Robot> forward(const Robot& robot, const Joints<Robot::joints>& q) noexc
     return end;
 }
 
-/// That and the Jacobian of the end in Base, at the end's origin and along the axes of Base. Real-time.
+/// Returns the pose and the Jacobian of the end in Base, at its origin, along the axes of Base. Real-time.
 template <class Robot>
 Pose<Robot> forward_with_jacobian(const Robot& robot, const Joints<Robot::joints>& q) noexcept
     TAPPET_REALTIME {

@@ -14,11 +14,11 @@
 
 namespace tappet::motion {
 
-/// Rates of joints that bring about a twist as nearly as `damping` (m/rad, more than nought) lets them
-/// (Nakamura and Hanafusa 1986): J' (J J' + damping2 I)^-1 v. Near a singular posture the twist suffers and
-/// not the joints: no rate is above |v| / (2 damping). All are shrunk together until each is within `most`
-/// (rad/s, m/s), so that the direction stays. Refused: a twist or damping that is no number or not positive.
-/// Real-time.
+/// Returns the joint rates for a twist, as exactly as `damping` (m/rad, positive) permits (Nakamura and
+/// Hanafusa 1986): J' (J J' + damping2 I)^-1 v. Near a singular posture the twist becomes inexact and the
+/// rates stay bounded: no rate is above |v| / (2 damping). All are scaled down together until each is within
+/// `most` (rad/s, m/s), so that the direction is kept. Refused: a twist or damping that is not finite or not
+/// positive. Real-time.
 template <class B, class R, class At, class In, int joints>
 std::expected<Joints<joints>, Refused> damped_rates(const Jacobian<B, R, At, In, joints>& jacobian,
                                                     const Twist<B, R, At, In>& twist, double damping,
@@ -46,7 +46,7 @@ std::expected<Joints<joints>, Refused> damped_rates(const Jacobian<B, R, At, In,
 struct LeastSquaresOptions {
     int most_steps = 60;
     double most_step = 0.4;   ///< of any joint, rad or m
-    double position_m = 1e-9; ///< there when within both
+    double position_m = 1e-9; ///< reached when within both
     double angle_rad = 1e-9;
 };
 
@@ -56,10 +56,11 @@ struct LeastSquares {
     int steps = 0;
 };
 
-/// Joints that lead a chain's end to `target`, from `from` on: Levenberg and Marquardt with the damping that
-/// the error itself gives (Sugihara 2011). Refused: not there after the last step, which is out of reach or
-/// on the other side of a limit. Contract: `from` and the target are numbers. Real-time: options.most_steps
-/// times one Jacobian and one system of equations of so many unknowns as there are joints.
+/// Returns joints that bring a chain's end to `target`, starting at `from`: Levenberg and Marquardt with the
+/// damping given by the error itself (Sugihara 2011). Refused: not reached after the last step; the target is
+/// out of reach or on the other side of a limit. Contract: `from` and the target are finite. Real-time:
+/// options.most_steps times one Jacobian and one system of equations with as many unknowns as there are
+/// joints.
 template <class Robot>
 std::expected<LeastSquares<Robot::joints>, Refused>
 least_squares(const Robot& robot, const FrameOf<Robot>& target, const Joints<Robot::joints>& from,
@@ -81,7 +82,7 @@ least_squares(const Robot& robot, const FrameOf<Robot>& target, const Joints<Rob
         error << way.linear, way.angular;
         const auto& j = pose.jacobian.matrix;
         Eigen::Matrix<double, joints, joints> square = j.transpose() * j;
-        // Beyond the error itself so much that a chain with idle joints has one solution.
+        // The constant gives a chain with idle joints a unique solution.
         square.diagonal().array() += 0.5 * (apart + turned) + 1e-12;
         Joints<joints> moves = j.transpose() * error;
         if (!solve_positive(square, moves)) return std::unexpected(Refused{Refusal::not_converged});

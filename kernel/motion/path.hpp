@@ -1,5 +1,5 @@
-// Ways of a frame through space, straight or along an arc, as functions of the share that has been gone; when
-// it is gone says a trajectory from nought to one.
+// Paths of a frame through space, straight or along an arc, as functions of the share travelled; a trajectory
+// from 0 to 1 gives the share over time.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -17,7 +17,7 @@
 
 namespace tappet::motion {
 
-/// Where B is in A, its twist at its own origin along the axes of A, and the derivative of that.
+/// The pose of B in A, its twist at its own origin along the axes of A, and the derivative of that.
 template <class A, class B>
 struct PathState {
     Frame<A, B> frame;
@@ -25,17 +25,17 @@ struct PathState {
     Twist<B, A, B, A> acceleration;
 };
 
-/// The most along a path: m and rad, and seconds.
+/// Limits along a path: m and rad, and seconds.
 struct PathLimits {
     AxisLimits linear;
     AxisLimits angular;
 };
 
-/// The orientation turns about one axis, evenly with the way.
+/// The orientation turns about one axis, in proportion to the distance.
 template <class A, class B>
 class Path {
 public:
-    /// Straight on. Refused: what is no number. Real-time.
+    /// Creates a straight path. Refused: values that are not finite. Real-time.
     static std::expected<Path, Refused> line(const Frame<A, B>& from, const Frame<A, B>& to) noexcept
         TAPPET_REALTIME {
         Path path{from, to};
@@ -45,8 +45,8 @@ public:
             return std::unexpected(Refused{Refusal::not_a_number});
         return path;
     }
-    /// Along the circle through three points, less than once around. Refused: points that coincide or are on
-    /// one line, of which a circle is not known; what is no number. Real-time.
+    /// Creates a path along the circle through three points, less than one turn. Refused: points that
+    /// coincide or lie on one line, which define no circle; values that are not finite. Real-time.
     static std::expected<Path, Refused> arc(const Frame<A, B>& from, const Point<A>& via,
                                             const Frame<A, B>& to) noexcept TAPPET_REALTIME {
         Path path{from, to};
@@ -71,9 +71,9 @@ public:
 
     [[nodiscard]] double length_m() const noexcept TAPPET_REALTIME { return length_; }
     [[nodiscard]] double angle_rad() const noexcept TAPPET_REALTIME { return angle_; } ///< of its turn
-    [[nodiscard]] double radius_m() const noexcept TAPPET_REALTIME { return radius_; } ///< nought: a line
+    [[nodiscard]] double radius_m() const noexcept TAPPET_REALTIME { return radius_; } ///< zero: a line
 
-    /// `share` in [0, 1], and how it changes. Beyond its ends the path goes on. Real-time.
+    /// Returns the state at `share` in [0, 1] with its derivatives; continues beyond its ends. Real-time.
     [[nodiscard]] PathState<A, B> at(const AxisState& share) const noexcept TAPPET_REALTIME {
         PathState<A, B> state;
         const auto& [s, rate, change] = share;
@@ -95,9 +95,9 @@ public:
         return state;
     }
 
-    /// The limits of the share, for a trajectory from 0 to 1. On an arc half of the squared acceleration is
-    /// left to the bend. Refused: a limit that is not positive (0: linear, 1: angular), a path that leads
-    /// nowhere, limits of which the share has none. Real-time.
+    /// Returns the limits of the share, for a trajectory from 0 to 1. On an arc, half of the squared
+    /// acceleration is reserved for the curvature. Refused: a limit that is not positive (0: linear, 1:
+    /// angular), a path of no length, limits that give none for the share. Real-time.
     [[nodiscard]] std::expected<AxisLimits, Refused> limits(const PathLimits& most) const noexcept
         TAPPET_REALTIME {
         AxisLimits linear = most.linear;
@@ -122,7 +122,7 @@ public:
     }
 
 private:
-    static constexpr double nowhere = 1e-12; ///< m or rad: what rounding leaves of no way
+    static constexpr double nowhere = 1e-12; ///< m or rad: rounding error of a zero distance
     struct Part {
         AxisLimits limit;
         double size;
@@ -136,8 +136,8 @@ private:
 
     Frame<A, B> from_;
     Eigen::Vector3d turn_; ///< from the first orientation to the last, along the axes of A
-    Eigen::Vector3d along_ = Eigen::Vector3d::Zero();  ///< the way; of an arc from its centre to its begin
-    Eigen::Vector3d across_ = Eigen::Vector3d::Zero(); ///< from the centre to a quarter turn on
+    Eigen::Vector3d along_ = Eigen::Vector3d::Zero();  ///< the distance; of an arc: centre to start
+    Eigen::Vector3d across_ = Eigen::Vector3d::Zero(); ///< from the centre to a quarter turn further
     double length_ = 0.0;
     double angle_ = 0.0;
     double radius_ = 0.0;

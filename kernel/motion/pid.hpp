@@ -1,6 +1,6 @@
-// The PID controller with what practice adds to it: weights of the set point, a filtered derivative, limits
-// without wind-up, feed-forward and a change of hands without a bump (Astrom and Hagglund, Advanced PID
-// Control, 2006, chapters 3 and 13).
+// The PID controller with the additions of practice: set point weights, a filtered derivative, limits without
+// wind-up, feed-forward and bumpless transfer (Astrom and Hagglund, Advanced PID Control, 2006, chapters 3
+// and 13).
 #pragma once
 
 #include "kernel/base/contract.hpp"
@@ -15,26 +15,26 @@
 
 namespace tappet::motion {
 
-/// Gains in units of the output for one unit of the error.
+/// Gains in units of the output per unit of the error.
 struct PidGains {
     double proportional = 0.0;
-    double integral = 0.0;   ///< for each second
-    double derivative = 0.0; ///< for one unit a second
-    /// Time constant of the filter on the derivative, s; nought: none.
+    double integral = 0.0;   ///< per second
+    double derivative = 0.0; ///< per unit per second
+    /// Time constant of the filter on the derivative, s; zero: none.
     double derivative_filter_s = 0.0;
-    /// The share of the set point in the proportional part: below one there is less overshoot.
+    /// Weight of the set point in the proportional part: below one it reduces overshoot.
     double set_point_weight = 1.0;
-    /// The share in the derivative: with nought a step of the set point gives no kick.
+    /// Weight of the set point in the derivative: with zero a step of the set point gives no kick.
     double derivative_weight = 0.0;
-    /// In which time the integral lets go of what the limits cut off, s. Nought: it stands still meanwhile.
+    /// Time in which the integral follows an output cut by the limits, s. Zero: it stops in the meantime.
     double tracking_s = 0.0;
     double lowest = -std::numeric_limits<double>::infinity();
     double highest = std::numeric_limits<double>::infinity();
-    /// An error up to here, either way, is none.
+    /// Smaller errors count as zero, in both directions.
     double dead_band = 0.0;
 };
 
-/// Empty, or what is wrong with them and the cure.
+/// Returns the fault and its cure; empty: there is none.
 constexpr std::string_view check(const PidGains& gains) noexcept TAPPET_REALTIME {
     for (const double value :
          {gains.proportional, gains.integral, gains.derivative, gains.derivative_filter_s,
@@ -50,14 +50,14 @@ constexpr std::string_view check(const PidGains& gains) noexcept TAPPET_REALTIME
 
 class Pid {
 public:
-    /// Contract: check(gains) is empty. Of constants the compiler sees it.
+    /// Contract: check(gains) is empty. For constants the compiler checks it.
     explicit constexpr Pid(const PidGains& gains) noexcept TAPPET_REALTIME { tune(gains); }
 
-    /// One step of the loop: what to put out, with what is known beforehand added. What is no number leaves
-    /// everything as it was and counts, as does a step that is not positive. Between two limits nothing moves
-    /// the integral or the derivative by more than their distance in one step. An integral beyond a limit,
-    /// from track() or large parts of opposite sign, returns in the step whose output that limit cuts: as far
-    /// as it caused the cut, and no further than the limit. Real-time.
+    /// Executes one step of the loop: returns the output including the feed-forward. An argument that is not
+    /// finite, or a step that is not positive, changes nothing and is counted. Between two limits, one step
+    /// changes the integral or the derivative by at most their distance. An integral beyond a limit, from
+    /// track() or large parts of opposite sign, returns in the step whose output that limit cuts: as far as
+    /// it caused the cut, and no further than the limit. Real-time.
     constexpr double operator()(double set_point, double measured, Duration step,
                                 double feed_forward = 0.0) noexcept TAPPET_REALTIME {
         const double h = to_seconds(step);
@@ -68,7 +68,7 @@ public:
         const double error = beyond_dead_band(set_point - measured);
         derive(set_point, measured, h);
         double wanted = proportional(set_point, measured) + integral_ + derivative_ + feed_forward;
-        if (!is_number(wanted)) { // of numbers that are no more when they are added
+        if (!is_number(wanted)) { // the sum of finite numbers may overflow
             reset();
             return output_;
         }
@@ -84,16 +84,17 @@ public:
             add(grows);
         return output_;
     }
-    /// What the actuator did with the last output, when limits behind this one cut it. Needs tracking_s.
-    /// Real-time.
+    /// Reports the actuator's value for the last output, when limits behind this controller cut it. Needs
+    /// tracking_s. Real-time.
     constexpr void applied(double actual) noexcept TAPPET_REALTIME {
         if (!is_number(actual))
             ++refused_;
         else if (gains_.tracking_s > 0.0)
             add(within_span(actual - output_) * share());
     }
-    /// Somebody else drives, with `actual`: the next step goes on from there without a bump, however far the
-    /// set point is. Once it is near, the integral is between the limits in one step. Real-time.
+    /// Follows while another source drives with `actual`: the next step continues from there without a bump,
+    /// however far the set point is. Once it is near, the integral is between the limits in one step.
+    /// Real-time.
     constexpr void track(double set_point, double measured, double actual, double feed_forward = 0.0) noexcept
         TAPPET_REALTIME {
         if (!is_number(set_point) || !is_number(measured) || !is_number(actual) || !is_number(feed_forward)) {
@@ -112,7 +113,7 @@ public:
         put_out(0.0);
         has_seen_ = false;
     }
-    /// Other gains; the output does not jump but by the proportional part. Contract: as above. Real-time.
+    /// Changes the gains; only the proportional part of the output may jump. Contract: as above. Real-time.
     constexpr void tune(const PidGains& gains) noexcept TAPPET_REALTIME {
         TAPPET_CONTRACT(check(gains).empty(), Contract::refused_settings);
         gains_ = gains;
@@ -121,7 +122,7 @@ public:
 
     [[nodiscard]] constexpr double output() const noexcept TAPPET_REALTIME { return output_; }
     [[nodiscard]] constexpr double integral() const noexcept TAPPET_REALTIME { return integral_; }
-    /// Calls that were refused since the beginning.
+    /// Returns how many calls were refused since the beginning.
     [[nodiscard]] constexpr std::uint32_t refused() const noexcept TAPPET_REALTIME { return refused_; }
 
 private:
@@ -136,7 +137,7 @@ private:
         TAPPET_REALTIME {
         return gains_.proportional * beyond_dead_band(gains_.set_point_weight * set_point - measured);
     }
-    /// Takes out of the integral what it asks for beyond a limit, and returns the sum without that.
+    /// Removes from the integral the excess beyond a limit; returns the sum without it.
     [[nodiscard]] constexpr double unwind(double wanted) noexcept TAPPET_REALTIME {
         const double before = integral_;
         if (wanted < gains_.lowest && integral_ < gains_.lowest)
@@ -145,7 +146,7 @@ private:
             integral_ = std::max(gains_.highest, integral_ + (gains_.highest - wanted));
         return wanted + (integral_ - before);
     }
-    /// What is no number is nothing.
+    /// Returns 0 for a value that is not finite.
     [[nodiscard]] constexpr double within_span(double value) const noexcept TAPPET_REALTIME {
         const double span = gains_.highest - gains_.lowest;
         return value != value ? 0.0 : std::clamp(value, -span, span);
@@ -156,7 +157,7 @@ private:
     [[nodiscard]] constexpr double share() const noexcept TAPPET_REALTIME {
         return std::min(1.0, step_s_ / gains_.tracking_s);
     }
-    /// By the backward difference, which is stable for any step.
+    /// Backward difference, which is stable for any step.
     constexpr void derive(double set_point, double measured, double h) noexcept TAPPET_REALTIME {
         const double now = gains_.derivative_weight * set_point - measured;
         const double filter = gains_.derivative_filter_s;

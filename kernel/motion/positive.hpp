@@ -1,4 +1,4 @@
-// Linear equations with a symmetric positive matrix of fixed size: Cholesky, without Eigen's way to the heap.
+// Linear equations with a symmetric positive matrix of fixed size: Cholesky, without Eigen's heap allocation.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,8 +9,8 @@
 
 namespace tappet::motion {
 
-/// Solves A X = B in place of B. False, and B spoilt, when A is not positive definite to working precision.
-/// Only the lower triangle of A is read. n3/6 + n2 k steps. Real-time.
+/// Solves A X = B in place of B. Returns false, with B destroyed, when A is not positive definite to working
+/// precision. Only the lower triangle of A is read. n3/6 + n2 k steps. Real-time.
 template <int n, int k>
 [[nodiscard]] bool solve_positive(Eigen::Matrix<double, n, n> a, Eigen::Matrix<double, n, k>& b) noexcept
     TAPPET_REALTIME {

@@ -1,4 +1,4 @@
-// How one axis moves over time: at most seven pieces of constant jerk, each evaluated in closed form.
+// Motion profile of one axis: at most seven pieces of constant jerk, each evaluated in closed form.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -13,18 +13,18 @@
 
 namespace tappet::motion {
 
-/// Of one axis, in its unit (rad, m or any other) and seconds.
+/// State of one axis, in its unit (rad, m or any other) and seconds.
 struct AxisState {
     double position = 0.0;
     double velocity = 0.0;
     double acceleration = 0.0;
 };
 
-/// The most that an axis may do, in its unit and seconds; all positive.
+/// Limits of an axis, in its unit and seconds; all positive.
 struct AxisLimits {
     double velocity = 0.0;
     double acceleration = 0.0; ///< and deceleration
-    double jerk = 0.0;         ///< what has no bounded jerk does not look at it
+    double jerk = 0.0;         ///< ignored by profiles without bounded jerk
 };
 
 class Profile {
@@ -32,12 +32,12 @@ public:
     static constexpr std::size_t most_pieces = 7;
 
     Profile() noexcept TAPPET_REALTIME = default;
-    /// It rests there for no time: pieces follow.
+    /// Starts an empty profile at rest; pieces follow.
     explicit Profile(const AxisState& from) noexcept TAPPET_REALTIME : end_(from),
                                                                        farthest_(std::fabs(from.position)),
                                                                        fastest_(std::fabs(from.velocity)) {}
 
-    /// Adds a piece at the end that begins with `acceleration`. One that takes no time is left out.
+    /// Appends a piece that begins with `acceleration`. A piece of no duration is left out.
     void add(double seconds, double acceleration, double jerk) noexcept TAPPET_REALTIME {
         if (!(seconds > 0.0)) return;
         end_.acceleration = acceleration;
@@ -49,9 +49,9 @@ public:
         end_ = pieces_[pieces_.size() - 1].at(seconds);
         duration_s_ += seconds;
     }
-    /// It ends at rest, exactly there. False: its pieces do not lead there, or not by numbers.
+    /// Ends at rest, exactly at `position`. Returns false when the pieces do not lead there, or overflow.
     [[nodiscard]] bool rest_at(double position) noexcept TAPPET_REALTIME {
-        constexpr double rounding = 1e-6, nothing = 1e-150; // smaller ones have no digits left when squared
+        constexpr double rounding = 1e-6, nothing = 1e-150; // smaller ones lose all digits when squared
         const bool leads_there = is_number(duration_s_ + farthest_ + fastest_) &&
                                  std::fabs(end_.position - position) <= rounding * farthest_ + nothing &&
                                  std::fabs(end_.velocity) <= rounding * fastest_ + nothing;
@@ -61,10 +61,10 @@ public:
 
     [[nodiscard]] std::size_t pieces() const noexcept TAPPET_REALTIME { return pieces_.size(); }
     [[nodiscard]] double duration_s() const noexcept TAPPET_REALTIME { return duration_s_; }
-    /// The last state. It holds from the end of the profile on.
+    /// Returns the last state. It holds from the end of the profile on.
     [[nodiscard]] const AxisState& end() const noexcept TAPPET_REALTIME { return end_; }
 
-    /// The state `seconds` after the begin; before it, that of the begin. At most most_pieces steps.
+    /// Returns the state `seconds` after the start; before it, the first state. At most most_pieces steps.
     [[nodiscard]] AxisState at_s(double seconds) const noexcept TAPPET_REALTIME {
         if (pieces_.empty() || !(seconds < duration_s_)) return end_;
         std::size_t i = pieces_.size() - 1;
@@ -90,7 +90,7 @@ private:
     Bounded<Piece, most_pieces> pieces_;
     AxisState end_;
     double duration_s_ = 0.0;
-    double farthest_ = 0.0; ///< from nought, were all of its way one way
+    double farthest_ = 0.0; ///< from zero, if all its motion had one direction
     double fastest_ = 0.0;
 };
 

@@ -1,4 +1,4 @@
-// Why something of this room could not be computed: an error of operation, as a value.
+// Reasons why kernel/motion could not compute a result: an error of operation, as a value.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -23,7 +23,7 @@ enum class Refusal : std::uint8_t {
     wrong_state,
 };
 
-/// With its cure. Real-time.
+/// Returns the reason and its cure. Real-time.
 constexpr std::string_view to_text(Refusal why) noexcept TAPPET_REALTIME {
     switch (why) {
     case Refusal::not_a_number: return "a value is no number, or infinite; look at values where they come in";
@@ -47,14 +47,14 @@ constexpr std::string_view to_text(Refusal why) noexcept TAPPET_REALTIME {
     return "?";
 }
 
-/// What could not be computed, and for which axis, joint or point, from nought.
+/// The failed computation, and its axis, joint or point, counted from zero.
 struct Refused {
     Refusal why;
     int element = 0;
     constexpr bool operator==(const Refused&) const = default;
 };
 
-/// "element 2: a limit is not positive; give ...". For people, not for a cycle.
+/// Returns "element 2: a limit is not positive; give ...". For people, not for a cycle.
 inline Sentence describe(const Refused& refused) noexcept {
     return Sentence{"element ", refused.element, ": ", to_text(refused.why)};
 }

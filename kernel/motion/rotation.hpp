@@ -1,4 +1,4 @@
-// Rotations between their forms: matrix, rotation vector (axis times angle), and the angle by its parts.
+// Conversions of rotations: matrix, rotation vector (axis times angle), and the angle by its parts.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -11,11 +11,11 @@
 
 namespace tappet::motion {
 
-/// The matrix that turns by |v| rad about v (right hand). Rodrigues' formula; v of nought is no rotation.
-/// Real-time.
+/// Returns the matrix of the rotation by |v| rad about v (right hand), by Rodrigues' formula; the identity
+/// when v is zero. Real-time.
 inline Eigen::Matrix3d rotation_about(const Eigen::Vector3d& v) noexcept TAPPET_REALTIME {
     const double angle = std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z());
-    // sin(x)/x and (1 - cos x)/x2 by their series where the quotients lose their digits.
+    // sin(x)/x and (1 - cos x)/x2 by their series where the quotients lose precision.
     const bool is_small = angle < 1e-4;
     const auto [half, half_cosine] = sine_cosine(0.5 * angle);
     const double s = is_small ? 1.0 - angle * angle / 6.0 : 2.0 * half * half_cosine / angle;
@@ -28,8 +28,8 @@ inline Eigen::Matrix3d rotation_about(const Eigen::Vector3d& v) noexcept TAPPET_
     return m;
 }
 
-/// The rotation vector of a rotation matrix, |v| in [0, pi] rad: the inverse of rotation_about, by the
-/// quaternion, so that it keeps its digits near no turn and near half a turn. Real-time.
+/// Returns the rotation vector of a rotation matrix, |v| in [0, pi] rad: the inverse of rotation_about, by
+/// the quaternion, so that it stays precise near no turn and near half a turn. Real-time.
 inline Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& m) noexcept TAPPET_REALTIME {
     const Eigen::Quaterniond q{m};
     const double sign = q.w() < 0.0 ? -1.0 : 1.0;

@@ -1,5 +1,5 @@
 // Sine and cosine together, inlined: the same bits with every compiler, library and processor, in constants
-// too, and half the time of two calls. Joints of a chain are turned by nothing else.
+// too, and half the time of two calls. All joints of a chain use only this.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -17,7 +17,7 @@ struct SineCosine {
 
 namespace detail {
 
-/// Two numbers in one register: what costs half as much for each.
+/// Two numbers in one register: half the cost for each.
 using TwoReals [[gnu::vector_size(16)]] = double;
 using TwoWords [[gnu::vector_size(16)]] = std::uint64_t;
 
@@ -27,8 +27,8 @@ struct Sines {
     Real cosine;
 };
 
-/// Of r in [-pi/4, pi/4], turned by quarters: within one unit of the last place. The polynomials are those of
-/// fdlibm (Sun Microsystems 1993). No branch: quadrants cannot be foretold.
+/// Computes r in [-pi/4, pi/4], rotated by quarter turns: within one unit of the last place. The polynomials
+/// are those of fdlibm (Sun Microsystems 1993). No branch: quadrants cannot be predicted.
 template <class Real, class Words>
 constexpr Sines<Real> of_quarter(Real r, Words quarters) noexcept TAPPET_REALTIME {
     const Real z = r * r;
@@ -50,14 +50,14 @@ constexpr Sines<Real> of_quarter(Real r, Words quarters) noexcept TAPPET_REALTIM
             std::bit_cast<Real>(cosine ^ exchanged ^ (((quarters + 1UL) & 2UL) << 62UL))};
 }
 
-/// Of angles in +-1e5 rad.
+/// Computes angles in +-1e5 rad.
 template <class Real, class Words>
 constexpr Sines<Real> of_angle(Real angle) noexcept TAPPET_REALTIME {
-    // Added to this, a number keeps its whole part in its last bits.
+    // Adding this constant moves a number's integer part to its last bits.
     constexpr double whole = 0x1.8p52;
     const Real shifted = angle * 6.36619772367581382433e-01 + whole;
     const Real n = shifted - whole;
-    // A quarter turn in two parts, of which the first has so few bits that its product with n is exact.
+    // A quarter turn in two parts; the first has so few bits that its product with n is exact.
     const Real r = (angle - n * 1.57079632673412561417e+00) - n * 6.07710050650619224932e-11;
     return of_quarter<Real, Words>(r, std::bit_cast<Words>(shifted));
 }
@@ -66,7 +66,7 @@ constexpr bool is_usual_angle(double angle) noexcept TAPPET_REALTIME { return an
 
 } // namespace detail
 
-/// Of an angle in rad, within 2e-16 up to 1e5 rad; beyond that by the library. Real-time.
+/// Computes an angle in rad, within 2e-16 up to 1e5 rad; beyond that by the library. Real-time.
 constexpr SineCosine sine_cosine(double angle) noexcept TAPPET_REALTIME {
     if (!detail::is_usual_angle(angle)) [[unlikely]]
         return {std::sin(angle), std::cos(angle)};
@@ -74,7 +74,7 @@ constexpr SineCosine sine_cosine(double angle) noexcept TAPPET_REALTIME {
     return {both.sine, both.cosine};
 }
 
-/// Of two angles up to 1e5 rad, in three fifths of the time: the same bits. Real-time.
+/// Computes two angles up to 1e5 rad, in three fifths of the time: the same bits. Real-time.
 inline void sine_cosine_of_two(double first, double second, SineCosine& of_first,
                                SineCosine& of_second) noexcept TAPPET_REALTIME {
     const auto both = detail::of_angle<detail::TwoReals, detail::TwoWords>(detail::TwoReals{first, second});
@@ -82,8 +82,7 @@ inline void sine_cosine_of_two(double first, double second, SineCosine& of_first
     of_second = {both.sine[1], both.cosine[1]};
 }
 
-/// Of an angle in degrees. Whole numbers of quarter turns are exact, up to 1e9 degrees either way.
-/// Real-time.
+/// Computes an angle in degrees. Whole quarter turns are exact, up to 1e9 degrees either way. Real-time.
 constexpr SineCosine sine_cosine_of_degrees(double degrees) noexcept TAPPET_REALTIME {
     if (!(degrees <= 1e9 && degrees >= -1e9)) [[unlikely]]
         return sine_cosine(degrees * (3.14159265358979323846 / 180.0));

@@ -1,5 +1,5 @@
-// Numbers of which the compiler knows that they are nought. Neither compiler leaves out a * 0.0 or a + 0.0
-// (a may be no number, or -0), so nought is a type here, and what is computed of it vanishes.
+// Numbers that are zero at compile time. Compilers cannot remove a * 0.0 or a + 0.0 (a may be NaN or -0), so
+// zero is a type here, and computations with it vanish.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -31,7 +31,7 @@ constexpr double operator-(Zero, double b) noexcept TAPPET_REALTIME { return -b;
 constexpr double operator-(double a, Zero) noexcept TAPPET_REALTIME { return a; }
 // clang-format on
 
-/// One of two, by what the compiler knows or by what is known only at run time.
+/// Selects one of two, at compile time or at run time.
 template <Number A, Number B>
 constexpr A select(std::true_type, A a, B) noexcept TAPPET_REALTIME {
     return a;
@@ -79,7 +79,7 @@ struct Turn {
     S s;
 };
 
-/// Components along the axes before a turn about z from those along the axes after it, and back.
+/// Converts components along the axes after a turn about z to those before it, and back.
 template <Number... T, Number... A>
 constexpr auto about_z(const Turn<T...>& t, const Triple<A...>& a) noexcept TAPPET_REALTIME {
     return Triple{t.c * a.x - t.s * a.y, t.s * a.x + t.c * a.y, a.z};

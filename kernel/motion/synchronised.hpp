@@ -1,5 +1,4 @@
-// Several axes that set off and arrive together: the slowest one takes its time, and the others theirs,
-// slower.
+// Several axes that start and arrive together: the slowest one sets the time, the others move slower.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -20,15 +19,15 @@ struct AxesState {
     Joints<axes> acceleration;
 };
 
-/// Each axis has its own jerk-limited profile in a time of its own, which runs slower by the share of its
-/// duration in the longest one: velocities shrink by that factor, accelerations by its square, jerks by its
-/// cube, so that every limit holds as before.
+/// Each axis has its own jerk-limited profile, stretched in time to the longest duration: velocities shrink
+/// by the ratio of durations, accelerations by its square, jerks by its cube, so that every limit still
+/// holds.
 template <int axes>
 class Synchronised {
 public:
     using Limits = std::array<AxisLimits, static_cast<std::size_t>(axes)>;
 
-    /// From rest to rest. Refused: which axis, and why. Real-time.
+    /// Plans from rest to rest. Refused: which axis, and why. Real-time.
     static std::expected<Synchronised, Refused> plan(const Joints<axes>& from, const Joints<axes>& target,
                                                      const Limits& limits) noexcept TAPPET_REALTIME {
         Synchronised all;
@@ -42,7 +41,7 @@ public:
         return all;
     }
     [[nodiscard]] double duration_s() const noexcept TAPPET_REALTIME { return duration_s_; }
-    /// At most 7 steps for each axis.
+    /// Returns the state at `seconds`. At most 7 steps for each axis.
     [[nodiscard]] AxesState<axes> at_s(double seconds) const noexcept TAPPET_REALTIME {
         AxesState<axes> state;
         for (int i = 0; i < axes; ++i) {

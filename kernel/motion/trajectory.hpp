@@ -1,4 +1,4 @@
-// Trajectories of axes in closed form: no loop, no search, the shortest time that the limits leave.
+// Trajectories of axes in closed form: no loop, no search, the shortest time within the limits.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -19,8 +19,9 @@ namespace detail {
 
 constexpr double sign_of(double value) noexcept TAPPET_REALTIME { return value < 0.0 ? -1.0 : 1.0; }
 
-/// Of a positive number: a first guess from its exponent, good to five bits, which Halley's step triples
-/// three times. The library's has other bits in constants than at run time.
+/// Returns the cube root of a positive number: a first guess from its exponent, good to five bits, whose
+/// precision Halley's step triples three times. The library's result has other bits in constants than at run
+/// time.
 constexpr double cube_root(double x) noexcept TAPPET_REALTIME {
     if (!(x > 0.0)) return 0.0;
     double y = std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) / 3 + (std::uint64_t{715094163} << 32));
@@ -31,7 +32,7 @@ constexpr double cube_root(double x) noexcept TAPPET_REALTIME {
     return y;
 }
 
-/// At rest there. Numbers that are good by themselves may be too far apart for what is computed of them.
+/// Ends the profile at rest. Finite numbers may be too far apart for finite results.
 inline Planned whole(Profile profile, double position) noexcept TAPPET_REALTIME {
     if (!profile.rest_at(position)) return std::unexpected(Refused{Refusal::not_a_number});
     return profile;
@@ -41,9 +42,9 @@ constexpr bool is_limit(double value) noexcept TAPPET_REALTIME { return is_numbe
 
 } // namespace detail
 
-/// From any position and velocity to rest at `target`, with bounded velocity and acceleration, which jumps;
-/// at most three pieces. One that is too fast brakes first, one that cannot stop in time turns back. The
-/// acceleration of `from` counts for nothing. Real-time.
+/// Plans from any position and velocity to rest at `target`, with bounded velocity and acceleration, which
+/// jumps; at most three pieces. A start that is too fast brakes first; one that cannot stop in time turns
+/// back. The acceleration of `from` is ignored. Real-time.
 inline Planned trapezoid(const AxisState& from, double target, const AxisLimits& limits) noexcept
     TAPPET_REALTIME {
     if (!is_number(from.position) || !is_number(from.velocity) || !is_number(target))
@@ -56,9 +57,9 @@ inline Planned trapezoid(const AxisState& from, double target, const AxisLimits&
     const double side = detail::sign_of(target - stops_at);
     const double v = side * from.velocity;
     const double way = side * (target - from.position);
-    const double reached = std::sqrt(std::max(0.0, a * way + 0.5 * v * v)); // were there no limit
+    const double reached = std::sqrt(std::max(0.0, a * way + 0.5 * v * v)); // without the velocity limit
     const double peak = std::max(std::min(reached, most), 0.0);
-    // What is left for the constant speed, of what both ramps leave over.
+    // The time at constant speed, for the distance that both ramps leave.
     const double first = (v > peak ? v * v - peak * peak : peak * peak - v * v) / (2.0 * a);
     const double cruise = reached > most ? std::max(0.0, way - first - peak * peak / (2.0 * a)) / peak : 0.0;
     Profile profile{from};
@@ -68,7 +69,7 @@ inline Planned trapezoid(const AxisState& from, double target, const AxisLimits&
     return detail::whole(profile, target);
 }
 
-/// From rest to rest with bounded velocity, acceleration and jerk, at most seven pieces (Biagiotti and
+/// Plans from rest to rest with bounded velocity, acceleration and jerk, at most seven pieces (Biagiotti and
 /// Melchiorri, Trajectory Planning for Automatic Machines and Robots, 3.4). Real-time.
 inline Planned jerk_limited(double from, double target, const AxisLimits& limits) noexcept TAPPET_REALTIME {
     if (!is_number(from) || !is_number(target)) return std::unexpected(Refused{Refusal::not_a_number});
@@ -78,8 +79,7 @@ inline Planned jerk_limited(double from, double target, const AxisLimits& limits
         return std::unexpected(Refused{Refusal::limit_not_positive});
     const double way = std::fabs(target - from);
     const double side = detail::sign_of(target - from);
-    // `bend` is how long the jerk lasts, `ramp` how long the speed rises.
-    // Quotients: products have no number sooner.
+    // `bend` is the duration of the jerk, `ramp` of the speed's rise. Quotients: products overflow sooner.
     const bool has_plateau = limits.velocity / a > a / j;
     double bend = has_plateau ? a / j : std::sqrt(limits.velocity / j);
     double ramp = has_plateau ? bend + limits.velocity / a : 2.0 * bend;
@@ -106,8 +106,8 @@ inline Planned jerk_limited(double from, double target, const AxisLimits& limits
     return detail::whole(profile, target);
 }
 
-/// From any state to rest, wherever that is, in the shortest time that acceleration and jerk leave; at most
-/// three pieces. An acceleration beyond its limit is first taken back. Real-time.
+/// Plans from any state to rest, at any position, in the shortest time within the limits of acceleration and
+/// jerk; at most three pieces. An acceleration beyond its limit is reduced first. Real-time.
 inline Planned stop(const AxisState& from, const AxisLimits& limits) noexcept TAPPET_REALTIME {
     if (!is_number(from.position) || !is_number(from.velocity) || !is_number(from.acceleration))
         return std::unexpected(Refused{Refusal::not_a_number});
@@ -115,14 +115,14 @@ inline Planned stop(const AxisState& from, const AxisLimits& limits) noexcept TA
     const double j = limits.jerk;
     if (!detail::is_limit(most) || !detail::is_limit(j))
         return std::unexpected(Refused{Refusal::limit_not_positive});
-    // What speed is left when the acceleration has gone: against that it brakes.
+    // The speed when the acceleration has been reduced to zero: the profile brakes against it.
     const double left = from.velocity + from.acceleration * std::fabs(from.acceleration) / (2.0 * j);
     const double side = detail::sign_of(left);
     const double v = side * from.velocity;
     const double a = side * from.acceleration;
-    const double reached = std::sqrt(std::max(0.0, j * v + 0.5 * a * a)); // were there no limit
+    const double reached = std::sqrt(std::max(0.0, j * v + 0.5 * a * a)); // without the acceleration limit
     const double brake = std::max(std::min(reached, most), 0.0);
-    const double turn = -brake - a; // of the acceleration; below nought but for one beyond its limit
+    const double turn = -brake - a; // of the acceleration; negative unless it starts beyond its limit
     const double speed = v + 0.5 * (a - brake) * std::fabs(turn) / j;
     const double hold = reached > most ? std::max(0.0, speed - brake * brake / (2.0 * j)) / brake : 0.0;
     Profile profile{from};

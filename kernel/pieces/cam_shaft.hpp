@@ -1,4 +1,4 @@
-// A shaft as a component: from the codes of its encoder to the events of a cam table.
+// A shaft as a component: converts encoder codes to the events of a cam table.
 //     component<CamShaft<cams>>("shaft")                                          // 4096 codes a turn
 //     component<CamShaft<cams>>("web", set("codes_per_turn", 4000), set("counter_bits", 16))
 //     when("shaft.eject.enters", tell("io.ejector.set")), when("shaft.eject.leaves",
@@ -17,15 +17,15 @@
 
 namespace tappet {
 
-/// Of a point in the table the event "row", of a window "row.enters" and "row.leaves"; each needs a row that
-/// hears it. A measuring wheel is a shaft, too: one length is one turn, which begins where the wheel was seen
-/// first, and anew after each loss.
+/// Events: "row" for a point in the table, "row.enters" and "row.leaves" for a window; each needs a row that
+/// handles it. A measuring wheel is a shaft, too: one length is one turn, which begins at the first position
+/// seen, and again after each loss.
 ///
-/// Nothing is fired while nobody knows the angle, or `enabled` is false: windows are left then. The angle is
-/// lost when the code is stale, as its connection says, and when it jumps; it counts as known again
-/// EncoderTrust::doubted later at the earliest, so that who looks seldom sees it, too. Each window is told to
-/// be left when the component starts and stops. In an activity that each code wakes, and their silence
-/// (`wakes, stale_after(..)`). Real-time.
+/// While the angle is unknown or `enabled` is false, nothing fires, and open windows are left. The angle is
+/// lost when the code is stale, as its connection says, and when it jumps; it is known again
+/// EncoderTrust::doubted later at the earliest, so that slow readers see the loss, too. When the component
+/// starts and stops, each window sends its leave event. Use it in an activity that each code wakes, and the
+/// absence of codes (`wakes, stale_after(..)`). Real-time.
 template <const auto& cams> struct CamShaft {
     static constexpr std::size_t count = cams.size();
     static constexpr Sentence cam_fault = check(cams.view());
@@ -61,7 +61,7 @@ template <const auto& cams> struct CamShaft {
         if (flow == Flow::fresh) sample(now);
         trust_.watch(estimator_.counters().implausible, cycle.now);
         const bool believes = trust_.believes(cycle.now);
-        // Never written: what was forced, where nobody writes, is over.
+        // Never written: a forced value of an unwritten input has ended.
         const bool is_silent = flow == Flow::stale || flow == Flow::never_written;
         if (seen_ && (estimator_.epoch() != 0 || is_silent || (knows_ && !believes))) lose(cycle.now);
         if (!knows_ && believes && estimator_.valid(cycle.now)) knows_ = true;
@@ -148,7 +148,7 @@ private:
             now = ((way - begun_at_) % turn + turn) % turn;
         }
         seen_ = true;
-        const bool is_place = now >= 0 && now < turn; // else it is counted as a bad code
+        const bool is_place = now >= 0 && now < turn; // otherwise it is counted as a bad code
         estimator_.sample(is_place ? static_cast<std::uint32_t>(now) : ~std::uint32_t{0}, code.stamp());
     }
     void follow(Time now) noexcept TAPPET_REALTIME {
@@ -178,7 +178,7 @@ private:
         if (knows_) lost.emit();
         rest();
     }
-    /// As if no code had ever come.
+    /// Resets as if no code had ever arrived.
     void rest() noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < count; ++i)
             if (cams.rows[i].is_window) leaves[i].emit();
@@ -196,7 +196,7 @@ private:
     ShaftEstimator estimator_{shaft_};
     CamSchedule<count> schedule_{cams};
     EncoderTrust trust_{};
-    UnwrappedCount counted_{}; // of a counter, which begins its turns where it was first seen
+    UnwrappedCount counted_{}; // of a counter, whose turns begin at its first value
     std::int64_t begun_at_ = 0;
     std::int64_t missed_ = 0; // by the schedule
     bool is_configured_ = false, seen_ = false, knows_ = false;

@@ -1,5 +1,4 @@
-// Writing an output only when its value changes, so that a connection that wakes its reader wakes it for news
-// only.
+// Writes an output only when its value changes, so that a connection wakes its reader only for new values.
 #pragma once
 
 #include "kernel/component/port.hpp"

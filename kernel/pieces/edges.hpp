@@ -1,5 +1,4 @@
-// Edges of a truth value from call to call (IEC 61131-3: R_TRIG, F_TRIG), and counters of them (CTU, CTD,
-// CTUD).
+// Edges of a bool from call to call (IEC 61131-3: R_TRIG, F_TRIG), and counters of them (CTU, CTD, CTUD).
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,8 +8,8 @@
 
 namespace tappet {
 
-/// True in the call in which the value became true. Unlike R_TRIG the first value is no edge: a button that
-/// is held while the machine starts starts nothing. Real-time.
+/// True in the call in which the value became true. Unlike R_TRIG, the first value is no edge: a button held
+/// during machine start has no effect. Real-time.
 class RisingEdge {
 public:
     constexpr bool operator()(bool now) noexcept TAPPET_REALTIME {
@@ -18,7 +17,7 @@ public:
         before_ = now;
         return rises;
     }
-    /// The next value is the first one again.
+    /// Treats the next value as the first one.
     constexpr void reset() noexcept TAPPET_REALTIME { before_ = true; }
 
 private:
@@ -35,12 +34,12 @@ private:
     RisingEdge rises_{};
 };
 
-/// Counts rising edges up, to the end of its range and no further. Real-time.
+/// Counts rising edges up to the end of its range. Real-time.
 class UpCounter {
 public:
     constexpr explicit UpCounter(std::int64_t preset = std::numeric_limits<std::int64_t>::max()) noexcept
         : preset_{preset} {}
-    /// True as long as the preset is reached.
+    /// Returns whether the preset is reached.
     constexpr bool operator()(bool input) noexcept TAPPET_REALTIME {
         if (rises_(input) && value_ < std::numeric_limits<std::int64_t>::max()) ++value_;
         return reached();
@@ -55,7 +54,7 @@ private:
     std::int64_t value_ = 0;
 };
 
-/// Counts rising edges of one input up and those of the other down; both at once leave it. Real-time.
+/// Counts rising edges of one input up and of the other down; both at once change nothing. Real-time.
 class UpDownCounter {
 public:
     constexpr explicit UpDownCounter(std::int64_t preset = std::numeric_limits<std::int64_t>::max()) noexcept
@@ -76,16 +75,16 @@ private:
     std::int64_t value_ = 0;
 };
 
-/// Counts rising edges down from its preset, to nought and no further. Real-time.
+/// Counts rising edges down from its preset to zero. Real-time.
 class DownCounter {
 public:
     constexpr explicit DownCounter(std::int64_t preset) noexcept : preset_{preset}, value_{preset} {}
-    /// True as long as nothing is left.
+    /// Returns whether the count is zero.
     constexpr bool operator()(bool input) noexcept TAPPET_REALTIME {
         if (rises_(input) && value_ > 0) --value_;
         return used_up();
     }
-    /// Begins again at the preset.
+    /// Restarts at the preset.
     constexpr void reset() noexcept TAPPET_REALTIME { value_ = preset_; }
     [[nodiscard]] constexpr bool used_up() const noexcept TAPPET_REALTIME { return value_ <= 0; }
     [[nodiscard]] constexpr std::int64_t value() const noexcept TAPPET_REALTIME { return value_; }

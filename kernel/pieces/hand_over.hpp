@@ -1,4 +1,4 @@
-// A controller that takes over while something moves: from the speed that is there to the one that it wants.
+// Bumpless hand-over: a controller takes over a moving axis, from its present to the wanted speed.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -8,20 +8,20 @@
 
 namespace tappet {
 
-/// Takes over without a bump: what there was is put out first, and its distance from what is wanted fades.
-/// The output never leaves the range between the two: what was wanted at first, however far, is no reason to
-/// move once it is not wanted any more. Real-time.
+/// Takes over without a bump: outputs the present value first, then fades out its distance from the wanted
+/// value. The output stays between the two: a distant first request causes no motion once it is withdrawn.
+/// Real-time.
 class HandOver {
 public:
-    /// Returns the first output. `is`: what was put out until now. `most`: what the actuator does at most,
-    /// either way; beyond it there is no distance. What is no number is 0.
+    /// Returns the first output. `is`: the output until now. `most`: the actuator's limit, in both
+    /// directions; beyond it no distance is kept. NaN and infinity count as 0.
     constexpr double begin(double is, double wanted, double most) noexcept TAPPET_REALTIME {
         first_ = within(is, most);
         bump_ = first_ - within(wanted, most);
         share_ = 1.0;
         return first_;
     }
-    /// `fades`: which share of the distance goes in this step, 0 to 1. What is no number is handed on.
+    /// `fades`: the share of the distance removed in this step, 0..1. NaN and infinity are passed on.
     constexpr double operator()(double wanted, double fades) noexcept TAPPET_REALTIME {
         share_ *= 1.0 - std::clamp(fades, 0.0, 1.0);
         const double first = share_ * first_;

@@ -1,4 +1,4 @@
-// The integral over time of a value that is sampled: litres from litres a second.
+// The integral over time of a sampled value: litres from litres per second.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -9,14 +9,15 @@
 
 namespace tappet {
 
-/// By trapezia between samples, held between its limits. Real-time.
+/// Trapezoidal rule between samples, clamped to its limits. Real-time.
 class Integrator {
 public:
     constexpr Integrator() noexcept = default;
     constexpr Integrator(double low, double high) noexcept : low_{low}, high_{high} { reset(); }
 
-    /// A value a second that was true at `at`. The first one, one that is no number and one that is older
-    /// than the last one begin anew and add nothing; nor does what would make the sum no number.
+    /// Adds a value per second that was measured at `at`. The first value, one that is not finite and one
+    /// older than the last restart the integral and add nothing; a value that would make the sum infinite
+    /// adds nothing either.
     constexpr double operator()(double per_s, Time at) noexcept TAPPET_REALTIME {
         const bool is_good = is_number(per_s);
         if (known_ && is_good && at > at_)
@@ -26,9 +27,9 @@ public:
         at_ = at;
         return value_;
     }
-    /// What is missing between two samples is left out: call it when the value was not good.
+    /// Omits the time until the next sample: call it when the value was not good.
     constexpr void pause() noexcept TAPPET_REALTIME { known_ = false; }
-    /// Ignores a value that is no number.
+    /// Ignores a value that is not finite.
     constexpr void reset(double value = 0.0) noexcept TAPPET_REALTIME {
         hold(value);
         known_ = false;

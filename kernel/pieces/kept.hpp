@@ -1,8 +1,8 @@
-// Totals that survive the main switch: components whose total is a property that a file keeps.
+// Totals that survive power-off: components whose total is a property stored in a file.
 //     component<HourMeter>("spindle_hours", properties_file("spindle_hours.cpf", optional))
 //     component<Total>("pieces", properties_file("pieces.cpf", optional))
-//     component<PropertyKeeper>("keeper", set("every", 60s))   // what a sudden end may cost at most
-// Files are written at an orderly halt, when somebody asks for it, and as often as a keeper says.
+//     component<PropertyKeeper>("keeper", set("every", 60s))   // maximum loss at a power cut
+// Files are written at an orderly halt, on request, and at a keeper's interval.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -12,7 +12,7 @@
 
 namespace tappet {
 
-/// How long something has been running. Real-time, in a periodic activity.
+/// Measures the running time of something. Real-time, in a periodic activity.
 struct HourMeter {
     Input<bool> runs;
     Output<double> hours;
@@ -39,12 +39,12 @@ struct HourMeter {
 
 private:
     void tell() noexcept TAPPET_REALTIME { hours.write(to_seconds(total.get()) / 3600.0); }
-    static constexpr Duration most = 9'000'000'000s; ///< that a Duration holds, in round figures
+    static constexpr Duration most = 9'000'000'000s; ///< maximum of a Duration, rounded
     Time last_ = never;
 };
 
-/// Adds up a count that begins anew at each start of who counts: pieces, strokes, stops. What is counted
-/// while this component stands it adds when it runs again. What the count is forced to is counted. Real-time.
+/// Sums up a count that restarts at 0 with its source: pieces, strokes, stops. Counts made while this
+/// component is stopped are added when it runs again. A forced count is counted, too. Real-time.
 struct Total {
     Input<std::int64_t> count;
     Output<std::int64_t> sum;
@@ -55,7 +55,7 @@ struct Total {
         std::int64_t now = 0;
         if (count.read(now) != Flow::fresh) return;
         std::int64_t more = 0, all = 0;
-        if (now < counted_ || __builtin_sub_overflow(now, counted_, &more)) more = now; // it began anew
+        if (now < counted_ || __builtin_sub_overflow(now, counted_, &more)) more = now; // it restarted
         counted_ = now;
         if (more <= 0) return;
         if (__builtin_add_overflow(total.get(), more, &all)) all = std::numeric_limits<std::int64_t>::max();
@@ -70,7 +70,7 @@ struct Total {
     }
 
 private:
-    std::int64_t counted_ = 0; ///< not of this start alone: the other may have gone on
+    std::int64_t counted_ = 0; ///< not since this start only: the source may have kept counting
 };
 
 } // namespace tappet

@@ -1,5 +1,5 @@
-// Dead time compensated: where something that moves will be when an actuator acts, and when the actuator has
-// to be driven so that it acts at a place. For a shaft's angles there is kernel/cam.
+// Dead time compensation: predicts where something that moves will be when an actuator acts, and when to
+// drive the actuator so that it acts at a position. For angles of a shaft use kernel/cam.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -10,14 +10,13 @@
 
 namespace tappet {
 
-/// Straight on from the last two samples, and no further than `farthest` from the last one. Samples that lie
-/// much closer than those before them count as one: what their noise says over so short a time is no speed.
-/// Real-time.
+/// Extrapolates linearly from the last two samples, at most `farthest` from the last one. Samples much closer
+/// together than those before count as one: over so short a time, noise gives no usable speed. Real-time.
 class Lead {
 public:
     constexpr explicit Lead(Duration farthest) noexcept : farthest_{farthest} {}
 
-    /// A value that was true at `at`. One that is no number, or older than the last one, begins anew.
+    /// Takes a value measured at `at`. A value that is not finite, or older than the last one, restarts.
     constexpr void sample(double value, Time at) noexcept TAPPET_REALTIME {
         if (!is_number(value)) return reset();
         if (samples_ > 0 && at > at_) {
@@ -37,19 +36,19 @@ public:
         begin();
         samples_ = 0;
     }
-    /// Two samples are there, and they do not lie too far back.
+    /// Returns whether there are two samples that are not too old.
     [[nodiscard]] constexpr bool good(Time when) const noexcept TAPPET_REALTIME {
         return samples_ == 2 && when - at_ <= farthest_;
     }
-    /// What the value will be, or was. Beyond `farthest` it is what it will be there; where that is no
-    /// number, it is the last value.
+    /// Returns the predicted or past value. Beyond `farthest` it stays constant; if the result is not finite,
+    /// the last value.
     [[nodiscard]] constexpr double at(Time when) const noexcept TAPPET_REALTIME {
         const Duration ahead = when - at_;
         const double there = value_ + per_s_ * to_seconds(ahead < farthest_ ? ahead : farthest_);
         return is_number(there) ? there : value_;
     }
-    /// When an actuator with that dead time is to be driven to act at `place`; it may be past. never: it does
-    /// not come there, or not within `farthest`.
+    /// Returns when to drive an actuator with that dead time so that it acts at `place`; it may be in the
+    /// past. never: the value does not reach it, or not within `farthest`.
     [[nodiscard]] constexpr Time drive_at(double place, Duration dead_time) const noexcept TAPPET_REALTIME {
         if (samples_ != 2 || per_s_ == 0.0) return never;
         const double s = (place - value_) / per_s_;
@@ -60,7 +59,7 @@ public:
     [[nodiscard]] constexpr double per_s() const noexcept TAPPET_REALTIME { return per_s_; }
 
 private:
-    /// With the one sample that comes.
+    /// Restarts with the current sample.
     constexpr void begin() noexcept TAPPET_REALTIME {
         samples_ = 1;
         per_s_ = 0.0;
@@ -70,9 +69,9 @@ private:
     Duration farthest_;
     double value_ = 0.0, per_s_ = 0.0;
     Time at_{};
-    double from_ = 0.0; ///< where the line begins, and when
+    double from_ = 0.0; ///< value and time of the start of the line
     Time from_at_{};
-    Duration usual_{}; ///< from sample to sample
+    Duration usual_{}; ///< interval between samples
     int samples_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// A set point that follows its target no faster than it may.
+// A set point that follows its target at a limited rate.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -9,8 +9,8 @@
 
 namespace tappet {
 
-/// In units a second; a rate that is not positive, or no number, moves nothing that way, one without end at
-/// once. Real-time.
+/// Rates in units per second; a rate that is not positive, or NaN, allows no motion in that direction; an
+/// infinite rate jumps. Real-time.
 class Ramp {
 public:
     constexpr Ramp(double up_per_s, double down_per_s, double begins_at = 0.0) noexcept
@@ -19,8 +19,8 @@ public:
     }
     constexpr explicit Ramp(double per_s) noexcept : Ramp{per_s, per_s} {}
 
-    /// One step towards the target, which it reaches and does not pass. What is no number is no target, and a
-    /// negative step none.
+    /// Makes one step towards the target without overshoot. A target that is not finite and a negative step
+    /// are ignored.
     constexpr double operator()(double target, Duration step) noexcept TAPPET_REALTIME {
         if (!is_number(target)) return value_;
         const double s = std::max(to_seconds(step), 0.0);
@@ -30,7 +30,7 @@ public:
             value_ = value_ - target > down_ * s ? value_ - down_ * s : target;
         return value_;
     }
-    /// What is no number changes nothing.
+    /// Ignores a value that is not finite.
     constexpr void reset(double value) noexcept TAPPET_REALTIME {
         if (is_number(value)) value_ = value;
     }

@@ -1,5 +1,5 @@
-// Truth values delayed in time (IEC 61131-3: TON, TOF, TP), and inputs that bounce. Each is asked once a
-// cycle with the cycle's time, which never decreases; nothing rings by itself.
+// Delays of bools in time (IEC 61131-3: TON, TOF, TP), and debouncing of inputs. Call each once a cycle with
+// the cycle's time, which must not decrease; no timer runs by itself.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet {
 
-/// True once its input has been true for so long, and until the input is false (TON). Real-time.
+/// True once its input has been true for the delay, until the input is false (TON). Real-time.
 class OnDelay {
 public:
     constexpr bool operator()(bool input, Duration delay, Time now) noexcept TAPPET_REALTIME {
@@ -18,7 +18,7 @@ public:
             since_ = now;
         return input && now - since_ >= delay;
     }
-    /// How long the input has been true.
+    /// Returns how long the input has been true.
     [[nodiscard]] constexpr Duration elapsed(Time now) const noexcept TAPPET_REALTIME {
         return since_ == never ? Duration::zero() : now - since_;
     }
@@ -28,7 +28,7 @@ private:
     Time since_ = never;
 };
 
-/// True while its input is, and for so long after it (TOF). Real-time.
+/// True while its input is true, and for the delay after it (TOF). Real-time.
 class OffDelay {
 public:
     constexpr bool operator()(bool input, Duration delay, Time now) noexcept TAPPET_REALTIME {
@@ -43,7 +43,8 @@ private:
     bool was_ = false;
 };
 
-/// True for so long after a rising edge of its input, whatever the input does meanwhile (TP). Real-time.
+/// True for the duration after a rising edge of its input, whatever the input does in the meantime (TP).
+/// Real-time.
 class Pulse {
 public:
     constexpr bool operator()(bool input, Duration length, Time now) noexcept TAPPET_REALTIME {
@@ -59,8 +60,8 @@ private:
     Time begun_ = never;
 };
 
-/// An input that is believed when it has stayed the same for so long; the first value is believed at once.
-/// Lines of a chip are better debounced by gpio::debounce, before they wake anybody. Real-time.
+/// Accepts an input when it has stayed the same for the delay; accepts the first value at once. Debounce chip
+/// lines with gpio::debounce instead: it filters before they wake a thread. Real-time.
 class Debounced {
 public:
     constexpr bool operator()(bool input, Duration settling, Time now) noexcept TAPPET_REALTIME {

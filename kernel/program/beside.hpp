@@ -1,5 +1,5 @@
-// What a program does with the others of its script (thesis 5.1.6): they are commanded with their parameters
-// and followed to their end, as a component's commands are.
+// How a program uses the other programs of its script (thesis 5.1.6): it commands them with their parameters
+// and waits for their end, as with a component's commands.
 #pragma once
 
 #include "kernel/program/execution.hpp"
@@ -12,12 +12,12 @@ enum class ProgramQuestion : std::uint8_t { is_running, is_paused, in_error };
 
 namespace primitive {
 
-/// Null: there is none of the instruction's number, `rows`.
+/// Returns the program with the instruction's number, `rows`; null: none has it.
 inline ProgramExecution* program_of(ProgramContext& context, const Instruction& in) noexcept TAPPET_REALTIME {
     return in.rows < context.beside.count ? context.beside.first + in.rows : nullptr;
 }
-/// From its beginning, with the parameters `a`; one that is at work rejects it, which fails the action. An
-/// error of it is over.
+/// Starts a program from its beginning, with the parameters `a`. A program that is running rejects it, which
+/// fails the action. Clears the program's error.
 inline ActionResult begin_program(ProgramContext& context, const Instruction& in, std::byte*,
                                   const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     ProgramExecution* const program = program_of(context, in);
@@ -26,7 +26,7 @@ inline ActionResult begin_program(ProgramContext& context, const Instruction& in
     static_cast<void>(program->stop());
     return program->start() ? ActionResult::done : ActionResult::failed;
 }
-/// `to`: a boolean, whether it has come to its end; one that failed or was stopped fails the condition.
+/// `to`: a bool, whether it has ended; a program that failed or was stopped fails the condition.
 inline ActionResult program_ended(ProgramContext& context, const Instruction& in, std::byte* to,
                                   const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     const ProgramExecution* const program = program_of(context, in);
@@ -34,7 +34,7 @@ inline ActionResult program_ended(ProgramContext& context, const Instruction& in
     store_value(to, program->has_ended());
     return program->has_ended() || program->is_at_work() ? ActionResult::done : ActionResult::failed;
 }
-/// `to`: what it returned.
+/// `to`: its result.
 inline ActionResult program_result(ProgramContext& context, const Instruction& in, std::byte* to,
                                    const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     const ProgramExecution* const program = program_of(context, in);
@@ -42,7 +42,7 @@ inline ActionResult program_result(ProgramContext& context, const Instruction& i
     program->take_result(to);
     return ActionResult::done;
 }
-/// `inner` says what; what makes no sense now changes nothing.
+/// Executes the command `inner`; a command that is not valid now changes nothing.
 inline ActionResult control_program(ProgramContext& context, const Instruction& in, std::byte*,
                                     const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     ProgramExecution* const program = program_of(context, in);
@@ -54,7 +54,7 @@ inline ActionResult control_program(ProgramContext& context, const Instruction& 
     }
     return ActionResult::done;
 }
-/// `to`: a boolean, what `inner` asks.
+/// `to`: a bool, the answer to the question `inner`.
 inline ActionResult ask_program(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     const ProgramExecution* const program = program_of(context, in);

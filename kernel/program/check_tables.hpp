@@ -1,5 +1,5 @@
-// A second look at a program's tables before they are executed: whatever made them, no row of a table that
-// passes leads out of the tables, of the data, or of the links.
+// Verifies a program's tables before they are executed: in tables that pass, no row points outside the
+// tables, the data or the links, whatever produced them.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -52,7 +52,7 @@ private:
     [[nodiscard]] constexpr bool leads(NodeIndex to) const noexcept {
         return to == no_node || to == end_node || to < tables_.nodes.size();
     }
-    /// An instruction that nothing executes has no function.
+    /// An instruction that is never executed has no function.
     [[nodiscard]] constexpr bool runs(std::size_t first, std::size_t count) const noexcept {
         if (!fits(first, count, tables_.instructions.size())) return false;
         for (std::size_t i = first; i < first + count; ++i)
@@ -70,7 +70,7 @@ private:
         return (row.condition == no_condition || row.condition < tables_.conditions.size()) &&
                leads(row.to) && (row.after == no_data || fits(row.after, sizeof(Duration), kept()));
     }
-    /// Bytes that outlive a step.
+    /// Bytes that are kept between steps.
     [[nodiscard]] constexpr std::size_t kept() const noexcept { return tables_.layout.arguments; }
     [[nodiscard]] constexpr bool is_good(const NodeRow& row) const noexcept {
         return runs(row.first, row.count) && fits(row.first_arc, row.arcs, tables_.arcs.size()) &&
@@ -89,7 +89,7 @@ private:
 
 } // namespace detail
 
-/// Empty: every number in the tables means something in them. Bounded by their rows; also on the target.
+/// Returns empty when every number in the tables is valid. Bounded by their rows; also on the target.
 constexpr Sentence check_tables(const ProgramTables& tables) { return detail::TableCheck{tables}.check(); }
 
 } // namespace tappet

@@ -1,5 +1,5 @@
-// How the programs of one table are executed: the interface between who runs programs and the two forms they
-// come in, native code made of a constant table, or the table itself, read in memory.
+// Interface to execute the programs of one table, in either of two forms: native code made of a constant
+// table, or the table itself, read in memory.
 #pragma once
 
 #include "kernel/program/context.hpp"
@@ -9,8 +9,8 @@ namespace tappet {
 /// Why a program returned.
 enum class ProgramReturn : std::uint8_t {
     ended,     ///< position.node is end_node
-    waits,     ///< no arc is open: go on in the next step
-    left_over, ///< the number of statements was used up: go on, in the next step at the latest
+    waits,     ///< no arc is open: continue in the next step
+    left_over, ///< the statements are used up: continue in the next step at the latest
     failed     ///< position.node is the node whose action or condition failed
 };
 
@@ -18,14 +18,14 @@ enum class ProgramReturn : std::uint8_t {
 enum class ConditionResult : std::uint8_t { no, yes, failed };
 
 struct ProgramCode {
-    /// Null where a machine has C++ programs only.
+    /// Null when a machine has C++ programs only.
     const ProgramTables* tables = nullptr;
-    /// Executes from context.position on, at most so many statements; counts those executed down. Real-time.
+    /// Executes from context.position, at most `statements` statements; subtracts those executed. Real-time.
     ProgramReturn (*run)(const ProgramTables&, ProgramContext&, std::uint32_t& statements) noexcept
         TAPPET_REALTIME = nullptr;
     ConditionResult (*test)(const ProgramTables&, ProgramContext&, ConditionIndex) noexcept
         TAPPET_REALTIME = nullptr;
-    /// When a program that waits at context.position wants a step although nothing happens: its earliest
+    /// Returns when a program that waits at context.position needs a step without an event: its earliest
     /// time-out, or `never`.
     Time (*wakes)(const ProgramTables&, const ProgramContext&) noexcept TAPPET_REALTIME = nullptr;
 };

@@ -1,4 +1,4 @@
-// The status of a program and its changes, as the header's table lists them.
+// The status of a program and its transitions, as listed in the header's table.
 #include "kernel/program/execution.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ void ProgramExecution::bind(const ProgramCode& code, const ProgramContext& conte
     static_cast<void>(reset());
 }
 
-// The data from there on, as they are at the beginning: what the image does not give is zero.
+// Resets the data from that offset on: from the image, and zero beyond it.
 void ProgramExecution::fill(std::size_t from) noexcept TAPPET_REALTIME {
     const std::size_t size = code_.tables->layout.size;
     const std::size_t given = std::clamp<std::size_t>(image_.size(), from, size);
@@ -30,7 +30,7 @@ void ProgramExecution::fill(std::size_t from) noexcept TAPPET_REALTIME {
 
 bool ProgramExecution::reset() noexcept TAPPET_REALTIME {
     if (is_at_work()) return false;
-    // The parameters stand before all other variables.
+    // The parameters precede all other variables.
     std::size_t end = code_.tables->layout.constants;
     for (const VariableRow& row : code_.tables->variables)
         if (row.kind == VariableKind::parameter) end = std::size_t{row.at} + row.type->size;
@@ -115,8 +115,7 @@ void ProgramExecution::run(Time now, std::uint32_t statements) noexcept TAPPET_R
 
 void ProgramExecution::advance(std::uint32_t statements) noexcept TAPPET_REALTIME {
     left_over_ = waits_ = false;
-    // A turn after one that failed begins with a statement, so that there are no more of them than
-    // statements.
+    // A turn after a failure begins with a statement, so that there are no more turns than statements.
     for (std::uint32_t turn = 0, turns = statements; turn <= turns; ++turn) {
         switch (code_.run(*code_.tables, context_, statements)) {
         case ProgramReturn::ended:

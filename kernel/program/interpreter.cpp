@@ -1,4 +1,4 @@
-// Programs whose tables lie in memory.
+// Executes programs whose tables are in memory.
 #include "kernel/program/interpreter.hpp"
 
 #include "kernel/program/node.hpp"
@@ -7,7 +7,7 @@ namespace tappet {
 
 namespace {
 
-// Offsets that an instruction does not use point nowhere, and its primitive does not look.
+// Unused offsets of an instruction are invalid; its primitive does not use them.
 [[gnu::always_inline]] inline ActionResult execute(ProgramContext& context, const Instruction* in,
                                                    std::size_t count) noexcept TAPPET_REALTIME {
     std::byte* const data = context.data;
@@ -68,7 +68,7 @@ struct NodeInMemory {
     }
 };
 
-/// As most are: it leads on, over one arc or one of two, and no time matters.
+/// The usual statement: it continues over one arc or one of two, and uses no time.
 struct StatementInMemory : NodeInMemory {
     [[gnu::always_inline]] static bool is(const ProgramTables& tables, const NodeRow& node) noexcept
         TAPPET_REALTIME {
@@ -93,7 +93,7 @@ struct StatementInMemory : NodeInMemory {
         return next != leads_nowhere || node->arcs == 1 ? next : follows(1);
     }
 };
-// A function of its own: what it needs would push out of the registers what the others need.
+// A separate function: its variables would push those of the others out of the registers.
 [[gnu::noinline]] NextNode executes_any(NodeInMemory node, ProgramContext& context, ProgramRun& run) noexcept
     TAPPET_REALTIME {
     return node_order::execute(node, context, run);
@@ -115,7 +115,7 @@ struct StatementInMemory : NodeInMemory {
             run.left = shared.left;
             run.stands = shared.stands;
         }
-        // Mostly to the next row: a branch is predicted, a number that was read is waited for.
+        // Usually the next row: a branch is predicted, but a loaded number must be waited for.
         if (next == node.number() + 1u) [[likely]] {
             ++row;
             asm("" : "+r"(row)); // so that it stays a branch
@@ -140,7 +140,7 @@ ProgramReturn run_program(const ProgramTables& tables, ProgramContext& context,
                           std::uint32_t& statements) noexcept TAPPET_REALTIME {
     for (;;) {
         std::uint32_t piece = statements;
-        if (context.limit != nullptr) { // in pieces, over all programs of a step
+        if (context.limit != nullptr) { // in parts, across all programs of a step
             if (statements % WorkLimit::statements == 0 && context.limit->is_reached()) statements = 0;
             piece = statements == 0 ? 0 : (statements - 1) % WorkLimit::statements + 1;
             context.limit->has_begun = true;

@@ -1,4 +1,4 @@
-// The loaded form of programs: their tables are read as they are. What it does with a node is in node.hpp.
+// The loaded form of programs: their tables are interpreted. node.hpp defines what a node does.
 #pragma once
 
 #include "kernel/program/code.hpp"
@@ -12,13 +12,13 @@ ConditionResult test_condition(const ProgramTables& tables, ProgramContext& cont
                                ConditionIndex condition) noexcept TAPPET_REALTIME;
 Time program_wakes(const ProgramTables& tables, const ProgramContext& context) noexcept TAPPET_REALTIME;
 
-/// The programs of these tables, which outlive it, read in memory.
+/// Returns the code for the programs of these tables, interpreted in memory; the tables must outlive it.
 constexpr ProgramCode interpreted(const ProgramTables& tables) noexcept {
     return {&tables, &run_program, &test_condition, &program_wakes};
 }
 
-/// Where a program that failed at `node` goes on when errors are to be passed over (thesis 5.1.3): where its
-/// last arc without a time-out leads; that is after a statement, and out of a loop.
+/// Returns where a program that failed at `node` continues when errors are skipped (thesis 5.1.3): the target
+/// of its last arc without a time-out; this is after a statement, and out of a loop.
 constexpr NodeIndex past_failure(const ProgramTables& tables, NodeIndex node) noexcept TAPPET_REALTIME {
     const NodeRow& row = tables.nodes[node];
     NodeIndex to = end_node;

@@ -1,4 +1,4 @@
-// Native code made of a constant table: its nodes in pieces, each a function. Only the table is gone.
+// Native code made of a constant table: its nodes in pieces, each a function. The table itself is not needed.
 #pragma once
 
 #include "kernel/program/interpreter.hpp"
@@ -12,7 +12,7 @@ namespace tappet {
 
 namespace native {
 
-/// Nodes in one function at most. A program goes from piece to piece by its number; within one it falls or
+/// Most nodes in one function. A program goes to another piece by number; within a piece it falls through or
 /// jumps.
 inline constexpr std::size_t piece_nodes = 16;
 
@@ -26,7 +26,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         NodeIndex first = 0;
         NodeIndex end = 0;
     };
-    // One begins at the first node of each program, and wherever one is full.
+    // A piece begins at the first node of each program, and after a full piece.
     static constexpr auto begins_piece = [] {
         std::array<bool, tables.nodes.size() + 1> begins{};
         begins[0] = true;
@@ -51,8 +51,8 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         }
         return all;
     }();
-    // Its nodes lead on and never back: a node is asked for once. Not constexpr, because g++ then asked it at
-    // run time, at each turn of a loop.
+    // Its nodes lead only forward: each node is checked once. Not constexpr, because g++ would then evaluate
+    // it at run time, at each turn of a loop.
     static consteval bool is_straight(const Piece& piece) {
         const auto is_back = [&piece](NodeIndex from, NodeIndex to) {
             return to <= from && to >= piece.first;
@@ -70,8 +70,8 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
                is_straight({program.first, program.last});
     }
 
-    // From the node `next` on until the program leaves the piece. Each node asks whether it is meant, which
-    // the compiler knows after the one before it.
+    // Executes from the node `next` until the program leaves the piece. Each node checks whether it is
+    // `next`; the compiler knows this after the node before it.
     template <std::size_t first, std::size_t... i>
     [[gnu::always_inline]] static NextNode pass(std::index_sequence<i...>, ProgramContext& context,
                                                 ProgramRun& run, NextNode next) noexcept TAPPET_REALTIME {
@@ -92,7 +92,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         return next;
     }
 
-    // The piece of a node, by halving: no table of functions is left.
+    // Finds the piece of a node by binary search: no table of functions is needed.
     template <std::size_t low, std::size_t high>
     [[gnu::always_inline]] static NextNode go_to(ProgramContext& context, ProgramRun& run,
                                                  NextNode next) noexcept TAPPET_REALTIME {
@@ -111,7 +111,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         return next;
     }
 
-    // ---- what is known of a program or a condition before it runs
+    // ---- facts about a program or a condition before it runs
 
     template <class Is>
     static constexpr bool any_instruction(std::size_t first, std::size_t count, const Is& is) {
@@ -133,9 +133,9 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
 
     static constexpr std::uint32_t unbounded = 0xffffffff;
     struct Facts {
-        bool is_private = false;              ///< nobody is called who could call back
-        bool asks_for_position = false;       ///< the context's
-        std::uint32_t statements = unbounded; ///< at most so many
+        bool is_private = false;              ///< calls nothing that could call back
+        bool asks_for_position = false;       ///< reads the context's position
+        std::uint32_t statements = unbounded; ///< upper bound
     };
     static constexpr auto facts = []() consteval {
         std::array<Facts, tables.programs.size() + 1> all{};
@@ -151,7 +151,8 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
         return all;
     }();
 
-    /// A program from its beginning, until it ends or halts. The shortest stand where they are called.
+    /// Runs a program from its beginning until it ends or stops. The shortest are inlined where they are
+    /// called.
     template <ProgramIndex number>
     [[gnu::always_inline]] static NextNode program(ProgramContext& context, ProgramRun& run) noexcept
         TAPPET_REALTIME {
@@ -202,7 +203,7 @@ template <const auto& source, std::size_t type> struct Code : NodeCode<source, t
 
 } // namespace native
 
-/// What of a table its native code leaves to be read: everything but instructions and conditions.
+/// The parts of a table that native code still reads: everything but instructions and conditions.
 constexpr ProgramTables without_code(ProgramTables tables) noexcept {
     tables.instructions = {};
     tables.conditions = {};
@@ -213,7 +214,7 @@ template <const auto& source, std::size_t type = 0>
 inline constexpr ProgramTables native_tables = without_code(tables_of(source, type));
 
 /// The programs of a constant table as native code. `source` is a variable at namespace scope: ProgramTables,
-/// or a ScriptUnit with the number of a type. Real-time; equal, step for step, to the interpreter.
+/// or a ScriptUnit with the number of a type. Real-time; same behaviour as the interpreter, step by step.
 template <const auto& source, std::size_t type = 0>
 inline constexpr ProgramCode native_code{&native_tables<source, type>, &native::Code<source, type>::run,
                                          &native::Code<source, type>::test, &program_wakes};

@@ -12,8 +12,8 @@
 
 namespace tappet {
 
-/// Where native code finds its table: a constant with static storage, and the number of a type in it. A
-/// variable rather than a type, so that symbols carry its name and nothing of its rows.
+/// Gives native code its table: a constant with static storage, and the number of a type in it. A variable
+/// rather than a type, so that symbols contain its name and not its rows.
 constexpr const ProgramTables& tables_of(const ProgramTables& tables, std::size_t) noexcept { return tables; }
 
 namespace native {
@@ -24,7 +24,7 @@ template <const auto& source, std::size_t type> struct NodeCode {
     static constexpr std::size_t scratch_bytes = std::max<std::size_t>(
         data_alignment, layout.size > layout.arguments ? std::size_t{layout.size} - layout.arguments : 0u);
 
-    // Constants are read where the compiler knows them, scratch lies in the node's own frame.
+    // Reads constants at compile time; scratch is in the node's own frame.
     template <DataOffset at>
     [[gnu::always_inline]] static const std::byte* read(const std::byte* data,
                                                         const std::byte* scratch) noexcept TAPPET_REALTIME {
@@ -48,8 +48,8 @@ template <const auto& source, std::size_t type> struct NodeCode {
     // One by one: an array of all would stay in the program for the few primitives that are not inlined.
     template <std::size_t number> static constexpr Instruction instruction_of = tables.instructions[number];
 
-    // `next` is the first instruction that is not left out. Few functions: a compiler spends most of its time
-    // on their number.
+    // `next` is the first instruction that is not skipped. Few functions: compile time depends mostly on
+    // their number.
     template <std::size_t number, std::size_t i>
     [[gnu::always_inline]] static bool run_one(ProgramContext& context, std::byte* data, std::byte* scratch,
                                                std::size_t& next, ActionResult& result) noexcept
@@ -91,13 +91,13 @@ template <const auto& source, std::size_t type> struct NodeCode {
         }
     }
 
-    // It acts on nothing but the program's own data, at once.
+    // Returns whether it acts only on the program's own data, immediately.
     static constexpr bool is_private(const Instruction& in) {
         const bool is_silent =
             in.run == &primitive::skip_if || in.run == &primitive::skip_unless || in.run == &primitive::fail;
         return in.facet == nullptr && in.link == 0xffff && (in.to != no_data || is_silent);
     }
-    // A program may wait there, or ask when it was entered.
+    // Returns whether a program may wait there, or read when the node was entered.
     static consteval bool stands(const NodeRow& row) {
         bool open = false, timed = false, waits = row.yields;
         for (std::size_t i = row.first_arc; i < std::size_t{row.first_arc} + row.arcs; ++i) {

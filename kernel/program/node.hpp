@@ -1,17 +1,18 @@
-// What executing a node of a program means (thesis 5.1.3), written once. `Node` says where its table lies: in
-// memory, interpreter.cpp, where it is read; or in constants, native.hpp, which the compiler folds.
+// The execution of a program's node (thesis 5.1.3), written once. `Node` gives access to its table: in memory
+// (interpreter.cpp), where it is read; or in constants (native.hpp), which the compiler folds.
 //
 // clang-format off
-//   action        its instructions in order, once. That is one statement.
-//   again         an instruction could not act yet: the program waits, the next step executes the action once more;
-//                 of the arcs only time-outs, those without a condition, are asked until then.
-//   arcs          asked in their order after the action, and in each later step without it; the first open one is
-//                 followed. An arc is open when its time has passed since the node was entered and its condition holds.
+//   action        executes its instructions in order, once. That is one statement.
+//   again         an instruction could not act yet: the program waits, the next step executes it again;
+//                 until then, only time-outs (arcs without a condition) are evaluated.
+//   arcs          are evaluated in order after the action, and in each later step without it; the first open
+//                 one is followed. An arc is open when its time since node entry has passed and its condition
+//                 holds.
 //   none open     the program waits.
 //   yields        the program waits after the action although an arc is open.
-//   failed        of an instruction or a condition, or the arc leads to no_node: on to the node of on_error, or the
-//                 program has failed there.
-//   left over     the statements are used up: the program stands before the next action.
+//   failed        an instruction or a condition failed, or the arc leads to no_node: the program continues at
+//                 the node of on_error; without one, it has failed there.
+//   left over     the statements are used up: the program stops before the next action.
 // clang-format on
 #pragma once
 
@@ -20,8 +21,8 @@
 
 namespace tappet {
 
-/// What a node answers: the node to go on with, or why not in the upper half. One number, so that a way out
-/// of a node is one move and one jump.
+/// Result of a node: the next node, or the reason to stop in the upper half. One number, so that leaving a
+/// node takes one move and one jump.
 using NextNode = std::uint32_t;
 inline constexpr int halt_bit = 16;
 inline constexpr NextNode halted = NextNode{1} << halt_bit;
@@ -32,17 +33,17 @@ constexpr NextNode halts_at(NodeIndex node, ProgramReturn why) noexcept TAPPET_R
     return static_cast<NextNode>(why) << halt_bit | node;
 }
 
-/// What a run of one program keeps in registers.
+/// Values that a run of one program keeps in registers.
 struct ProgramRun {
     std::byte* data = nullptr;
     std::int64_t left = 0; ///< statements that it may still execute
-    /// The position says when the node was entered, and whether its action is done: it waits there. Nobody
-    /// notes when a node is entered that leads on at once.
+    /// The program waits here: the position holds when the node was entered and whether its action is done.
+    /// The entry time is not stored for a node that continues at once.
     bool stands = false;
-    bool counted = true; ///< statements may not suffice
+    bool counted = true; ///< statements may run out
 };
 
-/// What the position is when the program returns there.
+/// Stores the position of a program that returns at `next`.
 inline ProgramReturn returns_at(NextNode next, ProgramContext& context, bool stands) noexcept
     TAPPET_REALTIME {
     ProgramPosition& position = context.position;
@@ -82,7 +83,7 @@ inline Time due(Duration after, Time entered) noexcept TAPPET_REALTIME {
     return after >= never - entered ? never : entered + after;
 }
 
-/// Where an arc leads; leads_nowhere: it is not open.
+/// Returns the target of an arc; leads_nowhere: it is not open.
 template <class Node, class Arc>
 [[gnu::always_inline]] inline NextNode follows(Node node, Arc arc, bool has_acted, ProgramContext& context,
                                                ProgramRun& run) noexcept TAPPET_REALTIME {
@@ -98,7 +99,7 @@ template <class Node, class Arc>
     return leads ? leads_to(node, row.to, context, run) : fails(node, context, run);
 }
 
-/// Executes a node, or goes on where the program waits at it. A node that may_stand() not leads on, or fails,
+/// Executes a node, or resumes it when the program waits there. A node without may_stand() continues or fails
 /// at once.
 template <class Node>
 [[gnu::always_inline]] inline NextNode execute(Node node, ProgramContext& context, ProgramRun& run) noexcept

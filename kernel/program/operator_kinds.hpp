@@ -1,4 +1,4 @@
-// Words for operators of scripts, and what is found for one.
+// Names of operators in scripts, and the result of a look-up.
 #pragma once
 
 #include "kernel/program/registered.hpp"
@@ -19,20 +19,20 @@ enum class Operator : std::uint8_t {
     at_least,
     both,
     either,
-    negate, ///< of one operand, from here on
+    negate, ///< from here on, of one operand
     invert
 };
 
-/// As it is spelled.
+/// Returns the operator's spelling in scripts.
 constexpr std::string_view to_text(Operator op) noexcept {
     constexpr std::string_view spelled[] = {"+",  "-", "*",  "/",  "%",  "==", "!=", "<",
                                             "<=", ">", ">=", "&&", "||", "-",  "!"};
     return spelled[static_cast<std::size_t>(op)];
 }
 
-/// How an expression is computed. Of `instruction` everything is set but `to`, `a`, `b` and `link`. Operands
-/// that are not of the types `a` and `b` are converted to them first; the result may be of a stored type,
-/// which is converted to script_type(result) before it is reckoned with.
+/// How an expression is computed. `instruction` is complete except for `to`, `a`, `b` and `link`. Operands of
+/// other types than `a` and `b` are converted to them first. The result may be of a stored type; it is
+/// converted to script_type(result) before further use.
 struct OperatorMatch {
     Instruction instruction{};
     TypeId result = nullptr;
@@ -41,10 +41,10 @@ struct OperatorMatch {
     constexpr explicit operator bool() const noexcept { return instruction.run != nullptr; }
 };
 
-/// How a value becomes one of another type, from `a` to `to`.
+/// How a value of type `a` is converted to type `to`.
 struct Conversion {
     Instruction instruction{};
-    bool implicit = false; ///< done where a value of the other type is expected, without being asked for
+    bool implicit = false; ///< done wherever a value of the other type is expected, without a request
     constexpr explicit operator bool() const noexcept { return instruction.run != nullptr; }
 };
 
@@ -52,12 +52,12 @@ inline constexpr TypeId script_bool = type_id<bool>;
 inline constexpr TypeId script_int = type_id<ScriptInt>;
 inline constexpr TypeId script_double = type_id<double>;
 inline constexpr TypeId script_duration = type_id<Duration>;
-/// Of a text in the script itself. Longer ones are refused.
+/// A text literal in a script. Longer ones are refused.
 using ScriptText = Text<60>;
 inline constexpr TypeId script_text = type_id<ScriptText>;
 
-/// The type that a script reckons with when a value of this one was read: bool, int, double or Duration for
-/// every C++ type of that kind, else the type itself.
+/// Returns the type that scripts compute with after reading a value of type `stored`: bool, int, double or
+/// Duration for every C++ type of that kind, else the type itself.
 constexpr TypeId script_type(TypeId stored) noexcept {
     switch (stored->kind) {
     case ValueKind::boolean: return script_bool;
@@ -69,13 +69,13 @@ constexpr TypeId script_type(TypeId stored) noexcept {
     }
 }
 
-/// The last part of a C++ name: "Pose" of "car::Pose".
+/// Returns the last part of a C++ name: "Pose" of "car::Pose".
 constexpr std::string_view short_name(std::string_view name) noexcept {
     const std::size_t template_at = name.find('<');
     const std::size_t colon = name.substr(0, template_at).rfind(':');
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
-/// As scripts spell a type.
+/// Returns the spelling of a type in scripts.
 constexpr std::string_view type_name(TypeId type) noexcept {
     if (type == nullptr) return "nothing";
     switch (type->kind) {

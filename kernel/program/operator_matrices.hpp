@@ -1,5 +1,4 @@
-// Operators of matrices behind operators.hpp, by the shapes of the operands, and those that types register.
-//
+// Matrix operators for operators.hpp, by the shapes of the operands, and operators that types register.
 #pragma once
 
 #include "kernel/program/operator_kinds.hpp"
@@ -72,7 +71,7 @@ constexpr bool same_shape(TypeId a, TypeId b) noexcept {
     return a->kind == ValueKind::matrix && b->kind == ValueKind::matrix && a->rows == b->rows &&
            a->columns == b->columns && a->element == b->element;
 }
-/// Whether its bytes lie alike: those of a vector always do.
+/// Returns whether both store their elements in the same order; vectors always do.
 constexpr bool same_order(TypeId a, TypeId b) noexcept {
     return a->row_major == b->row_major || is_matrix_vector(a);
 }
@@ -94,7 +93,7 @@ inline constexpr TypeTag matrix_tag = [] {
     tag.rows = rows, tag.columns = columns;
     return tag;
 }();
-/// Row by row.
+/// Row-major.
 inline constexpr auto matrix_tags = []<std::size_t... i>(std::index_sequence<i...>) {
     return std::array<TypeId, sizeof...(i)>{
         &matrix_tag<i / most_matrix_rows + 1, i % most_matrix_rows + 1>...};
@@ -104,7 +103,7 @@ inline constexpr auto matrix_tags = []<std::size_t... i>(std::index_sequence<i..
 
 namespace tappet {
 
-/// A matrix of doubles, 1 to 4 rows and columns, for products and literals; null: none of that shape.
+/// Returns a matrix of doubles, 1 to 4 rows and columns, for products and literals; null: no such shape.
 constexpr TypeId matrix_type(std::size_t rows, std::size_t columns) noexcept {
     if (rows == 0 || columns == 0 || rows > detail::most_matrix_rows || columns > detail::most_matrix_rows)
         return nullptr;
@@ -115,7 +114,7 @@ constexpr TypeId matrix_type(std::size_t rows, std::size_t columns) noexcept {
 
 namespace tappet::detail {
 
-/// The type of that shape that stands nearest: one of the operands', or a general one. Null: none.
+/// Returns the best type of that shape: the type of an operand, or a general one. Null: none.
 constexpr TypeId shaped(std::size_t rows, std::size_t columns, TypeId a, TypeId b) noexcept {
     for (const TypeId each : {a, b})
         if (each != nullptr && each->rows == rows && each->columns == columns) return each;
@@ -138,7 +137,7 @@ constexpr OperatorMatch matrix_product(TypeId a, TypeId b) noexcept {
     if (a->columns != b->rows || a->element != b->element || element_kind(b) == ElementKind::none) return {};
     const Primitive run = matrix_binary(element_kind(a), Operator::multiply);
     Instruction product = matrix_instruction(run, a->rows, a->columns, b->columns);
-    if (a->rows == 1 && b->columns == 1) return {product, a->element, a, b}; // one number
+    if (a->rows == 1 && b->columns == 1) return {product, a->element, a, b}; // a single number
     const TypeId result = shaped(a->rows, b->columns, a, b);
     if (result == nullptr) return {};
     product.size = orders(a, b, result);
@@ -190,9 +189,9 @@ constexpr OperatorMatch find_matrix_function(std::string_view name, TypeId a, Ty
     return {found, result, a, nullptr};
 }
 
-// ---- what types register
+// ---- registered operators
 
-/// Whether a value of type `given` is taken where an operand of type `wanted` stands; better ones are less.
+/// Returns the cost of passing a value of type `given` for an operand of type `wanted`; -1: not possible.
 constexpr int operand_distance(TypeId given, TypeId wanted) noexcept {
     if (given == wanted) return 0;
     if (script_type(given) == script_type(wanted)) return 1;

@@ -1,4 +1,4 @@
-// The tables of scalars behind operators.hpp.
+// The tables of scalar operators for operators.hpp.
 #pragma once
 
 #include "kernel/program/operator_kinds.hpp"
@@ -112,7 +112,7 @@ inline constexpr Primitive most = &primitive::binary<T, T, T, &primitive::greate
 template <class T>
 inline constexpr Primitive absolute = &primitive::unary<T, T, &primitive::absolute_integer<T>>;
 
-/// Not all of <cmath>: each inverse takes tens of kB of a firmware, and atan2 and sqrt make the others.
+/// Only part of <cmath>: each inverse takes tens of kB of firmware, and atan2 and sqrt replace them.
 inline constexpr FunctionRow function_rows[] = {
     {"abs",   script_int,      nullptr, script_int,      absolute<ScriptInt>},
     {"abs",   script_double,   nullptr, script_double,   real<&std::fabs>},
@@ -148,7 +148,7 @@ inline constexpr ConversionRow conversion_rows[] = {
 };
 // clang-format on
 
-/// By bytes, from 1 to 8, signed ones first.
+/// By size in bytes, from 1 to 8, signed ones first.
 template <class Stored>
 inline constexpr Primitive widening = &primitive::unary<Stored, ScriptInt, &primitive::widen<Stored>>;
 template <class Stored>

@@ -1,5 +1,5 @@
-// What a script's expression means: for an operator, a function or a conversion and the types of its operands
-// the instruction that computes it. Tables of data; the same while the C++ compiler runs and on the target.
+// The meaning of a script's expressions: finds the instruction for an operator, a function or a conversion
+// and its operand types. Tables of data; the same in the C++ compiler and on the target.
 #pragma once
 
 #include "kernel/program/actions.hpp"
@@ -10,16 +10,16 @@
 
 namespace tappet {
 
-// ---- parts of values and what steers a node
+// ---- parts of values and flow within a node
 
 /// `to` = a, both of this type.
 constexpr Instruction copy_instruction(TypeId type) noexcept {
     return {.run = &primitive::copy, .size = static_cast<std::uint16_t>(type->size)};
 }
-/// The action fails.
+/// Makes the action fail.
 constexpr Instruction fail_instruction() noexcept { return {.run = &primitive::fail}; }
-/// When the bool `a` is not `wanted`, the next `count` instructions of this node are left out. For a && b: a
-/// into the result, skip what b needs unless it is true, b into the result.
+/// When the bool `a` is not `wanted`, skips the next `count` instructions of this node. For a && b: compute a
+/// into the result, skip the instructions of b unless it is true, compute b into the result.
 constexpr Instruction skip_instruction(bool wanted, std::uint16_t count) noexcept {
     return {.run = wanted ? &primitive::skip_unless : &primitive::skip_if, .size = count};
 }
@@ -35,15 +35,15 @@ constexpr Instruction field_write(const RecordField& field) noexcept {
             .field = &field};
 }
 
-/// Types are the same, or alike (every C++ number to and from the script's own; int to double; texts of other
-/// lengths; matrices of one shape): implicit. By name only, as int(x): double to int, bool to int,
-/// enumeration to int.
+/// Implicit conversions: between equal types and alike ones (every C++ number to and from the script's own;
+/// int to double; texts of other lengths; matrices of one shape). Conversions by name only, as int(x): double
+/// to int, bool to int, enumeration to int.
 constexpr Conversion find_conversion(TypeId from, TypeId to) noexcept {
     if (from == to) return {copy_instruction(from), true};
     for (const detail::ConversionRow& row : detail::conversion_rows)
         if (row.from == from && row.to == to) return {{.run = row.run}, row.implicit};
     const bool from_script = from == script_type(from), to_script = to == script_type(to);
-    // Numbers of C++ to the script's, and back.
+    // C++ numbers to the script's numbers, and back.
     if (to == script_int && (detail::is_integer(from) || from->kind == ValueKind::enumeration)) {
         const TypeId stored = from->kind == ValueKind::enumeration ? from->element : from;
         return {{.run = detail::widenings[detail::width_index(stored, stored->kind == ValueKind::natural)]},
@@ -55,7 +55,7 @@ constexpr Conversion find_conversion(TypeId from, TypeId to) noexcept {
         return {{.run = &primitive::unary<float, double, &primitive::widen_real>}, true};
     if (from == script_double && detail::is_float(to))
         return {{.run = &primitive::unary<double, float, &primitive::narrow_real>}, true};
-    // Others of the same kind and size: Time and Duration, bool under another name.
+    // Other types of the same kind and size: Time and Duration, bool under another name.
     if (from_script != to_script && script_type(from) == script_type(to) && from->size == to->size &&
         !detail::is_integer(from) && from->kind != ValueKind::real)
         return {copy_instruction(from), true};
@@ -75,7 +75,7 @@ constexpr Conversion find_conversion(TypeId from, TypeId to) noexcept {
     return {};
 }
 
-/// `op` of two operands; false: these types have none.
+/// Finds `op` for two operands; false: not defined for these types.
 constexpr OperatorMatch find_binary(Operator op, TypeId a, TypeId b) noexcept {
     if (const OperatorMatch found = detail::find_registered(to_text(op), a, b)) return found;
     if (a->kind == ValueKind::matrix || b->kind == ValueKind::matrix)
@@ -108,7 +108,7 @@ constexpr OperatorMatch find_binary(Operator op, TypeId a, TypeId b) noexcept {
     return {};
 }
 
-/// Operator::negate or Operator::invert.
+/// Finds Operator::negate or Operator::invert.
 constexpr OperatorMatch find_unary(Operator op, TypeId a) noexcept {
     if (const OperatorMatch found = detail::find_registered(to_text(op), a, nullptr)) return found;
     if (const auto kind = detail::element_kind(a);
@@ -120,7 +120,7 @@ constexpr OperatorMatch find_unary(Operator op, TypeId a) noexcept {
     return {};
 }
 
-/// A function of one or two operands: those of <cmath>, of matrices and times, those that the types register.
+/// Finds a function of one or two operands: from <cmath>, of matrices and times, or registered by the types.
 constexpr OperatorMatch find_function(std::string_view name, std::span<const TypeId> operands) noexcept {
     if (operands.empty() || operands.size() > 2) return {};
     const TypeId a = operands[0], b = operands.size() == 2 ? operands[1] : nullptr;
@@ -151,7 +151,7 @@ constexpr OperatorMatch find_function(std::string_view name, std::span<const Typ
     return {};
 }
 
-/// Names for "did you mean": those of the functions that find_function knows without registered ones.
+/// Returns the functions known to find_function without registered ones, for "did you mean".
 constexpr std::span<const std::string_view> function_names() noexcept { return detail::known_functions; }
 
 namespace detail {
@@ -167,8 +167,9 @@ constexpr Instruction element_instruction(Primitive run, TypeId type) noexcept {
 
 } // namespace detail
 
-/// `to` = a[b] of a matrix or std::array, counted through all its elements as they lie, or of the elements
-/// that a Sequence holds; `b` is an int. The element's type is type->element. Null run: it has no elements.
+/// `to` = a[b] of a matrix or std::array, counted through all its elements in memory order, or of the
+/// elements in a Sequence; `b` is an int. The element's type is type->element. Null run: the type has no
+/// elements.
 constexpr Instruction element_read(TypeId type) noexcept {
     return detail::element_instruction(
         type->kind == ValueKind::sequence ? &primitive::sequence_read : &primitive::element_read, type);
@@ -178,7 +179,7 @@ constexpr Instruction element_write(TypeId type) noexcept {
     return detail::element_instruction(
         type->kind == ValueKind::sequence ? &primitive::sequence_write : &primitive::element_write, type);
 }
-/// `to` = the int with which element_read finds row `a`, column `b`.
+/// `to` = the int index of row `a`, column `b` for element_read.
 constexpr Instruction matrix_index(TypeId type) noexcept {
     if (detail::element_kind(type) == detail::ElementKind::none) return {};
     return detail::matrix_instruction(&primitive::matrix_index, type->rows, type->row_major ? 1 : 0,

@@ -11,14 +11,14 @@ inline const ProgramLink& link_of(const ProgramContext& context, const Instructi
     return context.links[in.link];
 }
 
-// ---- data ports; the value's bytes as the port has them
+// ---- data ports; values in the port's byte layout
 
 inline ActionResult read_input(ProgramContext& context, const Instruction& in, std::byte* to,
                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     static_cast<void>(in.facet->port->read(link_of(context, in).place, true, false, to));
     return ActionResult::done;
 }
-/// What the component finds there: for it a fresh value stays fresh.
+/// Reads the current value of an input without marking it read: it stays fresh for the component.
 inline ActionResult look_at_input(ProgramContext& context, const Instruction& in, std::byte* to,
                                   const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     static_cast<void>(in.facet->port->read(link_of(context, in).place, true, true, to));
@@ -34,25 +34,25 @@ inline ActionResult write_output(ProgramContext& context, const Instruction& in,
     in.facet->port->write(link_of(context, in).place, a);
     return ActionResult::done;
 }
-/// Whether an input has a value that is not stale.
+/// Returns whether an input has a value that is not stale.
 inline ActionResult input_valid(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     const Flow flow = in.facet->port->flow(link_of(context, in).place);
     store_value(to, flow == Flow::old || flow == Flow::fresh);
     return ActionResult::done;
 }
-/// Whether an input has a value that was not read yet.
+/// Returns whether an input has a value that was not read yet.
 inline ActionResult input_fresh(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     store_value(to, in.facet->port->flow(link_of(context, in).place) == Flow::fresh);
     return ActionResult::done;
 }
-/// How long ago the value was true; of an input that has none, since the machine's time began.
+/// Returns the age of a value; of an input without a value, the time since the machine's time began.
 inline ActionResult port_age(ProgramContext& context, const Instruction& in, std::byte* to, const std::byte*,
                              const std::byte*) noexcept TAPPET_REALTIME {
     const bool is_input = in.facet->kind == FacetKind::input;
     void* const port = link_of(context, in).place;
-    if (is_input) static_cast<void>(in.facet->port->flow(port)); // looks for a newer one
+    if (is_input) static_cast<void>(in.facet->port->flow(port)); // fetches a newer value
     const Time stamp = *in.facet->port->places(port, is_input).stamp;
     store_value(to, context.now - stamp);
     return ActionResult::done;
@@ -60,13 +60,13 @@ inline ActionResult port_age(ProgramContext& context, const Instruction& in, std
 
 // ---- buffers
 
-/// `to`: a boolean, whether every reader had room.
+/// `to`: a bool, whether every reader had room.
 inline ActionResult push_buffer(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     store_value(to, in.facet->buffer->push(link_of(context, in).place, a));
     return ActionResult::done;
 }
-/// As push_buffer; a value that is lost fails the action.
+/// As push_buffer; a lost value fails the action.
 inline ActionResult push_all(ProgramContext& context, const Instruction& in, std::byte*, const std::byte* a,
                              const std::byte*) noexcept TAPPET_REALTIME {
     return in.facet->buffer->push(link_of(context, in).place, a) ? ActionResult::done : ActionResult::failed;
@@ -76,7 +76,7 @@ inline ActionResult pop_buffer(ProgramContext& context, const Instruction& in, s
                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     return in.facet->buffer->pop(link_of(context, in).place, to) ? ActionResult::done : ActionResult::failed;
 }
-/// As pop_buffer; an empty one is asked again in the next step.
+/// As pop_buffer; an empty buffer is polled again in the next step.
 inline ActionResult wait_buffer(ProgramContext& context, const Instruction& in, std::byte* to,
                                 const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     return in.facet->buffer->pop(link_of(context, in).place, to) ? ActionResult::done : ActionResult::again;
@@ -87,7 +87,7 @@ inline ActionResult buffer_empty(ProgramContext& context, const Instruction& in,
     return ActionResult::done;
 }
 
-// ---- events, methods, operations: `a` holds the arguments packed, as the facet's type lists them. A call of
+// ---- events, methods, operations: `a` holds the packed arguments, as the facet's type lists them. A call to
 // a component that does not run fails the action.
 
 inline ActionResult emit_event(ProgramContext& context, const Instruction& in, std::byte*, const std::byte* a,
@@ -108,7 +108,7 @@ inline ActionResult call_method(ProgramContext& context, const Instruction& in, 
                ? ActionResult::done
                : ActionResult::failed;
 }
-/// Of a method that returns bool, called as a statement: false fails the action (thesis 5.1.1).
+/// Calls a method that returns bool as a statement: false fails the action (thesis 5.1.1).
 inline ActionResult call_checked(ProgramContext& context, const Instruction& in, std::byte*,
                                  const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     std::byte answer{};
@@ -117,25 +117,26 @@ inline ActionResult call_checked(ProgramContext& context, const Instruction& in,
     return given && answer != std::byte{0} ? ActionResult::done : ActionResult::failed;
 }
 
-// ---- commands. The own component's run here and now (thesis 5.1.5): `to` of the first and `a` of the second
-// hold the arguments and, after them, the results, where they stay while the program runs.
+// ---- commands. Those of the own component run in this call (thesis 5.1.5): `to` of the first and `a` of the
+// second primitive hold the arguments followed by the results, kept while the program runs.
 
-/// A command that is rejected fails the action.
+/// A rejected command fails the action.
 inline ActionResult begin_command(ProgramContext& context, const Instruction& in, std::byte* to,
                                   const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     return in.facet->command->begin(*link_of(context, in).component, to) ? ActionResult::done
                                                                          : ActionResult::failed;
 }
-/// `to`: a boolean, whether it is done; one that failed fails the condition.
+/// `to`: a bool, whether it is done; a failed command fails the condition.
 inline ActionResult command_progress(ProgramContext& context, const Instruction& in, std::byte* to,
                                      const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
-    // The values are the program's own, and the completion writes its results there.
+    // The values belong to the program, and the completion writes its results there.
     const CommandProgress progress =
         in.facet->command->ask(*link_of(context, in).component, const_cast<std::byte*>(a));
     store_value(to, progress == CommandProgress::done);
     return progress == CommandProgress::failed ? ActionResult::failed : ActionResult::done;
 }
-/// Of another activity: `a` holds the arguments, if there are any. Again while an earlier one is on its way.
+/// Sends a command to another activity: `a` holds the arguments, if any. Tries again while an earlier one is
+/// pending.
 inline ActionResult send_command(ProgramContext& context, const Instruction& in, std::byte*,
                                  const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     CommandSlot* const slot = link_of(context, in).slot;
@@ -146,14 +147,14 @@ inline ActionResult send_command(ProgramContext& context, const Instruction& in,
     std::memset(slot->values() + command.argument_bytes, 0, command.result_bytes);
     return slot->send() ? ActionResult::done : ActionResult::failed;
 }
-/// `to`: a boolean, whether it is done; one that was rejected or failed fails the condition.
+/// `to`: a bool, whether it is done; a rejected or failed command fails the condition.
 inline ActionResult command_ended(ProgramContext& context, const Instruction& in, std::byte* to,
                                   const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     const CommandState state = link_of(context, in).slot->state();
     store_value(to, state == CommandState::done);
     return state == CommandState::done || in_flight(state) ? ActionResult::done : ActionResult::failed;
 }
-/// `to`: the packed results of one that is done.
+/// `to`: the packed results of a command that is done.
 inline ActionResult command_results(ProgramContext& context, const Instruction& in, std::byte* to,
                                     const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     const CommandSlot* const slot = link_of(context, in).slot;
@@ -169,8 +170,8 @@ inline ActionResult read_property(ProgramContext& context, const Instruction& in
     std::memcpy(to, link_of(context, in).place, in.size);
     return ActionResult::done;
 }
-/// A value out of the property's range, or that its component does not consent to, fails the action and
-/// changes nothing.
+/// Writes a property. A value that is out of range, or to which the component does not consent, fails the
+/// action and changes nothing.
 inline ActionResult write_property(ProgramContext& context, const Instruction& in, std::byte*,
                                    const std::byte* a, const std::byte*) noexcept TAPPET_REALTIME {
     const ProgramLink& link = link_of(context, in);

@@ -1,5 +1,5 @@
-// Primitives on matrices and vectors of fixed size, whose shape stands in the instruction: numbers of type E,
-// column by column unless a flag says otherwise. No operand is the result's place.
+// Primitives on matrices and vectors of fixed size; the instruction gives their shape. Numbers of type E,
+// column-major unless a flag says otherwise. The result must not overlap an operand.
 #pragma once
 
 #include "kernel/program/value_access.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::primitive {
 
-/// Which operands of a product or of a transposition lie row by row; in the instruction's `size`.
+/// Operands of a product or of a transposition that are row-major; in the instruction's `size`.
 enum RowMajor : std::uint16_t { a_row_major = 1, b_row_major = 2, to_row_major = 4 };
 
 template <class E>
@@ -23,7 +23,7 @@ constexpr std::size_t elements_of(const Instruction& in) noexcept TAPPET_REALTIM
     return std::size_t{in.rows} * in.columns;
 }
 
-// Whole numbers that overflow fail the action.
+// An integer overflow fails the action.
 template <class E>
 constexpr bool add_elements(E a, E b, E& to) noexcept TAPPET_REALTIME {
     if constexpr (std::is_integral_v<E>) return !__builtin_add_overflow(a, b, &to);
@@ -42,7 +42,7 @@ constexpr bool multiply_elements(E a, E b, E& to) noexcept TAPPET_REALTIME {
     to = a * b;
     return true;
 }
-/// The number that scales a matrix: a double, of whole elements an int.
+/// Type of the number that scales a matrix: a double, for integer elements an int.
 template <class E>
 using Scale = std::conditional_t<std::is_integral_v<E>, ScriptInt, double>;
 template <class E>
@@ -130,7 +130,8 @@ constexpr ActionResult product(ProgramContext&, const Instruction& in, std::byte
         }
     return ActionResult::done;
 }
-/// `a` is rows x columns, `to` is its transpose where `inner` is set, and itself in another order where not.
+/// `a` is rows x columns. With `inner`, `to` is its transpose; without, the same matrix in the other element
+/// order.
 template <class E>
 constexpr ActionResult transposed(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                                   const std::byte*) noexcept TAPPET_REALTIME {
@@ -147,7 +148,7 @@ constexpr ActionResult transposed(ProgramContext&, const Instruction& in, std::b
     return ActionResult::done;
 }
 
-/// Of all elements of two vectors: a double, of whole elements an int.
+/// Dot product over all elements of two vectors: a double, for integer elements an int.
 template <class E>
 constexpr ActionResult dot(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                            const std::byte* b) noexcept TAPPET_REALTIME {
@@ -162,7 +163,7 @@ constexpr ActionResult dot(ProgramContext&, const Instruction& in, std::byte* to
     store_value(to, sum);
     return ActionResult::done;
 }
-/// Euclid's, of all elements.
+/// Euclidean norm over all elements.
 template <class E>
 ActionResult norm(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                   const std::byte*) noexcept TAPPET_REALTIME {
@@ -175,7 +176,7 @@ ActionResult norm(ProgramContext&, const Instruction& in, std::byte* to, const s
     store_value(to, std::sqrt(sum));
     return ActionResult::done;
 }
-/// Of two vectors of three.
+/// Cross product of two vectors with three elements.
 template <class E>
 constexpr ActionResult cross(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,
                              const std::byte* b) noexcept TAPPET_REALTIME {

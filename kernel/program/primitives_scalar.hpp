@@ -1,5 +1,5 @@
-// Primitives on truths, numbers and times. Whole numbers that overflow and divisions of them by zero fail the
-// action; those of reals follow IEEE 754.
+// Primitives on bools, numbers and times. An integer overflow and an integer division by zero fail the
+// action; reals follow IEEE 754.
 #pragma once
 
 #include "kernel/program/value_access.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::primitive {
 
-/// `F` is bool(A, B, R&); false: there is no result.
+/// `F` is bool(A, B, R&); false: no result.
 template <class A, class B, class R, bool (*F)(A, B, R&) noexcept TAPPET_REALTIME>
 constexpr ActionResult binary(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,
                               const std::byte* b) noexcept TAPPET_REALTIME {
@@ -27,7 +27,7 @@ constexpr ActionResult unary(ProgramContext&, const Instruction&, std::byte* to,
     return ActionResult::done;
 }
 
-// ---- whole numbers and times, which are whole numbers of nanoseconds
+// ---- integers, and times, which are integers of nanoseconds
 
 constexpr ScriptInt integer_of(ScriptInt value) noexcept TAPPET_REALTIME { return value; }
 constexpr ScriptInt integer_of(Duration value) noexcept TAPPET_REALTIME { return value.count(); }
@@ -56,14 +56,14 @@ constexpr bool multiply_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
 constexpr bool divisible(ScriptInt a, ScriptInt b) noexcept TAPPET_REALTIME {
     return b != 0 && !(b == -1 && a == std::numeric_limits<ScriptInt>::min());
 }
-/// Towards zero.
+/// Rounds towards zero.
 template <class A, class B, class R>
 constexpr bool divide_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
     if (!divisible(integer_of(a), integer_of(b))) return false;
     to = R{integer_of(a) / integer_of(b)};
     return true;
 }
-/// With the sign of `a`.
+/// Has the sign of `a`.
 template <class A, class B, class R>
 constexpr bool remainder_integer(A a, B b, R& to) noexcept TAPPET_REALTIME {
     if (!divisible(integer_of(a), integer_of(b))) return false;
@@ -81,7 +81,7 @@ constexpr bool absolute_integer(A a, A& to) noexcept TAPPET_REALTIME {
     return true;
 }
 
-/// Rounds a real to a whole number that it is near to; false: there is none.
+/// Returns whether a rounded real fits into an integer.
 constexpr bool fits_integer(double value) noexcept TAPPET_REALTIME {
     return value >= -0x1p63 && value < 0x1p63;
 }
@@ -140,7 +140,7 @@ bool real_function2(double a, double b, double& to) noexcept TAPPET_REALTIME {
     return true;
 }
 
-// ---- order, of numbers and times
+// ---- comparison of numbers and times
 
 template <class T>
 constexpr bool equal(T a, T b, bool& to) noexcept TAPPET_REALTIME {
@@ -183,7 +183,7 @@ constexpr bool greater_of(T a, T b, T& to) noexcept TAPPET_REALTIME {
     return true;
 }
 
-// ---- truths
+// ---- bools
 
 constexpr bool both(bool a, bool b, bool& to) noexcept TAPPET_REALTIME {
     to = a && b;
@@ -204,7 +204,7 @@ constexpr bool integer_to_real(ScriptInt a, double& to) noexcept TAPPET_REALTIME
     to = static_cast<double>(a);
     return true;
 }
-/// Towards zero; one that no integer holds, or no number, fails.
+/// Rounds towards zero; fails when no integer holds it, or for NaN.
 constexpr bool real_to_integer(double a, ScriptInt& to) noexcept TAPPET_REALTIME {
     if (!fits_integer(a)) return false;
     to = static_cast<ScriptInt>(a);
@@ -222,7 +222,7 @@ inline bool seconds_to_time(double a, Duration& to) noexcept TAPPET_REALTIME {
     return scale_time(Duration{1'000'000'000}, a, to);
 }
 
-// ---- numbers of C++ and those of scripts: read from any width, written where they fit
+// ---- C++ numbers and script numbers: read from any width, written where they fit
 
 template <class Stored>
 constexpr bool widen(Stored a, ScriptInt& to) noexcept TAPPET_REALTIME {
@@ -247,7 +247,7 @@ constexpr bool widen_real(float a, double& to) noexcept TAPPET_REALTIME {
     to = static_cast<double>(a);
     return true;
 }
-/// A finite value that would become infinite does not fit.
+/// Fails when a finite value would become infinite.
 constexpr bool narrow_real(double a, float& to) noexcept TAPPET_REALTIME {
     constexpr double most = static_cast<double>(std::numeric_limits<float>::max());
     if (a - a == 0 && (a > most || a < -most)) return false;

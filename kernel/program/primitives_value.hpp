@@ -1,12 +1,11 @@
-// Primitives on values of any type: copies, parts of values, texts, and what steers the instructions of one
-// node.
+// Primitives on values of any type: copies, parts of values, texts, and flow within a node.
 #pragma once
 
 #include "kernel/program/value_access.hpp"
 
 namespace tappet::primitive {
 
-/// `size` bytes.
+/// Copies `size` bytes.
 constexpr ActionResult copy(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                             const std::byte*) noexcept TAPPET_REALTIME {
     copy_bytes(to, a, in.size);
@@ -17,7 +16,7 @@ constexpr ActionResult fail(ProgramContext&, const Instruction&, std::byte*, con
     return ActionResult::failed;
 }
 
-/// `a` false, or true: the next `size` instructions are left out.
+/// Skips the next `size` instructions when `a` is false, or true.
 constexpr ActionResult skip_unless(ProgramContext&, const Instruction&, std::byte*, const std::byte* a,
                                    const std::byte*) noexcept TAPPET_REALTIME {
     return load_value<bool>(a) ? ActionResult::done : ActionResult::skip;
@@ -27,7 +26,7 @@ constexpr ActionResult skip_if(ProgramContext&, const Instruction&, std::byte*, 
     return load_value<bool>(a) ? ActionResult::skip : ActionResult::done;
 }
 
-// ---- equality of enumerations: their bytes
+// ---- equality of enumerations: compares their bytes
 
 constexpr bool same_bytes(const Instruction& in, const std::byte* a, const std::byte* b) noexcept
     TAPPET_REALTIME {
@@ -35,7 +34,7 @@ constexpr bool same_bytes(const Instruction& in, const std::byte* a, const std::
         if (a[i] != b[i]) return false;
     return true;
 }
-/// `to`: whether `a` and `b` are the same, or are not.
+/// `to`: whether `a` and `b` are equal, or are not.
 template <bool wanted, bool (*same)(const Instruction& in, const std::byte* a, const std::byte* b) noexcept
           TAPPET_REALTIME>
 constexpr ActionResult compare(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
@@ -46,13 +45,14 @@ constexpr ActionResult compare(ProgramContext&, const Instruction& in, std::byte
 inline constexpr Primitive bytes_equal = &compare<true, &same_bytes>;
 inline constexpr Primitive bytes_unequal = &compare<false, &same_bytes>;
 
-// ---- texts: characters from the first byte on, their number after them as Text<N> has it
+// ---- texts: characters from the first byte on, followed by their number as in Text<N>
 
 constexpr std::size_t text_length(const std::byte* text, std::size_t length_at) noexcept TAPPET_REALTIME {
     const std::size_t length = load_value<std::uint32_t>(text + length_at);
     return length < length_at ? length : length_at;
 }
-/// `size`: most characters of `to`; count(): where `a` has its length. A text that is too long fails.
+/// `size`: capacity of `to` in characters; count(): offset of the length of `a`. A text that is too long
+/// fails.
 constexpr ActionResult text_copy(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                                  const std::byte*) noexcept TAPPET_REALTIME {
     const std::size_t length = text_length(a, in.count());
@@ -63,7 +63,7 @@ constexpr ActionResult text_copy(ProgramContext&, const Instruction& in, std::by
     store_value(to + length_at, static_cast<std::uint32_t>(length));
     return ActionResult::done;
 }
-/// `size`: where `a` has its length; count(): where `b` has.
+/// `size`: offset of the length of `a`; count(): that of `b`.
 constexpr bool same_text(const Instruction& in, const std::byte* a, const std::byte* b) noexcept
     TAPPET_REALTIME {
     const std::size_t length = text_length(a, in.size);
@@ -77,7 +77,7 @@ inline constexpr Primitive text_unequal = &compare<false, &same_text>;
 
 // ---- parts of values
 
-/// `to` = a.field; the field's bytes as they lie there.
+/// `to` = a.field; copies the field's bytes.
 inline ActionResult field_read(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                                const std::byte*) noexcept TAPPET_REALTIME {
     copy_bytes(to, a + in.field->offset(), in.size);
@@ -109,8 +109,7 @@ constexpr ActionResult element_write(ProgramContext&, const Instruction& in, std
     copy_bytes(to + static_cast<std::size_t>(index) * in.size, a, in.size);
     return ActionResult::done;
 }
-/// Where element (a, b) of a matrix of rows x columns lies, as an index for element_read; `inner`: row by
-/// row.
+/// Computes the index of element (a, b) of a matrix of rows x columns for element_read; `inner`: row-major.
 constexpr ActionResult matrix_index(ProgramContext&, const Instruction& in, std::byte* to, const std::byte* a,
                                     const std::byte* b) noexcept TAPPET_REALTIME {
     const auto row = load_value<ScriptInt>(a);
@@ -120,24 +119,25 @@ constexpr ActionResult matrix_index(ProgramContext&, const Instruction& in, std:
     return ActionResult::done;
 }
 
-/// The number of elements of the sequence `a`, whose length stands at `size` in 8 bytes, at most count().
+/// Returns the number of elements of the sequence `a`: its length is stored at `length_at` in 8 bytes; at
+/// most `most`.
 constexpr std::size_t sequence_length(const std::byte* a, std::size_t length_at, std::size_t most) noexcept
     TAPPET_REALTIME {
     const auto length = load_value<std::uint64_t>(a + length_at);
     return length < most ? static_cast<std::size_t>(length) : most;
 }
-/// Where a sequence of count() elements of `size` bytes has its length: after them (Bounded).
+/// Returns the offset of the length of a sequence of count() elements of `size` bytes: after them (Bounded).
 constexpr std::size_t length_place(const Instruction& in) noexcept TAPPET_REALTIME {
     return (in.count() * in.size + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t) * sizeof(std::uint64_t);
 }
-/// As element_read, of the elements that there are.
+/// As element_read, limited to the elements present.
 constexpr ActionResult sequence_read(ProgramContext& context, const Instruction& in, std::byte* to,
                                      const std::byte* a, const std::byte* b) noexcept TAPPET_REALTIME {
     const std::size_t length = sequence_length(a, length_place(in), in.count());
     if (!in_range(load_value<ScriptInt>(b), length)) return ActionResult::failed;
     return element_read(context, in, to, a, b);
 }
-/// As element_write, of the elements that there are.
+/// As element_write, limited to the elements present.
 constexpr ActionResult sequence_write(ProgramContext& context, const Instruction& in, std::byte* to,
                                       const std::byte* a, const std::byte* b) noexcept TAPPET_REALTIME {
     const std::size_t length = sequence_length(to, length_place(in), in.count());
@@ -152,7 +152,7 @@ constexpr ActionResult sequence_size(ProgramContext&, const Instruction& in, std
 
 // ---- time
 
-/// Since the node was entered, as a Duration.
+/// Time since the node was entered, as a Duration.
 constexpr ActionResult elapsed(ProgramContext& context, const Instruction&, std::byte* to, const std::byte*,
                                const std::byte*) noexcept TAPPET_REALTIME {
     const ProgramPosition& at = context.position;

@@ -4,7 +4,7 @@
 //     template <> inline constexpr tappet::Registered<tappet::Op<"+", &add>, tappet::Op<"inverse", &inverse>>
 //         tappet::operators_of<Pose>{};
 //
-// It stands before the type is used in an interface.
+// Put it before the first use of the type in an interface.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -14,11 +14,11 @@
 
 namespace tappet {
 
-/// One of them: at most two operands, each of any value type.
+/// A registered operator: at most two operands, each of any value type.
 struct RegisteredOperator {
     std::string_view name{}; ///< "+", or a function's name
     TypeId result = nullptr;
-    std::array<TypeId, 2> operands{}; ///< the second is null: it has one
+    std::array<TypeId, 2> operands{}; ///< second one null: one operand
     Primitive run = nullptr;
 };
 
@@ -35,7 +35,7 @@ template <auto Function, class = decltype(Function)>
 struct RegisteredCall;
 template <auto Function, class R, class A>
 struct RegisteredCall<Function, R (*)(A) noexcept TAPPET_REALTIME> {
-    static constexpr TypeId result = &TagOf<R>::tag; // not type_id<R>, which may be what is being made
+    static constexpr TypeId result = &TagOf<R>::tag; // not type_id<R>, which may still be under construction
     static constexpr std::array<TypeId, 2> operands{&TagOf<std::remove_cvref_t<A>>::tag, nullptr};
     static ActionResult run(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,
                             const std::byte*) noexcept TAPPET_REALTIME {
@@ -46,7 +46,7 @@ struct RegisteredCall<Function, R (*)(A) noexcept TAPPET_REALTIME> {
 };
 template <auto Function, class R, class A, class B>
 struct RegisteredCall<Function, R (*)(A, B) noexcept TAPPET_REALTIME> {
-    static constexpr TypeId result = &TagOf<R>::tag; // not type_id<R>, which may be what is being made
+    static constexpr TypeId result = &TagOf<R>::tag; // not type_id<R>, which may still be under construction
     static constexpr std::array<TypeId, 2> operands{&TagOf<std::remove_cvref_t<A>>::tag,
                                                     &TagOf<std::remove_cvref_t<B>>::tag};
     static ActionResult run(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,

@@ -1,6 +1,6 @@
 // A program as plain data (thesis 5.1.1): nodes with one action each, arcs with conditions, and the
-// expressions in both. Scripts, compiled or loaded, give this one form; whatever executes,
-// checks, draws or verifies a program reads nothing else.
+// expressions in both. Scripts, compiled or loaded, produce this form; execution, checks, pictures and
+// verification read only this form.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -18,45 +18,45 @@ namespace tappet {
 struct ProgramContext;
 struct Instruction;
 
-/// What an instruction says of itself.
+/// Result of an instruction.
 enum class ActionResult : std::uint8_t {
     done,
-    again, ///< it could not act yet: the node's action is executed again in the next step
-    skip,  ///< done, and the next `size` instructions are left out: what && and || need not look at
-    failed ///< the program is in error, or goes on where its node's on_error leads (thesis 5.1.1)
+    again, ///< it could not act yet: the next step executes the node's action again
+    skip,  ///< done; the next `size` instructions are skipped, as the right operand of && and || may be
+    failed ///< the program is in error, or continues at its node's on_error (thesis 5.1.1)
 };
 
-/// Where a value lies: bytes from the beginning of the program's data, see DataLayout.
+/// Location of a value: bytes from the beginning of the program's data, see DataLayout.
 using DataOffset = std::uint16_t;
 inline constexpr DataOffset no_data = 0xffff;
 
-/// What an instruction does. `to`, `a` and `b` are the values at the instruction's offsets. It is a plain
-/// function for the loaded form, which calls it through the pointer, and for the compiled one, in which the
-/// instruction is a constant and the call is folded into its place. Bounded, real-time.
+/// The function of an instruction. `to`, `a` and `b` are the values at the instruction's offsets. The loaded
+/// form calls it through the pointer; in the compiled form the instruction is a constant and the call is
+/// inlined. Bounded, real-time.
 using Primitive = ActionResult (*)(ProgramContext&, const Instruction&, std::byte* to, const std::byte* a,
                                    const std::byte* b) noexcept TAPPET_REALTIME;
 
 /// One step of an expression or of an action.
 struct Instruction {
     Primitive run = nullptr;
-    const Facet* facet = nullptr; ///< of the link, for what acts on a component
+    const Facet* facet = nullptr; ///< of the link, when it acts on a component
     DataOffset to = no_data;
     DataOffset a = no_data;
     DataOffset b = no_data;
-    std::uint16_t link = 0xffff; ///< number of the LinkRow it acts through
-    std::uint16_t size = 0;      ///< bytes, or another number that the primitive states
+    std::uint16_t link = 0xffff; ///< number of the LinkRow that it acts through
+    std::uint16_t size = 0;      ///< bytes, or another number that the primitive defines
     std::uint8_t rows = 0; ///< of matrices: `to` is rows x columns, `a` rows x inner, `b` inner x columns
     std::uint8_t inner = 0;
     std::uint8_t columns = 0;
-    const RecordField* field = nullptr; ///< of a record: its place is known when the program runs
+    const RecordField* field = nullptr; ///< of a record: its offset is known when the program runs
 
-    /// A second number, where rows and inner are none.
+    /// A second number, for instructions without rows and inner.
     [[nodiscard]] constexpr std::size_t count() const noexcept TAPPET_REALTIME {
         return static_cast<std::size_t>(rows | inner << 8);
     }
 };
 
-/// A run of instructions whose last one leaves a bool at `result`.
+/// A sequence of instructions; the last one leaves a bool at `result`.
 struct ConditionRow {
     std::uint16_t first = 0;
     std::uint16_t count = 0;
@@ -69,16 +69,16 @@ using NodeIndex = std::uint16_t;
 inline constexpr NodeIndex no_node = 0xffff;  ///< the program is in error
 inline constexpr NodeIndex end_node = 0xfffe; ///< the program has ended
 
-/// One way out of a node; a node's arcs are asked in their order after its action was done.
+/// One exit of a node; after the node's action, its arcs are evaluated in order.
 struct ArcRow {
     ConditionIndex condition = no_condition;
     NodeIndex to = end_node;
-    /// A Duration: not open before so much time passed since the node was entered. With a condition both must
-    /// hold.
+    /// A Duration: the arc stays closed until so much time has passed since the node was entered. With a
+    /// condition, both must hold.
     DataOffset after = no_data;
 };
 
-/// One statement. Without an open arc the program waits here; its action is not done twice unless it says
+/// One statement. Without an open arc the program waits here; the action is not repeated unless it returned
 /// `again` (thesis 5.1.3, 5.1.5).
 struct NodeRow {
     std::uint16_t first = 0; ///< instruction
@@ -88,7 +88,7 @@ struct NodeRow {
     NodeIndex on_error = no_node;
     std::uint16_t line = 0; ///< of the script, from 1
     std::uint16_t column = 0;
-    bool yields = false; ///< its arcs are asked from the next step on
+    bool yields = false; ///< its arcs are evaluated from the next step on
 };
 
 using ProgramIndex = std::uint16_t;
@@ -97,7 +97,7 @@ inline constexpr ProgramIndex no_program = 0xffff;
 struct ProgramRow {
     std::string_view name{}; ///< "Positioning.run"
     NodeIndex first = end_node;
-    NodeIndex last = end_node; ///< its nodes are first ... last - 1, in the order of their text
+    NodeIndex last = end_node; ///< its nodes are first ... last - 1, in text order
     bool may_wait = false;     ///< it may need more than one step; otherwise it is atomic
 };
 
@@ -106,10 +106,10 @@ enum class VariableKind : std::uint8_t {
     variable,
     constant,
     argument,
-    result ///< of a program, to who commanded it
+    result ///< of a program, returned to the sender of the command
 };
 
-/// A named value of a program or state machine: a property of it to its peers (thesis 5.1.6).
+/// A named value of a program or state machine: peers see it as a property (thesis 5.1.6).
 struct VariableRow {
     std::string_view name{};
     TypeId type = nullptr;
@@ -117,7 +117,7 @@ struct VariableRow {
     VariableKind kind = VariableKind::variable;
 };
 
-/// What of a component a program acts on: resolved to addresses once, when the program is bound.
+/// The part of a component that a program acts on: resolved to addresses once, when the program is bound.
 struct LinkRow {
     static constexpr std::uint16_t component_itself = 0xffff;
     std::uint16_t peer = 0;                 ///< number in the reach
@@ -126,10 +126,10 @@ struct LinkRow {
 };
 
 /// The data of one program instance, one piece of memory:
-///     [0, constants)            values that nobody changes
+///     [0, constants)            constants, never written
 ///     [constants, variables)    parameters and variables; kept from step to step
-///     [variables, arguments)    of the event in hand, of functions, what waits need; kept while a program
-///     runs [arguments, size)         scratch: written before it is read within one node
+///     [variables, arguments)    of the current event, of functions and waits; kept while a program runs
+///     [arguments, size)         scratch: written before it is read within one node
 struct DataLayout {
     DataOffset constants = 0;
     DataOffset variables = 0;
@@ -137,10 +137,10 @@ struct DataLayout {
     DataOffset size = 0;
 };
 
-/// Bytes at which each value is aligned in the data; the data themselves too.
+/// Alignment of each value and of the block.
 inline constexpr std::size_t data_alignment = 16;
 
-/// All programs of one state machine type, or one program alone; a view, the rows live elsewhere.
+/// All programs of one state machine type, or one program alone; a view, its rows must outlive it.
 struct ProgramTables {
     std::span<const Instruction> instructions{};
     std::span<const ConditionRow> conditions{};
@@ -149,8 +149,7 @@ struct ProgramTables {
     std::span<const ProgramRow> programs{};
     std::span<const VariableRow> variables{};
     std::span<const LinkRow> links{};
-    std::span<const std::byte>
-        image{}; ///< the data at the beginning: constants and initial values, `variables` bytes
+    std::span<const std::byte> image{}; ///< initial data: constants and initial values, `variables` bytes
     DataLayout layout{};
 };
 

@@ -1,4 +1,4 @@
-// How primitives read and write values in a program's data: as bytes at any place, also while a script is
+// How primitives read and write values in a program's data: as bytes at any address, also while a script is
 // compiled in a constant expression.
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace tappet {
 
-/// The integer of scripts.
+/// The integer type of scripts.
 using ScriptInt = std::int64_t;
 
-/// Real-time. A truth is read as "not zero": its bytes may come from anywhere.
+/// Real-time. A bool is read as "not zero": its bytes may come from any source.
 template <class T>
 constexpr T load_value(const std::byte* from) noexcept TAPPET_REALTIME {
     if constexpr (std::is_same_v<T, bool>) {
@@ -49,7 +49,7 @@ constexpr void store_value(std::byte* into, const T& value) noexcept TAPPET_REAL
     }
 }
 
-/// Bytes that may overlap.
+/// Copies bytes; the ranges may overlap.
 constexpr void copy_bytes(std::byte* into, const std::byte* from, std::size_t size) noexcept TAPPET_REALTIME {
     if (std::is_constant_evaluated()) {
         for (std::size_t i = 0; i < size; ++i) into[i] = from[i];

@@ -1,5 +1,5 @@
-// What a program does with the child machines of its state machine (thesis 5.2.1, 5.2.5): they are peers of
-// their parent, commanded, asked, and read and written down to the variable.
+// How a program uses the child machines of its state machine (thesis 5.2.1, 5.2.5): they are peers of their
+// parent, which commands them, queries them, and reads and writes their variables.
 #pragma once
 
 #include "kernel/program/value_access.hpp"
@@ -14,10 +14,10 @@ enum class MachineCommand : std::uint8_t {
     pause,
     stop,  ///< to the final state
     reset, ///< from the final to the initial state
-    step,  ///< of a paused one: one statement or one transition
+    step,  ///< of a paused machine: one statement or one transition
     reactive,
     request_state,
-    request_state_once ///< with its run program, once
+    request_state_once ///< and runs its run program once
 };
 enum class MachineQuestion : std::uint8_t {
     in_state,
@@ -30,13 +30,14 @@ enum class MachineQuestion : std::uint8_t {
 
 namespace primitive {
 
-/// ProgramContext::machines is the first of the children's executions, which stand side by side in the order
-/// of their instances. Instruction: rows is the child's number, inner the command or question, size a state.
+/// ProgramContext::machines points to the first of the children's executions; they are contiguous, in the
+/// order of their instances. Instruction: rows is the child's number, inner the command or question, size a
+/// state.
 inline StateMachineExecution& child_of(ProgramContext& context, const Instruction& in) noexcept
     TAPPET_REALTIME {
     return static_cast<StateMachineExecution*>(context.machines)[in.rows];
 }
-/// A command that is not valid now changes nothing and is no failure; one that is lost fails the action.
+/// A command that is not valid now changes nothing and does not fail; a lost command fails the action.
 inline ActionResult command_child(ProgramContext& context, const Instruction& in, std::byte*,
                                   const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     if (context.machines == nullptr) return ActionResult::failed;
@@ -73,7 +74,7 @@ inline ActionResult ask_child(ProgramContext& context, const Instruction& in, st
     store_value(to, answer);
     return ActionResult::done;
 }
-/// A variable of a child; it lies at inner | columns << 8 of its data and has `size` bytes.
+/// Reads a variable of a child, at inner | columns << 8 in its data, `size` bytes.
 inline ActionResult read_child(ProgramContext& context, const Instruction& in, std::byte* to,
                                const std::byte*, const std::byte*) noexcept TAPPET_REALTIME {
     if (context.machines == nullptr) return ActionResult::failed;

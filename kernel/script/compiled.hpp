@@ -1,8 +1,10 @@
-// A script that is compiled with the firmware: text and reach are constants, and so is what comes of them.
+// A script compiled with the firmware: text and reach are constants, and so is the compiled unit.
+// tappet_script() generates the source:
 //
-//     inline constexpr tappet::ScriptSource weft_source{"weft.osd", "StateMachine Weft { ... }"};  // by
-//     tappet_script() inline constexpr auto weft_reach = tappet::script_reach<WeftInsertion>("weft"); inline
-//     constexpr const tappet::ScriptUnit& weft_script = tappet::compiled_script<weft_source, weft_reach>;
+//     inline constexpr tappet::ScriptSource weft_source{"weft.osd", "StateMachine Weft { ... }"};
+//     inline constexpr auto weft_reach = tappet::script_reach<WeftInsertion>("weft");
+//     inline constexpr const tappet::ScriptUnit& weft_script =
+//         tappet::compiled_script<weft_source, weft_reach>;
 #pragma once
 
 #include "kernel/base/source_text.hpp"
@@ -12,7 +14,7 @@ namespace tappet {
 
 using ScriptSource = SourceText;
 
-/// A component that a script reaches, by type and name.
+/// A component in reach of a script, by type and name.
 template <class T>
 constexpr Reachable reachable(std::string_view name, bool same_activity = true) noexcept {
     return {name, &component_type<T>, same_activity};
@@ -44,7 +46,7 @@ struct Measured {
     ScriptSizes sizes{};
 };
 
-/// Twice the usual need: in a constant expression empty rows cost time too.
+/// Twice the usual need: in a constant expression empty rows cost compile time too.
 constexpr ScriptSizes measuring_room(std::uint32_t nodes, std::size_t components) noexcept {
     ScriptSizes most = script_sizes_for(nodes, 1024 + 4 * nodes, static_cast<std::uint32_t>(components));
     most.instructions = 4 * nodes;
@@ -54,20 +56,20 @@ constexpr ScriptSizes measuring_room(std::uint32_t nodes, std::size_t components
     most.names = 10 * nodes + 512;
     return most;
 }
-/// A script in a room that is larger than it needs.
+/// A script in a room larger than needed.
 template <ScriptSizes room>
 struct DraftScript {
     ScriptBuffer<room> rows{};
     ScriptOutcome outcome{};
 
-    // A machine's own constants may be called `source` or `peers`, which a parameter would shadow.
+    // A machine's own constants may be called `source` or `peers`; parameters would shadow them.
     constexpr DraftScript(const ScriptSource& script_read, const Reach& script_peers)
         : outcome{compile_into(script_read.text, script_read.name, script_peers, rows.room())} {}
 };
 template <const auto& Source, const auto& Peers, std::uint32_t nodes>
 inline constexpr DraftScript<measuring_room(nodes, Peers.components.size())> draft{Source, Peers.view()};
 
-/// A room grows until the script finds place, or is too large for any.
+/// Enlarges the room until the script fits, or is too large for any.
 template <const auto& Source, const auto& Peers, std::uint32_t nodes>
 consteval std::uint32_t nodes_for() {
     if constexpr (draft<Source, Peers, nodes>.outcome.out_of_room && nodes < max_script_nodes)
@@ -86,8 +88,7 @@ inline constexpr Measured measured = [] {
     return Measured{outcome.fault, outcome.out_of_room, outcome.good() ? outcome.sizes : ScriptSizes{}};
 }();
 
-/// A script in exactly its room: the rows of the draft, and what points to them led to their new place. The
-/// text is read once.
+/// A script in exactly its room: the rows of the draft, with adjusted pointers. The text is read once.
 template <ScriptSizes sizes>
 struct StoredScript {
     ScriptBuffer<sizes> rows{};
@@ -171,12 +172,12 @@ struct CheckedScript {
 
 } // namespace script_detail
 
-/// The unit of a constant script; a fault in it is an error of the C++ build that says the script's own line.
+/// The unit of a constant script; a fault in it is an error of the C++ build that states the script's line.
 /// `Source` is a ScriptSource and `Peers` a ScriptReach, constexpr variables at namespace scope.
 template <const auto& Source, const auto& Peers>
 inline constexpr const ScriptUnit& compiled_script = script_detail::CheckedScript<Source, Peers>::unit;
 
-/// What is wrong with a constant script, for who wants to know and not to stop.
+/// The fault of a constant script as a value, without stopping the build.
 template <const auto& Source, const auto& Peers>
 inline constexpr const Sentence& script_fault_of = script_detail::measured<Source, Peers>.fault;
 

@@ -1,4 +1,4 @@
-// A whole script: types, programs, and the instances of them.
+// A whole script: types, programs, and their instances.
 #pragma once
 
 #include "kernel/script/compiler_transitions.hpp"
@@ -28,7 +28,7 @@ public:
         finish();
         note_sizes();
     }
-    /// Statements, or one expression, whose value is the result.
+    /// Compiles statements, or one expression, whose value is the result.
     constexpr void compile_line() {
         is_line_ = true;
         advance();
@@ -96,8 +96,8 @@ private:
         instance.image = types_.room[instance.type].tables.image;
         add(instances_, instance, "instances");
     }
-    /// "program name { ... }": one instance of its own type; "program [type] name(type parameter, ...)
-    /// { ... }" waits for its task's command and, with a type, answers it.
+    /// "program name { ... }": one instance of its own type. "program [type] name(type parameter, ...)
+    /// { ... }" waits for its task's command and, with a type, returns a result.
     constexpr void parse_named_program() {
         advance();
         Token name = need_word("the name of the program, or the type of its result");
@@ -121,7 +121,7 @@ private:
         }
         need(Sign::close_round, "\")\"");
     }
-    /// Statements alone are one program with the name of the file.
+    /// Statements alone are one program, named after the file.
     constexpr void parse_bare_program() {
         if (is(Sign::broken) || types_.used != 0)
             return fail_expected("StateMachine, RootStateMachine, program or function");
@@ -175,7 +175,7 @@ private:
         arguments_used_ = first;
         static_cast<void>(take(Sign::semicolon));
     }
-    /// Without RootStateMachine the last type of state machine stands for one instance of it.
+    /// Without RootStateMachine, the last type of state machine gets one instance.
     constexpr void add_implied_root() {
         std::size_t last = types_.used;
         while (last != 0 && types_.room[last - 1].is_program()) --last;
@@ -233,7 +233,7 @@ private:
         }
         add(instances_, instance, "instances");
     }
-    /// What all instances take when they run, and whether the slot has it.
+    /// Sums up what all instances need at run time, and checks that the slot has it.
     constexpr void finish() {
         if (!ok()) return;
         ScriptSizes& s = outcome_.sizes;
@@ -258,7 +258,7 @@ private:
                                  " places and its slot has room for ", digits(reach_.timers),
                                  "; wait at fewer or give its row more timers(...)"});
         if (room_.reach.size() < reach_.components.size()) return fail_room("components");
-        // They may stand there already.
+        // They may be stored there already.
         if (room_.reach.data() != reach_.components.data())
             std::copy_n(reach_.components.data(), reach_.components.size(), room_.reach.data());
         ScriptUnit& unit = outcome_.unit;

@@ -1,4 +1,4 @@
-// Programs beside: what the programs of a script do with those that stand before them.
+// Programs beside: how the programs of a script use those defined before them.
 #pragma once
 
 #include "kernel/program/beside.hpp"

@@ -1,4 +1,4 @@
-// What an expression calls and reads: functions of the script, facets of components, child machines.
+// Calls and reads in expressions: functions of the script, facets of components, child machines.
 #pragma once
 
 #include "kernel/script/compiler_expressions.hpp"
@@ -34,7 +34,7 @@ constexpr Expressions::Expansion Expressions::begin_expansion(const Token& name,
     expansion.hidden_begin = hidden_begin_;
     expansion.hidden_end = hidden_end_;
     Place parameters{function.lexer, function.token};
-    while (ok()) { // the caller's text and the function's are read in turns
+    while (ok()) { // alternates between the caller's text and the function's
         const Place call = here();
         go_to(parameters);
         if (is(Sign::close_round)) {
@@ -70,7 +70,7 @@ constexpr Expressions::Expansion Expressions::begin_expansion(const Token& name,
         symbol.kind = SymbolKind::value;
         symbol.fixed = true;
         symbol.operand = value;
-        symbol.name = parameter.text; // in sight when all arguments are read: until then without its hash
+        symbol.name = parameter.text; // visible after all arguments are read: until then without its hash
         if (symbols_used_ == symbols_.size())
             fail_limit("names in sight at one place");
         else

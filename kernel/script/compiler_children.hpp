@@ -1,4 +1,4 @@
-// Child machines in a script: what their parent's programs do with them.
+// Child machines in a script: how their parent's programs use them.
 #pragma once
 
 #include "kernel/script/child_machines.hpp"

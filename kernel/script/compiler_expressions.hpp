@@ -1,5 +1,4 @@
-// Expressions: values that are known are reckoned while compiling, the others by instructions into the
-// scratch.
+// Expressions: known values are computed at compile time, others by instructions into the scratch.
 #pragma once
 
 #include "kernel/script/compiler_values.hpp"
@@ -12,7 +11,7 @@ protected:
 
     // ---- the grammar's expressions, one function a level
 
-    /// `expected` gives names of enumerations their meaning.
+    /// Parses an expression; `expected` gives names of enumerations their meaning.
     constexpr Operand parse_expression(TypeId expected = nullptr) {
         if (!enter()) return {};
         Operand value = parse_binary(0, expected);
@@ -27,7 +26,7 @@ protected:
             fail_type(at, value.type, "a condition of type bool", "");
         return value;
     }
-    /// A value that is known while compiling.
+    /// Parses a value that is known at compile time.
     constexpr Operand parse_known(TypeId expected, std::string_view what) {
         const Token at = token_;
         const std::uint16_t before = instruction_count();
@@ -81,7 +80,7 @@ private:
 
     struct Level {
         Operator op = Operator::add;
-        int binds = -1; ///< the stronger the higher; -1: no operator of two operands
+        int binds = -1; ///< higher binds stronger; -1: not a binary operator
     };
     static constexpr Level level_of(Sign sign) noexcept {
         switch (sign) {
@@ -119,7 +118,7 @@ private:
             leave();
         }
     }
-    /// The right side is reckoned only when the left one does not decide.
+    /// The right side is evaluated only when the left one does not decide.
     constexpr Operand parse_logical(const Token& at, Level level, const Operand& left) {
         const bool is_and = level.op == Operator::both;
         if (script_type(left.type) != script_bool) {
@@ -157,7 +156,7 @@ private:
         emit(in);
         return made(match.result, in.to);
     }
-    /// Numbers and times that are both known; what would fail is left to fail when it runs.
+    /// Folds two known numbers or times; an operation that would fail is left to fail at run time.
     static constexpr bool fold(Operator op, const Operand& a, const Operand& b, Operand& into) noexcept {
         if (a.type == b.type && (a.type == script_int || a.type == script_duration)) {
             std::int64_t result = 0;
@@ -173,7 +172,7 @@ private:
             return x.type == script_int || x.type == script_double;
         };
         if (!is_number(a) || !is_number(b) || (a.type == script_int && b.type == script_int)) return false;
-        // No result of these two may be too large: a constant expression has no infinity.
+        // The results of these two must not become too large: a constant expression has no infinity.
         const auto is_modest = [](double x) { return x < 1e100 && x > -1e100; };
         if (!is_modest(a.real) || !is_modest(b.real)) return false;
         double result = 0;
@@ -204,7 +203,7 @@ private:
         if (inner.literal && negates &&
             (inner.type == script_int || inner.type == script_double || inner.type == script_duration) &&
             inner.integer != std::numeric_limits<std::int64_t>::min())
-            return inner.type == script_int ? integer_literal(-inner.integer) // there is no -0 of integers
+            return inner.type == script_int ? integer_literal(-inner.integer) // integers have no -0
                                             : literal_of(inner.type, -inner.integer, -inner.real);
         if (inner.literal && !negates && inner.type == script_bool)
             return literal_of(script_bool, inner.integer == 0, 0);
@@ -226,7 +225,7 @@ private:
     }
 
 protected:
-    /// The field or element after a dot or bracket of a value; parts of a place are places.
+    /// Parses the field or element after a dot or bracket of a value; a part of a place is a place.
     constexpr Operand take_part(const Operand& integer);
 
 private:
@@ -240,16 +239,16 @@ private:
 protected:
     struct Index {
         bool is_known = false;
-        std::size_t number = 0; ///< among the elements as they lie
+        std::size_t number = 0; ///< among the elements in memory order
         DataOffset at = no_data;
     };
-    /// "[i]", of a matrix of more rows and columns "[i][j]" or "[i, j]"; counted from 0.
+    /// "[i]"; for a matrix of several rows and columns "[i][j]" or "[i, j]"; counted from 0.
     constexpr Index parse_index(TypeId type);
 
 private:
     constexpr Operand parse_subscript(std::size_t size);
 
-    // ---- what an expression begins with
+    // ---- first tokens of an expression
 
     constexpr Operand parse_primary(TypeId expected) {
         const Token at = token_;
@@ -334,11 +333,11 @@ protected:
     }
 
 private:
-    /// A function of the library or of a type, a conversion, or a value put together of its parts.
+    /// Parses a function of the library or of a type, a conversion, or a value made of its parts.
     constexpr Operand parse_function(const Token& name);
     constexpr void fail_function(const Token& name, TypeId first, TypeId second);
     constexpr Operand parse_constructor(const Token& name, TypeId type);
-    /// A function whose body is one return, expanded here.
+    /// Expands a function whose body is one return.
     constexpr Operand call_value(const Token& name, Function& function);
 
 protected:
@@ -349,14 +348,14 @@ protected:
         std::size_t hidden_begin = 0;
         std::size_t hidden_end = 0;
     };
-    /// Reads the arguments at the call and stands after the opening brace of the body then. An argument that
-    /// is no constant is reckoned once, into the scratch or where `keeps` says.
+    /// Reads the arguments at the call, then continues after the opening brace of the body. A non-constant
+    /// argument is computed once, into the scratch or where `keeps` says.
     constexpr Expansion begin_expansion(const Token& name, Function& function, bool keeps = false);
     constexpr void end_expansion(Function& function, const Expansion& expansion);
 
-    // ---- what components have
+    // ---- facets of components
 
-    /// "(a, b)", each converted to the type of the interface and packed at `to`.
+    /// Parses "(a, b)": converts each to the type of the interface and packs it at `to`.
     constexpr void parse_arguments(std::span<const TypeId> types, DataOffset to);
     constexpr void parse_argument(TypeId type, DataOffset to, std::size_t number, std::size_t count);
     constexpr void end_arguments(std::size_t count);
@@ -366,7 +365,7 @@ protected:
                                                   std::uint16_t facet) const noexcept {
         return facets(component)[facet];
     }
-    /// A method in this thread: its own, those of the activity, or one that may be called by any.
+    /// Checks a method call in this thread: its own methods, those of the activity, or any_thread ones.
     constexpr void check_call(const Token& at, std::uint16_t component, const Facet& facet);
 
 private:
@@ -376,17 +375,17 @@ private:
     constexpr Operand read_buffer(const Token& name, std::uint16_t component, std::uint16_t number);
     constexpr Operand push_value(const Token& name, std::uint16_t component, std::uint16_t number);
     constexpr Operand read_by(const FacetAction& action, std::uint16_t component, std::uint16_t facet);
-    /// What a parent asks of its child machine; in compiler_children.hpp, as what it does with one.
+    /// Questions to a child machine; in compiler_children.hpp, like its commands.
     constexpr Operand parse_machine_value(std::uint16_t child);
-    /// What is asked of a program beside; in compiler_beside.hpp.
+    /// Questions to a program beside; in compiler_beside.hpp.
     constexpr Operand parse_program_value(InstanceIndex program);
 
 protected:
     [[nodiscard]] constexpr Instruction program_instruction(Primitive run, InstanceIndex program);
-    /// ".word()"; answers which one.
+    /// Parses ".word()"; returns which word.
     template <class Words> constexpr std::uint8_t parse_program_word(const Words& words,
                                                                      std::string_view wanted);
-    /// The name of a state of the child, in quotes or without.
+    /// Parses the name of a state of the child, in quotes or without.
     constexpr std::uint16_t parse_child_state(const Child& child);
     constexpr const VariableRow* child_variable(const Child& child, const Token& word);
     static constexpr void set_child_place(Instruction& in, const VariableRow& variable) noexcept {
@@ -396,7 +395,7 @@ protected:
     }
 
     std::uint32_t nesting_ = 0;
-    std::size_t program_symbols_ = 0; // how many names were in sight before the program or member in hand
+    std::size_t program_symbols_ = 0; // names visible before the current program or member
 };
 
 } // namespace tappet::script_detail

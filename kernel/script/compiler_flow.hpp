@@ -1,5 +1,4 @@
-// Nodes and arcs while they are made: where the arcs that still hang go, and whether a loop may run without
-// waiting.
+// Nodes and arcs under construction: targets of open arcs, and whether a loop may run without waiting.
 #pragma once
 
 #include "kernel/script/compiler_calls.hpp"
@@ -7,13 +6,13 @@
 
 namespace tappet::script_detail {
 
-/// Arcs that wait for their target, each naming the one before it in its `to`; none: empty.
+/// Arcs without a target yet, each naming the one before it in its `to`; none: empty.
 using Chain = std::uint16_t;
 inline constexpr Chain no_chain = 0xffff;
-/// In place of a target: the catch of the innermost try, which is not there yet.
+/// Stands for the catch of the innermost try, which does not exist yet.
 inline constexpr NodeIndex to_catch = 0xfffd;
 inline constexpr std::size_t max_script_nodes = 16384; ///< of one type
-/// A program that never waits executes at most so many statements, loops counted.
+/// Most statements of a program that never waits, loops counted.
 inline constexpr std::uint64_t max_atomic_statements = 1000;
 
 class NodeSet {
@@ -34,12 +33,12 @@ class Flow : protected Expressions {
 protected:
     using Expressions::Expressions;
 
-    /// Before a node's instructions.
+    /// Call before a node's instructions.
     constexpr void begin_action() noexcept {
         region_used_[static_cast<std::size_t>(Region::scratch)] = 0;
         first_instruction_ = instruction_count();
     }
-    /// After them: the node; all arcs that hang lead to it.
+    /// Call after them: creates the node; all open arcs lead to it.
     constexpr NodeIndex end_action(const Token& at) {
         if (nodes_.count() == max_script_nodes) fail_limit("nodes");
         const NodeIndex node =
@@ -57,7 +56,7 @@ protected:
         ++cost_;
         return node;
     }
-    /// A way out of the node made last; it hangs on what is returned.
+    /// Adds an exit to the last node; the arc stays open in the returned chain.
     constexpr Chain add_arc(NodeIndex node, ConditionIndex condition = no_condition,
                             DataOffset after = no_data) {
         if (!ok()) return no_chain;
@@ -84,12 +83,12 @@ protected:
         arcs_[last].to = chain;
         chain = other;
     }
-    /// A node without anything but a way on.
+    /// Adds a node with only an exit.
     constexpr Chain pass(const Token& at) {
         begin_action();
         return add_arc(end_action(at));
     }
-    /// The condition whose instructions begin at `first`.
+    /// Creates the condition whose instructions begin at `first`.
     constexpr ConditionIndex make_condition(const Token& at, std::uint16_t first, const Operand& value) {
         if (!ok() || (value.literal && value.integer != 0)) return no_condition;
         const Operand ready = as(at, value, script_bool, " as a condition");
@@ -98,8 +97,8 @@ protected:
                    "conditions");
     }
 
-    /// Whether one can come from `head` back to it without waiting. Nodes are in the order of the text, so
-    /// the only arcs that lead back are those of loops, and inner loops were looked at before.
+    /// Returns whether `head` can be reached from itself without waiting. Nodes are in text order, so only
+    /// arcs of loops lead back, and inner loops were checked before.
     constexpr bool is_free_loop(NodeIndex head) {
         for (std::size_t n = head; n < nodes_.count(); ++n) reached_.put(n, n == head);
         for (std::size_t n = head; ok() && n < nodes_.count(); ++n) {
@@ -113,7 +112,7 @@ protected:
         }
         return false;
     }
-    /// After a loop. `rounds`: how often it runs at most; 0: nobody knows.
+    /// Call after a loop. `rounds`: upper bound of its iterations; 0: unknown.
     constexpr void check_loop(const Token& at, NodeIndex head, std::uint64_t cost_before,
                               std::uint64_t rounds) {
         if (!ok() || !is_free_loop(head)) return;
@@ -147,7 +146,7 @@ protected:
         program_symbols_ = symbols_used_;
         return number;
     }
-    /// The number, or none of a program without statements.
+    /// Returns its number, or none for a program without statements.
     constexpr ProgramIndex end_program(ProgramIndex number, Chain returns) {
         if (!ok()) return no_program;
         ProgramRow& row = programs_[number];
@@ -163,10 +162,10 @@ protected:
         return number;
     }
 
-    Chain pending_ = no_chain; // of the statement before
+    Chain pending_ = no_chain; // of the preceding statement
     bool in_try_ = false;
     bool may_wait_ = false;
-    std::uint64_t cost_ = 0; // statements that the program may execute without waiting, at most
+    std::uint64_t cost_ = 0; // most statements that the program may execute without waiting
     std::uint16_t first_instruction_ = 0;
     std::uint32_t timers_ = 0; // nodes and transitions of the type that wait for time
     NodeSet waits_{};

@@ -1,4 +1,4 @@
-// Statements that take a way of their own: branches, loops, waits, and what is done when an action failed.
+// Statements with their own flow: branches, loops, waits, and handling of failed actions.
 #pragma once
 
 #include "kernel/script/compiler_statements.hpp"
@@ -166,7 +166,7 @@ constexpr void Statements::parse_try() {
     const Chain after = pending_;
     pending_ = no_chain;
     if (ok() && first == last) return fail(at, {"there is nothing in this try that could fail"});
-    pending_ = pass(at); // where failures lead, whatever the catch holds
+    pending_ = pass(at); // target of failures, whatever the catch contains
     for (NodeIndex n = first; ok() && n < last; ++n)
         if (nodes_[n].on_error == to_catch) nodes_[n].on_error = last;
     parse_statement();
@@ -180,7 +180,7 @@ constexpr void Statements::parse_wait(const Token& at) {
     may_wait_ = true;
     if (!ok()) return;
     if (script_type(value.type) == script_bool) {
-        // Asked in each step anew, so its instructions are those of the arc and not of the node.
+        // Evaluated again in each step, so its instructions belong to the arc and not to the node.
         const std::uint16_t first = first_instruction_;
         const ConditionIndex condition = make_condition(where, first, value);
         first_instruction_ = instruction_count();
@@ -214,7 +214,7 @@ constexpr void Statements::parse_timeout(NodeIndex node) {
     if (value.type != script_duration) return fail_type(where, value.type, "a duration such as 5s", "");
     const DataOffset time = constant(where, value, script_duration, "").at;
     const Chain arc = add_arc(node, no_condition, time);
-    if (ok()) arcs_[arc].to = no_node; // which is on_error's
+    if (ok()) arcs_[arc].to = no_node; // the target of on_error
     ++timers_;
 }
 

@@ -1,4 +1,4 @@
-// State machines: states with their programs, transitions, what is checked when a machine is complete.
+// State machines: states with their programs, transitions, and the checks of a complete machine.
 #pragma once
 
 #include "kernel/script/compiler_beside.hpp"
@@ -55,7 +55,7 @@ protected:
             if (types_.room[i].name == name && !types_.room[i].is_program()) return static_cast<TypeIndex>(i);
         return none;
     }
-    /// Of a machine that stands before.
+    /// Parses the type of a machine that is defined before.
     constexpr TypeIndex parse_machine_type(std::string_view wanted, std::string_view before) {
         const Token name = need_name(wanted);
         const TypeIndex type = ok() ? find_machine_type(name.text) : none;
@@ -67,7 +67,7 @@ protected:
         return type;
     }
 
-    /// "name" or "name = value" of a variable of a whole type.
+    /// Parses "name" or "name = value" of a variable of a whole type.
     constexpr void parse_variable_of(TypeId type, VariableKind kind) {
         const Token name = need_name("the name");
         if (!ok()) return;
@@ -99,7 +99,7 @@ protected:
         declare(name, symbol);
     }
 
-    /// "(1, 2)" or "(first = 1, second = 2)" for the parameters of a type; answers how many.
+    /// Parses "(1, 2)" or "(first = 1, second = 2)" for the parameters of a type; returns how many.
     constexpr std::uint16_t parse_machine_arguments(const Token& at, TypeIndex type) {
         const auto variables = types_.room[type].tables.variables;
         std::array<bool, 64> given{};
@@ -171,7 +171,7 @@ protected:
 private:
     constexpr void parse_member() {
         const Token at = token_;
-        program_symbols_ = symbols_used_; // what a function sees in a guard or a first value
+        program_symbols_ = symbols_used_; // names visible to functions in a guard or an initial value
         switch (at.sign) {
         case Sign::semicolon: advance(); return;
         case Sign::k_param: advance(); return parse_variable(VariableKind::parameter);
@@ -254,16 +254,16 @@ private:
         std::uint16_t& head = state_heads_[name.hash % state_heads_.size()];
         state_next_[number] = head;
         head = static_cast<std::uint16_t>(number + 1);
-        // Of one that names the state around it nobody knows yet how deep it lies.
+        // When a state names its enclosing state, its depth is not known yet.
         state_outer_[number] = row.parent == parent ? outer_scope : alone;
         state_scope_ = run_scope(number);
         if (need(Sign::open_brace, "\"{\"")) parse_state_body(number);
         state_scope_ = outer_scope;
         leave();
     }
-    /// Of the programs of a machine those may be at work at the same time: the run programs of a state and of
-    /// the states around it, those of different regions, and one that is in hand, whose scope is 0.
-    /// States beside each other in one region are never active together and share theirs: that of the first.
+    /// Programs of a machine that may run at the same time: the run programs of a state and of its enclosing
+    /// states, those of different regions, and the current program, whose scope is 0. Sibling states of one
+    /// region are never active together and share a scope: that of the first.
     [[nodiscard]] constexpr std::uint16_t run_scope(std::uint16_t number) const noexcept {
         std::uint16_t first = number;
         if (state_outer_[number] != alone)
@@ -364,10 +364,10 @@ private:
     // ---- transitions
 
     constexpr void parse_transitions(std::uint16_t state);
-    /// After "transition", or an item of "transitions".
+    /// Parses after "transition", or an item of "transitions".
     constexpr void parse_transition(const Token& at, std::uint16_t state, bool may_hear);
     constexpr ProgramRef parse_branch_program(std::string_view state, std::string_view label);
-    /// "select State", "select history(State)", "select deep history(State)", with "because" and a reason.
+    /// Parses "select State", "select history(State)", "select deep history(State)", "because" and a reason.
     constexpr bool parse_select(TransitionRow& row, std::uint16_t number, bool otherwise);
     constexpr void parse_event(TransitionRow& row);
     [[nodiscard]] constexpr bool is_event(std::string_view text, std::uint16_t component,
@@ -377,10 +377,10 @@ private:
         return text.size() == peer.size() + 1 + name.size() && text.starts_with(peer) &&
                text.ends_with(name) && text[peer.size()] == '.';
     }
-    /// Arguments into variables, before the guard is asked.
+    /// Stores arguments in variables, before the guard is evaluated.
     constexpr void parse_captures(TransitionRow& row, const Token& event, std::span<const TypeId> types);
 
-    // ---- when all states are there
+    // ---- when all states are known
 
     constexpr const StateRow* find_state_row(std::string_view name, std::uint32_t hash) const noexcept {
         for (std::uint16_t i = state_heads_[hash % state_heads_.size()]; i != 0; i = state_next_[i - 1])
@@ -390,7 +390,7 @@ private:
     constexpr const StateRow* find_state_row(std::string_view name) const noexcept {
         return find_state_row(name, hash_of(name));
     }
-    /// Names of states become those that outlive the text.
+    /// Replaces names of states by copies that outlive the text.
     constexpr void resolve_names() {
         if (ok() && states_.count() == 0)
             return fail(machine_name_, {"state machine \"", quoted(machine_name_.text),
@@ -457,13 +457,13 @@ public:
 private:
     Token machine_name_{};
     static constexpr std::uint16_t alone = 0xffff;
-    std::uint16_t state_scope_ = 0;                       // of the run program of the state in hand
-    std::array<std::uint16_t, max_states> state_outer_{}; // the scope of the state around
+    std::uint16_t state_scope_ = 0;                       // of the run program of the current state
+    std::array<std::uint16_t, max_states> state_outer_{}; // scope of the enclosing state
     std::array<Unresolved, 192> unresolved_{};
     std::size_t unresolved_used_ = 0;
     std::array<std::uint16_t, 64> state_heads_{}; // by the hash of the name: 1 + the last such state's number
     std::array<std::uint16_t, max_states> state_next_{};
-    NodeSet required_{}; // parameters without a default, by their number over all types
+    NodeSet required_{}; // parameters without a default, numbered across all types
 };
 
 } // namespace tappet::script_detail

@@ -1,19 +1,20 @@
-// What a name in a script means: its own variables, constants, functions and machines, then the components
-// that it reaches and what those have.
+// Name look-up in a script: its own variables, constants, functions and machines, then the components in
+// reach and their facets.
 #pragma once
 
 #include "kernel/script/compiler_output.hpp"
 
 namespace tappet::script_detail {
 
-/// The value of a variable, or one that is known while compiling.
+/// The value of a variable, or a value known at compile time.
 struct Operand {
     TypeId type = nullptr;
     DataOffset at = no_data;
     bool literal =
-        false; ///< it stands below, not in the data: truths, numbers, times, texts, names of values
-    bool constant = false; ///< its bytes stand among the constants
-    bool simple = false; ///< the last instruction made it, whole and in the scratch: it may be made elsewhere
+        false; ///< it is stored below, not in the data: bools, numbers, times, texts, names of values
+    bool constant = false; ///< its bytes are among the constants
+    bool simple = false;   ///< made by the last instruction, whole and in the scratch: the instruction may
+                           ///< write it elsewhere
     std::int64_t integer = 0;
     double real = 0;
     std::string_view text{};
@@ -27,25 +28,25 @@ struct Symbol {
     std::string_view name{};
     std::uint32_t hash = 0;
     SymbolKind kind = SymbolKind::variable;
-    bool fixed = false;       ///< not to be assigned: a constant, the counter of a bounded loop
+    bool fixed = false;       ///< not assignable: a constant, the counter of a bounded loop
     std::uint16_t number = 0; ///< of a function or a child machine
     Operand operand{};
 };
 
-/// Functions are expanded where they are called; what is kept is where to read them.
+/// Functions are expanded at each call; this stores where to read them.
 struct Function {
     std::string_view name{};
     Lexer lexer{}; ///< after its opening bracket
-    Token token{}; ///< the first one there
+    Token token{}; ///< the first token there
     TypeId result = nullptr;
-    bool is_value = false; ///< its body is one return: it may stand in an expression
+    bool is_value = false; ///< its body is one return: usable in an expression
     bool expanding = false;
-    std::uint16_t symbols = 0; ///< those it sees are the first so many
+    std::uint16_t symbols = 0; ///< it sees the first so many symbols
 };
 
 /// A value given to a parameter: scalars and texts.
 struct Argument {
-    TypeIndex type = 0; ///< whose parameter
+    TypeIndex type = 0; ///< the parameter's owner
     std::uint16_t variable = 0;
     Operand value{};
 };
@@ -54,7 +55,7 @@ struct Child {
     std::string_view name{};
     TypeIndex parent = 0;
     TypeIndex type = 0;
-    std::uint16_t number = 0; ///< among its parent's
+    std::uint16_t number = 0; ///< among its parent's children
     std::uint16_t first_argument = 0;
     std::uint16_t arguments = 0;
 };
@@ -77,7 +78,7 @@ protected:
         symbol.name = name.text;
         symbol.hash = name.hash;
     }
-    /// The nearest one; a function sees its own names and those around it, not those of its caller.
+    /// Returns the innermost symbol; a function sees its own names and the enclosing ones, not its caller's.
     [[nodiscard]] constexpr Symbol* find_symbol(const Token& name) {
         for (std::size_t i = symbols_used_; i-- > 0;) {
             if (i < hidden_end_ && i >= hidden_begin_) {
@@ -89,7 +90,7 @@ protected:
         return nullptr;
     }
 
-    /// A program that stands before; no_instance: none has that name.
+    /// Returns a program that is defined before; no_instance: none has that name.
     [[nodiscard]] constexpr InstanceIndex find_program(std::string_view name) const noexcept {
         for (std::size_t i = 0; i < instances_.used; ++i)
             if (instances_.room[i].name == name && types_.room[instances_.room[i].type].is_program())
@@ -111,7 +112,7 @@ protected:
     [[nodiscard]] constexpr bool is_near(std::uint16_t component) const noexcept {
         return component == 0 || reach_.components[component].same_activity;
     }
-    /// Of those from `first` on and before `last`, without what is inside bags.
+    /// Searches from `first` up to but not including `last`, without the content of bags.
     [[nodiscard]] static constexpr std::uint16_t find_facet(std::span<const Facet> all, std::string_view name,
                                                             std::size_t first, std::size_t last) noexcept {
         for (std::size_t i = first; i < last; i += 1 + all[i].members)
@@ -123,7 +124,7 @@ protected:
         const auto all = facets(component);
         return find_facet(all, name, 0, all.size());
     }
-    /// Whether a facet's name begins with these words: those of a device are "line.rises", "frame.received".
+    /// Returns whether a facet's name begins with these words, as in "line.rises", "frame.received".
     [[nodiscard]] static constexpr bool is_begun(std::span<const Facet> all, std::string_view words,
                                                  std::size_t first, std::size_t last) noexcept {
         for (std::size_t i = first; i < last; i += 1 + all[i].members)
@@ -132,14 +133,14 @@ protected:
                 return true;
         return false;
     }
-    /// The next word of such a name.
+    /// Reads the next word of such a name.
     constexpr bool extend(Token& name) {
         advance();
         const Token next = need_word("the rest of the name");
         if (ok()) name.text = {name.text.data(), next.text.data() + next.text.size()};
         return ok();
     }
-    /// A facet after its component's name and dot, bags followed; `none` after a fault.
+    /// Parses a facet after its component's name and dot, and enters bags; `none` after a fault.
     constexpr std::uint16_t parse_facet(std::uint16_t component, Token name) {
         const auto all = facets(component);
         std::size_t first = 0, last = all.size();
@@ -165,7 +166,7 @@ protected:
         }
         return none;
     }
-    /// Whether the script may use an operation or event of a peer at all.
+    /// Checks whether the script may use an operation or event of a peer at all.
     constexpr void check_reach(const Token& at, std::uint16_t component, std::string_view name,
                                std::span<const std::string_view> allowed, std::string_view what) {
         if (!reach_.limited || component == 0) return;
@@ -187,7 +188,7 @@ protected:
         fail(at, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind), " of \"",
                   reach_.components[component].name, "\", which alone ", does});
     }
-    /// The scope keeps apart the commands of programs that may be at work at the same time.
+    /// The scope separates the commands of programs that may run at the same time.
     constexpr std::uint16_t link(std::uint16_t component, std::uint16_t facet, bool needs_slot) {
         const std::uint16_t scope = needs_slot ? command_scope_ : std::uint16_t{0};
         for (std::size_t i = 0; i < links_.count(); ++i) {
@@ -216,7 +217,7 @@ protected:
                type->columns == columns;
     }
 
-    /// Shows every type that the interfaces in reach name to `wanted`, until one is it.
+    /// Passes each type that the interfaces in reach name to `wanted`, until it accepts one.
     template <class Wanted>
     [[nodiscard]] constexpr TypeId find_in_reach(const Wanted& wanted) const {
         for (const Reachable& component : reach_.components)
@@ -246,7 +247,7 @@ protected:
         return nullptr;
     }
 
-    /// Null: no such type, and no fault.
+    /// Returns null when there is no such type; reports no fault.
     [[nodiscard]] constexpr TypeId find_type(std::string_view name) const {
         if (name == "int") return script_int;
         if (name == "double") return script_double;
@@ -282,7 +283,7 @@ protected:
         }
         return type;
     }
-    /// "vector3", "matrix2x3"
+    /// Parses "vector3", "matrix2x3".
     static constexpr bool read_shape(std::string_view name, std::size_t& rows,
                                      std::size_t& columns) noexcept {
         const auto digit = [&](std::size_t i) {
@@ -295,12 +296,12 @@ protected:
         return rows != 0 && columns != 0;
     }
 
-    bool is_line_ = false;    ///< of a user at a browser: what it reads stays as it is for the components
+    bool is_line_ = false;    ///< typed by a user at a browser: values it reads stay fresh for components
     bool looks_only_ = false; ///< an expression of such a line: it changes nothing
 
     std::array<Symbol, 160> symbols_{};
     std::size_t symbols_used_ = 0;
-    std::size_t scope_ = 0;        // where the innermost block's names begin
+    std::size_t scope_ = 0;        // first name of the innermost block
     std::size_t hidden_begin_ = 0; // names that a function does not see
     std::size_t hidden_end_ = 0;
     std::array<Function, 48> functions_{};

@@ -1,4 +1,4 @@
-// What the script compiler writes: rows into the room, values into the data's image, and the first fault.
+// The output of the script compiler: rows into the room, values into the data's image, and the first fault.
 #pragma once
 
 #include "kernel/base/nearest.hpp"
@@ -10,9 +10,9 @@
 
 namespace tappet {
 
-/// Expressions, statements and functions inside each other, together.
+/// Limit for nested expressions, statements and functions, counted together.
 inline constexpr std::uint32_t script_max_depth = 32;
-/// Tokens that compiling a text of so many characters reads at most; more would be functions that multiply.
+/// Most tokens read to compile a text of so many characters; more would mean functions that multiply.
 constexpr std::uint64_t script_work(std::size_t characters) noexcept {
     return 16 * std::uint64_t{characters} + 4096;
 }
@@ -20,7 +20,7 @@ constexpr std::uint64_t script_work(std::size_t characters) noexcept {
 namespace script_detail {
 
 /// While a type is compiled its values have places within one of four regions; when it is complete the
-/// regions are laid one after the other and the places become offsets.
+/// regions are concatenated and the places become offsets.
 enum class Region : std::uint8_t { constants, variables, arguments, scratch };
 inline constexpr unsigned region_bits = 14;
 inline constexpr std::uint32_t region_bytes = (1u << region_bits) - 16;
@@ -32,7 +32,7 @@ constexpr std::uint32_t aligned(std::uint32_t bytes, std::uint32_t to = 8) noexc
     return (bytes + to - 1) / to * to;
 }
 
-/// Rows of one kind: those of earlier types, then those of the type in hand.
+/// Rows of one kind: those of earlier types, then those of the current type.
 template <class Row>
 struct Rows {
     std::span<Row> room{};
@@ -69,7 +69,7 @@ public:
     }
 
 protected:
-    // ---- faults: the first one counts, and no token follows it
+    // ---- faults: the first one counts and ends the reading of tokens
 
     [[nodiscard]] constexpr bool ok() const noexcept { return !failed_; }
     constexpr void fail(const Token& at, std::initializer_list<std::string_view> pieces) {
@@ -82,7 +82,7 @@ protected:
         for (const std::string_view piece : pieces) s.add(piece);
         token_.sign = Sign::end;
     }
-    /// "found this, expected that".
+    /// Reports "found this, expected that".
     constexpr void fail_expected(std::string_view wanted) {
         if (token_.sign == Sign::broken) return fail(token_, {"found ", token_.fault, "; expected ", wanted});
         if (token_.sign == Sign::end) return fail(token_, {"found the end of the text, expected ", wanted});
@@ -101,7 +101,7 @@ protected:
              {"the script needs more ", what, " than there is room for; make it smaller or the room larger"});
         outcome_.out_of_room = true;
     }
-    /// A number in a sentence; good until the second one after it.
+    /// Converts a number for a sentence; valid until the second call after it.
     constexpr std::string_view digits(std::uint64_t number) {
         std::array<char, 20>& into = digits_[digits_used_++ % digits_.size()];
         std::size_t at = into.size();
@@ -109,7 +109,7 @@ protected:
         while ((number /= 10) != 0);
         return {into.data() + at, into.size() - at};
     }
-    /// Of what no room makes more.
+    /// Reports a limit that a larger room does not raise.
     constexpr void fail_limit(std::string_view what) {
         fail(token_, {"the script needs more ", what, " than the language allows; make it smaller"});
     }
@@ -139,7 +139,7 @@ protected:
         fail_expected(wanted);
         return false;
     }
-    /// A name that the script gives; keywords are none.
+    /// Reads a name that the script defines; keywords are refused.
     constexpr Token need_name(std::string_view wanted) {
         const Token name = token_;
         if (!is(Sign::name))
@@ -148,7 +148,7 @@ protected:
             advance();
         return name;
     }
-    /// After a dot or in an interface's place a keyword is a name too.
+    /// Reads a name after a dot or in an interface, where keywords are names too.
     constexpr Token need_word(std::string_view wanted) {
         const Token name = token_;
         if (!token_.is_word())
@@ -187,7 +187,7 @@ protected:
     }
     constexpr Instruction& last_instruction() noexcept { return instructions_[instructions_.count() - 1]; }
 
-    /// Characters that outlive the text.
+    /// Copies characters so that they outlive the text.
     constexpr std::string_view keep(std::initializer_list<std::string_view> pieces) {
         const std::size_t from = names_used_;
         for (const std::string_view piece : pieces) {
@@ -219,7 +219,7 @@ protected:
         return static_cast<DataOffset>(place + by);
     }
 
-    /// Zero bytes for a constant; null: no room.
+    /// Allocates zero bytes for a constant; null: no room.
     constexpr std::byte* add_constant(std::size_t size, DataOffset& at) {
         at = place_in(Region::constants, size);
         const std::size_t end = within(at) + aligned(static_cast<std::uint32_t>(size));
@@ -234,7 +234,7 @@ protected:
     [[nodiscard]] constexpr const std::byte* constant_bytes(DataOffset at) const noexcept {
         return room_.image.data() + image_base_ + within(at);
     }
-    /// A constant of at most 8 bytes, the low ones first; equal ones share their place.
+    /// Adds a constant of at most 8 bytes, low byte first; equal constants share a place.
     constexpr DataOffset small_constant(std::uint64_t bits, std::size_t size) {
         std::uint16_t& head = constant_heads_[(bits ^ (bits >> 32) ^ (bits >> 54)) % constant_heads_.size()];
         for (std::uint16_t i = head; i != 0; i = constants_[i - 1].next)
@@ -250,8 +250,8 @@ protected:
         }
         return at;
     }
-    /// Initial bytes of a variable stand at the end of the room, the first variable last, until all constants
-    /// are known. Null: no room.
+    /// Allocates initial bytes of a variable; they stay at the end of the room, the first variable last,
+    /// until all constants are known. Null: no room.
     constexpr std::byte* add_variable(std::size_t size, DataOffset& at) {
         at = place_in(Region::variables, size);
         const std::size_t end = region_used(Region::variables);
@@ -271,7 +271,7 @@ protected:
                                                 2 * region_used(Region::variables));
     }
 
-    // ---- a type: its rows begin after those of the types before it
+    // ---- a type: its rows begin after those of the earlier types
 
     constexpr void begin_type() {
         instructions_.base = instructions_.used;
@@ -377,7 +377,7 @@ protected:
     Rows<BehaviourInstance> instances_{};
     std::array<std::uint32_t, 4> region_used_{};
     std::uint32_t scratch_most_ = 0;
-    std::uint32_t image_base_ = 0; // where the type's image begins
+    std::uint32_t image_base_ = 0; // beginning of the type's image
     std::uint32_t image_most_ = 0;
     std::size_t names_used_ = 0;
     std::array<SharedConstant, 256> constants_{};

@@ -1,4 +1,4 @@
-// Parts of values, and values put together: fields, elements, constructors, functions of the library.
+// Parts of values and composed values: fields, elements, constructors, functions of the library.
 #pragma once
 
 #include "kernel/script/compiler_expressions.hpp"
@@ -179,7 +179,7 @@ constexpr Operand Expressions::parse_constructor(const Token& name, TypeId type)
         const Operand ready = in_data(at, value);
         return ok() ? convert(conversion, ready, type, scratch(type->size)) : Operand{};
     }
-    // Its known parts stand among the constants; those that are not are written into a copy of that.
+    // Its known parts are among the constants; the others are written into a copy of them.
     Operand whole = at_place(type, no_data);
     static_cast<void>(add_constant(type->size, whole.at));
     whole.constant = true;
@@ -187,7 +187,7 @@ constexpr Operand Expressions::parse_constructor(const Token& name, TypeId type)
     for (std::size_t i = 0; ok() && i < parts; ++i) {
         if (i != 0 && !need(Sign::comma, "\",\" and a value for each part")) return {};
         const TypeId part = is_record ? type->fields[i].type : type->element;
-        // A matrix is written row by row.
+        // A matrix literal is written row by row.
         const std::size_t offset =
             is_record ? type->fields[i].offset()
                       : type->element->size *
@@ -210,7 +210,7 @@ constexpr Operand Expressions::parse_constructor(const Token& name, TypeId type)
             in.a = whole.at;
             in.to = whole.at = scratch(type->size);
             whole.constant = false;
-            // The value may have been made by the instruction before this one.
+            // The instruction just before may have made the value.
             Operand kept = value;
             kept.simple = false;
             emit(in);

@@ -1,11 +1,11 @@
-// Statements: each becomes a node, or a few.
+// Statements: each becomes one node or a few.
 #pragma once
 
 #include "kernel/script/compiler_flow.hpp"
 
 namespace tappet::script_detail {
 
-/// Of a program, or of a function that is expanded in it.
+/// Frame of a program, or of a function that is expanded in it.
 struct Frame {
     TypeId result = nullptr;
     DataOffset slot = no_data; ///< of the result
@@ -17,7 +17,7 @@ class Statements : protected Flow {
 protected:
     using Flow::Flow;
 
-    /// "{ ... }" or one statement.
+    /// Parses "{ ... }" or one statement.
     constexpr void parse_statement() {
         if (!enter()) return;
         const Token at = token_;
@@ -104,7 +104,7 @@ protected:
         symbols_used_ = symbols;
         scope_ = scope;
     }
-    /// The statements of a program, up to the closing brace that is not theirs.
+    /// Parses the statements of a program, up to a closing brace that belongs to its owner.
     constexpr ProgramIndex parse_program(std::initializer_list<std::string_view> name,
                                          bool to_the_end = false, Frame frame = {}) {
         const ProgramIndex number = begin_program(name);
@@ -181,7 +181,7 @@ protected:
         Chain breaks = no_chain;
         Chain continues = no_chain;
     };
-    /// Whether properties of the program: its outermost variables (thesis 5.1.6).
+    /// Whether the program's outermost variables are properties (thesis 5.1.6).
     bool exports_variables_ = false;
 
 private:
@@ -250,7 +250,7 @@ private:
     }
 
 protected:
-    /// A constant's value: a literal, or bytes among the constants.
+    /// Parses a constant's value: a literal, or bytes among the constants.
     constexpr Operand known_value(TypeId type, std::string_view what) {
         const Token at = token_;
         const Operand value = parse_known(type, what);
@@ -264,7 +264,7 @@ protected:
     }
 
 private:
-    /// The function with statements that is called next, if one is.
+    /// Returns the function with statements that is called next; null: none is.
     constexpr Function* statement_function() {
         if (!is(Sign::name)) return nullptr;
         const Symbol* const symbol = find_symbol(token_);
@@ -272,7 +272,7 @@ private:
             return nullptr;
         return &functions_[symbol->number];
     }
-    /// The function's statements, here; answers where its result is.
+    /// Expands the function's statements here; returns the offset of its result.
     constexpr DataOffset expand(Function& function, TypeId wanted) {
         const Token name = token_;
         advance();
@@ -303,16 +303,16 @@ private:
     }
 
     constexpr void parse_set(const Token& at);
-    /// An output or a property that may be assigned, after its first name.
+    /// An assignable output or property, after its first name.
     struct FacetPlace {
         std::uint16_t component = 0, number = none;
         FacetAction action{};
     };
     constexpr FacetPlace parse_facet_place(const Token& name);
-    /// A variable or a part of one.
+    /// Parses a variable or a part of one.
     constexpr void parse_set_place(const Token& at, Operand place);
     constexpr Operand assigned_value(TypeId type);
-    /// Where a result of a command goes.
+    /// Target of a command's result.
     struct ResultPlace {
         const Symbol* variable = nullptr; ///< null: a facet
         FacetPlace facet{};
@@ -320,25 +320,25 @@ private:
     constexpr ResultPlace parse_result_place();
     constexpr void store_result(const Token& at, const ResultPlace& to, TypeId type, DataOffset from);
 
-    // ---- what takes a way of its own
+    // ---- statements with their own flow
 
     constexpr void parse_if(const Token& at);
-    /// A node that asks: `pending_` is the way when it is so, `otherwise` when it is not.
+    /// Creates a branching node: `pending_` is the exit if the condition holds, `otherwise` if it does not.
     constexpr NodeIndex parse_branch(const Token& at, Chain& otherwise);
     constexpr void parse_while(const Token& at);
     constexpr void parse_for(const Token& at);
-    /// In the brackets of a for: var, set, do, or an assignment without "set".
+    /// Parses a statement in the brackets of a for: var, set, do, or an assignment without "set".
     constexpr void parse_step_statement();
-    /// How often "i < c; i = i + d" lets a loop run; 0: it is not of that form. Reads ahead only.
+    /// Returns the number of iterations of "i < c; i = i + d"; 0: not of that form. Only reads ahead.
     constexpr std::uint64_t count_rounds(const Symbol& counter, std::int64_t from);
     static constexpr std::uint64_t rounds_between(Sign how, std::int64_t from, std::int64_t to,
                                                   std::int64_t by) noexcept;
 
     constexpr void parse_try();
     constexpr void parse_wait(const Token& at);
-    /// Where a time stays while the program waits.
+    /// Returns where a time is kept while the program waits.
     constexpr DataOffset persistent_time(const Token& at, const Operand& value);
-    /// "timeout 5s": the node fails when nothing else was open until then.
+    /// Parses "timeout 5s": the node fails when no other arc was open until then.
     constexpr void parse_timeout(NodeIndex node);
     constexpr void parse_return(const Token& at) {
         begin_action();
@@ -361,15 +361,15 @@ private:
     constexpr void fail_unknown_action(const Token& name);
     constexpr void parse_action(const Token& at, const Token& name, std::uint16_t component,
                                 std::uint16_t number);
-    /// Own commands begin here and now; those of others are sent. The way on opens when the command is done
-    /// (thesis 5.1.5); its results are fetched by a node of their own.
+    /// Starts own commands in this step; sends those of others. The exit opens when the command is done
+    /// (thesis 5.1.5); a separate node fetches its results.
     constexpr void parse_command(const Token& at, const Token& name, std::uint16_t component,
                                  std::uint16_t number);
 
     // ---- child machines, and programs beside
 
     constexpr void parse_machine_command(const Token& at, std::uint16_t child);
-    /// With its parameters, followed to its end; or a word that controls it.
+    /// Starts a program with its parameters and waits for its end; or a word that controls it.
     constexpr void parse_program_command(const Token& at, const Token& name, InstanceIndex program);
     constexpr void parse_set_in_machine(const Token& at, std::uint16_t child);
 

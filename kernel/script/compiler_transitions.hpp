@@ -69,7 +69,7 @@ constexpr void Machines::parse_transition(const Token& at, std::uint16_t state, 
             add(transitions_, row, "transitions");
             TransitionRow other;
             other.from = row.from;
-            other.timed = row.timed; // else: when it is time and the condition does not hold
+            other.timed = row.timed; // else: when the time has passed and the condition does not hold
             other.after = row.after;
             other.line = else_at.line;
             other.column = else_at.column;
@@ -152,7 +152,7 @@ constexpr void Machines::parse_event(TransitionRow& row) {
     const Facet& facet = facet_of(component, number);
     check_reach(event_name, component, facet.name, reach_.events, "events");
     row.on_event = true;
-    for (std::size_t i = transitions_.count(); row.event.empty() && i-- > 0;) // the characters once
+    for (std::size_t i = transitions_.count(); row.event.empty() && i-- > 0;) // stores the characters once
         if (transitions_[i].on_event && is_event(transitions_[i].event, component, facet.name))
             row.event = transitions_[i].event;
     if (row.event.empty())

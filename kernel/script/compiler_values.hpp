@@ -1,4 +1,4 @@
-// Values while a script is compiled: known ones, those in the data, and how one becomes another.
+// Values while a script is compiled: known ones, those in the data, and conversions.
 #pragma once
 
 #include "kernel/script/compiler_names.hpp"
@@ -28,14 +28,14 @@ protected:
         value.at = at;
         return value;
     }
-    /// What the instruction just emitted leaves.
+    /// Returns the result of the instruction just emitted.
     static constexpr Operand made(TypeId type, DataOffset at) noexcept {
         Operand value = at_place(type, at);
         value.simple = true;
         return value;
     }
 
-    /// The bytes of a literal as a value of `type`; false: it is none.
+    /// Encodes a literal as a value of `type`; false: it is not one.
     static constexpr bool encode(const Operand& value, TypeId type, std::byte* into) noexcept {
         switch (type->kind) {
         case ValueKind::boolean:
@@ -97,7 +97,7 @@ protected:
     constexpr void fail_type(const Token& at, TypeId found, std::string_view wanted, std::string_view where) {
         fail(at, {"found a value of type ", type_name(found), ", expected ", wanted, where});
     }
-    /// The value as one of exactly this type, in the data.
+    /// Returns the value as one of exactly this type, in the data.
     constexpr Operand as(const Token& at, const Operand& value, TypeId type, std::string_view where) {
         if (!ok()) return {};
         if (value.literal) return constant(at, value, type, where);
@@ -138,17 +138,17 @@ protected:
             fail_type(at, value.type, type_name(type), where);
         return {};
     }
-    /// The value in the data, of the type it has.
+    /// Returns the value in the data, with the type it has.
     constexpr Operand in_data(const Token& at, const Operand& value) {
         return value.literal ? constant(at, value, value.type, "") : value;
     }
-    /// C++ numbers of any width become those that scripts reckon with.
+    /// Converts C++ numbers of any width to the script's numbers.
     constexpr Operand reckoned(const Token& at, const Operand& value) {
         if (!ok() || value.literal) return value;
         const TypeId type = script_type(value.type);
         return type == value.type ? value : as(at, value, type, "");
     }
-    /// to = value, converted to the type of the place.
+    /// Emits to = value, converted to the type of `to`.
     constexpr void store(const Token& at, const Operand& value, TypeId type, DataOffset to,
                          std::string_view where) {
         if (!ok()) return;
@@ -160,11 +160,11 @@ protected:
             }
             if (script_type(value.type) == value.type)
                 return fail_type(at, value.type, type_name(type), where);
-            return store(at, reckoned(at, value), type, to, where); // of another width, by the script's own
+            return store(at, reckoned(at, value), type, to, where); // another width: by the script's own
         }
         const Operand ready = as(at, value, type, where);
         if (!ok()) return;
-        // A number is made where it belongs; what is larger might still be read while it is made.
+        // A number is made in its destination; a larger value might still be read while it is made.
         if (ready.simple && type->size <= 8 && last_instruction().to == ready.at) {
             last_instruction().to = to;
             return;

@@ -1,4 +1,4 @@
-// Native code of a script that is compiled with the firmware: each of its types as code, nothing interpreted.
+// Native code of a script compiled with the firmware: each of its types as code, nothing interpreted.
 #pragma once
 
 #include "kernel/script/unit.hpp"

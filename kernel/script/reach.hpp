@@ -1,5 +1,4 @@
-// What a script may name: the component that it drives and that one's peers (thesis 3.2: no other access
-// path).
+// The names available to a script: its component and that one's peers (thesis 3.2: no other access path).
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -13,19 +12,19 @@ namespace tappet {
 struct Reachable {
     std::string_view name{};
     const ComponentType* type = nullptr;
-    /// It runs in the script's activity: its methods, properties and ports are safe to touch. Of a component
-    /// of another activity a script sends commands, tells operations and calls what is any_thread, and no
-    /// more.
+    /// It runs in the script's activity: its methods, properties and ports are safe to touch. With a
+    /// component of another activity, a script may only send commands, tell operations and call any_thread
+    /// methods.
     bool same_activity = false;
 };
 
-/// A line that somebody types may name components of a machine of so many.
+/// Most components of a machine that a typed line may name.
 inline constexpr std::size_t max_line_components = 128;
 
-/// Number 0 is the component itself. Spans outlive the compilation.
+/// Number 0 is the component itself. The spans must outlive the compilation.
 struct Reach {
     std::span<const Reachable> components{};
-    /// Of a slot: "component.operation" and "component.event" that may be used of the peers. A compiled
+    /// For a slot: "component.operation" and "component.event" of the peers that it may use. A compiled
     /// script may use all.
     bool limited = false;
     std::span<const std::string_view> operations{};

@@ -1,5 +1,5 @@
-// Where a compiled script is stored, and how much it takes: measured for a script in the firmware, a stated
-// capacity for one that is loaded.
+// Storage of a compiled script and its sizes: measured for a script in the firmware, a stated capacity for a
+// loaded one.
 #pragma once
 
 #include "kernel/script/unit.hpp"
@@ -10,10 +10,10 @@
 
 namespace tappet {
 
-/// What a compilation takes of its thread's stack at most, whatever the text.
+/// Most stack that a compilation uses of its thread, for any text.
 inline constexpr std::size_t script_stack_bytes = 160 * 1024;
 
-/// Numbers of rows over all types of a script, and what its instances take when they run.
+/// Numbers of rows over all types of a script, and what its instances need at run time.
 struct ScriptSizes {
     std::uint32_t instructions = 0;
     std::uint32_t conditions = 0;
@@ -30,7 +30,7 @@ struct ScriptSizes {
     std::uint32_t instances = 0;
     std::uint32_t names = 0; ///< characters
     std::uint32_t reach = 0; ///< components
-    // Not of the room, but of who runs it, over all instances.
+    // Not in the room, but needed by the script's runner, over all instances.
     std::uint32_t data = 0; ///< bytes, each instance's aligned to data_alignment
     std::uint32_t command_slots = 0;
     std::uint32_t timers = 0; ///< nodes and transitions that wait for time
@@ -38,7 +38,7 @@ struct ScriptSizes {
     friend constexpr bool operator==(const ScriptSizes&, const ScriptSizes&) = default;
 };
 
-/// Room for a script of so many nodes and bytes of data, as machines of usual proportions need it.
+/// Returns sizes for a script of so many nodes and bytes of data, for machines of usual proportions.
 constexpr ScriptSizes script_sizes_for(std::uint32_t nodes, std::uint32_t data_bytes,
                                        std::uint32_t components) noexcept {
     ScriptSizes s;
@@ -57,7 +57,7 @@ constexpr ScriptSizes script_sizes_for(std::uint32_t nodes, std::uint32_t data_b
     return s;
 }
 
-/// Calls visit(of.table..) of each table of a script: with its size, its room, its rows, or several of these.
+/// Calls visit(of.table..) for each table of a script: with its size, room, rows, or several of these.
 template <class Visit, class... Of>
 constexpr void for_each_table(const Visit& visit, Of&... of) {
     visit(of.instructions...);
@@ -77,7 +77,7 @@ constexpr void for_each_table(const Visit& visit, Of&... of) {
     visit(of.reach...);
 }
 
-/// What compile_into() fills. The spans outlive the unit.
+/// The storage that compile_into() fills. The spans must outlive the unit.
 struct ScriptRoom {
     std::span<Instruction> instructions{};
     std::span<ConditionRow> conditions{};
@@ -121,13 +121,13 @@ struct ScriptBuffer {
     }
 };
 
-/// What came of compiling: a unit, or why there is none.
+/// Result of a compilation: a unit, or the reason why there is none.
 struct ScriptOutcome {
     Sentence fault{};       ///< "weft.osd:12:5: ..."; empty: the unit is good
     std::uint16_t line = 0; ///< of the fault
     std::uint16_t column = 0;
     bool out_of_room = false; ///< the script may be good, but the room is too small for it
-    ScriptSizes sizes{};      ///< what it took; with a fault what it took until then
+    ScriptSizes sizes{};      ///< the room used; with a fault, used until then
     ScriptUnit unit{};
 
     [[nodiscard]] constexpr bool good() const noexcept { return fault.empty(); }

@@ -1,4 +1,4 @@
-// The words of the script language: text cut into tokens, one at a time, in constant expressions and on the
+// The tokens of the script language: cuts text into tokens, one at a time, in constant expressions and on the
 // target alike.
 #pragma once
 
@@ -155,7 +155,7 @@ inline constexpr auto keywords = [] {
     return all;
 }();
 
-/// Sign::name when the word is free.
+/// Returns Sign::name when the word is not a keyword.
 constexpr Sign sign_of_word(std::string_view word, std::uint32_t hash) noexcept {
     std::size_t low = 0, high = keywords.size();
     while (low < high) {
@@ -175,7 +175,7 @@ struct Token {
     std::uint16_t line = 1;
     std::uint16_t column = 1;
     std::uint32_t hash = 0;   ///< of a word
-    std::string_view text{};  ///< as written; of a text what is between its quotes, escapes and all
+    std::string_view text{};  ///< as written; of a text, the characters between its quotes with their escapes
     std::int64_t integer = 0; ///< of an integer; of a duration its nanoseconds
     double real = 0;          ///< of a real, and of an integer
     std::string_view fault{}; ///< of a broken one
@@ -187,14 +187,14 @@ constexpr bool is_letter(char c) noexcept {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Reads forward; to read a piece again, begin() there.
+/// Reads forward; to read a part again, call begin() there.
 class Lexer {
 public:
     constexpr Lexer() = default;
     explicit constexpr Lexer(std::string_view text) noexcept
         : at_{text.data()}, end_{at_ + text.size()}, row_{at_} {}
 
-    /// After end or broken: the same again.
+    /// Reads the next token; after end or broken, the same token again.
     constexpr void next(Token& token) noexcept {
         token.hash = 0;
         if (!skip_blanks()) return make_broken(token, "a comment without its end; write */ after it");
@@ -278,7 +278,7 @@ private:
             for (; p != end_ && is_digit(*p); ++p) {
                 const auto digit = static_cast<std::uint64_t>(*p - '0');
                 if (digits > (most - digit) / 10) {
-                    too_large = true; // as an integer; a real leaves out what it cannot hold
+                    too_large = true; // as an integer; a real ignores digits that it cannot hold
                     if (places == 0 && exponent < 9999) ++exponent;
                 } else {
                     digits = digits * 10 + digit;
@@ -322,7 +322,7 @@ private:
             return make_broken(token, "a number too large for a double");
         at_ = p;
     }
-    /// Of the word at `p`, after blanks; the nanoseconds of the unit that it is, and `p` after it.
+    /// Reads the unit of time after blanks at `p`, moves `p` behind it; returns its nanoseconds, 0: none.
     constexpr std::int64_t read_unit(const char*& p) const noexcept {
         const char* q = p;
         while (q != end_ && (*q == ' ' || *q == '\t')) ++q;
@@ -351,7 +351,7 @@ private:
         bool fits = digits == 0 || !__builtin_mul_overflow(digits, static_cast<std::uint64_t>(unit), &ns);
         for (; fits && exponent > 0 && ns != 0; --exponent)
             fits = !__builtin_mul_overflow(ns, std::uint64_t{10}, &ns);
-        for (; fits && exponent < 0; ++exponent) ns /= 10; // what is less than a nanosecond is none
+        for (; fits && exponent < 0; ++exponent) ns /= 10; // fractions of a nanosecond are dropped
         if (!fits || ns > 0x7fff'ffff'ffff'ffff)
             return make_broken(token, "a time too long for nanoseconds in 63 bits");
         token.text = {from, static_cast<std::size_t>(to - from)};
@@ -407,7 +407,7 @@ private:
 
     const char* at_ = nullptr;
     const char* end_ = nullptr;
-    const char* row_ = nullptr; // where the line begins
+    const char* row_ = nullptr; // beginning of the line
     std::uint16_t line_ = 1;
 };
 

@@ -1,6 +1,5 @@
-// What a script is compiled to: the types of its programs and state machines as flat tables, and the
-// instances of them that it asks for. The same for a script compiled with the firmware and for one that is
-// loaded.
+// The result of compiling a script: the types of its programs and state machines as flat tables, and their
+// instances. The same for a script compiled with the firmware and for a loaded one.
 #pragma once
 
 #include "kernel/program/table.hpp"
@@ -20,7 +19,7 @@ struct BehaviourType {
     StateMachineTable machine{}; ///< without states: a program alone, tables.programs[0]
 
     [[nodiscard]] constexpr bool is_program() const noexcept { return machine.states.empty(); }
-    /// How many it has; they stand before all other variables.
+    /// Returns the number of parameters; they precede all other variables.
     [[nodiscard]] constexpr std::size_t parameters() const noexcept {
         std::size_t count = 0;
         for (const VariableRow& row : tables.variables) count += row.kind == VariableKind::parameter ? 1 : 0;
@@ -33,13 +32,13 @@ struct BehaviourInstance {
     std::string_view name{}; ///< "cycle", a child "cycle.left"
     TypeIndex type = 0;
     InstanceIndex parent = no_instance;
-    InstanceIndex first_child = no_instance; ///< its children stand side by side
+    InstanceIndex first_child = no_instance; ///< its children are contiguous
     std::uint16_t children = 0;
-    bool on_command = false;            ///< a program with parameters: it starts when it is told to
-    std::span<const std::byte> image{}; ///< its data at the beginning, its arguments in place
+    bool on_command = false;            ///< a program with parameters: it starts on command
+    std::span<const std::byte> image{}; ///< its initial data, including its arguments
 };
 
-/// How many of the instances are programs.
+/// Returns the number of instances that are programs.
 constexpr std::size_t count_programs(std::span<const BehaviourType> types,
                                      std::span<const BehaviourInstance> instances) noexcept {
     std::size_t count = 0;
@@ -48,7 +47,7 @@ constexpr std::size_t count_programs(std::span<const BehaviourType> types,
     return count;
 }
 
-/// A compiled script; a view, the rows live elsewhere. A parent stands before its children.
+/// A compiled script; a view, its rows must outlive it. A parent precedes its children.
 struct ScriptUnit {
     std::string_view name{}; ///< the script's file name
     std::span<const BehaviourType> types{};

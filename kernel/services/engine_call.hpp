@@ -1,4 +1,5 @@
-// What a service has an engine do between two of its steps: once, or, when it is taken back in time, never.
+// A call of a service that an engine runs between two of its steps: once, or never if it is withdrawn in
+// time.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -7,7 +8,7 @@
 
 namespace tappet {
 
-/// Whether an engine comes to what it is asked: its activity runs, or anything of it may still run.
+/// Whether an engine will serve a request: its activity runs, or a part of it may still run.
 inline bool is_alive(MachineInstance& machine, std::size_t activity) noexcept {
     if (machine.engines()[activity].is_active()) return true;
     for (const EnginePart& each : machine.engines()[activity].plan().parts)
@@ -15,12 +16,12 @@ inline bool is_alive(MachineInstance& machine, std::size_t activity) noexcept {
     return false;
 }
 
-/// A message to an engine that is run once, or withdrawn before. Until is_over() whoever posted it leaves
-/// what it works on alone; once withdrawn it may be posted anew, whenever the engine comes to the one before.
-/// Wait-free for both: one exchange decides whether it runs or was withdrawn.
+/// A message to an engine that runs once, or is withdrawn before. Until is_over() the caller must not touch
+/// the message's data; after a withdrawal it may post again, even before the engine has reached the previous
+/// message. Wait-free for both: one exchange decides whether it runs or is withdrawn.
 class EngineCall {
 public:
-    /// False: that engine has no room for somebody of this role. Only when is_over().
+    /// Posts the call. False: that engine has no room for a user of this role. Only when is_over().
     [[nodiscard]] bool post(MachineInstance& machine, std::size_t activity, const Message& call,
                             Role role) noexcept {
         call_ = call;
@@ -37,15 +38,16 @@ public:
     [[nodiscard]] bool is_over() const noexcept TAPPET_REALTIME {
         return (state_.load(std::memory_order_acquire) & (states - 1)) == over;
     }
-    /// True: it has not run and will do nothing. False: it runs, has run, or was never posted.
+    /// Withdraws the call. True: it has not run and will do nothing. False: it runs, has run, or was never
+    /// posted.
     [[nodiscard]] bool withdraw() noexcept TAPPET_REALTIME {
         std::uint32_t expected = turn_ | posted;
         return state_.compare_exchange_strong(expected, turn_ | over, std::memory_order_acq_rel);
     }
 
 private:
-    /// In the lowest bits of the word; above them the turn, by which an engine knows a message that was
-    /// withdrawn.
+    /// The lowest bits of the word; the bits above them are the turn, by which an engine detects a withdrawn
+    /// message.
     enum State : std::uint32_t { posted, running, over, states = 4 };
 
     static void run(void* self, const std::byte* arguments) noexcept TAPPET_REALTIME {
@@ -58,7 +60,7 @@ private:
     }
 
     Message call_{};
-    std::uint32_t turn_ = 0; ///< of who posts
+    std::uint32_t turn_ = 0; ///< the caller's
     std::atomic<std::uint32_t> state_{over};
 };
 

@@ -1,4 +1,4 @@
-// JSON text into a buffer of fixed size.
+// Writes JSON text into a buffer of fixed size.
 #pragma once
 
 #include "kernel/base/real_text.hpp"
@@ -15,7 +15,8 @@
 
 namespace tappet {
 
-/// Appends fields to an object or values to an array. What does not fit makes size() 0: never half a text.
+/// Appends fields to an object or values to an array. When something does not fit, size() is 0: a text is
+/// never truncated.
 class JsonText {
 public:
     explicit JsonText(std::span<char> buffer) noexcept : buffer_{buffer} {}
@@ -31,11 +32,11 @@ public:
         first_ = false;
         return *this;
     }
-    /// "key": with a value, an object or an array to follow.
+    /// Writes "key": before a value, an object or an array.
     JsonText& key(std::string_view name) noexcept {
         value(name);
         put(": ");
-        first_ = true; // no comma before what follows
+        first_ = true; // no comma before the value
         return *this;
     }
     JsonText& value(std::string_view text) noexcept {
@@ -48,7 +49,7 @@ public:
             const bool control = static_cast<unsigned char>(character) < 0x20;
             put(control       ? " "
                 : length == 0 ? "?"
-                              : text.substr(0, length)); // JSON is UTF-8, whoever wrote it
+                              : text.substr(0, length)); // JSON must be UTF-8, whatever the source
             text.remove_prefix(std::max<std::size_t>(length, 1));
         }
         put("\"");
@@ -71,7 +72,7 @@ public:
     JsonText& field(std::string_view name, const T& content) noexcept {
         return key(name).value(content);
     }
-    /// A whole JSON value, already text, with the comma that stands before it.
+    /// Appends a whole JSON value that is already text, with a comma before it if needed.
     JsonText& fragment(std::string_view text) noexcept {
         separate();
         put(text);
@@ -82,7 +83,7 @@ public:
         return *this;
     }
 
-    /// Characters written; 0 when they did not all fit.
+    /// Returns the characters written; 0 when they did not all fit.
     [[nodiscard]] std::size_t size() const noexcept { return full_ ? 0 : used_; }
     [[nodiscard]] std::string_view view() const noexcept { return {buffer_.data(), size()}; }
 

@@ -10,7 +10,7 @@ namespace tappet {
 
 namespace statechart {
 
-/// What a sentence begins with, and where in a script that stands; 0: in none.
+/// The beginning of a sentence and its line in the script; line 0: not in a script.
 struct NamedRow : Sentence {
     std::uint16_t line = 0;
     std::uint16_t column = 0;
@@ -29,7 +29,7 @@ public:
             static_cast<void>(check_waits());
         return fault_;
     }
-    /// Of the row that the fault is about, in its script; 0: of none, or a C++ table.
+    /// Returns the script line of the faulty row; 0: no row, or a C++ table.
     [[nodiscard]] constexpr std::uint16_t line() const { return line_; }
     [[nodiscard]] constexpr std::uint16_t column() const { return column_; }
 
@@ -192,7 +192,7 @@ private:
         }
         return true;
     }
-    // What regions, histories and else branches ask of a row.
+    // Checks what regions, histories and else branches require of a row.
     constexpr bool check_ends(std::size_t t) {
         const TransitionRow& row = table_.transitions[t];
         if (row.enters != EntryKind::initial && (row.to.empty() || !names_.composite[names_.to[t]]))
@@ -213,7 +213,7 @@ private:
                             "lead it out of that state, or to that state itself");
         return true;
     }
-    // Of a state that the way from one to the other may enter.
+    // Returns whether the path from one state to the other may enter a state with a precondition.
     [[nodiscard]] constexpr bool has_precondition(StateIndex from, StateIndex to) const {
         if (to == no_state || !preconditions_) return false;
         const StateIndex outermost = names_.ancestor(to, names_.shared_depth(from, to) + 1);
@@ -252,7 +252,7 @@ private:
                     "; move transitions of wide composites inwards, or split it");
     }
 
-    // One row takes away everything from the other when it comes first and holds whenever the other could.
+    // The first row blocks the second: it comes first and holds whenever the second could hold.
     [[nodiscard]] constexpr bool blocks(std::size_t first, std::size_t second) const {
         const TransitionRow& a = table_.transitions[first];
         const TransitionRow& b = table_.transitions[second];
@@ -301,7 +301,8 @@ private:
         return true;
     }
 
-    // By a transition of its own or of a state around it, or when another region takes away such a state.
+    // Returns whether the leaf can be left: by its own transition, by one of an enclosing state, or because
+    // another region leaves such a state.
     [[nodiscard]] constexpr bool is_left(StateIndex leaf) const {
         bool left = false;
         const auto leads_away = [&](StateIndex to) {
@@ -321,7 +322,7 @@ private:
 
     constexpr bool check_all_reached() {
         std::array<bool, max_states> reached{};
-        std::array<bool, max_states> entered{}; // with what is initial inside
+        std::array<bool, max_states> entered{}; // including their initial states
         std::array<StateIndex, 2 * max_states> open{};
         std::size_t waiting = 0;
         const auto reach = [&](StateIndex state) {
@@ -332,7 +333,7 @@ private:
             if (!entered[state]) open[waiting++] = state;
             entered[state] = reached[state] = true;
         };
-        std::array<bool, max_states> remembers{}; // by shallow history: with what is initial inside those
+        std::array<bool, max_states> remembers{}; // by shallow history; includes the initial states inside
         for (std::size_t t = 0; t < names_.transitions(); ++t)
             if (table_.transitions[t].enters == EntryKind::shallow_history) remembers[names_.to[t]] = true;
         const auto lead_to = [&](StateIndex from, StateIndex target) { // with other regions on the way
@@ -367,8 +368,7 @@ private:
         return true;
     }
 
-    // Follows the transitions that need nothing to be taken; coming
-    // back to a state means that no step would end.
+    // Follows the transitions that can always be taken. A cycle of them would make a step endless.
     constexpr bool check_waits() {
         std::array<StateIndex, max_states> next{};
         for (std::size_t i = 0; i < names_.states(); ++i) {
@@ -435,7 +435,7 @@ constexpr Sentence check_limits(const StateMachineTable& table) {
 
 } // namespace statechart
 
-/// Empty when the machine is good. Bounded, without heap; not for real-time threads.
+/// Returns the first fault; empty when the machine is good. Bounded, no heap; not for real-time threads.
 constexpr Sentence check(const StateMachineTable& table) {
     if (Sentence fault = statechart::check_limits(table); !fault.empty()) return fault;
     return statechart::Checker{StateHierarchy{table}}.check();

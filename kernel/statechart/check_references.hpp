@@ -1,4 +1,4 @@
-// Whether the rows of a state machine point into its programs: a second look at what was compiled elsewhere.
+// Checks that rows of a state machine point into its programs: verifies tables compiled elsewhere.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -25,7 +25,7 @@ constexpr bool exists(const StateMachineTable& table, const CaptureRow& row) noe
 
 } // namespace statechart
 
-/// Empty: every program, condition and capture that a row names exists.
+/// Returns empty when every program, condition and capture that a row names exists.
 constexpr Sentence check_references(const StateMachineTable& table) {
     using statechart::exists;
     for (const StateRow& row : table.states)

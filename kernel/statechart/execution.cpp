@@ -1,5 +1,4 @@
-// The calls that come from outside: steps, requests, events that wait, and what programs asked for while they
-// ran.
+// Calls from outside: steps, requests, queued events, and requests that programs made while they ran.
 #include "kernel/statechart/in_memory.hpp"
 
 #include <cstring>
@@ -93,8 +92,8 @@ auto StateMachineExecution::look(TransitionIndex transition, Time now) noexcept 
     return found;
 }
 
-// The end of a call from outside: what programs asked for while they ran, and what had to wait for them. The
-// last request for the final state is served even when the bound is reached.
+// Ends a call from outside: serves what programs requested while they ran, and what was queued behind it.
+// Serves the last request for the final state even when the bound is reached.
 void StateMachineExecution::finish(Call call) noexcept TAPPET_REALTIME {
     for (std::size_t n = 0; n < max_raised_events; ++n) {
         call = serve_final(call);
@@ -120,7 +119,7 @@ auto StateMachineExecution::serve_final(Call call) noexcept TAPPET_REALTIME -> C
     if (!final_reason_.empty()) give_reason(final_transition, final_reason_);
     supersede(final_arc);
     static_cast<void>(Order::resume(*this, call));
-    if (is_final() && (mode_ & (in_hand | error)) == 0) clear(final_wanted); // asked for on the way there
+    if (is_final() && (mode_ & (in_hand | error)) == 0) clear(final_wanted); // requested on the way there
     return call;
 }
 
@@ -218,7 +217,7 @@ StateOutcome StateMachineExecution::pause() noexcept TAPPET_REALTIME {
     return StateOutcome::taken;
 }
 
-// What was begun.
+// Executes the job that was begun.
 StateOutcome StateMachineExecution::carry_out(Time now) noexcept TAPPET_REALTIME {
     Call call = open(now);
     static_cast<void>(Order::resume(*this, call));
@@ -361,7 +360,7 @@ StateOutcome StateMachineExecution::deactivate(Time now) noexcept TAPPET_REALTIM
     return StateOutcome::taken;
 }
 
-// ---- what there is to see
+// ---- observation
 
 MachineStatus StateMachineExecution::machine_status() const noexcept TAPPET_REALTIME {
     if (is(inactive)) return MachineStatus::inactive;

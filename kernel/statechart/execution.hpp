@@ -1,5 +1,5 @@
-// Executes a resolved state machine on a component (thesis 5.2). The order of everything, and where UML and
-// the thesis differ, is the table in kernel/statechart/README.md; each line of it has a test.
+// Executes a resolved state machine on a component (thesis 5.2). The table in kernel/statechart/README.md
+// gives the order of execution and the differences between UML and the thesis; each of its lines has a test.
 #pragma once
 
 #include "kernel/statechart/resolve.hpp"
@@ -12,26 +12,25 @@ namespace tappet {
 
 class StateMachineExecution;
 
-/// Limits and manners of one execution, as its row says.
+/// Limits and options of one execution, from its row.
 struct StateMachinePolicy {
-    /// In one step, event or request; the rest goes on in the next step, and left_over() says so.
+    /// Most statements per step, event or request; the rest runs in the next step, see left_over().
     std::uint32_t statements = 1000;
-    /// What a fault does beside stopping this machine: its parent comes into error too (thesis 5.2.2).
+    /// A fault also puts the parent machine into error (thesis 5.2.2).
     bool escalates = false;
 };
 
-/// The compiled form of a machine, see native.hpp: what an outer call does while nothing waits and nothing is
-/// under way. It keeps everything where the loaded form does, which goes on with whatever it could not
-/// finish.
+/// The compiled form of a machine, see native.hpp: the fast path of outer calls while the machine is idle. It
+/// stores all state where the loaded form does; the loaded form continues whatever it could not finish.
 struct StateMachineFast {
     StateOutcome (*dispatch)(StateMachineExecution&, std::size_t trigger, Time now,
                              const std::byte* arguments) noexcept TAPPET_REALTIME = nullptr;
     void (*step)(StateMachineExecution&, Time now) noexcept TAPPET_REALTIME = nullptr;
-    /// The arguments of a transition's event into its variables; false: one does not fit.
+    /// Copies the arguments of a transition's event into its variables; false: one does not fit.
     bool (*capture)(StateMachineExecution&, TransitionIndex, const std::byte* arguments) noexcept
         TAPPET_REALTIME = nullptr;
-    /// What a call executes at most without looking; 0: it looks. With a policy of fewer the machine stands
-    /// in memory.
+    /// Most statements of a call that runs without counting; 0: it counts. With a lower limit in its policy,
+    /// the machine runs in its loaded form.
     std::uint32_t statements = 0;
 };
 
@@ -45,7 +44,7 @@ template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf;
 template <const auto& source, std::size_t type> struct MachineCode;
 } // namespace native
 
-/// All that an execution works on; it outlives it.
+/// Inputs of an execution; must outlive it.
 struct StateMachineBinding {
     ResolvedView machine{};
     void* component = nullptr;
@@ -53,7 +52,7 @@ struct StateMachineBinding {
     std::byte* data = nullptr; ///< see DataLayout; filled from the instance's image
     const ProgramLink* links = nullptr;
     void* machines = nullptr; ///< see ProgramContext
-    ProgramsBeside beside{};  ///< likewise
+    ProgramsBeside beside{};  ///< see ProgramContext
     WorkLimit* limit = nullptr;
     std::span<StateIndex> history{}; ///< machine.sizes.history
     std::span<std::byte> deferred{}; ///< machine.sizes.captured * StateMachineExecution::max_raised_events
@@ -62,7 +61,7 @@ struct StateMachineBinding {
     StateMachineFast fast{};
 };
 
-/// Names of a state and of those around it, from the outside; none: empty. Real-time.
+/// Returns the names of a state and its enclosing states, outermost first; empty for no_state. Real-time.
 [[nodiscard]] Bounded<std::string_view, max_state_depth> path_of(const ResolvedView& machine,
                                                                  StateIndex state) noexcept TAPPET_REALTIME;
 
@@ -71,17 +70,17 @@ public:
     static constexpr std::size_t max_transitions_per_step = 8;
     static constexpr std::size_t max_raised_events = 8;
 
-    /// Called after each transition, start and deactivation with the leaf that was left and the one that was
-    /// entered; no_state there: none. Real-time.
+    /// Called after each transition, start and deactivation with the leaf that was exited and the leaf that
+    /// was entered; no_state: none. Real-time.
     using Trace = void (*)(void* context, StateIndex from, StateIndex to, TransitionIndex transition,
                            Time now) noexcept TAPPET_REALTIME;
 
     StateMachineExecution() = default;
 
-    /// Before start(), on any thread, of an inactive execution. False, and nothing is bound, when memory that
-    /// the machine takes is missing. Variables keep their values from one activation to the next.
+    /// Binds an inactive execution, on any thread, before start(). Returns false and binds nothing when the
+    /// machine needs more memory than is given. Variables keep their values between activations.
     [[nodiscard]] bool bind(const StateMachineBinding& binding) noexcept TAPPET_REALTIME;
-    /// Of a machine whose programs are C++ functions and that has no history.
+    /// Binds a machine whose programs are C++ functions and that has no history.
     void bind(const ResolvedView& machine, void* component) noexcept TAPPET_REALTIME {
         StateMachineBinding binding;
         binding.machine = machine;
@@ -95,15 +94,15 @@ public:
 
     // ---- commands of thesis fig. 5.19; `now` never decreases from call to call
 
-    /// Enters the initial state, in reactive mode. Ignored when active, or without a machine.
+    /// Enters the initial state, in reactive mode. Ignored when active or without a machine.
     StateOutcome activate(Time now) noexcept TAPPET_REALTIME;
-    /// Automatic mode, and out of a pause: activates what is inactive. Ignored when it is so already.
+    /// Switches to automatic mode and ends a pause; activates an inactive machine. Otherwise ignored.
     StateOutcome start(Time now) noexcept TAPPET_REALTIME;
-    /// Reactive mode, and out of a pause. Run programs that are under way stop where they stand.
+    /// Switches to reactive mode and ends a pause. Run programs that wait stop where they are.
     StateOutcome reactive() noexcept TAPPET_REALTIME;
-    /// From here on single steps only; programs stand where they are, events wait.
+    /// Pauses: only single steps execute, programs stop where they are, events are queued.
     StateOutcome pause() noexcept TAPPET_REALTIME;
-    /// One step of the engine. False: there was nothing to run or to ask.
+    /// Executes one step of the engine. Returns false when there was nothing to run or to evaluate.
     bool step(Time now) noexcept TAPPET_REALTIME {
         if ((mode_ & (inactive | busy | paused | error)) != 0) [[unlikely]]
             return false;
@@ -117,42 +116,45 @@ public:
         step_in_memory<false>(*this, now);
         return true;
     }
-    /// Of a paused machine: one statement of the program in hand, or one transition is asked (5.2.3).
-    /// False: there was nothing to do.
+    /// Single-steps a paused machine: executes one statement of the current program, or evaluates one
+    /// transition (5.2.3). Returns false when there was nothing to do.
     bool step_once(Time now) noexcept TAPPET_REALTIME;
-    /// An event. `trigger` is an index into machine().triggers; out of range it is ignored. `arguments` as
-    /// packed by its event; they are copied. Without those that a transition takes it is ignored.
+    /// Dispatches an event. `trigger` is an index into machine().triggers; out of range it is ignored.
+    /// `arguments`: packed by the event, copied. Ignored when a transition needs arguments and there are
+    /// none.
     StateOutcome dispatch(std::size_t trigger, Time now, const std::byte* arguments = nullptr) noexcept
         TAPPET_REALTIME {
         if (mode_ != ready) [[unlikely]]
             return dispatch_generally(trigger, now, arguments);
         return fast_.dispatch(*this, trigger, now, arguments);
     }
-    /// Takes the first condition transition to that state whose guard holds; the final state and, from it,
-    /// the initial one are always valid; in that state already it does nothing. `run_once`: in reactive mode
-    /// the run programs of the active states are run once, then.
+    /// Takes the first condition transition to `target` whose guard holds. Requests for the final state and,
+    /// from it, for the initial state are always valid. No effect when already in `target`. `run_once`: in
+    /// reactive mode, then runs the run programs of the active states once.
     StateOutcome request_state(StateIndex target, Time now, bool run_once = false) noexcept TAPPET_REALTIME;
-    /// Valid in every active state; ignored in the final one. `reason` outlives the execution.
+    /// Requests the final state: valid in every active state; ignored in the final one. `reason` must outlive
+    /// the execution.
     StateOutcome request_final(Time now, std::string_view reason = {}) noexcept TAPPET_REALTIME;
-    /// From the final to the initial state; ignored elsewhere and out of a program.
+    /// Goes from the final to the initial state; ignored elsewhere and when called from a program.
     StateOutcome request_initial(Time now) noexcept TAPPET_REALTIME;
-    /// Runs the exits and becomes inactive; what waited is dropped. After an error in it a second call goes
-    /// on without the program that failed. Ignored when inactive or called out of a program.
+    /// Runs the exits and becomes inactive; drops queued events and requests. After an error during
+    /// deactivation, a second call continues without the failed program. Ignored when inactive or when called
+    /// from a program.
     StateOutcome deactivate(Time now) noexcept TAPPET_REALTIME;
 
-    // ---- what there is to see
+    // ---- observation
 
     [[nodiscard]] MachineStatus machine_status() const noexcept TAPPET_REALTIME;
     [[nodiscard]] bool is_active() const noexcept TAPPET_REALTIME { return !is(inactive); }
     [[nodiscard]] bool is_automatic() const noexcept TAPPET_REALTIME { return automatic_; }
     [[nodiscard]] bool is_paused() const noexcept TAPPET_REALTIME { return is(paused); }
     [[nodiscard]] bool in_error() const noexcept TAPPET_REALTIME { return is(error); }
-    /// A transition, exit, entry or handle program waits for a later step.
+    /// Returns whether a transition, exit, entry or handle program waits for a later step.
     [[nodiscard]] bool under_way() const noexcept TAPPET_REALTIME { return is(in_hand); }
-    /// A request for a state waits until what is in hand has ended.
+    /// Returns whether a request for a state waits until the current program has ended.
     [[nodiscard]] bool request_waits() const noexcept TAPPET_REALTIME { return wanted_state_ != no_state; }
-    /// The active leaf; with regions the first. While a transition is under way the innermost state that is
-    /// still, or already, active; no_state only inside a call.
+    /// Returns the active leaf; with regions, the first. During a transition, the innermost state that is
+    /// still or already active; no_state only inside a call.
     [[nodiscard]] StateIndex active() const noexcept TAPPET_REALTIME { return status_.active; }
     [[nodiscard]] bool is_in(StateIndex state) const noexcept TAPPET_REALTIME {
         for (const ActiveState& each : status_.states)
@@ -162,45 +164,45 @@ public:
     [[nodiscard]] bool is_final() const noexcept TAPPET_REALTIME {
         return status_.active != no_state && status_.active == machine_.final_state;
     }
-    /// Names of the active leaf and of the states around it, from the outside.
+    /// Returns the names of the active leaf and its enclosing states, outermost first.
     [[nodiscard]] Bounded<std::string_view, max_state_depth> path() const noexcept TAPPET_REALTIME {
         return path_of(machine_, status_.active);
     }
-    /// All active states, each before those inside it.
+    /// Returns all active states, each before those inside it.
     [[nodiscard]] const Bounded<ActiveState, max_active_states>& states() const noexcept TAPPET_REALTIME {
         return status_.states;
     }
-    /// When the active leaf was entered.
+    /// Returns the time at which the active leaf was entered.
     [[nodiscard]] Time entered_at() const noexcept TAPPET_REALTIME {
         for (const ActiveState& each : status_.states)
             if (each.state == status_.active) return each.entered_at;
         return {};
     }
-    /// The earliest time at which a step has still to look at a time-out, of a transition or of a program
-    /// that waits; `never` when there is none: arm a timer with it. It is the time of the last step while
-    /// something is left over.
+    /// Returns the earliest time at which a step must check a time-out of a transition or of a waiting
+    /// program; `never`: there is none. Use it to arm a timer. While work is left over, it is the time of the
+    /// last step.
     [[nodiscard]] Time next_timeout() const noexcept TAPPET_REALTIME;
-    /// The last reason that a transition gave, and still gives until another one does.
+    /// Returns the last reason that a transition gave; it stays until another transition gives one.
     [[nodiscard]] std::string_view reason() const noexcept TAPPET_REALTIME { return reason_; }
-    /// The last transition that gave a reason, for observers on any thread, with how many did before it since
-    /// bind(): two readings that differ are two reasons.
+    /// The last transition that gave a reason, and the number of reasons since bind(), for observers on any
+    /// thread: two different readings are two reasons.
     struct News {
         std::uint64_t number = 0; ///< 0: no reason was given yet
         TransitionIndex transition = 0;
         bool operator==(const News&) const = default;
     };
     [[nodiscard]] News news() const noexcept TAPPET_REALTIME { return read(news_); }
-    /// Likewise the last transition that an event asked for and whose guard refused it, with a reason.
+    /// Returns the last transition whose guard refused an event with a reason, in the same way.
     [[nodiscard]] News refusals() const noexcept TAPPET_REALTIME { return read(refused_); }
-    /// What a transition would be answered now.
+    /// Whether a transition could be taken now.
     struct Look {
         enum class Answer : std::uint8_t {
-            open,         ///< when its event comes; without one in the next step
-            too_early,    ///< a time-out: for so long
-            guard,        ///< says no
-            precondition, ///< of that state says no
-            arguments,    ///< its guard is asked with those of its event
-            failed,       ///< what is asked fails
+            open,         ///< when its event comes; without an event, in the next step
+            too_early,    ///< a time-out: `left` remains
+            guard,        ///< its guard says no
+            precondition, ///< the precondition of `state` says no
+            arguments,    ///< its guard needs the arguments of its event
+            failed,       ///< the guard or the precondition failed
             elsewhere     ///< its source is not active
         };
         Answer answer = Answer::elsewhere;
@@ -208,23 +210,23 @@ public:
         Duration left{};
         std::string_view detail{}; ///< see GuardReason
     };
-    /// Asks a transition of the table as a step or an event does, and takes nothing. In the machine's
-    /// activity, between its steps.
+    /// Evaluates a transition of the table as a step or an event does, without taking it. Call it in the
+    /// machine's activity, between its steps.
     [[nodiscard]] Look look(TransitionIndex transition, Time now) noexcept TAPPET_REALTIME;
-    /// The last call reached a bound with more to do: a condition that still held, an event that still waits
-    /// although nothing hinders it, or statements.
+    /// Returns whether the last call reached a bound with work left: a condition that still held, an event
+    /// that could be handled, or statements.
     [[nodiscard]] bool left_over() const noexcept TAPPET_REALTIME {
         return conditions_left_ || statements_left_ || (raised_count_ != 0 && !is(in_hand));
     }
     [[nodiscard]] std::size_t waiting_events() const noexcept TAPPET_REALTIME { return raised_count_; }
-    /// The program in hand, of a transition, exit, entry or handle; no_node: none.
+    /// Returns the current program of a transition, exit, entry or handle; no_node: none.
     [[nodiscard]] NodeIndex node_in_hand() const noexcept TAPPET_REALTIME {
         return program_begun_ ? position_.node : no_node;
     }
     [[nodiscard]] const StateMachineStatus& status() const noexcept TAPPET_REALTIME { return status_; }
     [[nodiscard]] const StateMachineFault& fault() const noexcept TAPPET_REALTIME { return status_.fault; }
     [[nodiscard]] const ResolvedView& machine() const noexcept TAPPET_REALTIME { return machine_; }
-    /// For whoever reads or writes its variables; between its steps.
+    /// Returns the variables, to read or write between the machine's steps.
     [[nodiscard]] std::byte* data() const noexcept TAPPET_REALTIME { return context_.data; }
 
 private:
@@ -234,7 +236,7 @@ private:
     template <const auto& source, std::size_t type, StateIndex leaf> friend struct native::AtLeaf;
     template <const auto& source, std::size_t type> friend struct native::MachineCode;
 
-    // What keeps a call from taking the quick path; 0: nothing.
+    // Conditions that exclude the fast path; 0: none.
     enum Mode : std::uint8_t {
         ready = 0,
         inactive = 1,
@@ -246,15 +248,15 @@ private:
         error = 64,
         mid_round = 128, // of run, conditions and handle
     };
-    /// What is in hand.
+    /// The current job.
     struct Job {
-        StepIndex at = no_step; ///< that it stands at; no_step: nothing
+        StepIndex at = no_step; ///< the current step; no_step: none
         ArcIndex arc = no_arc;
         StateIndex from = no_state;      ///< the leaf, for the trace
-        std::uint8_t first = 0, end = 0; ///< the active states that are still to be left
-        std::uint8_t remembered = 0;     ///< of a history: so many were entered
-        bool placed = false;             ///< of a history: the next one is active
-        bool all = false;                ///< once the exit in hand has ended, everything is left
+        std::uint8_t first = 0, end = 0; ///< the active states that are still to be exited
+        std::uint8_t remembered = 0;     ///< of a history: states entered so far
+        bool placed = false;             ///< of a history: the next one is already active
+        bool all = false;                ///< after the current exit, exits all states
     };
     struct Selected {
         StateIndex source = no_state;
@@ -290,7 +292,7 @@ private:
         statements_left_ = false;
         return {policy_.statements};
     }
-    /// What programs asked for while they ran is served before it returns.
+    /// Serves what programs requested while they ran, then returns.
     void close(Call call) noexcept TAPPET_REALTIME {
         if (mode_ == busy) [[likely]]
             mode_ = ready;
@@ -319,7 +321,7 @@ private:
     Call serve_final(Call call) noexcept TAPPET_REALTIME;
     StateOutcome serve_request(Call& call) noexcept TAPPET_REALTIME;
     void handle_raised(Call& call) noexcept TAPPET_REALTIME;
-    // The arc of what is done with is still there.
+    // The arc of a finished job is still stored.
     [[nodiscard]] bool has_in_hand(ArcIndex arc) const noexcept TAPPET_REALTIME {
         return is(in_hand) && job_.at != no_step && job_.arc == arc;
     }
@@ -341,16 +343,16 @@ private:
     void begin_request(ArcIndex arc) noexcept TAPPET_REALTIME;
     void supersede(ArcIndex arc) noexcept TAPPET_REALTIME;
 
-    // ---- what happens on the way
+    // ---- effects during execution
     void holds(const Job& job) noexcept TAPPET_REALTIME {
         job_ = job;
         set(in_hand);
     }
-    /// At a step of a compiled machine, whose leaf is active; `kept`: so many states are not left.
+    /// Stops at a step of a compiled machine whose leaf is active; `kept`: states that are not exited.
     [[gnu::cold]] void stands_at(StepIndex step, ArcIndex arc, StateIndex leaf, std::uint8_t kept) noexcept
         TAPPET_REALTIME;
     void depart() noexcept TAPPET_REALTIME;
-    /// A program or question that did not end well; false.
+    /// Handles a program or question that did not end normally. Returns false.
     bool breaks_off(ProgramReturn why, StatePart part, StateIndex state, NodeIndex node) noexcept
         TAPPET_REALTIME;
     bool lacks_statements() noexcept TAPPET_REALTIME {
@@ -360,19 +362,19 @@ private:
     Answer refuses(StatePart part, const StateArc& arc) noexcept TAPPET_REALTIME;
     void fail(StatePart part, StateIndex state, NodeIndex node) noexcept TAPPET_REALTIME;
     bool capture(TransitionIndex transition, const std::byte* arguments) noexcept TAPPET_REALTIME;
-    /// The run program of a state that has begun; false: nothing after it is done in this call.
+    /// Resumes a state's run program; false: nothing more runs in this call.
     bool resume_running(ActiveState& at, Call& call) noexcept TAPPET_REALTIME {
         context_.position = at.position;
         const ProgramReturn why = run(at.position, call);
         return why == ProgramReturn::ended || has_not_run(at, why);
     }
     [[gnu::cold]] bool has_not_run(ActiveState& at, ProgramReturn why) noexcept TAPPET_REALTIME;
-    /// No condition of the active states held; the handle programs of some are left for later.
+    /// No condition of the active states held; some handle programs run later.
     [[gnu::cold]] void has_asked_all() noexcept TAPPET_REALTIME {
         for (ActiveState& active : status_.states)
             if (active.run == RunPhase::ran) active.run = RunPhase::asked;
     }
-    /// A program of the table, from the context's position; where it stands is kept when it does not end.
+    /// Runs a program of the table from the context's position; stores the position when it does not end.
     ProgramReturn run(ProgramPosition& kept, Call& call) noexcept TAPPET_REALTIME {
         auto left = static_cast<std::uint32_t>(call.left > 0 ? call.left : 0);
         const ProgramReturn why = code_.run(*code_.tables, context_, left);
@@ -412,15 +414,15 @@ private:
     bool automatic_ = false;
     bool conditions_left_ = false;
     bool statements_left_ = false;
-    bool single_ = false;        // a single step: questions count as statements
-    bool run_once_ = false;      // asked for by request_state()
-    bool program_begun_ = false; // position_ holds
+    bool single_ = false;        // a single step: evaluations count as statements
+    bool run_once_ = false;      // requested by request_state()
+    bool program_begun_ = false; // position_ is valid
 
     Job job_;
-    ProgramPosition position_; // of the program in hand
+    ProgramPosition position_; // of the current program
     statechart::Entering remembered_;
-    Bounded<Selected, max_active_states> selected_; // of one event, that have still to be taken; last first
-    std::uint32_t asked_ = 0;                       // questions of this round that single steps have had
+    Bounded<Selected, max_active_states> selected_; // by one event, not yet taken; next one first
+    std::uint32_t asked_ = 0;                       // evaluations that single steps made in this round
     std::array<std::uint64_t, max_states / 64> ran_{};
     StateMachinePolicy policy_;
     StateMachineStatus status_;
@@ -440,7 +442,7 @@ private:
     StateMachineExecution* parent_ = nullptr;
     std::span<StateIndex> history_;
     std::span<std::byte> deferred_;
-    std::array<TriggerIndex, max_raised_events> raised_{}; // a ring
+    std::array<TriggerIndex, max_raised_events> raised_{}; // ring buffer
     std::uint8_t raised_first_ = 0;
     std::uint8_t raised_count_ = 0;
 };

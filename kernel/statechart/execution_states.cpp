@@ -1,5 +1,5 @@
-// What happens on the way of an execution: states become active and inactive, programs stop and fail,
-// requests take the place of what is in hand.
+// Effects during execution: states become active and inactive, programs stop and fail, requests supersede the
+// current job.
 #include "kernel/statechart/in_memory.hpp"
 
 #include <cstring>
@@ -14,7 +14,7 @@ std::size_t StateMachineExecution::index_of(StateIndex state) const noexcept TAP
     return i;
 }
 
-// The active states inside one stand after it.
+// The active states inside a state follow it in the list.
 std::size_t StateMachineExecution::end_of(std::size_t index) const noexcept TAPPET_REALTIME {
     if (index >= status_.states.size()) return index;
     const std::uint16_t depth = machine_.plans[status_.states[index].state].depth;
@@ -25,7 +25,7 @@ std::size_t StateMachineExecution::end_of(std::size_t index) const noexcept TAPP
 
 void StateMachineExecution::insert(std::size_t index, StateIndex state) noexcept TAPPET_REALTIME {
     auto& states = status_.states;
-    if (states.full()) return; // the check allows no such machine
+    if (states.full()) return; // the check rejects such a machine
     for (std::size_t i = states.used++; i > index; --i) states[i] = states[i - 1];
     states[index] = {state, RunPhase::fresh, {}, context_.now};
     find_active();
@@ -44,7 +44,7 @@ void StateMachineExecution::remove(std::size_t index) noexcept TAPPET_REALTIME {
     find_active();
 }
 
-// Of those that are to be left.
+// Removes the last of the states that are to be exited.
 void StateMachineExecution::leaves_last() noexcept TAPPET_REALTIME {
     remove(--job_.end);
     if (!job_.all) return;
@@ -61,7 +61,7 @@ void StateMachineExecution::find_active() noexcept TAPPET_REALTIME {
     }
 }
 
-// A history says what was active when its region was last left; what is still active will have been.
+// Uses the state that was active when its region was last exited; a state still active counts as such.
 void StateMachineExecution::plan_remembered(statechart::Entering& into, const StateArc& arc) const noexcept
     TAPPET_REALTIME {
     statechart::plan_entries(
@@ -133,7 +133,7 @@ void StateMachineExecution::fail(StatePart part, StateIndex state, NodeIndex nod
     }
 }
 
-// ---- what is in hand
+// ---- the current job
 
 void StateMachineExecution::begin_request(ArcIndex arc) noexcept TAPPET_REALTIME {
     const std::size_t active = status_.states.size();
@@ -146,7 +146,7 @@ void StateMachineExecution::begin_request(ArcIndex arc) noexcept TAPPET_REALTIME
     set(in_hand);
 }
 
-// What waits is given up, but an exit program is brought to its end: it is what makes leaving safe.
+// Aborts whatever waits. An exit program runs to its end first: it is what makes leaving safe.
 void StateMachineExecution::supersede(ArcIndex arc) noexcept TAPPET_REALTIME {
     const bool in_exit =
         job_.at != no_step && machine_.steps[job_.at].kind == StepKind::leave && program_begun_ && !is(error);

@@ -1,5 +1,5 @@
-// A state machine's names as numbers: who is inside whom, where a transition leads, which event is which
-// trigger. Computed once from the rows, by the checks and by the resolver, at compile time or on the target.
+// A state machine's names as numbers: parents of states, targets of transitions, triggers of events. Computed
+// once from the rows, by the checks and by the resolver, at compile time or on the target.
 #pragma once
 
 #include "kernel/statechart/table.hpp"
@@ -9,18 +9,18 @@
 
 namespace tappet {
 
-/// Number of a trigger: events in the order in which the transitions first name them.
+/// Number of a trigger: events are numbered in the order in which the transitions first name them.
 using TriggerIndex = std::uint16_t;
 inline constexpr TriggerIndex no_trigger = 0xffff;
 
-/// The first state of that name, or no_state.
+/// Returns the first state of that name, or no_state.
 constexpr StateIndex find_state(const StateMachineTable& table, std::string_view name) noexcept {
     for (std::size_t i = 0; i < table.states.size(); ++i)
         if (table.states[i].name == name) return static_cast<StateIndex>(i);
     return no_state;
 }
 
-/// Holds for any table within max_states and max_transitions, good or faulty: what is not there is no_state.
+/// Valid for any table within max_states and max_transitions, good or faulty: a missing state is no_state.
 struct StateHierarchy {
     const StateMachineTable& table;
     std::array<StateIndex, max_states> parent{};
@@ -36,15 +36,15 @@ struct StateHierarchy {
         first_with{};                                    ///< by trigger: the transition that first names it
     std::array<TransitionIndex, max_states> first_out{}; ///< by state: its first transition
     std::array<TransitionIndex, max_transitions> next_out{}; ///< of the same source, in table order
-    /// Region 0 is the top of the machine. The regions of a composite have numbers one after the other, in
-    /// the order in which its states first name them; without names it has one.
-    std::array<std::uint16_t, max_states> region_of{};    ///< that the state lies in
-    std::array<std::uint16_t, max_states> first_region{}; ///< of those inside the state
+    /// Region 0 is the top of the machine. The regions of a composite are numbered consecutively, in the
+    /// order in which its states first name them; without names it has one region.
+    std::array<std::uint16_t, max_states> region_of{};    ///< region that contains the state
+    std::array<std::uint16_t, max_states> first_region{}; ///< first region inside the state
     std::array<std::uint16_t, max_states> region_count{}; ///< 0: a leaf
     std::array<StateIndex, max_states + 1> region_initial{};
-    std::array<StateIndex, max_states + 1> region_name{}; ///< a state that lies in it
+    std::array<StateIndex, max_states + 1> region_name{}; ///< a state in the region
     std::size_t regions = 1;
-    std::size_t most_active = 0; ///< states that are active at the same time
+    std::size_t most_active = 0; ///< most states active at the same time
     std::size_t triggers = 0;
     StateIndex initial_top = no_state;
     StateIndex final_state = no_state;
@@ -69,8 +69,8 @@ struct StateHierarchy {
         }
     }
 
-    /// Calls visit(transition) for those that lead out of a leaf in the order in which they are asked: the
-    /// innermost state's first, each state's in table order. It ends when visit returns false.
+    /// Calls visit(transition) for the transitions out of a leaf in the order of evaluation: those of the
+    /// innermost state first, each state's in table order. Stops when visit returns false.
     template <class Visit> constexpr void for_each_out(StateIndex leaf, const Visit& visit) const {
         for (StateIndex source = leaf; source != no_state; source = parent[source])
             for (TransitionIndex t = first_out[source]; t != no_transition; t = next_out[t])
@@ -79,7 +79,7 @@ struct StateHierarchy {
 
     [[nodiscard]] constexpr std::size_t states() const noexcept { return table.states.size(); }
     [[nodiscard]] constexpr std::size_t transitions() const noexcept { return table.transitions.size(); }
-    /// find_state(), but quick enough for hundreds of names in a constant expression.
+    /// Does the same as find_state(), fast enough for hundreds of names in a constant expression.
     [[nodiscard]] constexpr StateIndex find(std::string_view name) const noexcept {
         const std::uint32_t key = key_of(name);
         for (std::size_t i = 0; i < table.states.size(); ++i)
@@ -90,7 +90,7 @@ struct StateHierarchy {
         return table.transitions[first_with[number]].event;
     }
 
-    /// The state of that depth around (or equal to) a state that is at least as deep.
+    /// Returns the state of that depth that encloses or is `state`; `state` must be at least as deep.
     [[nodiscard]] constexpr StateIndex ancestor(StateIndex state, std::size_t wanted_depth) const noexcept {
         while (state != no_state && depth[state] > wanted_depth) state = parent[state];
         return state;
@@ -116,13 +116,13 @@ struct StateHierarchy {
             if (region_count[i] > 1) return true;
         return false;
     }
-    /// The leaf that is active once a state was entered, of the first region of each composite; no_state
-    /// where a composite has no initial state.
+    /// Returns the leaf that is active after `state` was entered, of the first region of each composite;
+    /// no_state where a composite has no initial state.
     [[nodiscard]] constexpr StateIndex initial_leaf(StateIndex state) const noexcept {
         while (state != no_state && composite[state]) state = initial_inside[state];
         return state;
     }
-    /// Depth of the deepest state that is around both and is neither of them; 0: the machine itself.
+    /// Returns the depth of the deepest state that encloses both and is neither; 0: the machine itself.
     [[nodiscard]] constexpr std::size_t shared_depth(StateIndex a, StateIndex b) const noexcept {
         std::size_t level = 0;
         while (level + 1 < depth[a] && level + 1 < depth[b] &&

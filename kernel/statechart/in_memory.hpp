@@ -1,13 +1,12 @@
-// A state machine that stands in memory: what order.hpp asks of it is read. Here everything goes on that had
-// to stop, also of a compiled machine.
+// A state machine in memory: order.hpp reads its rows here. Every execution that had to stop continues here,
+// also that of a compiled machine.
 #pragma once
 
 #include "kernel/statechart/order.hpp"
 
 namespace tappet::statechart {
 
-/// `quick`: nothing waits and nothing is under way, there are no regions, and a round is one of the automatic
-/// mode: so it is in nearly all steps of nearly all machines.
+/// `quick`: fast path for an idle machine, no regions, automatic mode. Nearly all steps take it.
 template <bool quick> struct Memory {
     using Execution = StateMachineExecution;
     using Answer = Execution::Answer;
@@ -21,13 +20,13 @@ template <bool quick> struct Memory {
         [[nodiscard]] bool is_function() const noexcept TAPPET_REALTIME { return ref.call != nullptr; }
         void call(void* component) const noexcept TAPPET_REALTIME { ref.call(component); }
         static constexpr bool is_private() noexcept TAPPET_REALTIME { return false; }
-        // A run program.
+        // Starts a run program.
         bool begin(Execution& e, ActiveState& at, Call& call) const noexcept TAPPET_REALTIME {
             e.context_.position = {.node = first_node(e)};
             const ProgramReturn why = e.run(at.position, call);
             return why == ProgramReturn::ended || e.has_not_run(at, why);
         }
-        // The one in hand: from its beginning, or from where it stands.
+        // Runs the current program: from its beginning, or from where it stopped.
         template <class Step>
         bool run_to_end(Execution& e, StatePart part, StateIndex state, Step, Call& call) const noexcept
             TAPPET_REALTIME {
@@ -45,7 +44,7 @@ template <bool quick> struct Memory {
     struct State {
         const StateRow& row;
         StateIndex index;
-        std::size_t place = 0; ///< among the active ones
+        std::size_t place = 0; ///< index in the active states
 
         [[nodiscard]] StateIndex number() const noexcept TAPPET_REALTIME { return index; }
         [[nodiscard]] ActiveState& at(Execution& e) const noexcept TAPPET_REALTIME {
@@ -96,9 +95,9 @@ template <bool quick> struct Memory {
         return e.job_.arc == tappet::no_arc ? no_arc() : arc_of(e, e.job_.arc);
     }
 
-    // ---- what is known of it
+    // ---- facts about the machine
 
-    // With regions nothing runs before all have been asked; a single step only chooses.
+    // With regions, all guards are evaluated before any program runs; a single step only selects.
     static bool is_plain(const Execution& e) noexcept TAPPET_REALTIME { return quick || e.machine_.plain; }
     static bool takes_at_once(const Execution& e) noexcept TAPPET_REALTIME {
         return is_plain(e) && !is_single(e);
@@ -114,7 +113,7 @@ template <bool quick> struct Memory {
         return e.status_.states[is_plain(e) ? arc.row().source_level : e.index_of(arc.row().source)];
     }
 
-    // ---- questions
+    // ---- guards and preconditions
 
     static Answer ask(Execution& e, const ConditionRef& condition) noexcept TAPPET_REALTIME {
         if (condition.call != nullptr) return condition.call(e.context_.component) ? Answer::yes : Answer::no;
@@ -125,7 +124,7 @@ template <bool quick> struct Memory {
         return e.capture(arc.row().transition, arguments);
     }
 
-    /// Of which trigger; no_trigger: the conditions.
+    /// The trigger to look up; no_trigger: the conditions.
     struct Cell {
         std::size_t trigger = no_trigger;
     };
@@ -154,7 +153,7 @@ template <bool quick> struct Memory {
             if (quick) return;
         }
     }
-    // From the last leaf inside its source.
+    // Only the last leaf inside the source evaluates the transition.
     static bool is_asked_from(const Execution& e, Leaf leaf, Arc arc) noexcept TAPPET_REALTIME {
         return is_plain(e) || e.end_of(e.index_of(arc.row().source)) == leaf.place + 1;
     }
@@ -200,7 +199,7 @@ template <bool quick> struct Memory {
         job.end = static_cast<std::uint8_t>(is_plain(e) ? states.size() : e.end_of(first));
         return job;
     }
-    // The conditions are asked again.
+    // The next step evaluates the conditions again.
     static void asks_again(Execution& e) noexcept TAPPET_REALTIME {
         for (ActiveState& active : e.status_.states)
             if (active.run == RunPhase::asked) active.run = RunPhase::ran;

@@ -1,6 +1,5 @@
-// A state machine that stands in constants: the order of order.hpp with every row known, so that an event is
-// a choice between constants, and so is a round of a step. What cannot end here is left to in_memory.hpp, as
-// it stands.
+// A state machine in constants: order.hpp with every row known at compile time, so that an event and a round
+// of a step become a choice between constants. in_memory.hpp continues whatever cannot end here.
 #pragma once
 
 #include "kernel/statechart/native_rows.hpp"
@@ -9,7 +8,7 @@ namespace tappet {
 
 namespace native {
 
-/// What the order asks while a leaf is active; see in_memory.hpp for the same of a machine in memory.
+/// The table that order.hpp uses while a leaf is active; in_memory.hpp has the one for a machine in memory.
 template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf : MachineRows<source, type> {
     using Rows = MachineRows<source, type>;
     using Execution = Rows::Execution;
@@ -39,7 +38,7 @@ template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf :
         return Asked<view.plans[leaf].conditions>{};
     }
 
-    // ---- questions
+    // ---- guards and preconditions
 
     template <class Condition>
     [[gnu::always_inline]] static Execution::Answer ask(Execution& e, Condition condition) noexcept
@@ -95,7 +94,7 @@ template <const auto& source, std::size_t type, StateIndex leaf> struct AtLeaf :
 
     // ---- one transition
 
-    // Folds, not closures: the compiler takes each closure apart again, at each of these places.
+    // Folds, not closures: the compiler would take each closure apart again, at each of these places.
     template <class Here, class Visit>
     [[gnu::always_inline]] static bool one_step([[maybe_unused]] Execution& e, const Visit& visit) noexcept
         TAPPET_REALTIME {
@@ -162,14 +161,14 @@ template <const auto& source, std::size_t type> struct MachineCode : MachineRows
     static constexpr const ResolvedView& view = Rows::view;
     template <StateIndex leaf> using Order = statechart::Order<AtLeaf<source, type, leaf>>;
 
-    /// One for each cell in which there is something to ask, and one for each leaf.
+    /// One for each cell with something to evaluate, and one for each leaf.
     struct Case {
         std::uint32_t key = 0;
         StateIndex leaf = no_state;
         AskedIndex first = none_asked;
         bool captures = false;
     };
-    // How many there are; those for which there is room are stored, in the order of their keys.
+    // Returns the number of cases; stores those that fit, ordered by key.
     template <bool events> static constexpr std::size_t list_cases(std::span<Case> list) {
         std::size_t used = 0;
         for (std::size_t leaf = 0; leaf < view.sizes.states; ++leaf) {
@@ -215,7 +214,7 @@ template <const auto& source, std::size_t type> struct MachineCode : MachineRows
             again = Order<cases<false>[number].leaf>::run_round(e, taken, call);
         }
     };
-    // By halving: no table is left.
+    // Binary search: no table is needed.
     template <class What, std::size_t low, std::size_t high>
     [[gnu::always_inline]] static void chooses(What& what, std::uint32_t key, Execution& e,
                                                Call& call) noexcept TAPPET_REALTIME {
@@ -229,7 +228,7 @@ template <const auto& source, std::size_t type> struct MachineCode : MachineRows
         }
     }
 
-    // Of an execution that is ready: nothing waits, nothing is under way.
+    // For an execution that is ready: nothing waits, nothing is under way.
     static StateOutcome dispatch(Execution& e, std::size_t trigger, Time now,
                                  const std::byte* arguments) noexcept TAPPET_REALTIME {
         if (trigger >= view.sizes.triggers) [[unlikely]]
@@ -261,9 +260,9 @@ template <const auto& source, std::size_t type> struct MachineCode : MachineRows
 
 } // namespace native
 
-/// The compiled form of a constant state machine, for StateMachineBinding::fast. One with orthogonal regions
-/// or history stands in memory; its programs and conditions are native all the same. `source`: a StateMachine
-/// of rows.hpp, or a ScriptUnit with the number of a type; a variable at namespace scope.
+/// The compiled form of a constant state machine, for StateMachineBinding::fast. A machine with orthogonal
+/// regions or history runs from memory; its programs and conditions are native all the same. `source`: a
+/// StateMachine of rows.hpp, or a ScriptUnit with the number of a type; a variable at namespace scope.
 template <const auto& source, std::size_t type = 0>
 inline constexpr StateMachineFast native_machine = native::MachineCode<source, type>::fast();
 

@@ -1,5 +1,4 @@
-// The rows of a constant state machine as types, as order.hpp asks for them: whatever a row says the compiler
-// knows.
+// The rows of a constant state machine as types, for order.hpp: the compiler knows every row.
 #pragma once
 
 #include "kernel/program/native.hpp"
@@ -8,7 +7,7 @@
 
 namespace tappet {
 
-/// Where native code finds a state machine: see tables_of() in kernel/program/native.hpp.
+/// Gives native code the state machine: see tables_of() in kernel/program/native.hpp.
 template <std::size_t S, std::size_t T>
 constexpr StateMachineTable machine_of(const StateMachine<S, T>& machine, std::size_t) noexcept {
     return machine.view();
@@ -24,7 +23,7 @@ namespace native {
 template <const auto& source, std::size_t type>
 inline constexpr ResolvedMachine<measure(machine_of(source, type))> resolved_type{machine_of(source, type)};
 
-/// Calls visit.operator()<i>() for each number below `count`, until one answers false.
+/// Calls visit.operator()<i>() for each i below `count`, until one returns false.
 template <std::size_t count, class Visit>
 [[gnu::always_inline]] constexpr bool for_each_below(const Visit& visit) noexcept TAPPET_REALTIME {
     return [&]<std::size_t... i> [[gnu::always_inline]] (std::index_sequence<i...>) noexcept TAPPET_REALTIME {
@@ -44,8 +43,8 @@ template <const auto& source, std::size_t type> struct MachineRows {
     static constexpr std::uint32_t statements_of(const ProgramRef& program) {
         return program.program != no_program ? Programs::facts[program.program].statements : !program.empty();
     }
-    /// No more than one call executes: so many rounds in a leaf and transitions from it, and after each one
-    /// to the final state by request.
+    /// Upper bound for one call: so many rounds in a leaf and transitions from it, and after each one to the
+    /// final state by request.
     static constexpr std::uint64_t most_statements = [] {
         std::uint64_t most_in_leaf = 0, most_on_the_way = 0;
         for (std::size_t leaf = 0; leaf < view.sizes.states; ++leaf) {
@@ -62,7 +61,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
                 most_on_the_way = std::max<std::uint64_t>(most_on_the_way, statements_of(*each));
         return (most_in_leaf + most_on_the_way) * (2 * Execution::max_transitions_per_step + 2);
     }();
-    /// Where they are few nothing counts them.
+    /// Below the bound, statements are not counted.
     static constexpr bool counts = most_statements >= Programs::unbounded;
 
     // ---- programs and conditions
@@ -85,7 +84,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
         [[gnu::always_inline]] static void call([[maybe_unused]] void* component) noexcept TAPPET_REALTIME {
             if constexpr (function != nullptr) function(component);
         }
-        // From its beginning; `stopped(stands, next)` when it does not end.
+        // Runs from its beginning; calls `stopped(stands, next)` when it does not end.
         template <class Stopped>
         [[gnu::always_inline]] static bool run_nodes([[maybe_unused]] Execution& e,
                                                      [[maybe_unused]] Call& call,
@@ -172,7 +171,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
         }
     };
 #undef TAPPET_PROGRAM
-    /// The steps of one branch of an arc; of a handle program: of no arc.
+    /// The steps of one branch of an arc; of a handle program: without an arc.
     template <StepIndex from, ArcIndex of, bool is_otherwise> struct Steps {
         static constexpr StepIndex first = from;
         static constexpr ArcIndex arc = of;
@@ -188,7 +187,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
     template <StepIndex index, class List, StateIndex leaf> struct Step {
         static constexpr const TransitionStep& row() noexcept TAPPET_REALTIME { return view.steps[index]; }
         static constexpr State<view.steps[index].state> state() noexcept TAPPET_REALTIME { return {}; }
-        /// Here it is left to the loaded form.
+        /// Leaves the execution to the loaded form at this step.
         [[gnu::always_inline]] static void stands(Execution& e) noexcept TAPPET_REALTIME {
             if constexpr (List::arc == no_arc) {
                 e.stands_at(index, no_arc, no_state, 0);
@@ -198,7 +197,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
             }
         }
     };
-    /// Arcs that are asked one after the other.
+    /// Arcs that are evaluated one after the other.
     template <AskedIndex first> struct Asked {
         static constexpr std::size_t count = [] {
             std::size_t arcs = 0;
@@ -226,7 +225,7 @@ template <const auto& source, std::size_t type> struct MachineRows {
                                                                    scratch) == ActionResult::done;
             });
     }
-    // Of a transition that is taken in memory.
+    // For a transition that is taken in memory.
     static bool capture(Execution& e, TransitionIndex transition, const std::byte* arguments) noexcept
         TAPPET_REALTIME {
         bool good = true;

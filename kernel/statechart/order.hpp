@@ -1,16 +1,15 @@
-// The order of execution of a state machine (thesis 5.2), written once: what an event asks and takes, what
-// one transition does, and what one step of the automatic mode runs. `Table` says where the machine stands:
-// in memory, in_memory.hpp, where it is read and the order goes on from wherever it stopped; or in constants,
-// native.hpp, which the compiler folds, and where it begins. Wherever the order stops, all that it needs to
-// go on lies in the execution. The lines of kernel/statechart/README.md that hold for a function stand before
-// it.
+// The order of execution of a state machine (thesis 5.2), written once: event dispatch, one transition, one
+// step in automatic mode. `Table` gives access to the machine: in memory (in_memory.hpp), where rows are read
+// and execution continues from wherever it stopped; or in constants (native.hpp), which the compiler folds
+// and where execution starts. When it stops, the execution holds all that is needed to continue. The numbers
+// before a function are the lines of kernel/statechart/README.md that it implements.
 #pragma once
 
 #include "kernel/statechart/execution.hpp"
 
 namespace tappet::statechart {
 
-/// What a visit says of the ones after it.
+/// Tells the visitor how to continue.
 enum class Flow : std::uint8_t { on, next_leaf, stop };
 
 template <class Table> struct Order {
@@ -20,7 +19,7 @@ template <class Table> struct Order {
 
     // ---- one program, one step of a transition
 
-    // Whether it has ended, and nothing else has come into error meanwhile.
+    // Returns whether the program ended and nothing else caused an error in the meantime.
     template <class Program, class Step>
     [[gnu::always_inline]] static bool perform(Execution& e, Program program, StatePart part,
                                                StateIndex state, Step step, Call& call) noexcept
@@ -82,7 +81,7 @@ template <class Table> struct Order {
         }
     }
 
-    // All that is in hand, and of one event all that is selected. True when nothing is in hand any more.
+    // Executes the current job, then all transitions selected by one event. Returns true when no job is left.
     template <class Arc, class Steps>
     [[gnu::always_inline]] static bool run_steps(Execution& e, Arc arc, Steps steps, Call& call) noexcept
         TAPPET_REALTIME {
@@ -127,7 +126,7 @@ template <class Table> struct Order {
         begin<otherwise>(e, arc);
         return run_steps(e, arc, arc.template steps<otherwise>(), call);
     }
-    // False: it did not end.
+    // Returns false when the handle program did not end.
     template <class State>
     [[gnu::always_inline]] static bool handle(Execution& e, State state, Call& call) noexcept
         TAPPET_REALTIME {
@@ -136,7 +135,7 @@ template <class Table> struct Order {
         return run_steps(e, Table::no_arc(), state.handle_steps(), call);
     }
 
-    // ---- which transition
+    // ---- selecting a transition
 
     // 7, 50
     template <bool otherwise, class Arc>
@@ -159,7 +158,7 @@ template <class Table> struct Order {
             return Answer::no;
         if (arc.row().captures && !Table::captures(e, arc, arguments)) [[unlikely]]
             return e.refuses(StatePart::capture, arc.row());
-        e.context_.position.entered = false; // a question has waited for nothing
+        e.context_.position.entered = false; // a guard has not waited for anything
         Answer answer = Table::ask(e, arc.guard());
         if (arc.row().tells_refusal && answer == Answer::no && refused_by == no_transition)
             refused_by = arc.row().transition;
@@ -171,7 +170,7 @@ template <class Table> struct Order {
         return answer == Answer::failed ? e.refuses(StatePart::guard, arc.row()) : answer;
     }
 
-    // An event: 10, 12, 13. Nothing runs before all regions have been asked.
+    // An event: 10, 12, 13. No program runs before all regions have been evaluated.
     template <class Cell>
     [[gnu::always_inline]] static bool dispatch(Execution& e, Cell cell, const std::byte* arguments,
                                                 Call& call) noexcept TAPPET_REALTIME {
@@ -253,7 +252,7 @@ template <class Table> struct Order {
 
     enum class Found : std::uint8_t { nothing, taken, halted };
 
-    // 22: the innermost states first; of the states around several leaves, after all of those.
+    // 22: innermost states first; states around several leaves after all of those.
     [[gnu::always_inline]] static Found find_transition(Execution& e, Call& call) noexcept TAPPET_REALTIME {
         Found found = Found::nothing;
         std::uint32_t number = 0;
@@ -298,7 +297,7 @@ template <class Table> struct Order {
         return all;
     }
 
-    // One round of run programs, conditions and handle programs: 21 - 24. True: another one follows in this
+    // One round of run programs, conditions and handle programs: 21 - 24. True: another round follows in this
     // step.
     [[gnu::always_inline]] static bool run_round(Execution& e, std::size_t& taken, Call& call) noexcept
         TAPPET_REALTIME {

@@ -1,6 +1,6 @@
-// A state machine with its names folded away: for each leaf and trigger the transitions that may be taken,
-// and for each transition its steps, both in their order. What the order is stands here and in order.hpp, and
-// nowhere else. Computed by the compiler, or on the target into bounded memory.
+// A state machine with its names resolved: for each leaf and trigger the candidate transitions, and for each
+// transition its steps, both in order. Only this file and order.hpp define that order. Computed by the
+// compiler, or on the target into bounded memory.
 #pragma once
 
 #include "kernel/statechart/check.hpp"
@@ -11,37 +11,37 @@
 
 namespace tappet {
 
-/// One thing that a transition does.
+/// One step of a transition.
 enum class StepKind : std::uint8_t {
     act,        ///< its program
     otherwise,  ///< its else program
-    leave,      ///< all that it leaves, from the inside: each exit program, then that state is active no more
-    place,      ///< a state is active
+    leave,      ///< exits states, innermost first: each runs its exit program, then becomes inactive
+    place,      ///< makes a state active
     entry,      ///< the entry program of that state
-    remembered, ///< what a history says: as `place` and `entry` of each
-    arrive,     ///< it is done
-    depart,     ///< likewise, and nothing is active
-    handle      ///< of no transition: a state's handle program
+    remembered, ///< enters the states of a history: `place` and `entry` for each
+    arrive,     ///< completes the transition
+    depart,     ///< completes it with no state active
+    handle      ///< a state's handle program; not part of a transition
 };
 
 struct TransitionStep {
     StepKind kind = StepKind::arrive;
-    std::uint8_t number = 0;     ///< place: so many were placed before; leave: so many levels are kept
-    StateIndex state = no_state; ///< arrive: the last that was placed; no_state: none, or a history's
+    std::uint8_t number = 0;     ///< place: states placed before; leave: levels that are kept
+    StateIndex state = no_state; ///< arrive: the last that was placed; no_state: none, or by history
 };
 
-/// Number of a step. Those of one transition lie side by side, up to one that ends it.
+/// Number of a step. The steps of one transition are contiguous; the last one ends it.
 using StepIndex = std::uint32_t;
 inline constexpr StepIndex no_step = 0xffffffff;
 constexpr bool is_last(StepKind kind) noexcept TAPPET_REALTIME {
     return kind == StepKind::arrive || kind == StepKind::depart || kind == StepKind::handle;
 }
-/// It may have to be gone on with: all but what only notes what is so.
+/// Execution may pause at this step: any step but pure bookkeeping.
 constexpr bool may_stand(StepKind kind) noexcept TAPPET_REALTIME {
     return kind != StepKind::place && kind != StepKind::arrive && kind != StepKind::depart;
 }
 
-/// Number of an arc: four that every machine has, then the transitions of the table in their order.
+/// Number of an arc: four that every machine has, then the transitions of the table in order.
 using ArcIndex = std::uint16_t;
 inline constexpr ArcIndex start_arc = 0;
 inline constexpr ArcIndex reset_arc = 1;
@@ -53,24 +53,24 @@ inline constexpr ArcIndex no_arc = 0xffff;
 /// A transition.
 struct StateArc {
     ConditionRef guard{};
-    Duration after{}; ///< 0: at once
+    Duration after{}; ///< 0: immediately
     StepIndex steps = 0;
     StepIndex otherwise_steps = 0; ///< when the guard says no
     StateIndex source = no_state;
     StateIndex to = no_state;        ///< as the row names it; no_state: internal
-    StateIndex otherwise = no_state; ///< likewise, when the guard says no
+    StateIndex otherwise = no_state; ///< the target when the guard says no
     TransitionIndex transition = 0;
     EntryKind enters = EntryKind::initial;
     std::uint8_t source_level = 0;   ///< depth of `source` - 1
-    std::uint8_t kept_levels = 0;    ///< states that are neither left nor entered, from the outside
-    std::uint8_t otherwise_kept = 0; ///< likewise, on the way to `otherwise`
+    std::uint8_t kept_levels = 0;    ///< states that are neither exited nor entered, outermost first
+    std::uint8_t otherwise_kept = 0; ///< the same on the way to `otherwise`
     bool captures = false;
     bool has_otherwise = false;
     bool gives_reason = false;
-    bool tells_refusal = false; ///< of its guard, when an event is refused
+    bool tells_refusal = false; ///< reports the guard's reason when an event is refused
 };
 
-/// One of the arcs that are asked one after the other.
+/// One of the arcs that are evaluated one after the other.
 class AskedArc {
 public:
     constexpr AskedArc() = default;
@@ -86,24 +86,24 @@ private:
     static_assert(first_arc + max_transitions < last_bit);
     std::uint16_t word_ = last_bit;
 };
-/// Where such a row of arcs begins.
+/// Index of the first of such arcs.
 using AskedIndex = std::uint16_t;
 inline constexpr AskedIndex none_asked = 0xffff;
 static_assert(max_leaf_transitions < none_asked);
 
-/// What a state needs beside its arcs. Composite states are not asked: their leaves are.
+/// Data of a state besides its arcs. Only leaves have arcs to evaluate, composite states have none.
 struct StatePlan {
     StateIndex parent = no_state;
     std::uint16_t depth = 0;
-    std::uint16_t region = 0;           ///< that it lies in
-    std::uint16_t first_region = 0;     ///< of those inside
+    std::uint16_t region = 0;           ///< region that contains it
+    std::uint16_t first_region = 0;     ///< first region inside it
     std::uint16_t regions = 0;          ///< 0: a leaf
     AskedIndex conditions = none_asked; ///< condition transitions and time-outs
     StepIndex handle = no_step;         ///< its handle program
 };
 
-/// Arguments of an event to which a state machine reacts have at most so many bytes: a trigger's are counted
-/// in 16 bits.
+/// Maximum size of the arguments of an event that a state machine reacts to: their bytes are counted in 16
+/// bits.
 inline constexpr std::size_t most_trigger_bytes = 0xffff;
 static_assert(most_trigger_bytes == std::numeric_limits<std::uint16_t>::max());
 
@@ -114,9 +114,9 @@ struct ResolvedSizes {
     std::size_t asked = 0;
     std::size_t steps = 0;
     std::size_t regions = 0;
-    // Of the memory of one execution, see StateMachineBinding.
+    // Memory of one execution, see StateMachineBinding.
     std::size_t history = 0;  ///< StateIndex
-    std::size_t captured = 0; ///< bytes of the longest arguments that a transition takes
+    std::size_t captured = 0; ///< bytes of the longest arguments that a transition reads
 
     [[nodiscard]] constexpr bool fits_in(const ResolvedSizes& room) const noexcept {
         return states <= room.states && triggers <= room.triggers && arcs <= room.arcs &&
@@ -130,19 +130,19 @@ struct ResolvedView {
     StateMachineTable table{};
     std::span<const std::string_view> triggers{};
     const StatePlan* plans = nullptr;  ///< [state]
-    const AskedIndex* cells = nullptr; ///< [state][trigger]: the first arc to ask
+    const AskedIndex* cells = nullptr; ///< the first arc to evaluate
     const AskedArc* asked = nullptr;
     const StateArc* arcs = nullptr;
     const TransitionStep* steps = nullptr;
     const StateIndex* regions = nullptr;     ///< [region]: its initial state
-    const std::uint16_t* captured = nullptr; ///< [trigger]: bytes of its arguments that transitions take
+    const std::uint16_t* captured = nullptr; ///< bytes of its arguments that transitions read
     ResolvedSizes sizes{};
     StateIndex final_state = no_state;
-    /// No orthogonal regions, no history: the active states are a leaf and those around it.
+    /// No orthogonal regions, no history: only a leaf and its enclosing states are active.
     bool plain = false;
     bool preconditions = false; ///< some state has one
 
-    /// Reads what stands in a room.
+    /// Points to the data of a room.
     constexpr void lead_to(const auto& room) {
         triggers = std::span{room.triggers}.first(std::min(sizes.triggers, room.triggers.size()));
         plans = room.plans.data();
@@ -154,7 +154,7 @@ struct ResolvedView {
         captured = room.captured.data();
     }
 
-    // What plan_entries() asks of a tree of states.
+    // The interface that plan_entries() needs of a tree of states.
     [[nodiscard]] constexpr std::size_t depth_of(StateIndex state) const noexcept TAPPET_REALTIME {
         return plans[state].depth;
     }
@@ -184,7 +184,7 @@ struct ResolvedView {
     }
 };
 
-/// Where the resolver writes. What has no room is counted and not stored.
+/// The resolver's output. Rows without room are counted and not stored.
 struct ResolvedRoom {
     std::span<StatePlan> plans;
     std::span<std::string_view> triggers;
@@ -201,8 +201,8 @@ namespace statechart {
 /// States that are entered together, each before those inside it.
 using Entering = Bounded<StateIndex, max_active_states>;
 
-/// What is entered below the outermost `kept` states on the way to `target`, depth first, regions in their
-/// order. `remembered(region, child, enters)`: the state that a history says, or no_state.
+/// Lists the states that are entered below the outermost `kept` states on the way to `target`, depth first,
+/// regions in their order. `remembered(region, child, enters)`: the state recorded by a history, or no_state.
 template <class Tree, class Remembered>
 constexpr void plan_entries(const Tree& tree, Entering& into, StateIndex target, std::size_t kept,
                             const Remembered& remembered) noexcept TAPPET_REALTIME {
@@ -249,7 +249,7 @@ public:
         for (std::size_t i = 0; i < names_.states(); ++i) put(room_.plans, i, plan_of(i));
         return {names_.states(), names_.triggers, arcs_, asked_, steps_, names_.regions, history_, captured_};
     }
-    /// What is known of the machine, without the pointers: they are whose the room is.
+    /// Returns the machine's properties without the pointers: those belong to the owner of the room.
     [[nodiscard]] constexpr ResolvedView describe(const ResolvedSizes& taken) const {
         return {.table = names_.table,
                 .sizes = taken,
@@ -303,7 +303,7 @@ private:
         }
         return plan;
     }
-    // The transitions of one leaf and trigger, in the order in which they are asked (UML).
+    // The transitions of one leaf and trigger, in the order of evaluation (UML).
     constexpr AskedIndex add_asked(StateIndex leaf, TriggerIndex trigger) {
         const std::size_t first = asked_;
         names_.for_each_out(leaf, [&](TransitionIndex t) {
@@ -357,7 +357,7 @@ private:
         put(room_.arcs, arcs_++, arc);
     }
 
-    // The order of one transition.
+    // Adds the steps of one transition in their order.
     constexpr StepIndex add_steps(const ProgramRef& program, StepKind kind, StateIndex to, std::size_t kept,
                                   EntryKind enters) {
         const auto first = static_cast<StepIndex>(steps_);
@@ -402,8 +402,8 @@ private:
 
 } // namespace statechart
 
-/// Resolves a table that check() found good, and answers a view of the room. Whether it fitted into the room
-/// is said by view.sizes. Bounded, without heap; not for real-time threads.
+/// Resolves a table that check() found good; returns a view of the room. view.sizes shows whether it fitted
+/// into the room. Bounded, no heap; not for real-time threads.
 constexpr ResolvedView resolve_into(const StateMachineTable& table, const ResolvedRoom& room) {
     const StateHierarchy names{table};
     statechart::Resolver resolver{names, room};
@@ -412,7 +412,7 @@ constexpr ResolvedView resolve_into(const StateMachineTable& table, const Resolv
     return view;
 }
 
-/// What a machine takes; nothing when check() finds a fault in it.
+/// Returns the sizes that a machine needs; all zero when check() finds a fault in it.
 constexpr ResolvedSizes measure(const StateMachineTable& table) {
     if (!statechart::check_limits(table).empty()) return {};
     const StateHierarchy names{table};
@@ -420,8 +420,8 @@ constexpr ResolvedSizes measure(const StateMachineTable& table) {
                                                       : ResolvedSizes{};
 }
 
-/// Room for a machine of at most these sizes: exactly measured for a constant table, or a slot that machines
-/// are loaded into on the target. It keeps views of the table's rows, which outlive it.
+/// Storage for a machine of at most these sizes: exactly measured for a constant table, or a slot for
+/// machines loaded on the target. It keeps views of the table's rows, which must outlive it.
 template <ResolvedSizes sizes> struct ResolvedMachine {
     std::array<StatePlan, sizes.states> plans{};
     std::array<std::string_view, sizes.triggers> triggers{};
@@ -436,8 +436,8 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
     constexpr ResolvedMachine() = default;
     explicit constexpr ResolvedMachine(const StateMachineTable& of) { static_cast<void>(load(of)); }
 
-    /// Checks and resolves. Empty when the machine is there; otherwise what is wrong, and no machine is
-    /// there. No execution may be using this room.
+    /// Checks and resolves a table. Returns empty when the machine is loaded; otherwise the fault, and no
+    /// machine is loaded. No execution may use this room during the call.
     [[nodiscard]] constexpr Sentence load(const StateMachineTable& of) {
         described = {};
         if (Sentence fault = statechart::check_limits(of); !fault.empty()) return fault;
@@ -462,7 +462,7 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
         described = resolver.describe(taken);
         return {};
     }
-    /// Without a machine, a view that no execution starts.
+    /// Returns the machine; when none is loaded, a view that no execution starts.
     [[nodiscard]] constexpr ResolvedView view() const {
         ResolvedView view = described;
         if (!view.table.states.empty()) view.lead_to(*this);
@@ -470,8 +470,8 @@ template <ResolvedSizes sizes> struct ResolvedMachine {
     }
 };
 
-/// The resolved form of a constant machine, in constant memory: resolved<loom_cycle>.view(). The machine is a
-/// variable at namespace scope, so that symbols carry its name and nothing of its rows. A faulty machine
+/// The resolved form of a constant machine, in constant memory: resolved<loom_cycle>.view(). The machine must
+/// be a variable at namespace scope, so that symbols contain its name and not its rows. A faulty machine
 /// resolves to nothing: its user reports check().
 template <const auto& machine>
 inline constexpr ResolvedMachine<measure(machine.view())> resolved{machine.view()};

@@ -1,5 +1,5 @@
-// How a state machine is spelled in C++. Each word gives a plain
-// struct; member functions become function pointers.
+// The C++ notation of a state machine. Each word gives a plain struct; member functions become function
+// pointers.
 //
 //     constexpr auto loom_cycle = state_machine<Loom>("loom_cycle",
 //         states(
@@ -54,7 +54,7 @@ template <auto Function, class Result> Result call(void* component) noexcept TAP
     if constexpr (std::is_same_v<typename Of::Result, Result>)
         return (static_cast<typename Of::Object*>(component)->*Function)();
     else
-        return Result(); // so that saying so stays the only error
+        return Result(); // so that the assertion stays the only error
 }
 
 template <class Pointer> struct Bound {
@@ -82,7 +82,7 @@ struct Run : Bound<StateProgram> {};
 struct Handle : Bound<StateProgram> {};
 struct Then : Bound<StateProgram> {};
 struct Otherwise : Bound<StateProgram> {};
-/// A question, and what people are told when it is answered by no.
+/// A guard or precondition, and the reason shown to people when it says no.
 struct Asked : Bound<StateGuard> {
     GuardReason refusal{};
     std::string_view fault{}; ///< as `twice` of a row
@@ -95,13 +95,14 @@ struct Asked : Bound<StateGuard> {
 };
 enum class AskedOf : std::uint8_t { transition, state };
 template <AskedOf> struct Question : Asked {
-    /// What `tappet-browse why` says, and the log when an event is refused for it.
+    /// Sets the reason that `tappet-browse why` and the log show when an event is refused.
     [[nodiscard]] constexpr Question because(std::string_view text) const {
         Question told = *this;
         told.give(text);
         return told;
     }
-    /// `detail` adds which of several things it is: a member function that returns words that stand for ever.
+    /// `detail` says which of several things is the reason: a member function; its text must be valid
+    /// forever.
     template <auto detail> [[nodiscard]] constexpr Question because(std::string_view text) const {
         Question told = because(text);
         const auto words = bind<detail, std::string_view>();
@@ -122,8 +123,8 @@ struct After {
     Duration time;
 };
 
-// A row takes each part once and belongs to one component type;
-// what is against that is kept for the check to report.
+// A row takes each part once and belongs to one component type; violations are stored for the check to
+// report.
 using detail::give;
 template <class Row, class Reference, class Pointer>
 constexpr void give(Row& row, std::string_view part, Reference& place, const Bound<Pointer>& bound) {
@@ -147,33 +148,34 @@ constexpr void give(Row& row, std::string_view part, ConditionRef& place, const 
 enum StateRole : std::uint8_t { initial, final };
 
 template <auto Function> inline constexpr statechart::Entry entry{statechart::bind<Function, void>()};
-/// A function, unlike its neighbours: beside the C library's exit a variable would be ambiguous for whoever
-/// says `using namespace tappet`.
+/// A function, not a variable like its neighbours: with `using namespace tappet`, a variable would be
+/// ambiguous with the C library's exit.
 template <auto Function> constexpr statechart::Exit exit() noexcept {
     return {statechart::bind<Function, void>()};
 }
 template <auto Function> inline constexpr statechart::Run run{statechart::bind<Function, void>()};
-/// Run after each run program that no transition followed, and when a guard refused an event.
+/// Runs after each run program that no transition followed, and when a guard refused an event.
 template <auto Function> inline constexpr statechart::Handle handles{statechart::bind<Function, void>()};
-/// Asked in addition to the guard of each transition that enters the state.
+/// Evaluated in addition to the guard of each transition that enters the state.
 template <auto Function>
 inline constexpr statechart::Precondition precondition{{{statechart::bind<Function, bool>()}}};
 /// The transition program.
 template <auto Function> inline constexpr statechart::Then then{statechart::bind<Function, void>()};
 template <auto Function>
 inline constexpr statechart::When guard{{{statechart::bind<Function, bool>()}}};
-/// Run instead when the guard of an event transition refuses, and the state entered then (listing 5.4, else).
+/// Runs when the guard of an event transition refuses; otherwise_to() names the state entered then (listing
+/// 5.4, else).
 template <auto Function>
 inline constexpr statechart::Otherwise otherwise{statechart::bind<Function, void>()};
 constexpr statechart::OtherwiseTo otherwise_to(std::string_view state) { return {state}; }
-/// The region of the composite that this state lies in: one state of each is active.
+/// The region of the composite that contains this state: one state of each region is active.
 constexpr RowOptionOnce<StateRow, std::string_view> region(std::string_view name) {
     return {&StateRow::region, name, "region"};
 }
-/// How a transition enters its composite target: as it was last left, see EntryKind.
+/// Restores the states that were active when the composite target was last exited, see EntryKind.
 inline constexpr EntryKind shallow_history = EntryKind::shallow_history;
 inline constexpr EntryKind deep_history = EntryKind::deep_history;
-/// The composite state around this one.
+/// The enclosing composite state.
 constexpr RowOptionOnce<StateRow, std::string_view> in(std::string_view state) {
     return {&StateRow::parent, state, "in"};
 }
@@ -181,7 +183,7 @@ constexpr RowOptionOnce<StateRow, std::string_view> in(std::string_view state) {
 constexpr statechart::On on(std::string_view event) { return {event}; }
 /// A time-out: time since the transition's source was entered.
 constexpr statechart::After after(Duration time) { return {time}; }
-/// What the operator is told when the transition is taken.
+/// The reason shown to the operator when the transition is taken.
 constexpr RowOptionOnce<TransitionRow, std::string_view> because(std::string_view reason) {
     return {&TransitionRow::because, reason, "because"};
 }
@@ -243,7 +245,7 @@ constexpr TransitionRow transition(std::string_view from, std::string_view to, c
     return row;
 }
 
-/// A reaction to an event that leaves and enters no state.
+/// A reaction to an event that exits and enters no state.
 template <class... Parts> constexpr TransitionRow internal(std::string_view state, const Parts&... parts) {
     return transition(state, {}, parts...);
 }

@@ -1,5 +1,4 @@
-// What a state machine tells of itself: plain data without pointers, for observers in other activities and
-// processes.
+// Status of a state machine: plain data without pointers, for observers in other activities and processes.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -10,7 +9,7 @@ namespace tappet {
 enum class StateOutcome : std::uint8_t {
     taken,   ///< a transition was taken; it may need more steps, see under_way()
     ignored, ///< inactive, no transition for it here, no guard held, or the request is not valid now
-    queued,  ///< called out of a program or guard, or after something that waits: it will be handled in order
+    queued,  ///< called from a program or guard, or other events wait: it is handled in order
     lost,    ///< no room to queue it; counted
 };
 
@@ -19,7 +18,7 @@ enum class MachineStatus : std::uint8_t {
     inactive, ///< reacts to nothing
     active,   ///< reactive mode: events and requests only
     running,  ///< automatic mode
-    paused,   ///< executes nothing but single steps; events wait
+    paused,   ///< executes only single steps; events are queued
     stopped,  ///< in the final state
     error     ///< a program failed; only a request for the final state and a deactivation are served
 };
@@ -36,12 +35,12 @@ constexpr std::string_view to_text(MachineStatus status) noexcept {
     return "?";
 }
 
-/// How far the run program of an active state is in this round of run, conditions and handle.
+/// Progress of an active state's run program in this round of run, conditions and handle.
 enum class RunPhase : std::uint8_t {
     fresh,     ///< not started
-    under_way, ///< started, goes on in this step
-    waits,     ///< started, goes on in the next step
-    ran,       ///< ended; its conditions are asked next
+    under_way, ///< started, continues in this step
+    waits,     ///< started, continues in the next step
+    ran,       ///< ended; its conditions are evaluated next
     asked,     ///< no condition held; its handle program is next
     done,      ///< runs again in the next step
     held       ///< entered again in the step in which it ran; runs in the next step
@@ -54,7 +53,7 @@ struct ActiveState {
     Time entered_at{};
 };
 
-/// Which kind of program was in hand.
+/// The kind of the current program.
 enum class StatePart : std::uint8_t {
     none,
     entry,
@@ -84,13 +83,13 @@ constexpr std::string_view to_text(StatePart part) noexcept {
     return "?";
 }
 
-/// Where a machine came into error.
+/// The place of a fault in a machine.
 struct StateMachineFault {
     StatePart part = StatePart::none;
     StateIndex state = no_state;                ///< of the program, or the source of the transition
     TransitionIndex transition = no_transition; ///< of a transition's part
-    NodeIndex node = end_node;                  ///< that failed; end_node: not inside a program
-    std::uint64_t number = 0;                   ///< so many errors with this one
+    NodeIndex node = end_node;                  ///< the node that failed; end_node: not inside a program
+    std::uint64_t number = 0;                   ///< number of errors, this one included
     Time at{};
 };
 
@@ -100,10 +99,10 @@ struct StateMachineStatus {
     TransitionIndex reason = 0; ///< the last transition that gave one, see reason()
     std::uint64_t transitions = 0;
     std::uint64_t lost_events = 0;
-    std::uint64_t deferred_events = 0; ///< that had to wait for a program or for their turn
+    std::uint64_t deferred_events = 0; ///< events that waited for a program or for their turn
     Time reason_at{};
-    /// The active states, each before those inside it, regions in their order. A state stands here from
-    /// before its entry program to after its exit program.
+    /// The active states, each before those inside it, regions in their order. A state is listed from before
+    /// its entry program until after its exit program.
     Bounded<ActiveState, max_active_states> states;
     StateMachineFault fault;
 };

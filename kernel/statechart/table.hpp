@@ -1,6 +1,6 @@
-// A state machine as plain data: two arrays of plain rows. The C++ spelling in rows.hpp, a compiled script
-// and a loaded script all give this one form; the checks, the resolver, pictures and verification read
-// nothing else. Thesis 5.2.1.
+// A state machine as plain data: two arrays of plain rows. The C++ notation in rows.hpp, a compiled script
+// and a loaded script all produce this form; checks, resolver, pictures and verification read only this form.
+// Thesis 5.2.1.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -15,11 +15,12 @@
 
 namespace tappet {
 
-/// An entry, exit, run or transition program: called with the component.
+/// An entry, exit, run or transition program; the argument is the component.
 using StateProgram = void (*)(void* component) noexcept TAPPET_REALTIME;
-/// Says whether a transition may be taken. It may be asked any number of times, so it changes nothing.
+/// Returns whether a transition may be taken. It may be called any number of times, so it must change
+/// nothing.
 using StateGuard = bool (*)(void* component) noexcept TAPPET_REALTIME;
-/// Words for people, which stand for ever: a literal, a name of an enumerator.
+/// Text for people, valid forever: a literal or the name of an enumerator.
 using StateWords = std::string_view (*)(void* component) noexcept TAPPET_REALTIME;
 
 /// Limits of one state machine. They bound the memory of the checks
@@ -29,7 +30,7 @@ inline constexpr std::size_t max_transitions = 1024;
 inline constexpr std::size_t max_state_depth = 8;    ///< a top state has depth 1
 inline constexpr std::size_t max_active_states = 16; ///< at the same time, in all regions
 inline constexpr std::size_t max_state_events = 255;
-/// Transitions counted once for each leaf that they lead out of, with the requests that every machine has.
+/// Transitions, counted once for each leaf that they start from, plus the requests that every machine has.
 inline constexpr std::size_t max_leaf_transitions = 3600;
 static_assert(max_states * max_state_events <= 0xffff, "a cell of the resolved table has a 16-bit number");
 
@@ -60,49 +61,49 @@ struct ConditionRef {
     }
 };
 
-/// What people are told of a guard that says no. Nobody asks for it in a cycle.
+/// The reason shown to people when a guard says no. Not evaluated in a cycle.
 struct GuardReason {
     std::string_view text{};
-    StateWords detail = nullptr; ///< which of several things it is, asked in the engine like the guard
+    StateWords detail = nullptr; ///< says which of several things it is; called in the engine like the guard
 };
 
 struct StateRow {
     std::string_view name;
-    std::string_view parent{}; ///< the composite state around it; empty: a top state
+    std::string_view parent{}; ///< the enclosing composite state; empty: a top state
     std::string_view region{}; ///< of its composite: states of different regions are active at the same time
     bool initial = false;      ///< entered when its region, or the machine, is entered
     bool final = false;        ///< the safe state of thesis 5.2.2: reachable from everywhere by request
-    ConditionRef precondition{}; ///< asked in addition to the guard of each transition that enters it
+    ConditionRef precondition{}; ///< evaluated in addition to the guard of each transition that enters it
     GuardReason refusal{};       ///< of the precondition
     ProgramRef entry{};
     ProgramRef exit{};
     ProgramRef run{};
     ProgramRef handle{};        ///< when no transition was taken (thesis 5.2.1)
-    TypeId component = nullptr; ///< whose C++ programs these are; nullptr: it has none
-    std::string_view twice{};   ///< the part that the row was given twice; empty in a good row
-    std::uint16_t line = 0;     ///< of the script, from 1; 0: a C++ table
+    TypeId component = nullptr; ///< type of the component that has its C++ programs; nullptr: none
+    std::string_view twice{};   ///< the part that the row has twice; empty in a good row
+    std::uint16_t line = 0;     ///< in the script, from 1; 0: a C++ table
     std::uint16_t column = 0;
 };
 
-/// What of a composite state is entered by a transition to it (UML 2.5.1, 14.2.3.7).
+/// The states inside a composite that a transition to it enters (UML 2.5.1, 14.2.3.7).
 enum class EntryKind : std::uint8_t {
     initial,         ///< its initial states
-    shallow_history, ///< what was last active right inside it, and the initial states of that
-    deep_history     ///< all that was last active inside it
+    shallow_history, ///< the states last active directly inside it, and their initial states
+    deep_history     ///< all states last active inside it
 };
 
-/// An argument of an event on its way into a variable.
+/// Copies an argument of an event into a variable.
 struct CaptureRow {
-    std::uint16_t from = 0;   ///< in the packed arguments
+    std::uint16_t from = 0;   ///< offset in the packed arguments
     std::uint16_t size = 0;   ///< bytes there
-    DataOffset raw = no_data; ///< where its bytes are put
+    DataOffset raw = no_data; ///< where its bytes are stored
     std::uint16_t first = 0;  ///< instructions that convert and assign it from there,
-    std::uint16_t count = 0;  ///< none: it lies in place
+    std::uint16_t count = 0;  ///< none: it is stored in place
 };
 
 struct TransitionRow {
     std::string_view from;
-    std::string_view to;      ///< empty: internal, no state is left or entered
+    std::string_view to;      ///< empty: internal, no state is exited or entered
     std::string_view event{}; ///< "component.event" or "event" of the own component
     bool on_event = false;    ///< false: a condition transition
     bool timed = false;       ///< a condition transition that waits for `after`
@@ -110,11 +111,11 @@ struct TransitionRow {
     ConditionRef guard{};
     GuardReason refusal{}; ///< of the guard
     ProgramRef then{};
-    std::string_view because{}; ///< what the operator is told
+    std::string_view because{}; ///< the reason shown to the operator
     TypeId component = nullptr;
     std::string_view twice{};
     EntryKind enters = EntryKind::initial;
-    ProgramRef otherwise{};          ///< run when the guard says no: else of thesis listing 5.4,
+    ProgramRef otherwise{};          ///< runs when the guard says no: else of thesis listing 5.4,
     std::string_view otherwise_to{}; ///< and the state entered then; empty: none
     bool has_otherwise = false;
     std::uint16_t first_capture = 0; ///< CaptureRow
@@ -123,14 +124,14 @@ struct TransitionRow {
     std::uint16_t column = 0;
 };
 
-/// A view of a state machine; the rows live elsewhere and outlive it.
+/// A view of a state machine; its rows must outlive it.
 struct StateMachineTable {
     std::string_view name{};
     std::span<const StateRow> states{};
     std::span<const TransitionRow> transitions{};
     TypeId component = nullptr; ///< the type of the component that the programs run on
     const ProgramTables* programs =
-        nullptr; ///< where ProgramRef and ConditionRef point; null: C++ programs only
+        nullptr; ///< the tables that ProgramRef and ConditionRef index; null: C++ programs only
     std::span<const CaptureRow> captures{};
 };
 
@@ -145,7 +146,7 @@ inline constexpr TransitionIndex start_transition = 0xfffe; ///< into the initia
 inline constexpr TransitionIndex final_transition = 0xfffd; ///< to the final state by request
 inline constexpr TransitionIndex reset_transition =
     0xfffc; ///< from the final to the initial state by request
-inline constexpr TransitionIndex leaving_transition = 0xfffb; ///< out of the active state, by deactivation
+inline constexpr TransitionIndex leaving_transition = 0xfffb; ///< exits all states, by deactivation
 static_assert(max_states < no_state && max_transitions < leaving_transition,
               "the reserved numbers are no rows");
 

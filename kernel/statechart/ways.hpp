@@ -1,5 +1,5 @@
-// The ways of a state machine to one of its states: how many transitions each leaf is away, and which lead
-// nearer. For whoever explains a machine that stands; not for real-time threads.
+// Paths of a state machine to one of its states: the distance of each leaf in transitions, and the
+// transitions that lead nearer. For explaining a machine that does not move on; not for real-time threads.
 #pragma once
 
 #include "kernel/statechart/resolve.hpp"
@@ -14,7 +14,7 @@ public:
         for (std::size_t s = 0; s < away_.size(); ++s)
             away_[s] =
                 s < machine.sizes.states && is_leaf(s) && machine.is_inside(index(s), wanted) ? 0 : none;
-        for (bool changes = true; changes;) { // each round knows one transition more, or is the last
+        for (bool changes = true; changes;) { // one more transition a round; the last changes nothing
             changes = false;
             for (std::size_t t = 0; t < transitions(); ++t)
                 for (std::size_t leaf = 0; leaf < machine.sizes.states; ++leaf)
@@ -23,12 +23,12 @@ public:
         }
     }
 
-    /// Transitions from that leaf to the wanted state; none: no transitions lead there.
+    /// Returns the number of transitions from that leaf to the wanted state; none: no path leads there.
     [[nodiscard]] constexpr std::uint16_t away(StateIndex leaf) const { return away_[leaf]; }
     [[nodiscard]] constexpr bool leads_nearer(std::size_t transition, StateIndex leaf) const {
         return starts_in(transition, leaf) && after(transition) < away_[leaf];
     }
-    /// The leaf that a nearest way leads to next; no_state: there is none.
+    /// Returns the next leaf on a shortest path; no_state: there is none.
     [[nodiscard]] constexpr StateIndex next(StateIndex leaf) const {
         for (std::size_t t = 0; t < transitions(); ++t) {
             StateIndex nearest = no_state;

@@ -1,5 +1,5 @@
-// A system without its wire: all nodes' tables as one machine, what crossed as rows of it. Components and
-// their rows are the same, and so is what they do; only times differ.
+// A system without its wire: all nodes' tables as one machine, and the crossings as its rows. Components and
+// their rows are the same, and so is their behaviour; only times differ.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -9,7 +9,7 @@ namespace tappet {
 
 namespace systems {
 
-/// In place of presence: whoever runs in the same machine is there.
+/// Replaces presence: a node in the same machine is always present.
 struct AlwaysThere {
     Output<bool> is_there{};
     void start(const Cycle&) noexcept TAPPET_REALTIME { is_there.write(true); }
@@ -74,8 +74,8 @@ struct LocalRows {
 
 } // namespace systems
 
-/// `tables`: of the system's nodes, in their order, without sections of other folders. No two of them may
-/// have a component, or an activity, of one name: the check of the machine says so.
+/// `tables`: those of the system's nodes, in their order, without sections of other folders. No two of them
+/// may have a component, or an activity, of the same name: the check of the machine refuses it.
 template <const auto& system, const auto&... tables>
 inline constexpr auto collocated = [] {
     static_assert(sizeof...(tables) == system.nodes.size(), "one table for each node, in their order");

@@ -1,5 +1,5 @@
-// How the values of a row stand on the wire: whole numbers of so many bits, or the bytes that they are. The
-// sender packs several of them into one frame, bit after bit, little end first.
+// The encoding of a row's values on the wire: whole numbers of a given number of bits, or the value's own
+// bytes. The sender packs several of them into one frame, bit after bit, little end first.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -12,35 +12,35 @@
 
 namespace tappet {
 
-/// What one value becomes.
+/// The encoded form of one value.
 struct WireValue {
     std::uint16_t bits = 0;
-    ValueKind kind = ValueKind::opaque; ///< boolean: one bit; opaque: as it is
+    ValueKind kind = ValueKind::opaque; ///< boolean: one bit; opaque: the value's own bytes
     std::uint8_t bytes = 0;             ///< of the value in the machine
     bool is_signed = true;
-    bool is_real = false;  ///< and as it is
-    bool has_time = false; ///< behind it stands when it was true
+    bool is_real = false;  ///< opaque, and a floating-point number
+    bool has_time = false; ///< the time at which it was true follows
     double step = 1;
     TypeId type = nullptr; ///< of a value that crosses as it is
     constexpr bool operator==(const WireValue&) const = default;
 
-    /// In a frame: whether it is valid, the value, and its time.
+    /// The bits in a frame: one for its validity, the value, and its time.
     [[nodiscard]] constexpr std::uint16_t bits_in_frame() const noexcept;
 };
 
-/// A time on the wire: the common one in these steps, modulo 2 to the power of the bits.
+/// A time on the wire: the common time in these steps, modulo 2 to the power of time_bits.
 inline constexpr std::int64_t time_step_ns = 10'000;
 inline constexpr std::uint16_t time_bits = 16;
-/// What is older when it comes is not valid; a quarter of the turn is left for what clocks differ.
+/// A value that is older on arrival is not valid; a quarter of the range is reserved for clock differences.
 inline constexpr Duration oldest_told{(std::int64_t{1} << time_bits) * time_step_ns / 4 * 3};
-/// A frame that waits longer in a driver or a controller was given up.
+/// A frame that waits longer in a driver or a controller has been given up.
 inline constexpr Duration longest_under_way = 100ms;
 
 constexpr std::uint16_t WireValue::bits_in_frame() const noexcept {
     return static_cast<std::uint16_t>(1 + bits + (has_time ? time_bits : 0));
 }
 
-/// Of a value of that type, or of an argument list; of none the bits are 0, and `fault` says why.
+/// Returns the encoding of a value or an argument list. Without one, `bits` is 0 and `fault` says why.
 constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& fault) {
     if (type->kind == ValueKind::arguments && type->elements.size() == 1) type = type->elements[0];
     WireValue value{.bits = static_cast<std::uint16_t>(8 * type->size),
@@ -77,11 +77,11 @@ constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& 
 
 namespace on_wire {
 
-/// `bits` of `from`, beginning at bit `at`; 56 at most. Real-time, as all below.
+/// Returns `bits` bits of `from`, beginning at bit `at`; at most 56. Real-time, like all functions below.
 constexpr std::uint64_t take_bits(std::span<const std::uint8_t> from, std::size_t at,
                                   std::size_t bits) noexcept TAPPET_REALTIME {
     std::uint64_t value = 0;
-    for (std::size_t done = 0; done < bits;) { // what stands in one byte at a time
+    for (std::size_t done = 0; done < bits;) { // the part in one byte at a time
         const std::size_t shift = (at + done) % 8, count = std::min(8 - shift, bits - done);
         const unsigned part = static_cast<unsigned>(from[(at + done) / 8]) >> shift & ((1u << count) - 1u);
         value |= std::uint64_t{part} << done;
@@ -101,10 +101,10 @@ constexpr void put_bits(std::span<std::uint8_t> into, std::size_t at, std::size_
     }
 }
 
-/// How a value was put into a frame: exactly, at an end of its range, or not at all since it is no number.
+/// How a value was put into a frame: exactly, clamped to its range, or not at all because it is not a number.
 enum class Told : std::uint8_t { well, beyond, no_number };
 
-/// The whole number nearest to value / step that the bits can hold.
+/// Computes the whole number nearest to value / step that the bits can hold.
 inline Told to_steps(double value, const WireValue& as, std::int64_t& steps) noexcept TAPPET_REALTIME {
     if (!is_number(value)) return Told::no_number;
     const double wanted = value / as.step;
@@ -116,7 +116,7 @@ inline Told to_steps(double value, const WireValue& as, std::int64_t& steps) noe
     return Told::well;
 }
 
-/// Puts the value's bytes, as the machine has them, into a frame at bit `at`.
+/// Puts a value into a frame at bit `at`, from the value's bytes in the machine.
 inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uint8_t> into,
                  std::size_t at) noexcept TAPPET_REALTIME {
     if (as.kind == ValueKind::boolean) {
@@ -157,12 +157,12 @@ inline Told tell(const std::byte* value, const WireValue& as, std::span<std::uin
     return told;
 }
 
-/// A time of the common clock.
+/// Encodes a time of the common clock.
 constexpr std::uint64_t tell_time(Time common) noexcept TAPPET_REALTIME {
     return static_cast<std::uint64_t>(to_ns(common) / time_step_ns) & ((1u << time_bits) - 1);
 }
-/// How long before `now` that was; what seems to be later, by no more than clocks may differ, is now. False:
-/// it is of neither.
+/// Computes how long before `now` the time `told` was. A time that seems to be later, by no more than clocks
+/// may differ, counts as now. False: the time is neither.
 constexpr bool age_of_time(std::uint64_t told, Time now, Duration clocks_differ, Duration& age) noexcept
     TAPPET_REALTIME {
     constexpr std::int64_t turn = std::int64_t{1} << time_bits;
@@ -173,7 +173,7 @@ constexpr bool age_of_time(std::uint64_t told, Time now, Duration clocks_differ,
     return Duration{(turn - steps) * time_step_ns} <= clocks_differ + Duration{2 * time_step_ns};
 }
 
-/// The way back. False: it is no number, or longer than its type.
+/// Reads a value from a frame. False: it is not a number, or longer than its type.
 inline bool hear(std::span<const std::uint8_t> from, std::size_t at, const WireValue& as,
                  std::byte* value) noexcept TAPPET_REALTIME {
     if (as.kind == ValueKind::boolean) {
@@ -201,7 +201,7 @@ inline bool hear(std::span<const std::uint8_t> from, std::size_t at, const WireV
     const std::int64_t whole =
         as.step == 1 ? steps
                      : static_cast<std::int64_t>(std::floor(static_cast<double>(steps) * as.step + 0.5));
-    std::memcpy(value, &whole, as.bytes); // little end first, as the machine has it
+    std::memcpy(value, &whole, as.bytes); // little end first, as in the machine
     return true;
 }
 

@@ -1,5 +1,4 @@
-// In which order the frames of a wire win it, and what they are called there: identifiers in the order of
-// deadlines, or fixed ones that no other row moves.
+// Priorities and identifiers of a wire's frames: by deadlines, or fixed ones that no other row changes.
 #pragma once
 
 #include "kernel/base/digest.hpp"
@@ -19,7 +18,7 @@ constexpr void add_text(Digest& digest, std::string_view text) noexcept {
     digest.add(std::uint64_t{text.size()});
 }
 
-/// Moves the frame at `from` to `to`; places follow.
+/// Moves each frame to its new place; the places of crossings follow.
 template <std::size_t N, std::size_t X>
 constexpr void renumber(SystemPlan<N, X>& plan, std::span<const std::size_t> new_place) {
     const auto moved = [&](std::size_t& frame) {
@@ -32,14 +31,14 @@ constexpr void renumber(SystemPlan<N, X>& plan, std::span<const std::size_t> new
     for (std::size_t f = 0; f < before.size(); ++f) plan.frames[new_place[f]] = before[f];
 }
 
-/// A digest of what a frame is, whatever stands beside it in the table.
+/// Returns a digest of a frame's identity, independent of the other rows of the table.
 template <std::size_t N, std::size_t X>
 constexpr Digest key_of(const SystemView& s, const SystemPlan<N, X>& plan, std::size_t f) {
     const WireFrame& frame = plan.frames[f];
     Digest key;
     add_text(key, s.name);
     add_text(key, s.nodes[frame.node].name);
-    // Both frames of the clock have one identifier.
+    // Both frames of the clock share one identifier.
     key.add(static_cast<std::uint64_t>(frame.is_of_clock() ? WireFrameKind::sync : frame.kind));
     if (frame.kind == WireFrameKind::data) {
         std::uint64_t before = 0;
@@ -55,8 +54,8 @@ constexpr Digest key_of(const SystemView& s, const SystemPlan<N, X>& plan, std::
     return key;
 }
 
-/// Of 29 bits: how urgent it is, in 32 steps an octave of how soon the next one may follow, and which frame.
-/// Not by its deadline, which the activities of its readers have a part in.
+/// Returns an identifier of 29 bits: the urgency, in 32 steps an octave of the time until the next frame may
+/// follow, and the frame's key. Its deadline is not used: it depends on the activities of its readers.
 constexpr std::uint32_t fixed_identifier(const WireFrame& frame, std::uint64_t key) noexcept {
     constexpr unsigned steps_bits = 5, key_bits = 18;
     const auto us = static_cast<std::uint64_t>(std::max<std::int64_t>(frame.apart.count() / 1000, 1));
@@ -70,8 +69,9 @@ constexpr std::uint32_t fixed_identifier(const WireFrame& frame, std::uint64_t k
                                       ((key ^ key >> 23 ^ key >> 46) & ((1u << key_bits) - 1)));
 }
 
-/// Deadline-monotonic first, which is right for most; where that fails, Audsley's assignment (1991): the
-/// lowest place goes to a frame that bears it, then the next lowest. The answer is the frame that bears none.
+/// Assigns priorities: deadline-monotonic first, which is right for most systems. Where that fails, Audsley's
+/// assignment (1991): the lowest place goes to a frame that meets its deadline there, then the next lowest.
+/// Returns the first frame that misses its deadline, or the number of frames.
 template <std::size_t N, std::size_t X>
 constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAnalysis analysis) {
     const std::size_t count = plan.frames.size();
@@ -83,7 +83,7 @@ constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAn
               [&](std::size_t a, std::size_t b) {
                   const WireFrame &l = plan.frames[a], &r = plan.frames[b];
                   if (is_fixed) return l.id != r.id ? l.id < r.id : a < b;
-                  // Beats have identifiers that no row moves: other versions hear them, too.
+                  // Beats have identifiers that no row changes: other versions hear them, too.
                   if ((a < go_first) != (b < go_first)) return a < go_first;
                   if (a < go_first) return a < b;
                   return l.deadline != r.deadline ? l.deadline < r.deadline : a < b;
@@ -97,7 +97,7 @@ constexpr std::size_t assign(const SystemView& s, SystemPlan<N, X>& plan, WireAn
     if (bad < count && !is_fixed) {
         const auto monotonic = order;
         const std::size_t first_bad = order[bad];
-        // What fails in the best place fails in all: that is known at once, and not after n^2 of these.
+        // A frame that fails in the best place fails in every place: one trial shows it, not n^2.
         bool may_help = bad > go_first;
         if (may_help) {
             const auto from = order.begin() + static_cast<std::ptrdiff_t>(go_first);

@@ -1,4 +1,4 @@
-// One machine's table with more rows behind its own: what a node is in its system.
+// Appends rows to one machine's table: the form of a node in its system.
 #pragma once
 
 #include "kernel/system/resolve.hpp"

@@ -1,5 +1,5 @@
-// What the compiler derives from a system table: the frames on the wire, what they hold and in which order
-// they win it; how each row is told from another version's; and whether everything that was promised holds.
+// The plan that the compiler derives from a system table: the frames on the wire, their contents and
+// priorities; how each row differs from another version's; and whether every promise holds.
 #pragma once
 
 #include "kernel/system/identifiers.hpp"
@@ -15,7 +15,7 @@ constexpr void add_value(Digest& digest, const WireValue& value) noexcept {
     digest.add(std::bit_cast<std::uint64_t>(value.step));
 }
 
-/// How the bytes of a value stand that crosses as it is. Of what names no fields only its size is known.
+/// Adds the layout of a value that crosses as its own bytes. A type without named fields adds only its size.
 constexpr void add_type(Digest& digest, TypeId type) noexcept {
     if (type == nullptr) return;
     digest.add(static_cast<std::uint64_t>(type->kind));
@@ -31,8 +31,8 @@ constexpr void add_type(Digest& digest, TypeId type) noexcept {
     }
 }
 
-/// From the arrival of a value or a message until the component there has seen it: a periodic activity waits
-/// for its next period, whatever comes.
+/// Returns the time from the arrival of a value or a message until the component has seen it: a periodic
+/// activity waits for its next period in any case.
 constexpr Duration read_within(const SystemView& s, const NodeEnd& end) {
     const MachineView& table = s.nodes[end.node].table;
     const std::size_t a = activity_of(table, table.components[end.at.component].name);
@@ -41,7 +41,7 @@ constexpr Duration read_within(const SystemView& s, const NodeEnd& end) {
     return row.deadline() + (row.periodic() ? row.period : Duration{});
 }
 
-/// What a row's time has besides its frame on the wire.
+/// Returns the part of a row's time that is not its frame on the wire.
 constexpr Duration around_wire(const SystemView& s, const Crossing& row, const CrossingIndex& index) {
     const Duration served = s.wire.service.deadline;
     return row.kind == CrossingKind::data ? row.every + served : served + read_within(s, index.to);
@@ -53,8 +53,9 @@ constexpr std::size_t add_frame(SystemPlan<N, X>& plan, const WireFrame& frame) 
     return plan.frames.size() - 1;
 }
 
-/// Values of one node and one period share frames, each where it fits first: the widest first, or in the
-/// order of the rows, so that one at their end moves none before it.
+/// Packs values into frames. Values of one node and one period share frames; each goes into the first frame
+/// with room. The widest come first, or with fixed identifiers the order of the rows, so that a new row at
+/// the end moves no earlier one.
 template <std::size_t N, std::size_t X>
 constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
     std::array<std::size_t, X> by_width{};
@@ -137,7 +138,7 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
                          .kind = kind,
                          .crossing = x,
                          .apart = again,
-                         // A message and its answer, both at their worst, are through before it is given up.
+                         // A message and its answer, at their worst, are sent before it is given up.
                          .deadline = std::min(left, again - s.wire.service.deadline),
                          .bits = static_cast<std::uint16_t>(bits)};
     };
@@ -159,8 +160,7 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
     return {};
 }
 
-/// The two frames of the common clock stand before all that rows bring about: there are few of them, and how
-/// well the clock is known depends on them.
+/// Adds the clock's two frames before all frames of rows: they are few, and its precision depends on them.
 template <std::size_t N, std::size_t X>
 constexpr void add_clock(const SystemView& s, SystemPlan<N, X>& plan) {
     const Duration quarter = s.wire.clock.every / 4; // see can::follow_up_within
@@ -175,14 +175,14 @@ constexpr void add_clock(const SystemView& s, SystemPlan<N, X>& plan) {
     add_frame(plan, frame);
 }
 
-/// From the last exchange that counts until the next one the clocks part.
+/// Checks the clock's error: the clocks drift apart from the last valid exchange until the next one.
 constexpr Sentence check_clock_error(const SystemView& s, std::span<const WireFrame> frames,
                                      Duration& error) {
     const CommonClock& clock = s.wire.clock;
     Duration age = clock.every + 2 * s.wire.service.deadline + clock.stamps_late;
     for (const WireFrame& frame : frames)
         if (frame.is_of_clock()) age += frame.worst;
-    // What is rounded up by each frame that wakes who knows it.
+    // Includes the rounding up for each frame that wakes a node with the clock.
     const Duration parted{static_cast<std::int64_t>(static_cast<double>(age.count()) * clock.drift) + 1 +
                           age.count() / 50'000};
     error = clock.stamps_late + parted;
@@ -221,7 +221,7 @@ constexpr Sentence resolve_crossings(const SystemView& s, SystemPlan<N, X>& plan
     return {};
 }
 
-/// What crosses the wire.
+/// Adds all frames of the wire.
 template <std::size_t N, std::size_t X>
 constexpr Sentence add_frames(const SystemView& s, SystemPlan<N, X>& plan) {
     for (std::size_t n = 0; n < N; ++n)
@@ -249,7 +249,7 @@ constexpr Sentence add_frames(const SystemView& s, SystemPlan<N, X>& plan) {
     return {};
 }
 
-/// The first frame that comes too late, in the order in which they win the wire; as many as there are: none.
+/// Numbers the frames; returns the first late one, in the order of priority, or the number of frames.
 template <std::size_t N, std::size_t X>
 constexpr std::size_t number_frames(const SystemView& s, SystemPlan<N, X>& plan, WireAnalysis analysis) {
     for (std::size_t f = 0; f < plan.frames.size(); ++f) {
@@ -265,7 +265,7 @@ constexpr std::size_t number_frames(const SystemView& s, SystemPlan<N, X>& plan,
     return bad;
 }
 
-/// By what a row is told from another version's.
+/// Computes the layout digest by which a row is distinguished from another version's.
 template <std::size_t N, std::size_t X>
 constexpr void name_layouts(const SystemView& s, SystemPlan<N, X>& plan) {
     for (std::size_t x = 0; x < X; ++x) {
@@ -368,7 +368,7 @@ constexpr Sentence late_fault(const SystemView& s, const SystemPlan<N, X>& plan,
 
 } // namespace systems
 
-/// Of a system.
+/// Plans a system.
 template <std::size_t N, std::size_t X, std::size_t P>
 constexpr SystemPlan<N, X> plan_system(const System<N, X, P>& table, WireAnalysis analysis) {
     SystemPlan<N, X> plan;

@@ -1,15 +1,15 @@
-// What is promised of the whole system, proven hop by hop: each machine's own check holds its activities to
-// their deadlines, the wire's analysis bounds each frame, and a chain takes no longer than all of them
-// together (Tindell and Clark 1994; of sampled values Davare et al. 2007).
+// Promises of the whole system, proven hop by hop: each machine's own check proves the deadlines of its
+// activities, the wire's analysis bounds each frame, and a chain takes no longer than all of them together
+// (Tindell and Clark 1994; for sampled values Davare et al. 2007).
 #pragma once
 
 #include "kernel/system/plan.hpp"
 
 namespace tappet {
 
-/// What a chain may take, and its largest part.
+/// The worst time of a chain, and its largest part.
 struct ChainTime {
-    Sentence fault{}; ///< there is no such chain
+    Sentence fault{}; ///< set when there is no such chain
     Duration worst{};
     Sentence largest{};
     Duration largest_part{};
@@ -28,11 +28,11 @@ constexpr Sentence at_node(const SystemView& s, std::string_view what, std::size
     return Sentence{what, " at node \"", s.nodes[node].name, "\""};
 }
 
-/// The activity at the far end of a hop, and for how long it may wait for its turn.
+/// Adds the activity at the far end of a hop, and how long the chain may wait for it.
 constexpr void add_reader(const SystemView& s, const NodeEnd& end, ChainTime& time) {
     const MachineView& table = s.nodes[end.node].table;
     const std::size_t a = activity_of(table, table.components[end.at.component].name);
-    if (a == nowhere) return; // the machine's own check says so
+    if (a == nowhere) return; // the machine's own check reports it
     const ActivityRow& row = table.activities[a];
     if (row.periodic()) // nothing wakes it in between: a message, too, waits for its next period
         time.add(row.period,
@@ -52,7 +52,7 @@ constexpr void add_crossing(const SystemView& s, const Plan& plan, std::size_t x
     add_reader(s, plan.index[x].to, time);
 }
 
-/// One hop, over the wire or inside a node. False: no row leads from the one to the other.
+/// Adds one hop, over the wire or inside a node. False: no row leads from the one end to the other.
 template <class Plan>
 constexpr bool add_hop(const SystemView& s, const Plan& plan, std::string_view from, std::string_view to,
                        ChainTime& time) {
@@ -79,8 +79,8 @@ constexpr bool add_hop(const SystemView& s, const Plan& plan, std::string_view f
     return false;
 }
 
-/// What comes in at a component and what follows in it: an event in the same cycle, an output in the next
-/// one, since what it is told of is served after its step.
+/// Adds the time between an input of a component and its reaction: an event follows in the same cycle, an
+/// output in the next one, since operations are served after its step.
 constexpr Sentence pass_through(const SystemView& s, std::string_view in, std::string_view out,
                                 ChainTime& time) {
     NodeEnd from, to;
@@ -125,7 +125,7 @@ constexpr ChainTime prove_reaction(const SystemView& s, const Plan& plan, const 
     return time;
 }
 
-/// From the last sign of life of a node until an input elsewhere shows that it is gone.
+/// Proves a stop: from the last sign of life of a node until an input elsewhere shows that it is gone.
 template <class Plan>
 constexpr ChainTime prove_stop(const SystemView& s, const Plan& plan, const PromiseRow& row) {
     ChainTime time;
@@ -148,7 +148,7 @@ constexpr ChainTime prove_stop(const SystemView& s, const Plan& plan, const Prom
         time.add(is_presence ? s.wire.silent_after : crossing.data.max_age,
                  is_presence ? Sentence{"the wire's silent_after(...)"}
                              : of_crossing(crossing, ": its stale_after(...)"));
-        // The wire's end at that node tells a silence; that a value is old is seen by whoever reads it.
+        // The wire's end at that node detects silence; the reader itself sees that a value is old.
         if (is_presence)
             time.add(s.wire.service.deadline,
                      at_node(s, "the deadline by which the wire is served", plan.index[x].to.node));
@@ -167,7 +167,7 @@ constexpr ChainTime prove_stop(const SystemView& s, const Plan& plan, const Prom
     return time;
 }
 
-/// The first promise that is not kept; `proven` has a place for each.
+/// Returns the fault of the first promise that does not hold; `proven` has a place for each.
 template <class Plan>
 constexpr Sentence check_promises(const SystemView& s, const Plan& plan, std::span<Duration> proven) {
     for (std::size_t p = 0; p < s.promises.size(); ++p) {

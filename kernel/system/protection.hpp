@@ -1,6 +1,6 @@
-// End-to-end protection of a payload on its way between two machines: a checksum over the contents and over
-// whose they are, and a counter, as AUTOSAR has them (E2E profile 11 for classic CAN, profile 5 for CAN FD).
-// Whatever carries the payload need not be trusted.
+// End-to-end protection of a payload between two machines: a checksum over the contents and the connection's
+// id, and a counter, as in AUTOSAR (E2E profile 11 for classic CAN, profile 5 for CAN FD). The carrier of the
+// payload need not be trusted.
 #pragma once
 
 #include "kernel/base/crc.hpp"
@@ -13,7 +13,7 @@
 
 namespace tappet {
 
-/// How one connection's payloads are protected; both ends have the same.
+/// The protection of one connection's payloads; both ends use the same.
 struct Protection {
     enum class Form : std::uint8_t {
         id_both,   ///< profile 11: a byte of checksum, four bits of counter; both bytes of the id in the sum
@@ -22,9 +22,9 @@ struct Protection {
         wide,      ///< profile 5: two bytes of checksum, the lower first, and one of counter
     };
     Form form = Form::id_both;
-    std::uint16_t id = 0; ///< one for each connection of the system
+    std::uint16_t id = 0; ///< unique for each connection of the system
     std::size_t at = 0;   ///< the byte where the header begins
-    /// Counter steps from one payload to the next that are taken for losses; more are out of order.
+    /// The most counter steps between two payloads that count as losses; more steps are out of order.
     std::uint8_t most_steps = 3;
 
     [[nodiscard]] constexpr bool is_wide() const noexcept TAPPET_REALTIME { return form == Form::wide; }
@@ -34,7 +34,7 @@ struct Protection {
     [[nodiscard]] constexpr std::size_t checksum_bytes() const noexcept TAPPET_REALTIME {
         return is_wide() ? 2 : 1;
     }
-    /// From bit 8 `at` on; the four above the 12 of id_both and id_low are the payload's.
+    /// Bits from bit 8 * `at` on; the four bits above the 12 of id_both and id_low belong to the payload.
     [[nodiscard]] constexpr unsigned header_bits() const noexcept {
         return is_wide() ? 24 : form == Form::id_nibble ? 16 : 12;
     }
@@ -43,7 +43,7 @@ struct Protection {
     }
 };
 
-/// Why the payloads of so many bytes cannot be protected so; empty: they can.
+/// Says why payloads of that many bytes cannot be protected like this; empty: they can.
 constexpr Sentence protection_fault(const Protection& by, std::size_t bytes) {
     if (!by.fits(bytes))
         return Sentence{"a header of ",
@@ -69,7 +69,7 @@ constexpr Sentence protection_fault(const Protection& by, std::size_t bytes) {
 
 namespace detail {
 
-/// Of all but the checksum itself. The payload fits.
+/// Returns the sum over everything but the checksum itself. The payload must fit.
 constexpr std::uint16_t protection_sum(std::span<const std::uint8_t> bytes, const Protection& by) noexcept
     TAPPET_REALTIME {
     const auto low = static_cast<std::uint8_t>(by.id & 0xFF);
@@ -80,7 +80,7 @@ constexpr std::uint16_t protection_sum(std::span<const std::uint8_t> bytes, cons
         const std::uint16_t sum = crc16_ccitt.steps(crc16_ccitt.steps(crc16_ccitt.first(), before), behind);
         return crc16_ccitt.step(crc16_ccitt.step(sum, low), high);
     }
-    // The standard's first value and its last exclusive or take each other away: it begins with 0.
+    // The standard's initial value and its final XOR cancel out: it begins with 0.
     std::uint8_t sum = crc8_j1850.step(0, low);
     if (by.form == Protection::Form::id_both) sum = crc8_j1850.step(sum, high);
     if (by.form == Protection::Form::id_nibble) sum = crc8_j1850.step(sum, 0);
@@ -94,9 +94,9 @@ constexpr std::uint16_t checksum_in(std::span<const std::uint8_t> bytes, const P
 
 } // namespace detail
 
-/// Writes the header; everything else of the payload is there already. `counter` is below by.counters().
-/// False, and nothing is written: the payload is too short, or there is no such counter. Wait-free: one step
-/// a byte.
+/// Writes the header; everything else of the payload must be there already. `counter` must be below
+/// by.counters(). False, and nothing is written: the payload is too short, or there is no such counter.
+/// Wait-free: one step for each byte.
 [[nodiscard]] constexpr bool protect(std::span<std::uint8_t> bytes, const Protection& by,
                                      std::uint8_t counter) noexcept TAPPET_REALTIME {
     if (!by.fits(bytes.size()) || counter >= by.counters()) return false;
@@ -113,11 +113,11 @@ constexpr std::uint16_t checksum_in(std::span<const std::uint8_t> bytes, const P
     return true;
 }
 
-/// The sender's end: counts by itself. Real-time, of one activity.
+/// The sender's end, with its own counter. Real-time, for one activity.
 class Protector {
 public:
     explicit constexpr Protector(const Protection& by) noexcept : by_{by} {}
-    /// False: as protect(); the counter stays.
+    /// Protects a payload. False: like protect(); the counter stays.
     [[nodiscard]] constexpr bool protect(std::span<std::uint8_t> bytes) noexcept TAPPET_REALTIME {
         if (!tappet::protect(bytes, by_, next_)) return false;
         next_ = static_cast<std::uint8_t>((next_ + 1U) % by_.counters());
@@ -129,33 +129,33 @@ private:
     std::uint8_t next_ = 0;
 };
 
-/// What the receiver is to think of what it got.
+/// The receiver's judgement of a payload.
 struct ProtectionVerdict {
     enum class Kind : std::uint8_t {
-        ok,          ///< the one after the last one
-        some_lost,   ///< usable; `lost` before it never came
-        initial,     ///< right, and the first one: nobody knows what was before
+        ok,          ///< the next one after the last
+        some_lost,   ///< usable; the `lost` payloads before it never arrived
+        initial,     ///< correct, and the first one: earlier losses are unknown
         repeated,    ///< the last one again
-        wrong_order, ///< an old one, or more were lost than may be, or its sender began anew
-        wrong_crc,   ///< spoilt, cut, or of another connection
-        no_new_data, ///< nothing came
+        wrong_order, ///< an old one, or more than most_steps were lost, or its sender restarted
+        wrong_crc,   ///< corrupted, cut, or of another connection
+        no_new_data, ///< nothing arrived
     };
     Kind kind = Kind::no_new_data;
     std::uint8_t lost = 0;
 
-    /// Its contents may be used.
+    /// Whether its contents may be used.
     [[nodiscard]] constexpr bool usable() const noexcept TAPPET_REALTIME { return kind <= Kind::initial; }
     constexpr bool operator==(const ProtectionVerdict&) const = default;
 };
 
-/// The receiver's end. A whole turn of the counter that is lost is not seen here, but by the age of the last
-/// usable one. Real-time, of one activity.
+/// The receiver's end. It cannot detect the loss of a whole turn of the counter; only the age of the last
+/// usable payload shows that. Real-time, for one activity.
 class ProtectionCheck {
 public:
     explicit constexpr ProtectionCheck(const Protection& by) noexcept : by_{by} {}
 
-    /// Once a cycle, with what came; with nothing when nothing came. As the standard has it, one that is out
-    /// of order is the last one from then on: the one after it is ok again.
+    /// Judges the payload of a cycle; call it once a cycle, with empty bytes when nothing arrived. As in the
+    /// standard, a payload that is out of order becomes the last one: its successor is ok again.
     [[nodiscard]] constexpr ProtectionVerdict check(std::span<const std::uint8_t> bytes) noexcept
         TAPPET_REALTIME {
         using enum ProtectionVerdict::Kind;
@@ -176,7 +176,7 @@ public:
         if (steps > by_.most_steps) return {wrong_order};
         return {steps == 1 ? ok : some_lost, static_cast<std::uint8_t>(steps - 1)};
     }
-    /// The connection begins anew.
+    /// Restarts the connection.
     constexpr void reset() noexcept TAPPET_REALTIME { known_ = false; }
 
 private:

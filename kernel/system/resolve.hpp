@@ -1,5 +1,5 @@
-// The ends of what crosses the wire: found by name, and right in kind, type and unit, or a sentence that says
-// what is wrong and what cures it.
+// Resolves the ends of crossings: finds them by name and checks their kind, type and unit, or returns a
+// sentence that states the fault and its cure.
 #pragma once
 
 #include "kernel/machine/check/flow.hpp"
@@ -13,26 +13,26 @@ constexpr std::size_t find_node(const SystemView& s, std::string_view name) noex
     return nowhere;
 }
 
-/// One end of a row: of which node, and where in its table.
+/// One end of a row: its node, and its place in the node's table.
 struct NodeEnd {
     std::size_t node = nowhere;
     End at{};
     const Facet* facet = nullptr;
 };
 
-/// What the compiler knows of a crossing.
+/// The compiler's data of a crossing.
 struct CrossingIndex {
-    NodeEnd from{}, to{}; ///< of presence, `from` is the node alone
+    NodeEnd from{}, to{}; ///< of presence: `from` is only the node
     NodeEnd if_lost{};
-    WireValue value{};        ///< of data the value, of the others their arguments
+    WireValue value{};        ///< of data: the value; of the others: their arguments
     WireValue result{};       ///< of commands
-    std::uint16_t name = 0;   ///< by which the two ends speak of the row
-    std::uint16_t layout = 0; ///< how it stands on the wire: another version's may differ
+    std::uint16_t name = 0;   ///< the number of the row for both ends
+    std::uint16_t layout = 0; ///< digest of its layout on the wire: another version's may differ
 };
 
 namespace systems {
 
-/// "node.component.facet" without its node.
+/// Returns "node.component.facet" without its node.
 constexpr std::string_view in_node(std::string_view path) noexcept {
     return path.substr(std::min(path.size(), find_character(path, '.') + 1));
 }
@@ -175,7 +175,7 @@ constexpr Sentence resolve_presence(const SystemView& s, const Crossing& row, Cr
     return {};
 }
 
-/// What arguments and results become.
+/// Encodes arguments and results.
 constexpr Sentence wire_values(const Crossing& row, CrossingIndex& found) {
     Sentence fault;
     if (row.kind == CrossingKind::event) {

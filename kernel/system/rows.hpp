@@ -1,5 +1,5 @@
-// The system table (thesis 2.4, 1.2.2): several machines, the wire between them, and what crosses it, spelled
-// as inside a machine.
+// The system table (thesis 2.4, 1.2.2): several machines, the wire between them, and the rows that cross it,
+// spelled like those inside a machine.
 //
 //     constexpr auto lane = system("woodworking-lane",
 //         nodes(node<conveyor>("conveyor"), node<station>("saw"), node<station>("drill")),
@@ -13,7 +13,7 @@
 //             presence("saw", "drill.station.saw_is_there")),
 //         promises(reaction("saw.station.board_out", "drill.station.board_in", within(30ms))));
 //
-// A path is "node.component.facet". No machine's own table knows of it.
+// A path is "node.component.facet". No machine's own table refers to the system.
 #pragma once
 
 #include "kernel/machine/table/board.hpp"
@@ -23,7 +23,7 @@
 
 namespace tappet {
 
-/// One machine of the system. The same table may stand in several rows.
+/// One machine of the system. Several rows may use the same table.
 struct SystemNode {
     std::string_view name{};
     MachineView table;
@@ -38,37 +38,37 @@ constexpr SystemNode node(std::string_view name) {
 struct Beats {
     Duration every{};
 };
-/// Each node says so often that it is there, which row it is about to tell, and what that row looks like.
+/// The period of beats: each says that its node is alive, and names one of its rows and that row's layout.
 constexpr Beats beats(Duration every) noexcept { return {every}; }
 struct SilentAfter {
     Duration time{};
 };
-/// A node of which no beat came for so long is lost: its rows end, and its presence is false.
+/// A node is lost when no beat of it arrived for this time: its rows end, and its presence is false.
 constexpr SilentAfter silent_after(Duration time) noexcept { return {time}; }
 
-/// How each node's activity serves the wire, which its own table's check then proves.
+/// How each node's activity serves the wire; the check of its own table proves it.
 struct Service {
     Duration deadline = 1ms;
     Duration budget = 100us;
 };
-/// Within `deadline` of a frame's arrival it is served, and so is what is to be sent; `budget` of each cycle.
+/// Serves an arrived frame, and sends waiting ones, within `deadline`; `budget` of each cycle.
 constexpr Service served_within(Duration deadline, Budget each) noexcept { return {deadline, each.each}; }
 
 struct Within {
     Duration time{};
 };
-/// Of a crossing: from the writing, the emission or the sending until it was served at the other node.
+/// The limit of a crossing: from writing, emission or sending until it was served at the other node.
 constexpr Within within(Duration time) noexcept { return {time}; }
 
-/// Who tells the wire's common time, and how well the others are to know it.
+/// The node that tells the wire's common time, and how well the others must know it.
 struct CommonClock {
     std::string_view node{};
     Duration every{};
     Duration within{};
-    /// From the end of a frame to its stamp at most, at any node: of a kernel that stamps what arrives.
+    /// The longest time from the end of a frame to its stamp, at any node whose kernel stamps arrivals.
     Duration stamps_late = 100us;
-    double drift = 210e-6; ///< of two clocks against each other at most, s in a s
-    int told = 0;          ///< how often the wire says it
+    double drift = 210e-6; ///< maximum between two clocks, s/s
+    int told = 0;          ///< how often the wire states it
 };
 struct StampsLate {
     Duration time{};
@@ -77,27 +77,26 @@ constexpr StampsLate stamps_late(Duration time) noexcept { return {time}; }
 struct Drift {
     double most = 0;
 };
-/// By how much two nodes' clocks may part, s in a s: of crystals some 200e-6; a daemon that steers them adds
-/// what it may.
+/// The maximum drift between two nodes' clocks, s/s: crystals some 200e-6; a steering daemon adds its limit.
 constexpr Drift drift(double most) noexcept { return {most}; }
 
-/// bit/s of a wire, as bit_rate() says them.
+/// bit/s of a wire, as bit_rate() states them.
 struct WireRate {
     std::uint32_t bits_per_second = 0;
     std::uint32_t in_data_phase = 0; ///< of CAN FD frames that switch; 0: classical CAN only
 };
-/// What is to be expected of a wire at its worst, as bus_errors() says it.
+/// The expected worst errors of a wire, as bus_errors() states them.
 struct WireErrors {
     unsigned at_once = 1;
     Duration every = 100ms;
 };
 
-/// The wire between the nodes: classical CAN, or CAN FD where its bit rate has a second number.
+/// The wire between the nodes: classical CAN, or CAN FD when its bit rate has a second number.
 struct WireRow {
-    std::string_view name{}; ///< of the device in each node's binding, and of what stands on it there
+    std::string_view name{}; ///< of the device in each node's binding, and of its component in each node
     WireRate rate{};
     WireErrors errors{};
-    std::string_view foreign{}; ///< a word that is said of it and for other devices
+    std::string_view foreign{}; ///< a word that does not apply to a wire, but to other devices
     Duration beats = 20ms;
     Duration silent_after = 70ms;
     Service service{};
@@ -113,15 +112,15 @@ struct WireRow {
 struct FirstIdentifier {
     std::uint32_t number = 0;
 };
-/// The wire's frames have the identifiers from this one on, of 11 bits: clear of whatever else is on it.
-/// Unless stated they begin where CiA 301 has its process data.
+/// The wire's frames have identifiers of 11 bits from this one on: avoid those of other devices on it.
+/// Default: they begin at the process data of CiA 301.
 constexpr FirstIdentifier identifiers_from(std::uint32_t number) noexcept { return {number}; }
 
 struct FixedIdentifiers {};
-/// The wire's frames have identifiers of 29 bits, made of what each frame is and how often it comes alone: no
-/// other row moves them, so that nodes of two versions of a system work together in all rows that both have,
-/// if new rows stand behind the old ones. They cost 20 to 25 bits a frame. Nothing else of 29 bits may be on
-/// the wire, and what two versions bring to it together is proven by neither.
+/// The wire's frames have identifiers of 29 bits, made only from each frame's identity and rate: no other row
+/// changes them. So nodes of two versions of a system work together in all rows that both have, if new rows
+/// are placed after the old ones. They cost 20 to 25 bits a frame. No other device on the wire may use 29
+/// bits, and neither version proves the traffic that both bring to the wire together.
 inline constexpr FixedIdentifiers fixed_identifiers{};
 
 namespace detail {
@@ -140,7 +139,7 @@ constexpr void apply(WireRow& row, FirstIdentifier option) noexcept {
     row.first_identifier = option.number;
     row.states_first = true;
 }
-/// In the words of the bus that it is, which its driver declares.
+/// Applies a word of the bus, as its driver declares it.
 constexpr void apply(WireRow& row, const Fact& fact) noexcept {
     const auto& numbers = fact.numbers;
     if (fact.word->name == "bit_rate")
@@ -156,10 +155,10 @@ constexpr void apply(WireRow& row, Service option) noexcept { row.service = opti
 
 } // namespace detail
 
-/// common_clock("conveyor", every(100ms), within(200us)): that node tells its time (AUTOSAR CanTSyn), and the
-/// others know it to within so much, or say that they do not: the compiler proves that they do while no
-/// exchange is lost. That rests on stamps_late(...) and drift(...), which are believed. What they know, and
-/// how surely, is told by the outputs `ahead`, `error` and `known` of the component "<wire>_clock".
+/// common_clock("conveyor", every(100ms), within(200us)): that node tells its time (AUTOSAR CanTSyn). The
+/// others know it to within that error, or say that they do not: the compiler proves that they do while no
+/// exchange is lost. The proof relies on stamps_late(...) and drift(...). The outputs `ahead`, `error` and
+/// `known` of the component "<wire>_clock" show the time and its error.
 template <class... Options>
 constexpr CommonClock common_clock(std::string_view node, const TriggerOption& rate,
                                    const Options&... options) {
@@ -175,16 +174,16 @@ constexpr WireRow wire(std::string_view name, const Options&... options) {
     return row;
 }
 
-/// How a number is told on the wire. Without it a value goes as the bytes that it is, a bool as one bit.
+/// The encoding of a number on the wire. Without it a value is sent as its own bytes, a bool as one bit.
 struct Encoding {
-    std::uint8_t bits = 0; ///< 0: as it is
+    std::uint8_t bits = 0; ///< 0: the value's own bytes
     double step = 1;
     bool is_signed = true;
 };
-/// A whole number of so many bits, two's complement, times `step`: what is beyond that is told as the last
-/// one that fits, and counted. Of a command its argument, and a result that is one number.
+/// A whole number of `bits` bits, two's complement, times `step`: a value out of range is clamped and
+/// counted. For a command it applies to its argument, and to a result that is one number.
 constexpr Encoding in_bits(std::uint8_t bits, double step = 1) noexcept { return {bits, step, true}; }
-/// Likewise, from nought up.
+/// Like in_bits(), but unsigned.
 constexpr Encoding in_natural_bits(std::uint8_t bits, double step = 1) noexcept {
     return {bits, step, false};
 }
@@ -192,31 +191,30 @@ constexpr Encoding in_natural_bits(std::uint8_t bits, double step = 1) noexcept 
 struct IfLost {
     std::string_view operation{};
 };
-/// Of an event: what runs at its own node when nobody has answered within its time. Whether it was served is
-/// then not known; a command that fails so says failed.
+/// The operation that runs at an event's own node when no answer arrived within its time. Whether the event
+/// was served is then unknown; a command that fails like this reports failed.
 constexpr IfLost if_lost(std::string_view operation) noexcept { return {operation}; }
 
 struct WithTime {};
-/// Of data: it crosses with the common time at which it was true, so that its stamp there is what it was
-/// here, to within the common clock's bound of either node; while one of the two does not know that time it
-/// is not valid.
+/// Data: sends the common time at which the value was true, so that both nodes have the same stamp, to within
+/// the common clock's bound of either node. The value is not valid while one of them does not know that time.
 inline constexpr WithTime with_time{};
 
 enum class CrossingKind : std::uint8_t { data, event, command, presence };
 
-/// A row whose two ends are in different nodes.
+/// A row between two different nodes.
 struct Crossing {
     CrossingKind kind = CrossingKind::data;
     ConnectionRow data{};   ///< of data and presence
     ReactionRow reaction{}; ///< of events and commands
     Duration every{};       ///< of data: the period of its frame
     std::int64_t at_most_n = 1;
-    Duration at_most_per{}; ///< of events and commands: the least time between two
-    Duration within{};      ///< 0: of data its period and what the wire takes; of the others it must be said
+    Duration at_most_per{}; ///< of events and commands: the shortest time between two
+    Duration within{};      ///< 0: of data its period and the wire's time; the others must state it
     Encoding encoding{};
     bool with_time = false;
-    std::string_view node{};    ///< of presence: whose
-    std::string_view if_lost{}; ///< of an event: the operation of the emitter's node that hears of it
+    std::string_view node{};    ///< of presence: the observed node
+    std::string_view if_lost{}; ///< of an event: the operation of the emitter's node that is told
 
     [[nodiscard]] constexpr std::string_view from() const noexcept {
         return kind == CrossingKind::data ? data.from : reaction.event;
@@ -241,7 +239,7 @@ constexpr void apply(Crossing& row, IfLost option) noexcept { row.if_lost = opti
 
 } // namespace detail
 
-/// data("a.x.y", "b.x.y", ...), every(10ms), and what it is told in.
+/// data("a.x.y", "b.x.y", ...), every(10ms), and its encoding.
 template <class... Options>
 constexpr Crossing across(const ConnectionRow& row, const Options&... options) {
     Crossing crossing{.kind = CrossingKind::data, .data = row};
@@ -249,7 +247,7 @@ constexpr Crossing across(const ConnectionRow& row, const Options&... options) {
     return crossing;
 }
 /// when("a.x.event", tell("b.x.operation")) or uses("a.x.call", "b.x.command"), at_most(1, 100ms),
-/// within(20ms). Never twice, in order; what is lost is known at both ends.
+/// within(20ms). Served at most once, in order; both ends know every loss.
 template <class... Options>
 constexpr Crossing across(const ReactionRow& row, const Options&... options) {
     Crossing crossing{.kind = row.kind == ReactionKind::uses ? CrossingKind::command : CrossingKind::event,
@@ -257,7 +255,7 @@ constexpr Crossing across(const ReactionRow& row, const Options&... options) {
     (detail::apply(crossing, options), ...);
     return crossing;
 }
-/// Whether that node is heard, for an input of type bool; options as of data(...).
+/// Whether that node is heard, for an input of type bool; options like those of data(...).
 template <class... Options>
 constexpr Crossing presence(std::string_view node, std::string_view input, const Options&... options) {
     Crossing crossing{.kind = CrossingKind::presence, .node = node};
@@ -266,22 +264,22 @@ constexpr Crossing presence(std::string_view node, std::string_view input, const
     return crossing;
 }
 
-/// What the compiler is to prove of the whole.
+/// A promise that the compiler must prove for the whole system.
 struct PromiseRow {
     bool stops = false;      ///< a stop time; otherwise a reaction
     std::string_view from{}; ///< of a reaction: the event, or the output
     std::string_view to{};   ///< of a reaction: the operation, or the input
-    std::string_view node{}; ///< of a stop time: who falls silent
+    std::string_view node{}; ///< of a stop time: the node that becomes silent
     Duration within{};
-    Bounded<std::string_view, 8> via{}; ///< in pairs: what came in at a component, and what that emits then
+    Bounded<std::string_view, 8> via{}; ///< in pairs: an input of a component, and its reaction
     bool too_many = false;
 };
 
 struct Via {
     std::string_view in{}, out{};
 };
-/// A component on the way: the operation or input by which it hears, and the event or output that follows in
-/// the same cycle of it.
+/// A component in the chain: the operation or input by which it hears, and the event or output that follows
+/// in the same cycle of the component.
 constexpr Via via(std::string_view in, std::string_view out) noexcept { return {in, out}; }
 
 namespace detail {
@@ -294,15 +292,15 @@ constexpr void apply(PromiseRow& row, Via option) noexcept {
 } // namespace detail
 
 /// reaction("saw.station.out", "drill.station.start", within(50ms), via("belt.in", "belt.out")): proven, or
-/// refused with the largest part of it.
+/// refused with the largest part of its time.
 template <class... Options>
 constexpr PromiseRow reaction(std::string_view from, std::string_view to, const Options&... options) {
     PromiseRow row{.from = from, .to = to};
     (detail::apply(row, options), ...);
     return row;
 }
-/// stops("saw", "conveyor.belt.saw_is_there", within(120ms)): so long after the saw's last sign of life the
-/// input there has its stale value, or says that it is gone.
+/// stops("saw", "conveyor.belt.saw_is_there", within(120ms)): within this time after the saw's last sign of
+/// life the input has its stale value, or shows that the saw is gone.
 constexpr PromiseRow stops(std::string_view node, std::string_view input, Within limit) {
     return {.stops = true, .to = input, .node = node, .within = limit.time};
 }
@@ -329,7 +327,7 @@ struct System {
     }
 };
 
-// Of rows only: a slot of a machine has its nodes(32), too.
+// For rows only: a slot of a machine has its own nodes(32).
 template <std::same_as<SystemNode>... Rows>
 constexpr Section<SystemNode, sizeof...(Rows)> nodes(const Rows&... rows) {
     return {{rows...}};

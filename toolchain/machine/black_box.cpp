@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the place of the oldest, and replaces it.
+// Selects the oldest black box and replaces it.
 #include "toolchain/machine/black_box.hpp"
 
 #include "kernel/os/terminal.hpp"
@@ -16,7 +16,7 @@ namespace tappet {
 
 namespace {
 
-/// 0: there is none, or it is damaged.
+/// Returns the file's number; 0 when it is missing or damaged.
 std::uint64_t number_of(const Sentence& path) {
     map::black_box::Record record;
     const int file = ::open(path.data(), O_RDONLY | O_CLOEXEC);
@@ -28,7 +28,7 @@ std::uint64_t number_of(const Sentence& path) {
 
 } // namespace
 
-// Not by the time of a file: the clock of a box without a battery begins anew with each boot.
+// Selects by number, not by file time: the clock of a box without a battery restarts with each boot.
 Sentence keep_black_box(std::string_view directory, map::black_box::Record record,
                         std::span<const std::byte> memory) {
     if (directory.empty()) return {};
@@ -57,7 +57,7 @@ void add_answers(const Sentence& file, MachineInstance& instance) {
         static std::array<char, browsing::max_packet_bytes> room;
         const std::string_view answer = instance.observation().ask(Sentence{"0 ", request}.view(), room);
         if (!answer.empty() && os::write_all(out, request.view()) && os::write_all(out, "\t"))
-            static_cast<void>(os::write_all(out, answer)); // it ends its line
+            static_cast<void>(os::write_all(out, answer)); // the answer ends its line
     };
     add(Sentence{"behaviours"});
     const auto rows = instance.machine().table.behaviours;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Black boxes as files: a few are kept, the oldest goes.
+// Stores black boxes as files: keeps a few and replaces the oldest.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -14,12 +14,12 @@ namespace tappet {
 
 inline constexpr int black_boxes_kept = 8; ///< of one machine
 
-/// Writes `<directory>/<machine>-N.blackbox`, N from 0, in the place of none, of a damaged one or of the
-/// oldest, and numbers it; whole or not at all, and for good. Empty: nothing could be written. Not real-time.
+/// Writes and numbers `<directory>/<machine>-N.blackbox`, N from 0, in place of a missing, a damaged or the
+/// oldest file, atomically and durably. Returns the path; empty: nothing could be written. Not real-time.
 [[nodiscard]] Sentence keep_black_box(std::string_view directory, map::black_box::Record record,
                                       std::span<const std::byte> memory);
-/// Adds what the machine, of which nothing runs any more, answers to browsers. What is damaged in it may end
-/// the calling process: the file is whole without. Not real-time.
+/// Appends the machine's answers to browsers; nothing of the machine may run any more. Damaged data may end
+/// the calling process: the file is complete without the answers. Not real-time.
 void add_answers(const Sentence& file, MachineInstance& instance);
 
 } // namespace tappet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of one word and its values.
+// Writes lines of one word and its values.
 #include "toolchain/machine/board_text.hpp"
 
 #include "kernel/base/digest.hpp"
@@ -14,11 +14,11 @@ namespace {
 
 void add(Digest& digest, std::string_view text) {
     for (const char character : text) digest.add(std::uint64_t{static_cast<unsigned char>(character)});
-    digest.add(std::uint64_t{256}); // "ab", "c" is not "a", "bc"
+    digest.add(std::uint64_t{256}); // separates "ab", "c" from "a", "bc"
 }
 
-/// Of all properties that lie in files: their names, types and ranges. Of two versions with the same one each
-/// reads what the other wrote.
+/// Returns a digest of all properties stored in files: their names, types and ranges. Two versions with the
+/// same digest can read each other's files.
 std::uint64_t layout_of(const MachineView& table) {
     Digest digest;
     for (const ComponentRow& row : table.components) {

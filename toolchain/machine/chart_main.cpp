@@ -1,4 +1,4 @@
-// main of every machine's charts: its table as the compiler accepted it, and what its own header gives spin.
+// main of every machine's charts: its accepted table, and the model for spin from its own header.
 #ifdef TAPPET_MODEL_HEADER
 #include TAPPET_MODEL_HEADER
 #endif

@@ -1,4 +1,4 @@
-// The one object file that has the code of a machine's components: its table's rows lead to it.
+// The one object file with the code of a machine's components: its table's rows refer to it.
 #include TAPPET_TABLE_HEADER
 
 #include "toolchain/machine/code.hpp"

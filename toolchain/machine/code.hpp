@@ -1,4 +1,4 @@
-// A machine's table with the code of its components, whichever board it is accepted for.
+// A machine's table with the code of its components, for any board.
 #pragma once
 
 #include "kernel/machine/table/machine.hpp"

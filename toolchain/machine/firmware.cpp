@@ -22,13 +22,13 @@ namespace tappet {
 
 namespace {
 
-// Large, and there once: in static memory, not on main's stack.
+// These objects are large and exist once: in static memory, not on main's stack.
 constinit os::Clock machine_clock{os::Clock::Kind::real};
 std::array<char, 48 * 1024> summary_text;
 constexpr std::size_t most_own_words = 8;
 
-// How long the supervisor may be away from its guardian. When all is safe, the machine's hook and what is
-// saved may take what it likes, within reason.
+// How long the supervisor may be silent before its guardian acts. Once all is safe, the machine's hook and
+// the saving of properties may take a long time, within reason.
 constexpr Duration away_while_running = 2s;
 constexpr Duration away_when_safe = 30s;
 
@@ -116,13 +116,13 @@ Options parse(int count, char** words, bool has_own) {
     return options;
 }
 
-/// What the supervisor does while it waits.
+/// The work of the supervisor while it waits.
 struct GuardLook {
     os::Guard& guard;
     MachineInstance& instance;
 };
 
-/// One run of the firmware, with its name before whatever it says.
+/// One run of the firmware; each line that it prints begins with its name.
 class Run {
 public:
     Run(const AcceptedMachine& machine, GuardedDevices& devices, const FirmwareHooks& hooks,
@@ -159,7 +159,7 @@ public:
     }
 
 private:
-    /// Until the machine could arm. Its guardian is a copy of this.
+    /// Prepares the machine until it could arm. The guardian is forked from this state.
     Ending prepare(MachineInstance& instance, PropertyFiles& properties) {
         if (const auto opened = devices_.open(instance.machine()); !opened)
             return fail(Ending::wrong_set_up, opened.error());
@@ -177,7 +177,7 @@ private:
     Ending run(MachineInstance& instance, RealWorld& world, PropertyFiles& properties, Time begun) {
         const Board& board = *instance.machine().board;
         static os::ArmingReport arming{{board.only_warned.begin(), board.only_warned.end()}};
-        devices_.report(arming); // a device that is not fit was refused when it was opened
+        devices_.report(arming); // an unfit device was refused when it was opened
         report_guardian(arming);
         const auto armed = world.arm(arming, 2);
         if (!armed) {
@@ -185,7 +185,7 @@ private:
             return Ending::refused_to_arm;
         }
         const Duration start_to_armed = machine_clock.now() - begun;
-        // Also while it starts, when nobody else looks whether the guardian is there.
+        // Also during the start, when nothing else checks whether the guardian lives.
         GuardLook look{guard_, instance};
         world.show_life_by(&look, [](void* self) {
             auto& both = *static_cast<GuardLook*>(self);
@@ -214,8 +214,8 @@ private:
             report.passed("guardian", Sentence{"it could act now"});
     }
 
-    /// The guardian makes sure when a thread broke a contract, or a device took no safe values. It ends a
-    /// thread that hangs, and the process with it.
+    /// Asks the guardian to write safe outputs too when a thread broke a contract, or when a device did not
+    /// accept safe values. The guardian ends a hung thread, and the process with it.
     static os::Guard::Outputs outputs_of(MachineInstance& instance, const RealWorld& world) {
         const bool is_sure = world.lost() == 0 && instance.life().left_unsafe().empty();
         return world.hung() != 0 ? os::Guard::Outputs::unsafe
@@ -223,7 +223,7 @@ private:
                                  : os::Guard::Outputs::not_sure;
     }
 
-    /// True when it ended because its time was over.
+    /// Supervises the machine. Returns true when its time is over.
     bool supervise(MachineInstance& instance, RealWorld& world) {
         const Time begin = machine_clock.now();
         ReasonTeller reasons;
@@ -240,8 +240,8 @@ private:
         }
     }
 
-    /// A new version stays on the box once it has done what its binding asks, and goes when it is late. True
-    /// when there is no more to tell.
+    /// Judges a new version: it stays on the box once it has met its binding's proof, and is replaced when it
+    /// is late. Returns true when nothing is left to report.
     static bool judge(MachineInstance& instance, Duration running) {
         for (const Engine& engine : instance.engines()) {
             if (!engine.plan().real_time || engine.statistics().misses == 0) continue;
@@ -262,8 +262,8 @@ private:
         const auto read = [&] {
             count = static_cast<const Output<std::int64_t>*>(instance.facet(end))->last();
         };
-        // Of another thread: what it writes meanwhile is looked at the next time. Where nobody looks into the
-        // machine it tells no generations, and an aligned word is whole.
+        // Another thread writes this: values written meanwhile are read the next time. Without an observer
+        // there are no generations, but an aligned word is read atomically.
         const auto activity = static_cast<std::uint32_t>(instance.machine().index.activity[end.component]);
         const auto view = map::View::open(instance.observation().shared_memory());
         if (!view)
@@ -277,7 +277,7 @@ private:
     Ending end(MachineInstance& instance, RealWorld& world, PropertyFiles& properties,
                Duration start_to_armed, bool time_is_over) {
         const bool unguarded = guard_.guardian_is_lost();
-        instance.ask_stop(StopReason::requested, 0, nullptr); // where nobody asked: its bound holds from here
+        instance.ask_stop(StopReason::requested, 0, nullptr); // if nobody asked: its bound counts from here
         guard_.let_activities_be_watched(false);
         guard_.be_back_within(std::max(away_while_running, instance.machine().board->stop_within));
         static_cast<void>(world.make_safe());
@@ -299,7 +299,7 @@ private:
         static_cast<void>(world.stop()); // finalises
         if (!world.unfinished().empty()) say(world.unfinished());
         if (!world.refusal().empty()) return fail(Ending::stopped_by_fault, world.refusal());
-        guard_.be_back_within(away_when_safe); // saved, summed up
+        guard_.be_back_within(away_when_safe); // time to save and to sum up
         for (std::size_t i = 1; i < std::min(world.breaches(), RealWorld::max_breaches); ++i)
             say("then: ", world.describe_breach(i));
         tell_overruns(instance, name_);
@@ -334,7 +334,7 @@ private:
         return Ending::well;
     }
 
-    /// One line: each real-time activity's worst response and its deadline, in us.
+    /// Prints one line: each real-time activity's worst response and its deadline, in us.
     static void print_timing(const MachineInstance& instance) {
         Sentence line{"timing"};
         std::uint64_t misses = 0;
@@ -365,7 +365,7 @@ private:
 
 int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int count, char** words,
                  const FirmwareHooks& hooks) {
-    const Time begun = machine_clock.now() - os::own_processor_time(); // when the kernel began to load us
+    const Time begun = machine_clock.now() - os::own_processor_time(); // when the kernel began to load it
     const Options options = parse(count, words, hooks.take != nullptr);
     Run run{machine, devices, hooks, options};
     if (!options.error.empty()) return static_cast<int>(run.fail(Ending::wrong_set_up, options.error));

@@ -1,5 +1,5 @@
-// The life of a firmware, the same for every machine: devices opened, armed, started, supervised, stopped,
-// summed up. What only one machine says stands in its table, its components, and, rarely, in hooks.
+// The life of a firmware, the same for every machine: opens devices, arms, starts, supervises, stops, sums
+// up. A machine's own parts are in its table, its components, and, rarely, in hooks.
 #pragma once
 
 #include "drivers/hardware/devices.hpp"
@@ -10,22 +10,22 @@
 
 namespace tappet {
 
-/// How a firmware ends. Where its guardian had to end it: 128 and the number of the signal, as a shell tells
-/// it.
+/// How a firmware ends. When its guardian had to end it: 128 plus the number of the signal, as a shell
+/// reports it.
 enum class Ending : int { well = 0, wrong_set_up = 2, refused_to_arm = 3, stopped_by_fault = 4 };
 
-/// What only one machine says. The supervisor's thread calls them: never between a fault and safe values.
+/// The hooks of one machine. The supervisor's thread calls them, never between a fault and safe values.
 struct FirmwareHooks {
-    /// Words of the command line that the firmware does not know. The error is the refusal.
+    /// Parses words of the command line that the firmware does not know. The error is the refusal.
     Sentence (*take)(std::span<char* const> words) = nullptr;
-    /// The machine is configured, nothing moves.
+    /// Called when the machine is configured and nothing moves.
     void (*configured)(MachineInstance& instance) = nullptr;
-    /// Everything stands, the summary is not written yet.
+    /// Called when everything has stopped, before the summary is written.
     void (*ended)(MachineInstance& instance, const RealWorld& world) = nullptr;
 };
 
-/// Runs until it is told to end by a signal, or a fault ends it; returns its exit code, in two processes: the
-/// machine's and its guardian's. `devices` and what the machine needs are in static memory; what it prints
+/// Runs until a signal asks it to end or a fault ends it; returns the exit code. Uses two processes: the
+/// machine's and its guardian's. `devices` and the machine's data must be in static memory. Each printed line
 /// begins with the machine's name. Not real-time.
 [[nodiscard]] int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int count,
                                char** words, const FirmwareHooks& hooks = {});

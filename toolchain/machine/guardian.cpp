@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks, decides, acts, says what it did.
+// Watches, decides, acts, and reports what it did.
 #include "toolchain/machine/guardian.hpp"
 
 #include "kernel/machine/worlds/life_watch.hpp"
@@ -20,15 +20,15 @@ namespace tappet {
 
 namespace {
 
-// Between two looks an activity may have hung for so long already: the limit is exceeded by no more.
+// An activity may already have hung for this long between two looks: its limit is exceeded by no more.
 constexpr Duration look_every = 4ms;
-// Who did not look for so long was kept from it, as everybody was: a box that was frozen. The supervisor
-// comes after all.
+// After a gap this long between two looks the whole box was frozen, not only the machine. The supervisor then
+// gets time to recover.
 constexpr Duration frozen_after = 250ms, frozen_grace = 2s;
-// From one look at a machine that lives to the next, with what keeps the guardian from it.
+// From one look at a live machine to the next, with margin for the guardian's own delays.
 constexpr Duration look_within = 1s;
 
-/// By what the guard knows of it.
+/// The machine's process, as the guard knows it.
 class GuardedProcess final : public EndedProcess {
 public:
     explicit GuardedProcess(os::Guard& guard) : guard_{guard} {}
@@ -80,7 +80,7 @@ public:
                 watchdog_.kick(now);
                 continue;
             }
-            outputs_.guardian_says_safe(); // the machine's supervisor saw to it, before it ended
+            outputs_.guardian_says_safe(); // the machine's supervisor made them safe before it ended
             stand_down();
             if (const Sentence& fault = guard_.block().fault; !fault.empty()) keep(fault, {});
             return guard_.exit_code();
@@ -91,10 +91,10 @@ private:
     struct Look {
         bool must_act = false;
         bool ended = false;
-        Sentence reason{}; ///< empty: how it ended says why
+        Sentence reason{}; ///< empty: derive the reason from the process's end
     };
 
-    /// When the outputs are safe the box need not be reset, and its init may take the watchdog back.
+    /// Stops the watchdog; when the outputs are safe, the box's init may take it back without a reset.
     void stand_down() {
         watchdog_.stand_down();
         if (outputs_.is_safe()) os::notify_starter(os::outputs_are_safe_notice);
@@ -122,8 +122,8 @@ private:
         if (back_by != 0 && to_ns(now) > back_by && now > forgiven_until_)
             return {true, false, Sentence{"its supervisor shows no life"}};
         if (block.is_left.load(std::memory_order_acquire)) return {true, false, {}};
-        // Whatever keeps the supervisor, or a component its thread: the bound is the board's.
-        if (back_by == 0) moves_since_ = now; // it only arms
+        // The board bounds the stop, whatever delays the supervisor or a component's thread.
+        if (back_by == 0) moves_since_ = now; // it is still arming
         if (stops() && now > forgiven_until_) {
             const Board& board = *instance_.machine().board;
             const Time asked = std::max(instance_.stop_asked_at(), moves_since_);
@@ -142,7 +142,7 @@ private:
         return {};
     }
 
-    /// Of a crash its own, though the process was killed for it.
+    /// Returns the exit code; for a crash its own signal, although the process was killed because of it.
     [[nodiscard]] int exit_code() const {
         const os::CrashNote& crash = guard_.block().crash;
         return crash.is_complete() ? 128 + crash.signal : guard_.exit_code();
@@ -154,10 +154,10 @@ private:
                           : Sentence{"it ended with code ", code, " in the middle of its work"};
     }
 
-    /// False: a line is not safe.
+    /// Returns false when a line is not safe.
     bool act(Sentence reason) {
         const SafeEnding done = end_safely(process_, devices_, outputs_, watchdog_);
-        stand_down(); // or the box's reset is the end of it
+        stand_down(); // otherwise the box's reset follows
         if (guard_.block().crash.is_complete())
             reason = guard_.block().crash.describe();
         else if (!reason.empty() && instance_.stop_asked())
@@ -238,10 +238,10 @@ private:
 void be_guardian(os::Guard& guard, GuardedDevices& devices, MachineInstance& instance,
                  std::string_view black_boxes) {
     static Guardian guardian{guard, devices, instance, black_boxes};
-    // Without one the machine refuses to arm, which its end then tells.
+    // Without a watchdog the machine refuses to arm, and its end reports that.
     static_cast<void>(guardian.get_ready());
-    // Not by main's return: what it would destroy is a copy of what the machine's process has destroyed or
-    // still needs.
+    // Does not return through main: its destructors would destroy copies of objects that the machine's
+    // process has destroyed or still needs.
     std::_Exit(guardian.live());
 }
 

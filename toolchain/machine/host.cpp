@@ -64,7 +64,7 @@ private:
                 if (const Sentence fault = replay(run.devices(), value); !fault.empty()) return fault;
         return {};
     }
-    /// BUS=FILE[@SECONDS]
+    /// Parses BUS=FILE[@SECONDS].
     static Sentence replay(SimulatedDevices& devices, std::string_view value) {
         const std::size_t equals = value.find('='), at = value.rfind('@');
         std::string_view file = value.substr(std::min(equals, value.size() - 1) + 1);
@@ -82,7 +82,7 @@ private:
         return {};
     }
 
-    /// Soon behind its log's end it ends, too: before the machine misses what came no more.
+    /// Short for replays: the run ends soon after its log's end, before the machine misses further frames.
     [[nodiscard]] Duration pace() const { return replays_ ? 1ms : 50ms; }
     [[nodiscard]] Duration time() const {
         if (replays_ && !options_.has("--for")) return 1'000'000'000s;
@@ -130,10 +130,10 @@ private:
         return finish(run.instance(), run.devices(), outcome);
     }
 
-    /// Well: the plant is done, the time is over, or somebody asked it to end.
+    /// Judges the end. Well: the plant is done, the time is over, or a signal asked it to end.
     void judge(const MachineInstance& instance, const SimulatedDevices& devices, bool runs,
                Outcome& outcome) const {
-        const Sentence fault = replays_ ? Sentence{} : plant_.fault(); // a plant that nobody hears
+        const Sentence fault = replays_ ? Sentence{} : plant_.fault(); // a replay's plant has no listeners
         outcome.well = fault.empty() && (runs || instance.stop_request().reason == StopReason::requested);
         outcome.reason = !runs            ? instance.describe_stop()
                          : !fault.empty() ? fault
@@ -163,7 +163,7 @@ private:
         return outcome.well && has_logs ? ended_well : ended_otherwise;
     }
 
-    /// The machine's object, and what the plant measured as one of its fields; that is printed, too.
+    /// Writes the machine's object with the plant's measurements as one field, and prints it.
     std::size_t write(MachineInstance& instance, const SimulatedDevices& devices, const Outcome& outcome,
                       std::span<char> text) const {
         RunFacts facts;

@@ -1,5 +1,5 @@
-// A machine and its plant in one process, under virtual or real time: what the host's program of every
-// machine does, and what a machine's tests hold in hand.
+// A machine and its plant in one process, under virtual or real time: for every machine's host program, and
+// for a machine's tests.
 #pragma once
 
 #include "drivers/plant/simulation.hpp"
@@ -15,37 +15,37 @@
 
 namespace tappet {
 
-/// Of everything that happened, in machine and plant.
+/// Returns a digest of everything that happened, in machine and plant.
 [[nodiscard]] std::uint64_t digest_of(const MachineInstance& instance, const Plant& plant);
 
-/// Virtual time: one thread, the same run for the same seed. Lives as long as the run; one at a time, since
-/// the machine's memory is static.
+/// Virtual time: one thread, the same run for the same seed. Must live as long as the run; one at a time,
+/// because the machine's memory is static.
 class VirtualRun {
 public:
     VirtualRun(const AcceptedMachine& machine, Plant& plant, std::uint64_t seed);
 
-    /// Before start(): where rows with a properties file have their values from; nowhere unless told, so that
-    /// a run depends on its seed alone. The characters outlive the run.
+    /// Call before start(): sets the directory from which rows with a properties file read their values.
+    /// Default: none, so that a run depends on its seed alone. The characters must outlive the run.
     void keep_properties_in(std::string_view directory) noexcept { files_.keep_in(directory); }
-    /// Before start(): each machine of the run listens to browsers there. The characters outlive the run.
+    /// Call before start(): each machine listens to browsers there. The characters must outlive the run.
     void browse_in(std::string_view directory) noexcept { browsed_in_ = directory; }
-    /// Before start(): cycles take times that the seed draws, up to their budgets, and frames theirs on the
-    /// wire.
+    /// Call before start(): cycles take times that the seed draws, up to their budgets, and frames take bit
+    /// times.
     void take_times(std::uint64_t seed, can::BitRates rates) {
         timed_by_ = seed;
         devices_.set_bit_rates(rates);
     }
     [[nodiscard]] MachineInstance& instance() noexcept { return machine_->instance; }
-    /// Opens the twins, configures and starts. An error is the first refusal.
+    /// Opens the twins, configures and starts. The error is the first refusal.
     std::expected<void, Sentence> start();
-    /// A new machine at the same plant, which stays as it is. The one before is gone, be it stopped or not.
+    /// Starts a new machine at the same plant, which keeps its state. The old one is gone, stopped or not.
     std::expected<void, Sentence> start_again();
-    /// Called whenever the plant has moved, which it does after each step of the machine: for who judges
-    /// every moment.
+    /// Sets a function that is called whenever the plant has moved, which is after each step of the machine:
+    /// for judges that check every moment.
     void judge_by(std::function<void(Time now)> look) { look_ = std::move(look); }
-    /// False: the machine asked to stop.
+    /// Runs for `time`. Returns false when the machine asked to stop.
     bool run_for(Duration time) { return machine_->world.run_until(clock_.now() + time); }
-    /// Until `done`, looked at each millisecond. False: `limit` has passed, or the machine asked to stop.
+    /// Runs until `done`, checked each millisecond. False: `limit` has passed, or the machine asked to stop.
     bool run_until(const std::function<bool()>& done, Duration limit);
     void stop() { machine_->world.stop(); }
 
@@ -81,31 +81,30 @@ public:
     RealRun(const RealRun&) = delete;
     RealRun& operator=(const RealRun&) = delete;
 
-    /// As VirtualRun's.
+    /// As in VirtualRun.
     void keep_properties_in(std::string_view directory) noexcept { files_.keep_in(directory); }
     [[nodiscard]] MachineInstance& instance() noexcept { return instance_; }
-    /// Opens the twins, configures, arms and starts. What arming found is printed on `file`. An error is the
+    /// Opens the twins, configures, arms and starts. Prints the results of arming to `file`. The error is the
     /// first refusal.
     std::expected<void, Sentence> start(int file);
-    /// Sleeps; false: a stop is asked for, or a signal asks to end.
+    /// Sleeps for `time`. Returns false when a stop is requested, or a signal asks to end.
     bool supervise(Duration time) { return world_.supervise(time); }
-    /// As SimulatedDevices::is_done() said after the plant's last move.
+    /// Returns SimulatedDevices::is_done() as of the plant's last move.
     [[nodiscard]] bool is_done() const noexcept { return done_.load(std::memory_order_acquire); }
-    /// The machine first, then the plant, which has `coming_to_rest` for its last moves. How many threads of
-    /// the machine hung.
+    /// Stops the machine first, then the plant, which has `coming_to_rest` for its last moves. Returns how
+    /// many threads of the machine hung.
     int stop();
 
     [[nodiscard]] RealWorld& world() noexcept { return world_; }
-    /// After stop(): they are the plant's thread's until then.
+    /// Call only after stop(): until then the plant's thread owns them.
     [[nodiscard]] SimulatedDevices& devices() noexcept { return devices_; }
 
     static constexpr Duration coming_to_rest = 300ms;
 
 private:
-    /// The plant looks at its wires this often at least: what the machine does reaches it so late at most.
+    /// The plant polls its wires at least this often: a change by the machine reaches it at most this late.
     static constexpr Duration plant_period = 200us;
-    /// Below every activity of the machine, above the developer's other work, which would let frames come
-    /// late.
+    /// Below every activity of the machine, above the developer's other work, which would delay frames.
     static constexpr int plant_priority = 1;
 
     static void live(void* self) noexcept;
@@ -126,8 +125,8 @@ private:
     os::Thread plant_thread_{};
 };
 
-/// The host's program of a machine. Makes the plant for the seed of its command line. The exit code: 0 well,
-/// 1 it ended otherwise, 2 a wrong set-up.
+/// The host's program of a machine. `make_plant` gets the seed of the command line. Exit code: 0 well, 1 it
+/// ended otherwise, 2 a wrong set-up.
 [[nodiscard]] int run_host(const AcceptedMachine& machine,
                            const std::function<std::unique_ptr<Plant>(std::uint64_t seed)>& make_plant,
                            int count, char** words, const HostHooks& hooks = {});

@@ -1,4 +1,4 @@
-// What only one machine's host program does, as its HOST_HOOKS header gives it to tappet_machine() of CMake.
+// A machine's own parts of its host program: its HOST_HOOKS header passes them to tappet_machine() of CMake.
 #pragma once
 
 #include "drivers/plant/plant.hpp"
@@ -7,19 +7,19 @@
 
 namespace tappet {
 
-/// Of the state machine that drives the component, the outermost one; empty: none.
+/// Returns the outermost state of the state machine that drives the component; empty: none.
 [[nodiscard]] inline std::string_view state_of(const MachineInstance& machine, std::string_view component) {
     const StateMachineExecution* states = machine.state_machine_of(component);
     return states == nullptr || states->path().empty() ? std::string_view{} : states->path()[0];
 }
 
-/// It looks into machine and plant, which has to wait meanwhile: under virtual time. Not real-time.
+/// The hooks read machine and plant, which wait meanwhile: under virtual time only. Not real-time.
 struct HostHooks {
-    bool in_real_time = false; ///< the program has real time too, in which nobody looks
+    bool in_real_time = false; ///< the program also supports real time, without looks
     Duration look_every{};
-    /// Between two moments of the machine, and once when everything stands.
+    /// Called between two moments of the machine, and once after everything has stopped.
     void (*look)(MachineInstance& machine, Plant& plant, Time now) = nullptr;
-    /// At the end. The error is what it could not leave behind.
+    /// Called at the end. The error names the output that could not be written.
     Sentence (*ended)(const Plant& plant) = nullptr;
 };
 

@@ -1,5 +1,5 @@
-// main of every machine's program on the host: one table with its plant, as tappet_machine() of CMake named
-// them.
+// main of every machine's program on the host: one table with its plant, as named by tappet_machine() of
+// CMake.
 #include "toolchain/machine/host.hpp"
 #include "toolchain/machine/on_host.hpp"
 

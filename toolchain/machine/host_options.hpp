@@ -1,4 +1,4 @@
-// The options of every machine's host program, which the front door reads before it builds that program.
+// The options of every machine's host program; `tappet` reads them before it builds that program.
 #pragma once
 
 #include "toolchain/command_line.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet {
 
-/// Any other option is the plant's, and has a value.
+/// Any other option belongs to the plant, and has a value.
 inline constexpr std::array host_options{
     Option{"--virtual", "", "virtual time, deterministic: the default"},
     Option{"--real", "", "real time, with SCHED_FIFO threads"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that wake, threads that load, and the kernel's own tracer.
+// Measures with threads that wake, threads that load, and the kernel's own tracer.
 #include "toolchain/machine/measure.hpp"
 
 #include "kernel/machine/check/time.hpp"
@@ -30,20 +30,20 @@ namespace {
 constexpr std::size_t most_processors = 16;
 constexpr Duration wakes_every = 1ms;
 constexpr const char* tracing = "/sys/kernel/tracing";
-/// Longer than it needs to be looked at, shorter than a gap that any deadline here would miss.
+/// Longer than one reading of the clock, shorter than a gap that would break any deadline here.
 constexpr Duration hardware_gap = 10us;
 
 struct Load {
     std::array<std::byte, 4 * 1024 * 1024> from, to;
 };
 
-/// What one processor does to who wants to wake on it.
+/// Measures the wake-up latency of one processor.
 struct Probe {
     alignas(64) std::array<std::byte, 64 * 1024> stack{}, load_stack{};
     os::Thread sleeper{}, loader{};
     Time until{};
     const std::atomic<bool>* loaded = nullptr;
-    Load* memory = nullptr; ///< that the loads of several processors write it is as good
+    Load* memory = nullptr; ///< shared: it does not matter that loads of several processors write it
     Duration latest{-1};
     std::uint64_t wakes = 0;
 
@@ -68,8 +68,8 @@ struct Probe {
     }
 };
 
-/// Of the system, not of the firmware's static memory, which is locked while a machine runs. Gone with the
-/// process.
+/// Allocates pages from the system, not in the firmware's static memory, which is locked while a machine
+/// runs. Freed when the process ends.
 template <class T>
 T* pages_for() {
     void* const at = ::mmap(nullptr, sizeof(T), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -85,11 +85,11 @@ bool put(const char* name, std::string_view text) {
     return well;
 }
 
-/// The kernel stops all else on a processor and looks at the clock: who takes it then is no program.
+/// Measures gaps by hardware: the kernel stops everything else on a processor and reads the clock.
 class HardwareLatency {
 public:
     HardwareLatency() {
-        ::mount("tracefs", tracing, "tracefs", 0, nullptr); // it may be mounted
+        ::mount("tracefs", tracing, "tracefs", 0, nullptr); // it may be mounted already
         is_on_ = put("current_tracer", "hwlat") &&
                  put("tracing_thresh", Sentence{hardware_gap / 1us}.view()) &&
                  put("tracing_max_latency", "0") && put("tracing_on", "1");
@@ -108,7 +108,7 @@ private:
     bool is_on_ = false;
 };
 
-/// As the compiler accepted them.
+/// The claims that the compiler accepted.
 struct Claims {
     std::array<int, max_activities> processors{};
     std::array<std::int64_t, max_activities> worst_response_ns{};
@@ -128,7 +128,7 @@ void say(const Sentence& line) { os::print(Sentence{line, "\n"}.view()); }
 using Probes = std::array<Probe, most_processors>;
 using Processors = std::array<bool, most_processors>;
 
-/// Those that activities of real time run on. False: one cannot be measured.
+/// Selects the processors of real-time activities. Returns false when one cannot be measured.
 bool choose(const AcceptedMachine& machine, const Claims& claims, Processors& wanted) {
     for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {
         if (!machine.table.activities[a].real_time) continue;
@@ -142,7 +142,7 @@ bool choose(const AcceptedMachine& machine, const Claims& claims, Processors& wa
     return true;
 }
 
-/// Wakes and loads them for so long. False: a thread was refused.
+/// Wakes and loads the processors for `time`. Returns false when a thread was refused.
 bool measure(Probes& probes, const Processors& wanted, Load& memory, int priority, Duration time) {
     std::atomic<bool> loaded{true};
     const HardwareLatency hardware;
@@ -167,7 +167,7 @@ bool measure(Probes& probes, const Processors& wanted, Load& memory, int priorit
         if (!load || !sleep) {
             say(!sleep ? sleep.error() : load.error());
             loaded = false;
-            for (Probe& each : probes) each.sleeper.join(), each.loader.join(); // they look at what is here
+            for (Probe& each : probes) each.sleeper.join(), each.loader.join(); // they use locals from here
             return false;
         }
     }
@@ -178,7 +178,7 @@ bool measure(Probes& probes, const Processors& wanted, Load& memory, int priorit
     return true;
 }
 
-/// Whether each activity may begin so late as its processor woke.
+/// Judges whether each activity may begin as late as its processor woke.
 bool judge(const AcceptedMachine& machine, const Claims& claims, const Probes& probes) {
     bool holds = true;
     for (std::size_t a = 0; a < machine.table.activities.size(); ++a) {

@@ -1,5 +1,5 @@
-// What a program for a board is made of, as tappet_machine() of CMake named it: a table, a board, and the
-// binding between them. Included first by the mains for boards, and by nobody else.
+// The parts of a program for a board, as named by tappet_machine() of CMake: a table, a board, and the
+// binding between them. Only the mains for boards include it, first.
 #pragma once
 
 #include TAPPET_TABLE_HEADER

@@ -1,4 +1,4 @@
-// What a machine's programs on the host are made of, as tappet_machine() of CMake named it: each is compiled
+// The parts of a machine's programs on the host, as named by tappet_machine() of CMake: each is compiled
 // once, in on_host.cpp and plant.cpp.
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace TAPPET_NAMESPACE {
 
-/// Its table, accepted for the host's board.
+/// Returns its table, accepted for the host's board.
 tappet::AcceptedMachine on_host();
-/// Its PLANT: what stands at the other end of its wires.
+/// Makes its PLANT: the simulation at the other end of its wires.
 std::unique_ptr<tappet::Plant> make_plant(std::uint64_t seed);
-/// Its HOST_HOOKS; without any, none.
+/// Returns its HOST_HOOKS; empty without any.
 tappet::HostHooks hooks_on_host();
 
 } // namespace TAPPET_NAMESPACE

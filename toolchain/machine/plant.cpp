@@ -1,4 +1,4 @@
-// The one object file that has the code of a machine's plant, and of its hooks on the host.
+// The one object file with the code of a machine's plant and of its hooks on the host.
 #include TAPPET_PLANT_HEADER
 #ifdef TAPPET_HOST_HOOKS_HEADER
 #include TAPPET_HOST_HOOKS_HEADER

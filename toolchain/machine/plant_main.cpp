@@ -1,4 +1,4 @@
-// main of every machine's plant on the bench: at the other end of what its table is bound to there.
+// main of every machine's plant on the bench: the other end of the wires to which its table is bound there.
 #include TAPPET_BOARD_HEADER
 #ifdef TAPPET_BINDINGS_HEADER
 #include TAPPET_BINDINGS_HEADER

@@ -1,4 +1,4 @@
-// What a state machine told since the last look, as lines for the console.
+// Prints a state machine's news since the last look as lines for the console.
 #include "toolchain/machine/reasons.hpp"
 
 #include "kernel/os/terminal.hpp"
@@ -7,12 +7,12 @@ namespace tappet {
 
 namespace {
 
-/// The transition of news that were not told yet; null: there are none.
+/// Returns the transition of news that were not reported yet; null: there are none.
 const TransitionRow* take(StateMachineExecution::News news, StateMachineExecution::News& told,
                           std::span<const TransitionRow> rows) {
     const bool is_new = news != told;
     told = news;
-    // Of a request for the final state the machine's own stop says why.
+    // For the final state, the machine's own stop reports the reason.
     return is_new && news.transition < rows.size() ? &rows[news.transition] : nullptr;
 }
 

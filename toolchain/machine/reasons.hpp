@@ -1,15 +1,15 @@
-// Why state machines went to their states, or were refused: one line for each reason, once.
+// Reports why state machines changed or refused a state: one line for each reason, once.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
 
 namespace tappet {
 
-/// Looks at what the machines of the table's behaviours last told. Between two looks the last one of each
-/// sort is seen.
+/// Reads the latest news of the state machines in the table's behaviours. Between two looks, it sees only the
+/// last news of each sort.
 class ReasonTeller {
 public:
-    /// From the thread that supervises.
+    /// Call from the thread that supervises.
     void tell(const MachineInstance& instance, std::string_view speaker);
 
 private:

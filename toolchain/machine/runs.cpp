@@ -38,7 +38,7 @@ std::expected<void, Sentence> VirtualRun::start_machine() {
     machine_->world.add({this,
                          [](void* self) {
                              auto& run = *static_cast<VirtualRun*>(self);
-                             // Whatever the machine has put on the wires the plant gets at once.
+                             // The plant gets the machine's output on the wires at once.
                              if (run.seen_steps_ != run.world().steps()) {
                                  if (run.devices_.are_driven()) return run.clock_.now();
                                  run.seen_steps_ = run.world().steps();

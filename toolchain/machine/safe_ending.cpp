@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of it, and how long each step may take.
+// The order of the steps, and how long each may take.
 #include "toolchain/machine/safe_ending.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -27,7 +27,7 @@ SafeEnding end_safely(EndedProcess& process, GuardedDevices& devices, os::Output
     outputs.lose(begin + os::guardian_acts_within);
     const Meanwhile kick{
         &watchdog, [](void* dog) noexcept { static_cast<os::Watchdog*>(dog)->kick(os::Clock::monotonic()); }};
-    // Of a dead one too: the signal meets nobody.
+    // Also for a dead process: the signal then has no effect.
     process.kill(); // guardian.kill
     static_cast<void>(devices.write_safe_lines());
     done.written = os::Clock::monotonic() - begin;
@@ -37,7 +37,7 @@ SafeEnding end_safely(EndedProcess& process, GuardedDevices& devices, os::Output
     done.frames = devices.send_safe_frames(confirmed_within);
     done.confirmed = os::Clock::monotonic() - begin;
     done.servers = devices.write_safe_registers(answered_within, kick);
-    // A thread that waited in the kernel for memory, for a chip or for a network may have written after us.
+    // A thread that waited in the kernel for memory, a chip or a network may have written after this process.
     for (const Time until = os::Clock::monotonic() + ended_within;
          !(done.ended = process.await_end(kick_every)) && os::Clock::monotonic() < until;)
         kick();

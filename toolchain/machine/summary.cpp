@@ -1,4 +1,4 @@
-// Writes the summary: counters, activities, budgets, stops and counters, as the machine has them at the end.
+// Writes the summary: activities, budgets, stops and counters, as the machine has them at the end.
 #include "toolchain/machine/summary.hpp"
 
 #include "kernel/machine/check/traffic.hpp"
@@ -56,7 +56,7 @@ void write_activities(JsonText& json, const MachineInstance& instance) {
     json.close(']');
 }
 
-/// Which script each slot held at the end, and what became of those before it.
+/// Writes which script each slot held at the end, and the fate of the scripts before it.
 void write_slots(JsonText& json, const MachineInstance& instance) {
     json.key("slots").open('[');
     for (const BehaviourRow& row : instance.machine().table.behaviours) {
@@ -69,7 +69,7 @@ void write_slots(JsonText& json, const MachineInstance& instance) {
     json.close(']');
 }
 
-/// What each driver counted: its outputs of whole numbers, but for those of its map, which have a dot.
+/// Writes each driver's counters: its integer outputs, except those of its map, which have a dot.
 void write_counters(JsonText& json, MachineInstance& instance) {
     const MachineView& table = instance.machine().table;
     json.key("counters").open('{');
@@ -105,7 +105,7 @@ void write_times(JsonText& json, const MachineInstance& instance, const Link& li
     json.close(']').close('}');
 }
 
-/// Of each device whose driver proves response times: what was proven, and the longest that was seen.
+/// For each device whose driver proves response times: the proven one, and the longest that was seen.
 template <class Tell>
 void each_sent(MachineInstance& instance, Tell tell) {
     const AcceptedMachine& machine = instance.machine();
@@ -135,7 +135,7 @@ void write_traffic(JsonText& json, MachineInstance& instance) {
     json.close(']');
 }
 
-/// From the edge or the frame to the output it caused, row by row.
+/// Writes the time from the edge or the frame to the output that it caused, row by row.
 void write_reactions(JsonText& json, const MachineInstance& instance) {
     const AcceptedMachine& machine = instance.machine();
     json.key("reactions").open('[');

@@ -1,4 +1,4 @@
-// The summary of a run: what a machine counted and measured, as one JSON object.
+// The summary of a run: the machine's counters and measurements, as one JSON object.
 #pragma once
 
 #include "drivers/hardware/devices.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet {
 
-/// What only the one who ran the machine knows.
+/// The facts that only the runner of the machine knows.
 struct RunFacts {
     bool realtime = false;
     std::uint64_t seed = 0;
@@ -18,17 +18,17 @@ struct RunFacts {
     WireCounters wires{};
     Sentence stop_reason{};
     std::uint64_t contracts_broken = 0;
-    Duration start_to_armed{}; ///< from the loading of the program; zero where nothing is armed
-    bool with_digest = false;  ///< virtual time only: elsewhere no two runs are alike
+    Duration start_to_armed{}; ///< from the loading of the program; zero when nothing is armed
+    bool with_digest = false;  ///< virtual time only: other runs are never identical
 };
 
-/// An object without its closing brace, so that more fields can follow. Not real-time. The number of
-/// characters; 0 when the buffer is too small.
+/// Writes an object without its closing brace, so that more fields can follow. Returns the number of
+/// characters; 0 when the buffer is too small. Not real-time.
 [[nodiscard]] std::size_t write_summary(MachineInstance& instance, const RunFacts& facts,
                                         std::span<char> buffer);
 
-/// What a run should be told of at its end, line by line: budgets that were exceeded, behaviours that did not
-/// come to their end, frames that took longer than was proven, deadlines that were missed and by whom.
+/// Prints the findings of a run at its end, line by line: exceeded budgets, behaviours that did not complete,
+/// frames that took longer than proven, missed deadlines and their activities.
 void tell_overruns(MachineInstance& instance, std::string_view speaker);
 
 } // namespace tappet

@@ -1,4 +1,4 @@
-// One seed of a swarm: when something strikes, what is judged meanwhile, and what is asked of the machine
+// One seed of a swarm: when a fault strikes, what is judged meanwhile, and what the machine must do
 // afterwards.
 #include "toolchain/machine/swarm.hpp"
 
@@ -16,21 +16,21 @@ namespace {
 
 constexpr Duration first_work_within = 60s;
 constexpr Duration longest_pause = 4s;                     // between two faults
-constexpr Duration again = 50ms;                           // a part that does not start yet is asked again
-constexpr Duration heard_every = 50ms;                     // by who browses
-constexpr std::size_t told_actions = 12;                   // of a finding, before it
-constexpr Duration learnt_after = 5s, learnt_between = 1s; // until it works, and again
-constexpr Duration stopped_within = 25ms;                  // a stop in order, to the last line
+constexpr Duration again = 50ms;                           // a part that does not start yet is retried
+constexpr Duration heard_every = 50ms;                     // poll interval of browsers
+constexpr std::size_t told_actions = 12;                   // listed before a finding
+constexpr Duration learnt_after = 5s, learnt_between = 1s; // until it works, and between stops
+constexpr Duration stopped_within = 25ms;                  // an orderly stop, to the last line
 constexpr Duration at_rest = 500ms;                        // after a stop
 
 std::string own_directory() {
     return (std::filesystem::temp_directory_path() / ("tappet-swarm-" + std::to_string(::getpid()))).string();
 }
 
-// Users who are let in with less than an engineer may do.
+// Users who are allowed less than an engineer.
 constexpr std::uint32_t machine_operator = 61001, observer = 61002;
 
-/// Of a machine that has none of its own: it works as long as it runs.
+/// The rules of a machine that has none of its own: it works as long as it runs.
 class NoRules final : public SwarmRules {
 public:
     std::string_view broken(Time) override { return {}; }
@@ -87,7 +87,7 @@ SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
       files_{std::make_unique<PropertyFiles>(directory_)},
       browser_{socket_in(directory_, of.machine.table.name)},
       visitors_{visitors(socket_in(directory_, of.machine.table.name))} {
-    std::filesystem::remove_all(directory_); // of who had this number before
+    std::filesystem::remove_all(directory_); // left by an earlier process with this number
     std::filesystem::create_directories(directory_);
     run_.keep_properties_in(directory_);
     find_what_people_may();
@@ -119,7 +119,7 @@ SwarmVerdict SwarmRun::go() {
                 verdict_.broken = Sentence{"it does not work again and does not say why not"};
             stop();
             forget_faults();
-            for (const std::size_t c : drivers_) // somebody has looked at the bus
+            for (const std::size_t c : drivers_) // somebody has checked the bus
                 if (const ComponentRow& row = of_.machine.table.components[c]; drives(row, "can"))
                     static_cast<void>(run_.devices().controller(row.device).restart());
             if (verdict_.broken.empty() && start(true) && mend(first_work_within) &&
@@ -189,9 +189,9 @@ void SwarmRun::deny(const Sentence& why) {
     verdict_.at = run_.now();
 }
 
-/// Who hangs or stands does not take what it is told, and that is counted; nobody else may lose anything.
+/// A hung or stopped activity does not accept emissions, and that is counted; no other activity may lose one.
 void SwarmRun::judge_emissions() {
-    if (anything_goes_) return; // people may ask for more than the rows have room for
+    if (anything_goes_) return; // people may send more than the rows have room for
     const std::uint64_t lost = run_.instance().observation().lost_emissions();
     const bool all_ran = std::ranges::none_of(faults_, &Fault::of_activity);
     if (lost != lost_ && all_ran && verdict_.broken.empty())
@@ -220,7 +220,7 @@ bool SwarmRun::run_until_works(Duration limit) {
     return verdict_.broken.empty() && rules_->works();
 }
 
-/// Everything that is wrong ends; false: not within `limit`.
+/// Ends all faults; returns false when they do not end within `limit`.
 bool SwarmRun::mend(Duration limit) {
     const Time end = run_.now() + limit;
     refusal_ = {};
@@ -237,7 +237,7 @@ void SwarmRun::storm(Time end) {
     while (run_.now() < end && verdict_.broken.empty()) {
         if (next <= run_.now()) {
             strike();
-            // As often close together as far apart.
+            // Short pauses are as frequent as long ones.
             const Duration most{std::int64_t{1} << random_.between(20, 32)};
             next = run_.now() + Duration{random_.between(0, std::min(most, longest_pause).count())};
         }
@@ -269,7 +269,7 @@ void SwarmRun::forget(std::size_t f) {
     faults_.erase(faults_.begin() + static_cast<std::ptrdiff_t>(f));
 }
 
-/// Of parts that did not start again, and of forces: a new machine has none.
+/// Forgets parts that did not start again, and forces: a new machine has none.
 void SwarmRun::forget_faults() {
     for (std::size_t f = faults_.size(); f-- > 0;)
         if (!faults_[f].outlives_machine) forget(f);
@@ -291,7 +291,7 @@ void SwarmRun::note_responses() {
                                        "its table says, though none came too often"};
 }
 
-/// In the stated order, and what it leaves on the wires stays there.
+/// Stops in the stated order; checks what remains on the wires.
 void SwarmRun::stop() {
     note_responses();
     const Time asked = run_.now();
@@ -313,7 +313,7 @@ void SwarmRun::stop() {
     ++verdict_.restarts;
 }
 
-/// The plant lives on without the machine.
+/// Advances the plant without the machine.
 void SwarmRun::rest(Duration time) {
     for (const Time end = run_.now() + time; run_.now() < end;) {
         run_.clock().advance_to(std::min(end, run_.now() + 1ms));
@@ -323,7 +323,7 @@ void SwarmRun::rest(Duration time) {
 }
 
 void SwarmRun::let_guardian_act() {
-    is_gone_ = true; // what it promised is its guardian's
+    is_gone_ = true; // from now on its guardian keeps its promises
     rest(Duration{random_.between(0, 10'000'000)});
     run_.devices().write_safe_lines();
     rest(Duration{random_.between(0, 10'000'000)});
@@ -333,7 +333,7 @@ void SwarmRun::let_guardian_act() {
     if (const Sentence unsafe = wires_.broken_at_rest(true); !unsafe.empty()) deny(unsafe);
 }
 
-/// In order; or its process is gone in the middle of its work, and its guardian leaves the outputs safe.
+/// Restarts the machine, in order or after its process died at work and its guardian acted.
 void SwarmRun::restart(bool orderly) {
     ++verdict_.faults[orderly ? "machine restarted" : "machine ended abruptly"];
     say(orderly ? "the machine is stopped and started"
@@ -344,7 +344,7 @@ void SwarmRun::restart(bool orderly) {
     } else {
         note_responses();
         leave();
-        // As the kernel does with the descriptors of a process.
+        // As the kernel closes the descriptors of a process.
         if (service_ != nowhere)
             run_.instance().find<BrowserService>(of_.machine.table.components[service_].name)->finalise();
         kept_.clear();

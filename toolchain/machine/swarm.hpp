@@ -1,6 +1,6 @@
-// A swarm: a machine and its plant under virtual time, again and again, while a seed chooses what goes wrong
-// with the devices, the components, the activities, the plant and the machine's process, and what people at
-// browsers ask for. Rules judge every moment.
+// A swarm: runs a machine and its plant under virtual time repeatedly. A seed chooses the faults of the
+// devices, the components, the activities, the plant and the machine's process, and the requests of people at
+// browsers. Rules judge every moment.
 #pragma once
 
 #include "kernel/services/configuration/property_files.hpp"
@@ -21,68 +21,68 @@
 
 namespace tappet {
 
-/// Who the swarm is about. Without rules of its own those are judged that hold of every machine, and people
-/// may do anything; with them, what its rules allow.
+/// The subject of the swarm. Without rules of its own, it is judged by the rules that hold for every machine,
+/// and people may do anything; with them, people may do what its rules allow.
 struct SwarmOf {
     AcceptedMachine machine;
     std::function<std::unique_ptr<Plant>(std::uint64_t seed)> plant;
     std::function<std::unique_ptr<SwarmRules>(MachineInstance&, Plant&, const Struck&)> rules;
-    const AllLeftBehind* left = nullptr; ///< as SwarmRun::learn() saw it; null: nobody has looked
+    const AllLeftBehind* left = nullptr; ///< as SwarmRun::learn() saw it; null: not learnt
 };
 
-/// What one seed came to.
+/// The result of one seed.
 struct SwarmVerdict {
-    Sentence broken{}; ///< the first rule that was broken, at `at`; empty: none
+    Sentence broken{}; ///< the first broken rule, at `at`; empty: none
     Time at{};
-    std::vector<std::string> before{}; ///< what happened last before that
-    Duration time{};                   ///< that passed in the machine
+    std::vector<std::string> before{}; ///< the last events before that
+    Duration time{};                   ///< passed in the machine
     Duration back{};                   ///< from the last fault until it worked again
-    std::string waited_for{};          ///< it did not work again before its restart, and said this
+    std::string waited_for{};          ///< the machine's reason for not working again before its restart
     std::map<std::string, std::uint64_t> faults{}; ///< by their kinds
     std::uint64_t restarts = 0;
-    std::vector<Duration> responses{}; ///< of each activity the longest, where cycles take time
-    bool woken_too_often = false;      ///< an activity, than its row says: then the analysis says nothing
+    std::vector<Duration> responses{}; ///< the longest of each activity, if cycles take time
+    bool woken_too_often = false;      ///< an activity, more often than its row says: the analysis is void
 };
 
-/// One seed's run: it starts, works, is struck by faults that overlap, all of which end, works again, and is
-/// stopped. Not real-time; one at a time, since a machine's memory is static.
+/// One seed's run: the machine starts, works, is struck by overlapping faults, all of which end, works again,
+/// and is stopped. Not real-time; one at a time, because a machine's memory is static.
 class SwarmRun {
 public:
-    /// `tell`: called with each thing that happens, for a replay.
+    /// `tell`: called with each event, for a replay.
     using Tell = std::function<void(Time, std::string_view)>;
     SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell = {});
     ~SwarmRun();
     SwarmRun(const SwarmRun&) = delete;
     SwarmRun& operator=(const SwarmRun&) = delete;
-    /// Before go(): cycles and frames take time, see VirtualRun.
+    /// Call before go(): cycles and frames take time, see VirtualRun.
     void take_times(std::uint64_t seed, can::BitRates rates) { run_.take_times(seed, rates); }
-    /// Before go(): nothing fails.
+    /// Call before go(): disables all faults.
     void be_calm() { is_calm_ = true; }
     [[nodiscard]] SwarmVerdict go();
-    /// In its place: what components leave on the wires when they are stopped and nothing else happens.
+    /// Alternative to go(): learns what stopped components leave on the wires when nothing else happens.
     [[nodiscard]] AllLeftBehind learn();
 
 private:
-    /// What is wrong for a while.
+    /// A fault that lasts for a while.
     struct Fault {
         Time ends{};
-        bool of_activity = false; ///< the whole of one stands, or hangs
+        bool of_activity = false; ///< a whole activity is stopped, or hangs
         std::vector<std::size_t> components{};
-        std::function<bool()> end{};     ///< false: not yet
-        bool outlives_machine = false;   ///< a new one has it too
-        std::function<bool()> is_over{}; ///< somebody else has ended it; none: nobody can
+        std::function<bool()> end{};     ///< ends it; false: not yet
+        bool outlives_machine = false;   ///< a new machine has it too
+        std::function<bool()> is_over{}; ///< ended by somebody else; none: impossible
     };
-    /// An event that a browser has subscribed to.
+    /// An event to which a browser has subscribed.
     struct Watched {
         std::size_t index = nowhere;       ///< nowhere: none
-        std::uint64_t before = 0;          ///< emissions that came to the service before it was asked for
-        std::uint64_t lost_before = 0;     ///< likewise: nobody tells them of these
-        std::uint64_t lost_when_asked = 0; ///< of which they may be told
+        std::uint64_t before = 0;          ///< emissions that the service got before the request
+        std::uint64_t lost_before = 0;     ///< losses up to the answer: the browser need not hear of them
+        std::uint64_t lost_when_asked = 0; ///< losses up to the request: it may hear of later ones
         std::uint64_t told = 0, lost = 0;  ///< as the packets say
-        bool was_told = false;             ///< since it was judged last
-        std::uint64_t known_lost = 0;      ///< by then
+        bool was_told = false;             ///< a packet came since the last judgement
+        std::uint64_t known_lost = 0;      ///< at the last judgement
         Time looked{};
-        std::uint64_t owed = 0; ///< had come by then
+        std::uint64_t owed = 0; ///< emissions that the service had at that time
     };
 
     bool start(bool again);
@@ -122,7 +122,7 @@ private:
     void judge_watched();
     void ask(std::string request, SwarmBrowser::Then then);
     void set(const std::string& name, const std::string& value, std::function<void(bool)> then);
-    /// As the end of a fault: asks until it is accepted.
+    /// Retries a request until it is accepted, as the end of a fault.
     [[nodiscard]] static std::function<bool()>
     until_accepted(std::function<void(std::function<void(bool)> then)> asks);
     void ask_for(std::string request, std::string_view refusals);
@@ -164,11 +164,11 @@ private:
     [[nodiscard]] bool chance(unsigned percent) { return random_.below(100) < percent; }
 
     SwarmOf of_;
-    bool anything_goes_; ///< people may do anything: the machine has no rules that would allow less
+    bool anything_goes_; ///< people may do anything: the machine has no rules that allow less
     Board board_;        ///< the machine's, which knows visitors
     Tell tell_;
     Random random_;
-    std::string directory_; ///< of its own: properties files, and the socket
+    std::string directory_; ///< this run's own: properties files, and the socket
     std::unique_ptr<Plant> plant_;
     VirtualRun run_;
     Struck struck_;
@@ -178,10 +178,10 @@ private:
     std::vector<Fault> faults_{};
     std::vector<std::size_t> drivers_{}; ///< the components that drive devices
     bool is_calm_ = false;
-    bool only_people_;          ///< all else is well: what they do goes further
-    std::size_t busy_with_ = 0; ///< a component that somebody calls again and again
+    bool only_people_;          ///< no other faults: people's requests are judged more strictly
+    std::size_t busy_with_ = 0; ///< a component that somebody calls repeatedly
     Time busy_until_{};
-    std::uint64_t lost_ = 0; ///< emissions, so far
+    std::uint64_t lost_ = 0; ///< emissions lost so far
     std::unique_ptr<PropertyFiles> files_;
     SwarmBrowser browser_;                     ///< an engineer's
     std::array<SwarmBrowser, 6> visitors_;     ///< an operator's, and observers'
@@ -189,37 +189,37 @@ private:
     std::vector<End> commands_{}, readable_{}; ///< that operators may send and call; that anybody may read
     std::vector<std::size_t> events_{};        ///< that can be watched, as the plan's subscriptions
     Watched watched_{};
-    Time asked_by_others_until_{}; ///< requests may hold places that no browser of now waits for
+    Time asked_by_others_until_{}; ///< requests of earlier browsers may still hold places
     std::map<std::string, std::string> first_values_{}; ///< of properties, before anybody set them
-    /// Of properties of this machine, by the order in which they were set; empty: it is not known.
+    /// The last value set to a property of this machine, with its order; empty: unknown.
     struct SetValue {
         std::uint64_t order = 0;
         std::string value{};
     };
     std::map<std::string, SetValue> set_values_{};
     std::map<std::string, std::string>
-        kept_{}; ///< of properties in files, at the halt in order before this start
-    std::uint64_t sets_ = 0, sets_open_ = 0; ///< asked for; of these not answered yet
+        kept_{}; ///< of properties in files, at the orderly halt before this start
+    std::uint64_t sets_ = 0, sets_open_ = 0; ///< sets requested; of these not answered yet
     bool sends_script_ = false;
     bool is_gone_ = false;    ///< the machine's process
-    Sentence refusal_{};      ///< why a part did not start again, the last
-    std::string last_call_{}; ///< of anyone's
-    /// Of the interpreter, as engineers know it.
+    Sentence refusal_{};      ///< the last reason why a part did not start again
+    std::string last_call_{}; ///< last call by anyone
+    /// The interpreter's lines, as engineers know them.
     struct Lines {
-        unsigned at_work = 0;       ///< theirs
-        unsigned begun = 0;         ///< of theirs
-        bool left_commands = false; ///< theirs may have
-        bool of_peers = false;      ///< whose role is not known
+        unsigned at_work = 0;       ///< engineers' lines at work
+        unsigned begun = 0;         ///< engineers' lines begun
+        bool left_commands = false; ///< engineers' lines may have left commands
+        bool of_peers = false;      ///< lines of peers whose role is unknown
         bool was_connected = false; ///< to this machine
     };
     Lines lines_{};
     SwarmVerdict verdict_{};
 };
 
-/// What the analysis of the table says of each activity; zero for those that are not real-time.
+/// Returns each activity's worst response by the table's analysis; zero for those that are not real-time.
 [[nodiscard]] std::vector<Duration> analysed_responses(const AcceptedMachine& machine);
 
-/// The program of a machine's swarm. The exit code: 0 no rule was broken, 1 one was, 2 a wrong command line.
+/// The program of a machine's swarm. Exit code: 0 no rule was broken, 1 one was, 2 a wrong command line.
 [[nodiscard]] int run_swarm(SwarmOf of, int count, char** words);
 
 } // namespace tappet

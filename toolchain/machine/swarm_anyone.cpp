@@ -1,5 +1,5 @@
-// People of every role who may do anything that the machine offers: requests by the names of its own table, a
-// few at a time in one cycle of its service. What they do is no fault; what the machine does of it is judged.
+// People of every role who may use everything that the machine offers: requests by names of its own table, a
+// few in one cycle of its service. Their requests are no faults; the machine's reaction is judged.
 #include "kernel/services/browsing/browser_service.hpp"
 #include "toolchain/machine/swarm.hpp"
 
@@ -10,9 +10,9 @@ namespace tappet {
 
 namespace {
 
-constexpr Duration longest_force = 12s;  // from its request to what follows from its release
+constexpr Duration longest_force = 12s;  // from its request to the effects of its release
 constexpr Duration longest_line = 3s;    // from its request to its last statement, and to the wire
-constexpr Duration told_late = 100ms;    // an answer that was made, to who asked
+constexpr Duration told_late = 100ms;    // delay of an answer to its sender
 constexpr std::size_t most_at_once = 24; // requests of somebody who floods the service
 using Kinds = std::initializer_list<FacetKind>;
 
@@ -29,7 +29,7 @@ std::string SwarmRun::name_of(End end) const {
     return std::string{row.name} + "." + std::string{row.type->facets[end.facet].name};
 }
 
-/// A facet of one of these kinds, of a component if it has one; nowhere: the machine has none.
+/// Returns a facet of one of these kinds, preferably of the component; nowhere: the machine has none.
 End SwarmRun::any_of(Kinds kinds, std::size_t component) {
     const auto rows = of_.machine.table.components;
     std::vector<End> own, all;
@@ -43,7 +43,7 @@ End SwarmRun::any_of(Kinds kinds, std::size_t component) {
     return some.empty() ? End{nowhere, nowhere} : some[random_.below(some.size())];
 }
 
-/// The arguments of a call, in between `between`; nothing: there is a type of which none can be drawn.
+/// Returns the arguments of a call, separated by `between`; nothing when a type cannot be drawn.
 std::optional<std::string> SwarmRun::any_arguments(const Facet& facet, std::string_view between) {
     std::string all;
     for (const TypeId each : (facet.command != nullptr ? *facet.command->arguments : *facet.type).elements) {
@@ -55,7 +55,7 @@ std::optional<std::string> SwarmRun::any_arguments(const Facet& facet, std::stri
     return all;
 }
 
-/// "component.name(arguments)", as a statement calls it.
+/// Returns "component.name(arguments)", as in a statement.
 std::string SwarmRun::any_call(End end) {
     const auto arguments =
         end.component == nowhere ? std::nullopt : any_arguments(facet_at(of_.machine.table, end), ", ");
@@ -83,7 +83,7 @@ std::string SwarmRun::any_line(std::size_t component) {
     }
 }
 
-/// A state machine that calls one after the other of what the slot may reach, for as long as it is there.
+/// Returns a state machine that calls the slot's reachable operations one by one while it is loaded.
 std::string SwarmRun::any_script(const BehaviourRow& row) {
     std::vector<std::string> calls;
     for (const std::string_view operation : row.slot.operations)
@@ -95,7 +95,7 @@ std::string SwarmRun::any_script(const BehaviourRow& row) {
         }
     if (calls.empty()) return {};
     std::string text = "StateMachine Anything { var int n = 0; ";
-    // In any order, so that a state has another number in the next one.
+    // In any order, so that a state has another number in the next script.
     const bool is_other = random_.one_in(2);
     for (const std::string_view state : {is_other ? "Two" : "One", is_other ? "One" : "Two"})
         text += std::string{state == "One" ? "initial " : ""} + "state " + std::string{state} +
@@ -106,7 +106,7 @@ std::string SwarmRun::any_script(const BehaviourRow& row) {
     return text + "final state Last { } }";
 }
 
-/// A state of a machine that is loaded, or was: "component.state".
+/// Returns a state of a loaded or an earlier state machine: "component.state".
 std::string SwarmRun::any_state() {
     const auto rows = of_.machine.table.behaviours;
     if (rows.empty()) return {};
@@ -122,14 +122,14 @@ std::string SwarmRun::any_state() {
 
 void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request, const SwarmBrowser::Then& then) {
     say(Sentence{&by == &browser_ ? "somebody asks: " : "a visitor asks: ", request}.view());
-    // What is asked of a driver itself its wires may follow.
+    // After a request to a driver itself, its wires may follow that request.
     for (const std::size_t c : drivers_)
         if (request.contains(std::string{of_.machine.table.components[c].name}))
             wires_.excuse(c, run_.now() + BrowserService::patience + longest_line);
     if (request.starts_with("force ")) wires_.excuse_axes(run_.now() + longest_force);
     const bool reads = request.starts_with("get ");
     const std::string name = reads ? request.substr(4) : std::string{};
-    // Of the engineers.
+    // No other engineer's request is pending.
     const bool is_alone = &by == &browser_ && by.waits_for() == 0 && run_.now() >= asked_by_others_until_;
     const std::string state = request.starts_with("why ") ? request.substr(request.rfind('.') + 1) : "";
     lines_.of_peers |= request.starts_with("send ") && request.contains(".execute ");
@@ -145,7 +145,7 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request, const SwarmBro
     });
 }
 
-/// A value that is shown as good was written within the age that its row allows.
+/// A value shown as good must have been written within the age that its row allows.
 void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
     if (field_of(answer, "flow") != "fresh" || field_of(answer, "forced") == "true") return;
     const MachineView& table = of_.machine.table;
@@ -168,7 +168,7 @@ bool SwarmRun::sends_command(std::string_view line) const {
     return false;
 }
 
-/// Nobody of a lower role keeps an engineer's line from its turn for long.
+/// Nobody of a lower role may delay an engineer's line for long.
 void SwarmRun::execute(const std::string& line, std::optional<unsigned> begun_before) {
     anyone_asks(browser_, "execute " + in_quotes(line), [this, line, begun_before](std::string_view answer) {
         const std::string why = field_of(answer, "error");
@@ -180,11 +180,11 @@ void SwarmRun::execute(const std::string& line, std::optional<unsigned> begun_be
         if (why.starts_with("commands of earlier lines") && !lines_.left_commands && !lines_.of_peers)
             deny(Sentence{"an engineer's line finds no place: commands of operators' lines have every one"});
         if (!why.starts_with("another line is at work") || lines_.at_work > 0 || lines_.of_peers) return;
-        if (begun_before && *begun_before == lines_.begun) // else it was theirs that he broke off
+        if (begun_before && *begun_before == lines_.begun) // else the engineers broke off their own line
             return deny(
                 Sentence{"an engineer who broke a line off finds the next one of a lower role at work"});
         if (begun_before) return;
-        // Not at once: somebody else may be quicker.
+        // Not immediately: somebody else may be faster.
         anyone_asks(browser_, "break_off", [this, line, begun = lines_.begun](std::string_view broken_off) {
             if (!is_good(broken_off)) return;
             anyone_asks(browser_, "hello", [this, line, begun](std::string_view) { execute(line, begun); });
@@ -192,9 +192,9 @@ void SwarmRun::execute(const std::string& line, std::optional<unsigned> begun_be
     });
 }
 
-/// Now and then the call before once more: much fails the second time only.
+/// Sometimes repeats the last call: many faults appear only the second time.
 void SwarmRun::call_anything(std::size_t component) {
-    // Commands do not, of which each holds a place to its end.
+    // Does not repeat commands: each of them holds a place until it ends.
     if (last_call_.empty() || last_call_.starts_with("send ") || !random_.one_in(4)) {
         const End end = any_of({FacetKind::method, FacetKind::operation, FacetKind::command}, component);
         if (end.component == nowhere) return;
@@ -208,7 +208,7 @@ void SwarmRun::call_anything(std::size_t component) {
     anyone_asks(browser_, last_call_);
 }
 
-/// A script comes into a slot, or leaves it.
+/// Loads a script into a slot, or removes it.
 void SwarmRun::load_anything() {
     std::vector<const BehaviourRow*> slots;
     for (const BehaviourRow& row : of_.machine.table.behaviours)
@@ -219,7 +219,7 @@ void SwarmRun::load_anything() {
     const std::uint64_t how = random_.below(8);
     ++verdict_.faults["script"];
     if (how < 2) return anyone_asks(browser_, (how == 0 ? "unload " : "roll_back ") + slot);
-    // One goes, and the next one but one comes into its memory.
+    // One script leaves, and the next but one reuses its memory.
     const bool twice = random_.one_in(3);
     if (twice) anyone_asks(browser_, "unload " + slot);
     for (int n = 0; n < (twice ? 2 : 1); ++n) {
@@ -230,7 +230,7 @@ void SwarmRun::load_anything() {
     }
 }
 
-/// One request about a component, or about another one.
+/// Sends one request about a component, or about another one.
 void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
     const MachineView& table = of_.machine.table;
     const std::string name{table.components[component].name};
@@ -289,7 +289,7 @@ void SwarmRun::ask_anything(std::size_t component, Duration lasts) {
     anyone_asks(browser_, "get " + name_of(end));
 }
 
-/// A component, or its whole activity, is stopped or started anew; after a while somebody starts it again.
+/// Stops or restarts a component, or its whole activity; after a while somebody starts it again.
 void SwarmRun::stop_a_part(std::size_t c, Duration lasts) {
     const std::size_t a = of_.machine.index.activity[c];
     if (service_ != nowhere && a == of_.machine.index.activity[service_]) return;
@@ -310,16 +310,16 @@ void SwarmRun::stop_a_part(std::size_t c, Duration lasts) {
                   static_cast<void>(run_.instance().life().ask_component(c, LifeChange::start));
               return false;
           });
-    faults_.back().of_activity = true; // what is told to who stands is lost
+    faults_.back().of_activity = true; // a stopped part loses what it is sent
 }
 
-/// A few requests, which the service finds in one cycle, most of them about one component.
+/// Sends a few requests, which the service finds in one cycle, most of them about one component.
 void SwarmRun::strike_as_anyone(Duration lasts) {
     const std::size_t components = of_.machine.table.components.size();
     std::size_t focus = random_.below(components);
     if (run_.now() < busy_until_) return call_anything(busy_with_);
     if (random_.one_in(8)) return flood();
-    if (random_.one_in(6)) { // somebody works with it for a while, and stops nothing
+    if (random_.one_in(6)) { // somebody uses the component for a while, and stops nothing
         busy_with_ = focus;
         busy_until_ = run_.now() + Duration{random_.between(1'000'000'000, 10'000'000'000)};
     }
@@ -329,7 +329,7 @@ void SwarmRun::strike_as_anyone(Duration lasts) {
     }
 }
 
-/// Something that anybody may ask for, or that is not his.
+/// Sends a request that anybody may send, or one that the sender may not.
 void SwarmRun::ask_of_lower_role(SwarmBrowser& by) {
     const std::string port = name_of(readable_[random_.below(readable_.size())]);
     const std::string state = any_state();
@@ -341,8 +341,8 @@ void SwarmRun::ask_of_lower_role(SwarmBrowser& by) {
     }
 }
 
-/// The operator's line, again and again until it is at work; then perhaps he breaks it off, and begins the
-/// next one.
+/// Sends the operator's line repeatedly until it is at work; then possibly breaks it off and starts the next
+/// one.
 void SwarmRun::insist(const std::string& line, unsigned times) {
     if (times == 0) return;
     anyone_asks(visitors_[0], "execute \"" + line + "\"", [this, line, times](std::string_view answer) {
@@ -353,8 +353,8 @@ void SwarmRun::insist(const std::string& line, unsigned times) {
     });
 }
 
-/// It does not come to what it is asked before everybody has given up. Commands stay away: each may hold its
-/// place to its end.
+/// Asks a hung component, which does not answer before all senders have given up. No commands: each may hold
+/// its place until it ends.
 void SwarmRun::ask_who_hangs(std::size_t c) {
     const std::size_t a = of_.machine.index.activity[c];
     if (service_ == nowhere || a == of_.machine.index.activity[service_]) return;
@@ -371,7 +371,7 @@ void SwarmRun::ask_who_hangs(std::size_t c) {
     }
 }
 
-/// People of lower roles ask for as much as fits, one of them or all at once, and an engineer for one thing.
+/// People of lower roles, one or all at once, fill the service with requests, and an engineer sends one.
 void SwarmRun::flood() {
     ++verdict_.faults["flood"];
     const std::size_t component = random_.below(of_.machine.table.components.size());
@@ -379,7 +379,7 @@ void SwarmRun::flood() {
     if (how == 2) return ask_who_hangs(component);
     if (how == 3 && !events_.empty()) {
         SwarmBrowser& by = visitors_[1 + random_.below(visitors_.size() - 1)];
-        const std::size_t first = random_.below(events_.size()); // they may not have all
+        const std::size_t first = random_.below(events_.size()); // there may not be room for all
         for (std::size_t n = 0; n < events_.size(); ++n) {
             const std::size_t index = events_[(first + n) % events_.size()];
             anyone_asks(by, "subscribe " + name_of(of_.machine.plan.subscriptions[index].event));

@@ -1,12 +1,12 @@
-// The drives behind a machine's buses, and the rules that hold of all of them.
+// The drives behind a machine's buses, and the rules that hold for all of them.
 #include "toolchain/machine/swarm_wires.hpp"
 
 #include <cmath>
 
 namespace tappet {
 
-/// What has an axis' facets is one: its place and what its drive says come from signals of a bus, and where
-/// it is sent goes there.
+/// Finds the axes by their facets: position and drive status come from signals of a bus, and the target goes
+/// there.
 void SwarmWires::add_axes() {
     const MachineView& table = machine_.table;
     const auto has = [](const ComponentType& type, std::string_view name, FacetKind kind) {
@@ -65,7 +65,7 @@ std::string_view SwarmWires::state_of(const Axis& axis) const {
                                              : std::string_view{};
 }
 
-/// An axis is home when its drive has said so of this homing: the bits of the one before were seen to go.
+/// An axis is home once its drive confirms this homing: the previous homing's bits must have cleared.
 void SwarmWires::hear_homing(Axis& axis, std::string_view device, const can::Frame& frame) {
     constexpr std::uint64_t ended = 0x3000; // attained, or failed
     const std::string_view state = state_of(axis);
@@ -80,16 +80,16 @@ void SwarmWires::hear_homing(Axis& axis, std::string_view device, const can::Fra
     axis.goes_home = state == "Homing";
 }
 
-constexpr unsigned longest_lie = 5; ///< of a wire that says anything, in frames
+constexpr unsigned longest_lie = 5; ///< of a garbled wire, in frames
 
-/// An enabled drive whose axis is in no motion stays where it is, and one that follows positions is sent to
-/// none that is far from the one before: it would go there as fast as it can. What goes to a place by itself
-/// follows nobody, and an error leaves no power.
+/// An enabled drive whose axis is in no motion stays in place. One that follows positions gets no target far
+/// from the previous one, because it would move there at full speed. A drive that moves by itself must not
+/// follow positions, and an error must remove power.
 void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame& frame) {
     constexpr std::uint64_t enabled_bits = 0x6F, enabled = 0x27; // of CiA 402's words
     constexpr std::uint64_t told_bits = 0x8F, told = 0x0F;
     constexpr std::uint64_t cyclic_position = 8, homing = 6;
-    constexpr double far = 1000; // times what counts as standing
+    constexpr double far = 1000; // times the standstill threshold
     if (device != axis.device || instance_ == nullptr) return;
     const can::Identifier identifier{frame.id, frame.extended};
     if (identifier == axis.word.frame)
@@ -126,7 +126,7 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
 void SwarmWires::judge_place(Axis& axis, std::string_view device, const can::Frame& frame) {
     constexpr Duration comes_to_rest = 300ms, changes_mode = 2s;
     const std::string_view state = state_of(axis);
-    // A drive that the machine cannot reach is its own time-out's.
+    // A drive that the machine cannot reach is left to its own time-out.
     const bool is_reached = !can::faulted(devices_.controller(device).state()) &&
                             struck_.whole_for(axis.driver, frame.stamp) >= Duration{};
     if (!is_reached || (state != "Disabled" && state != "Standstill"))

@@ -1,4 +1,4 @@
-// Numbers requests, and finds for each packet who waits for it.
+// Numbers requests, and matches each packet to the request that waits for it.
 #include "toolchain/machine/swarm_browser.hpp"
 
 #include "kernel/services/browsing/protocol.hpp"
@@ -38,7 +38,7 @@ void SwarmBrowser::ask(std::string request, Time now, Then then) {
 
 bool SwarmBrowser::hear() {
     if (!connection_.open()) {
-        // The machine sees who this thread is when it connects.
+        // The machine reads this thread's user when it connects.
         const std::uint32_t own = os::own_user();
         const bool becomes = user_ != own && ::syscall(SYS_setresuid, -1, user_, -1) == 0;
         auto connected = os::LocalConnection::connect(socket_.c_str());

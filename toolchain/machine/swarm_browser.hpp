@@ -1,5 +1,5 @@
-// A browser of a machine under virtual time: it asks over the machine's own socket, and is answered when the
-// machine's service comes to it.
+// A browser of a machine under virtual time: sends requests over the machine's own socket, and gets the
+// answers when the machine's service runs.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -17,7 +17,7 @@ namespace tappet {
 /// Not real-time.
 class SwarmBrowser {
 public:
-    /// Called once with the answer; an empty one: the connection ended before it came.
+    /// Called once with the answer; with an empty one when the connection ended before it came.
     using Then = std::function<void(std::string_view answer)>;
     struct Asked {
         Time at{};
@@ -25,22 +25,22 @@ public:
         Then then;
     };
 
-    /// `socket`: the machine's, be it there yet or not. `user`: who asks, where this process may become him;
-    /// otherwise it is the machine's own user.
+    /// `socket`: the machine's, which may not exist yet. `user`: the sender, if this process may take that
+    /// user's identity; otherwise the machine's own user.
     explicit SwarmBrowser(std::string socket, std::uint32_t user = os::own_user())
         : socket_{std::move(socket)}, user_{user} {}
 
     void ask(std::string request, Time now, Then then);
-    /// Connects when it is not connected, and takes what has come. False: there is no connection.
+    /// Connects if necessary and reads what has come. Returns false when there is no connection.
     bool hear();
     void leave();
-    /// Each packet that answers no request: of a command that is followed, of an event.
+    /// Sets the receiver of packets that answer no request: of a followed command, of an event.
     void tell_by(std::function<void(std::string_view packet)> tell) { tell_ = std::move(tell); }
-    /// Whose answer has been outstanding longest; null: nobody's.
+    /// Returns the request that has waited longest for its answer; null: none.
     [[nodiscard]] const Asked* oldest() const { return asked_.empty() ? nullptr : &asked_.begin()->second; }
-    /// How many answers are outstanding.
+    /// Returns how many answers are outstanding.
     [[nodiscard]] std::size_t waits_for() const { return asked_.size(); }
-    /// Rises with each connection.
+    /// Increases with each connection.
     [[nodiscard]] std::uint64_t connections() const { return connections_; }
 
 private:
@@ -55,9 +55,9 @@ private:
     std::function<void(std::string_view)> tell_{};
 };
 
-/// Of an answer: whether it says "ok".
+/// Returns whether an answer says "ok".
 [[nodiscard]] bool is_good(std::string_view answer);
-/// Of a packet: the text or the number of a field; empty: it has none.
+/// Returns the text or the number of a packet's field; empty when it has none.
 [[nodiscard]] std::string field_of(std::string_view packet, std::string_view name);
 
 } // namespace tappet

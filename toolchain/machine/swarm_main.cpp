@@ -1,5 +1,5 @@
-// main of every machine's swarm: one table with its plant, and its own rules if it has some, as
-// tappet_machine() of CMake named them.
+// main of every machine's swarm: one table with its plant, and its own rules if it has some, as named by
+// tappet_machine() of CMake.
 #ifdef TAPPET_SWARM_HEADER
 #include TAPPET_PLANT_HEADER
 #include TAPPET_SWARM_HEADER

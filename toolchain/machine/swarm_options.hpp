@@ -1,4 +1,4 @@
-// What every program that hunts by seeds is told.
+// The options of every program that hunts by seeds.
 #pragma once
 
 #include "toolchain/command_line.hpp"
@@ -10,7 +10,7 @@ inline constexpr Option findings{.name = "--findings",
                                  .help = "ends after so many broken seeds (default 10)",
                                  .is_number = true,
                                  .least = 1};
-inline constexpr std::uint64_t usual_findings = 10; // then the rest would say the same again
+inline constexpr std::uint64_t usual_findings = 10; // more findings would repeat themselves
 inline constexpr Option from{
     .name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true};
 inline constexpr Option step{.name = "--step",

@@ -1,5 +1,5 @@
-// What people do to a machine of the swarm: over its own socket they read, set and save properties, lay
-// forces, send commands and load scripts. What they are told and what is saved is judged.
+// Actions of people on a machine of the swarm: over its own socket they read, set and save properties, force
+// ports, send commands and load scripts. The answers and the saved files are judged.
 #include "kernel/base/value_text.hpp"
 #include "kernel/services/browsing/browser_service.hpp"
 #include "toolchain/machine/swarm.hpp"
@@ -16,23 +16,23 @@ namespace tappet {
 namespace {
 
 constexpr Duration answered_within = BrowserService::patience + 1s; // while the service runs
-constexpr Duration told_within = 100ms;                             // an emission, to who watches
+constexpr Duration told_within = 100ms;                             // an emission, to its watcher
 constexpr double most_of_all = std::numeric_limits<double>::max();
-constexpr std::array largest{most_of_all, most_of_all, 1e306, 3.4e38}; // of what has no range
+constexpr std::array largest{most_of_all, most_of_all, 1e306, 3.4e38}; // for values without a range
 
 std::string text_of(const TypeTag& type, const std::byte* value) {
     std::array<char, 256> text;
     return {text.data(), format_value(type, value, text)};
 }
 
-/// Aligned for a value of whatever type a property or an argument has.
+/// Aligned for a value of any type of a property or an argument.
 struct alignas(16) ValueBytes {
     std::array<std::byte, 64> bytes{};
     template <class T>
     void put(T value) {
         std::memcpy(bytes.data(), &value, sizeof value);
     }
-    /// The low bytes of it, as this processor stores them.
+    /// Stores the low bytes of an integer, in this processor's order.
     void put_whole(std::int64_t value, std::size_t size) { std::memcpy(bytes.data(), &value, size); }
 };
 
@@ -66,7 +66,7 @@ void SwarmRun::find_what_people_may() {
     });
 }
 
-/// What came for them; and whether it came, and came in time.
+/// Reads all packets of the browsers, and judges that answers came, and came in time.
 void SwarmRun::hear() {
     if (service_ == nowhere) return;
     const std::uint64_t connections = browser_.connections();
@@ -75,7 +75,7 @@ void SwarmRun::hear() {
         for (SwarmBrowser& each : visitors_) static_cast<void>(each.hear());
     if (!connected || connections != browser_.connections()) {
         watched_ = {};
-        asked_by_others_until_ = run_.now() + 2 * BrowserService::patience; // by who was connected before
+        asked_by_others_until_ = run_.now() + 2 * BrowserService::patience; // by browsers connected before
         if (lines_.was_connected) lines_ = {.left_commands = true, .of_peers = true};
         lines_.was_connected = true;
     }
@@ -107,7 +107,7 @@ void SwarmRun::watch() {
         });
 }
 
-/// Who watches an event is told each emission that came to the service, and with it how many did not.
+/// A watcher of an event gets each emission that came to the service, and the number of lost ones.
 void SwarmRun::judge_watched() {
     if (watched_.index == nowhere) return;
     const SubscriptionCounts counts = run_.instance().observation().counts_of(watched_.index);
@@ -138,13 +138,13 @@ void SwarmRun::ask(std::string request, SwarmBrowser::Then then) {
     browser_.ask(std::move(request), run_.now(), std::move(then));
 }
 
-/// `then`: with whether it was accepted.
+/// `then` is called with whether the set was accepted.
 void SwarmRun::set(const std::string& name, const std::string& value, std::function<void(bool)> then) {
     ++sets_open_;
     ask("set " + name + " " + value,
         [this, name, value, order = ++sets_, then = std::move(then)](std::string_view answer) {
             --sets_open_;
-            // Its component may refuse it for another's value; who is not told may have set it all the same.
+            // Its component may refuse it because of another value; an unanswered set may still have worked.
             SetValue& last = set_values_[name];
             if (field_of(answer, "code") != "bad_value" && order > last.order)
                 last = {order, is_good(answer) ? value : std::string{}};
@@ -152,7 +152,7 @@ void SwarmRun::set(const std::string& name, const std::string& value, std::funct
         });
 }
 
-/// `refusals`: the codes with which it may be refused, since people ask at any time.
+/// `refusals`: the codes of allowed refusals, because people ask at any time.
 void SwarmRun::ask_for(std::string request, std::string_view refusals) {
     ask(request, [this, request, refusals](std::string_view answer) {
         if (answer.empty() || is_good(answer) || refusals.contains(field_of(answer, "code"))) return;
@@ -171,7 +171,7 @@ std::function<bool()> SwarmRun::until_accepted(std::function<void(std::function<
     };
 }
 
-/// A value of the type; empty: none can be drawn.
+/// Returns a value of the type; empty when none can be drawn.
 std::string SwarmRun::draw(const TypeTag& type, Range range) {
     ValueBytes value;
     const bool bounded = std::isfinite(range.low) && std::isfinite(range.high);
@@ -242,7 +242,7 @@ void SwarmRun::strike_property(Duration lasts) {
     const std::string value = draw(*facet.type, facet.range);
     if (value.empty()) return;
     set(name, value, [](bool) {});
-    // Who starts the machine anew finds the value that was saved.
+    // After a restart of the machine, the saved value is back.
     begin("property set", Sentence{"property \"", name, "\" is ", value}, lasts, {},
           until_accepted([this, name, first = first.second](std::function<void(bool)> then) {
               set(name, first, std::move(then));
@@ -271,8 +271,8 @@ void SwarmRun::strike_port(Duration lasts) {
           }));
 }
 
-/// A script comes, at once or at an angle, or what was loaded goes again; on its way to its angle it is
-/// cancelled by that.
+/// Loads a script, at once or at an angle, or unloads or rolls back the slot, which cancels a script that
+/// still waits for its angle.
 void SwarmRun::strike_slot() {
     const auto scripts = rules_->people().scripts;
     if (scripts.empty()) return;
@@ -283,7 +283,7 @@ void SwarmRun::strike_slot() {
         ++verdict_.faults[unloads ? "script unloaded" : "script rolled back"];
         return ask_for((unloads ? "unload " : "roll_back ") + slot, "not_now");
     }
-    if (sends_script_) return; // pieces of two would be mixed
+    if (sends_script_) return; // pieces of two scripts would be mixed
     sends_script_ = true;
     ++verdict_.faults[script.compiles ? "script loaded" : "script wrong"];
     const std::string load = "load " + slot + " " + std::string{script.name} +
@@ -301,7 +301,7 @@ void SwarmRun::strike_slot() {
         });
 }
 
-/// What an interface has for operators holds whenever they ask for it.
+/// Sends a call that an interface offers to operators: they may send it at any time.
 void SwarmRun::ask_a_command() {
     if (commands_.empty()) return;
     const End end = commands_[random_.below(commands_.size())];
@@ -337,7 +337,7 @@ void SwarmRun::ask_to_save() {
     });
 }
 
-/// Nothing is saved that the next start would refuse, and, while nobody sets anything, what was set last.
+/// Judges that the next start accepts the saved file, with the last values if nobody sets anything now.
 void SwarmRun::judge_saved(bool with_values) {
     const MachineView& table = of_.machine.table;
     for (std::size_t c = 0; c < table.components.size(); ++c) {
@@ -372,7 +372,7 @@ std::map<std::string, std::string> SwarmRun::kept_values() {
     return kept;
 }
 
-/// What was kept at the halt is there again.
+/// The values kept at the halt must be back.
 void SwarmRun::judge_kept() {
     const auto now = kept_values();
     for (const auto& [name, value] : kept_)
@@ -381,7 +381,7 @@ void SwarmRun::judge_kept() {
                           found == now.end() ? "gone" : found->second, " after the start"});
 }
 
-/// When everybody has taken away what they laid.
+/// Call after everybody has released their forces.
 void SwarmRun::judge_forces() {
     if (service_ == nowhere || anything_goes_) return;
     if (const auto forced = run_.instance().observation().forced_ports().load(); forced != 0)

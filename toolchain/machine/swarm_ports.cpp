@@ -1,4 +1,4 @@
-// Each port is looked at in its place: no component is asked.
+// Reads each port in place, without a request to its component.
 #include "toolchain/machine/swarm_ports.hpp"
 
 #include "kernel/base/number.hpp"
@@ -9,7 +9,7 @@ namespace tappet {
 
 namespace {
 
-/// As long as what keeps a state may take until it has forgotten one value that is none.
+/// Limit for a component with state to forget one not-a-number value.
 constexpr Duration forgets_within = 3s;
 constexpr std::uint64_t forgets_in = 100; // values
 constexpr Duration looks_every = 1ms;
@@ -47,7 +47,7 @@ Sentence SwarmPorts::name_of(End end) const {
     return Sentence{machine_.table.components[end.component].name, ".", facet_at(machine_.table, end).name};
 }
 
-/// What stands says what its interface says that it does then.
+/// A stopped component's output must have the value that its interface states for standstill.
 Sentence SwarmPorts::misleads(const AtRest& each) const {
     if (instance_->life().state_of(each.end.component) != ComponentState::stopped) return {};
     const PortPlaces places =
@@ -59,7 +59,7 @@ Sentence SwarmPorts::misleads(const AtRest& each) const {
                     " though its component stands"};
 }
 
-/// Anything else is a number again, whatever it was told.
+/// Any other port must return to a number, whatever it received.
 Sentence SwarmPorts::is_none(Real& each, Time now) const {
     const Facet& facet = facet_at(machine_.table, each.end);
     const PortPlaces places = facet.port->places(instance_->place_of(each.end), each.is_input);

@@ -1,4 +1,4 @@
-// What the ports of a machine say, judged by rules that hold of every machine.
+// The values at a machine's ports, judged by rules that hold for every machine.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -7,17 +7,17 @@
 
 namespace tappet {
 
-/// Not real-time. Lives as long as the run.
+/// Must live as long as the run. Not real-time.
 class SwarmPorts {
 public:
     explicit SwarmPorts(const AcceptedMachine& machine);
-    /// A new machine.
+    /// Starts to judge a new machine.
     void begin(MachineInstance& instance);
-    /// The first rule that is broken at this moment; empty: none.
+    /// Returns the first rule that is broken at this moment; empty: none.
     [[nodiscard]] Sentence broken(Time now);
 
 private:
-    /// An output of which its interface says what it says while its component stands.
+    /// An output whose value at standstill its interface states.
     struct AtRest {
         End end{};
         bool says = false;
@@ -26,9 +26,9 @@ private:
     struct Real {
         End end{};
         bool is_input = false;
-        bool is_judged = false;  ///< at a border, by a driver or by limits: it is a number at every moment
-        Time none_since = never; ///< it is no number
-        std::uint64_t written_then = 0; ///< so often
+        bool is_judged = false;         ///< at a border, by a driver or by limits: it is always a number
+        Time none_since = never;        ///< since when it is not a number
+        std::uint64_t written_then = 0; ///< number of writes at that time
     };
     [[nodiscard]] Sentence misleads(const AtRest& each) const;
     [[nodiscard]] Sentence is_none(Real& each, Time now) const;
@@ -38,7 +38,7 @@ private:
     MachineInstance* instance_ = nullptr;
     std::vector<AtRest> at_rest_{};
     std::vector<Real> reals_{};
-    Time next_{}; ///< look
+    Time next_{}; ///< time of the next look
 };
 
 } // namespace tappet

@@ -1,4 +1,4 @@
-// The program of a machine's swarm: seed after seed, and what they came to.
+// The program of a machine's swarm: runs seed after seed, and reports their results.
 #include "kernel/base/contract.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/terminal.hpp"
@@ -59,10 +59,10 @@ enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
 
 constexpr unsigned longest_seed = 300; // s of real time
 
-Sentence replay; // of the seed that runs
+Sentence replay; // command for the running seed
 int standard_output = 1;
 
-// What the machine itself prints is nobody's: it would hide what the swarm says.
+// Discards the machine's own output: it would hide the swarm's lines.
 void silence_machine() {
     standard_output = ::dup(1);
     if (const int nothing = ::open("/dev/null", O_WRONLY); nothing >= 0) {
@@ -79,7 +79,7 @@ void tell_contract(const ContractViolation& breach) noexcept TAPPET_REALTIME {
                   ::_exit(one_broken));
 }
 
-// A machine that crashes, or does not come to an end, is a finding as well.
+// A machine that crashes or does not end is a finding, too.
 void die_telling() {
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) {
         struct sigaction action{};
@@ -96,9 +96,9 @@ struct Totals {
     Duration time{};
     std::uint64_t seeds = 0, broken = 0, restarts = 0;
     std::vector<Duration> back{};
-    std::vector<Duration> usual{}, responses{}; // of seeds in which none came too often, and of the others
+    std::vector<Duration> usual{}, responses{}; // of seeds without too frequent wakes, and of the others
     std::map<std::string, std::uint64_t> faults{};
-    std::map<std::string, std::vector<std::uint64_t>> waited_for{}; // by the seeds
+    std::map<std::string, std::vector<std::uint64_t>> waited_for{}; // with their seeds
 
     void add(std::uint64_t seed, const SwarmVerdict& verdict) {
         ++seeds;

@@ -1,5 +1,5 @@
-// What only one machine's swarm knows, as its SWARM header gives it to tappet_machine() of CMake: what must
-// never be so, when the machine works, and what goes wrong with its plant.
+// A machine's own part of its swarm: its SWARM header passes to tappet_machine() of CMake what must never
+// happen, when the machine works, and the faults of its plant.
 #pragma once
 
 #include "drivers/plant/plant.hpp"
@@ -14,26 +14,26 @@ namespace tappet {
 /// A script for a slot of the machine.
 struct SwarmScript {
     std::string_view slot{}, name{}, text{};
-    bool compiles = true; ///< else its load is to be refused
+    bool compiles = true; ///< else its load must be refused
 };
-/// What people at browsers may do to the machine though every rule holds: beside reading, saving and what its
-/// interfaces have for operators.
+/// Actions of people at browsers under which every rule must still hold; beside reading, saving, and the
+/// operations that the interfaces offer to operators.
 struct SwarmPeople {
-    std::span<const std::string_view> properties{}; ///< are set to anything in their ranges
-    std::span<const std::string_view> ports{};      ///< are forced to anything
+    std::span<const std::string_view> properties{}; ///< may be set to anything in their ranges
+    std::span<const std::string_view> ports{};      ///< may be forced to anything
     std::span<const SwarmScript> scripts{};
 };
 
-/// What the swarm has struck, so that a rule asks for no more than whole parts can do.
+/// Knows what the swarm has struck, so that a rule demands only what intact parts can do.
 class Struck {
 public:
     explicit Struck(std::size_t components) : faults_(components), whole_since_(components) {}
-    /// How long nothing has been wrong with a component, its activity and its device. Negative: something is,
-    /// or it does not run. The component by its number: find_component().
+    /// Returns how long a component, its activity and its device have been intact. Negative: a fault is
+    /// present, or it does not run. The component is a number: see find_component().
     [[nodiscard]] Duration whole_for(std::size_t component, Time now) const {
         return faults_[component] != 0 ? Duration{-1} : now - whole_since_[component];
     }
-    /// A fault begins, or ends.
+    /// Records that a fault begins, or ends.
     void begin(std::size_t component) { ++faults_[component]; }
     void end(std::size_t component, Time now) {
         --faults_[component];
@@ -45,7 +45,7 @@ private:
     std::vector<Time> whole_since_;
 };
 
-/// Of one life of a machine: made when it has started, gone when it stands. Not real-time.
+/// The rules of one life of a machine: created after its start, destroyed after its stop. Not real-time.
 ///     struct Swarm final : SwarmRules {
 ///         Swarm(MachineInstance& machine, Plant& plant, const Struck& struck);
 ///         std::string_view broken(Time) override {
@@ -60,16 +60,15 @@ public:
     SwarmRules& operator=(const SwarmRules&) = delete;
     virtual ~SwarmRules() = default;
 
-    /// Asked at every moment at which machine or plant have moved: what is so and must not be; empty:
-    /// nothing.
+    /// Called at every moment at which machine or plant have moved. Returns the broken rule; empty: none.
     [[nodiscard]] virtual std::string_view broken(Time now) = 0;
-    /// It does what it is for.
+    /// Returns whether the machine fulfils its purpose.
     [[nodiscard]] virtual bool works() = 0;
-    /// So long after the last fault it works again, or says why not.
+    /// After this time without faults the machine must work again, or say why not.
     [[nodiscard]] virtual Duration works_within() const { return 30s; }
-    /// What the machine itself says that it waits for; empty: it says nothing.
+    /// Returns what the machine itself says it waits for; empty: it says nothing.
     [[nodiscard]] virtual std::string_view waits_for() { return {}; }
-    /// Something goes wrong with the plant for `lasts` at most: what; empty: it has no faults of its own.
+    /// Injects a fault of the plant for at most `lasts`. Returns its description; empty: there is none.
     virtual Sentence trouble(Random&, Duration /*lasts*/) { return {}; }
     [[nodiscard]] virtual SwarmPeople people() const { return {}; }
 };

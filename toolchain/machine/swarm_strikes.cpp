@@ -1,4 +1,4 @@
-// What strikes a machine of the swarm from without and within: its devices, its components, its activities.
+// The faults of a machine of the swarm, from without and within: its devices, its components, its activities.
 #include "drivers/can/signal_map.hpp"
 #include "drivers/gpio/line_map.hpp"
 #include "drivers/modbus/register_map.hpp"
@@ -10,7 +10,7 @@ namespace tappet {
 
 namespace {
 
-constexpr Duration longest_fault = 5s; // of those that end by themselves
+constexpr Duration longest_fault = 5s; // of faults that end by themselves
 
 } // namespace
 
@@ -97,8 +97,7 @@ void SwarmRun::strike_bus(std::size_t c, Duration lasts) {
     begin(names[what], text, lasts, components_on(row.device), [chance] { return chance->one_in = 0, true; });
 }
 
-/// What the machine receives, with values that no node of it would send: no numbers, ends of ranges,
-/// anything.
+/// Sends the machine values that no node would send: not-a-number, ends of ranges, anything.
 void SwarmRun::garble_bus(std::string_view device, const can::Identifiers& map) {
     const auto is_received = [](const can::FrameRow& row) {
         return row.direction == can::Direction::receive;
@@ -118,7 +117,7 @@ void SwarmRun::garble_bus(std::string_view device, const can::Identifiers& map) 
     for (std::size_t i = 0; i < row.length; ++i)
         frame.data[i] = static_cast<std::uint8_t>(how < 3 ? patterns[how] : random_.below(256));
     ++verdict_.faults["bus says anything"];
-    wires_.excuse_axes(run_.now() + 50ms); // one that starts begins where it is said to be
+    wires_.excuse_axes(run_.now() + 50ms); // an axis that starts takes its position from the wire
     say(Sentence{"bus \"", device, "\" says ",
                  how == 3   ? "anything"
                  : how == 0 ? "ones"
@@ -130,7 +129,7 @@ void SwarmRun::garble_bus(std::string_view device, const can::Identifiers& map) 
         run_.devices().bus(device).put(frame, run_.now());
 }
 
-/// What the machine reads, until the plant says it again.
+/// Garbles the registers that the machine reads, until the plant writes them again.
 void SwarmRun::garble_server(std::string_view device, modbus::Twin& server, const modbus::SafeWrites& map) {
     ++verdict_.faults["server says anything"];
     for (const modbus::Row& row : map.rows) {
@@ -237,7 +236,7 @@ void SwarmRun::hang(std::size_t a, Duration lasts) {
     const auto is_same = [of = components_of(a)](const Fault& each) {
         return each.of_activity && each.components == of;
     };
-    if (std::ranges::any_of(faults_, is_same)) return; // one ends with the other
+    if (std::ranges::any_of(faults_, is_same)) return; // one would end the other
     run_.world().hang(a, run_.now() + lasts);
     begin("activity hangs", Sentence{"activity \"", of_.machine.table.activities[a].name, "\" hangs"}, lasts,
           components_of(a), [this, a] { return run_.world().hang(a, run_.now()), true; });

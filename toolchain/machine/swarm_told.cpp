@@ -1,4 +1,4 @@
-// What a driver is told at its inputs goes out, or the end of what the wire can say that is nearest to it.
+// A value at a driver's input must go out to the wire, or else the nearest value that the wire can express.
 #include "drivers/modbus/register_map.hpp"
 #include "toolchain/machine/swarm_wires.hpp"
 
@@ -12,16 +12,16 @@ namespace tappet {
 namespace {
 
 constexpr Duration looks_every = 5ms;
-constexpr Duration looks_within = 2s; // a bus that was off, for its restart
+constexpr Duration looks_within = 2s; // for the restart of a bus that was off
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double largest_float = std::numeric_limits<float>::max();
 
-/// Between the two ends, in whichever order: a factor may be negative.
+/// Orders the two ends: a factor may be negative.
 SwarmWires::Numbers between(double one, double other, double step) {
     return {std::min(one, other), std::max(one, other), step};
 }
 
-/// What a force hid when its writer stopped: nobody wants it, and its frame may be safe by silence.
+/// True: a force hid that the writer stopped; the value is obsolete, its frame may be safe by silence.
 bool is_abandoned(const Facet& input, const void* place) {
     return input.type == type_id<double> ? static_cast<const Input<double>*>(place)->is_abandoned()
            : input.type == type_id<std::int64_t>
@@ -60,7 +60,7 @@ SwarmWires::Numbers SwarmWires::numbers_of(const modbus::Register& one) {
     return between(physical(-largest_float), physical(largest_float), step);
 }
 
-/// What goes out in one, of which no row lets anything grow stale.
+/// Groups outputs that go out in one frame or request; excludes groups in which a row allows staleness.
 void SwarmWires::find_together() {
     for (Output& each : outputs_) {
         each.together.clear();
@@ -74,7 +74,7 @@ void SwarmWires::find_together() {
     }
 }
 
-/// What its input gives its driver; none: nothing yet.
+/// Returns the value at the output's driver input; none: no value yet.
 double SwarmWires::said(const Output& output) const {
     const Facet& facet = facet_at(machine_.table, output.facets.front());
     const void* const input = instance_->place_of(output.facets.front());

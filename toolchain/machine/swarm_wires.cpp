@@ -1,4 +1,4 @@
-// The outputs of a machine, found in its table and its maps, and the rules that hold of all of them.
+// The outputs of a machine, found in its table and its maps, and the rules that hold for all of them.
 #include "toolchain/machine/swarm_wires.hpp"
 
 #include "drivers/gpio/line_map.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr Duration usual_settling = 200ms; // periods, deadlines and queues on the way to a wire
 
-/// Whether a signal is in its frame: what selects it has one of its values.
+/// Returns whether a signal is in its frame: the selecting signal must have one of its values.
 bool is_in(const can::Identifiers& map, const can::FrameRow& row, const can::Signal& signal,
            const can::Frame& frame) {
     if (signal.multiplexor.empty()) return true;
@@ -95,7 +95,7 @@ void SwarmWires::add_signals(std::size_t c) {
         sent_.push_back({row.device, &map, f});
         for (const can::Signal& signal : map.signals.subspan(frame.first, frame.signals)) {
             Output output{.driver = c, .is_switch = signal.bits == 1, .settles = frame.every, .goes_in = f};
-            // What selects others, or is selected, goes out in turns.
+            // A multiplexed frame, or one that selects others, goes out in turns.
             if (frame.every > Duration{} && !signal.is_bits && !frame.multiplexed) {
                 output.numbers = numbers_of(signal);
                 output.physical = [&signal](std::uint64_t raw) { return can::to_physical(signal, raw); };
@@ -106,7 +106,7 @@ void SwarmWires::add_signals(std::size_t c) {
                 const bool is_cyclic = sent.map->frames[sent.row].every > Duration{};
                 if (!sent.last || !is_in(*sent.map, sent.map->frames[sent.row], signal, *sent.last))
                     return {};
-                // A wire that is silent is for its receiver to notice.
+                // A silent wire is the receiver's to detect.
                 if (is_cyclic && now_ - sent.last->stamp > usual_settling) return {};
                 return can::extract(sent.last->data, signal);
             };
@@ -151,7 +151,7 @@ void SwarmWires::add_registers(std::size_t c) {
     }
 }
 
-/// With who writes to its facets, by any row of the table.
+/// Adds an output with all components that write to its facets, by any row of the table.
 void SwarmWires::add(Output output, std::string_view name, const std::vector<std::string>& events) {
     const MachineView& table = machine_.table;
     const std::string driver{table.components[output.driver].name};
@@ -188,7 +188,7 @@ void SwarmWires::add(Output output, std::string_view name, const std::vector<std
     outputs_.push_back(std::move(output));
 }
 
-/// What the machine sends: numbers, within what the map allows.
+/// Judges the frames that the machine sends: numbers, within the range of the map.
 void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
     for (Axis& axis : axes_) hear_axis(axis, device, frame);
     for (std::size_t at = 0; at < sent_.size(); ++at) {
@@ -243,7 +243,7 @@ Sentence SwarmWires::told(const Output& output, std::uint64_t value) const {
     return text;
 }
 
-/// What does not run leaves what its stop() wrote, or what is safe, and moves no output any more.
+/// A stopped component leaves what its stop() wrote, or the safe value, and moves no output any more.
 Sentence SwarmWires::broken(Output& output, Time now) const {
     if (output.writers.empty()) return {};
     const auto value = output.read();
@@ -266,7 +266,7 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
         return {};
     }
     if (now - output.since < output.settles) return {};
-    if (output.is_meddled && !output.left) output.left = value; // as somebody left it who asked the driver
+    if (output.is_meddled && !output.left) output.left = value; // as a direct request to the driver left it
     const bool is_safe = output.safe && *value == *output.safe;
     if (!output.left) {
         output.left = value;
@@ -306,7 +306,7 @@ Sentence SwarmWires::broken(Time now) {
 
 Sentence SwarmWires::broken_at_rest(bool by_guardian) const {
     for (const Output& each : outputs_) {
-        // What nobody could be told just then, its receiver notices.
+        // The receiver detects by itself when its device could not be reached.
         if (!each.safe || struck_.whole_for(each.driver, never) < Duration{}) continue;
         if (const auto value = each.read(); value && *value != *each.safe)
             return told(each, *value)

@@ -1,5 +1,5 @@
-// What a machine puts on its wires, judged by rules that hold of every machine: which part drives which
-// output is read from its table, what is safe and what is in range from its maps.
+// The values that a machine puts on its wires, judged by rules that hold for every machine. Its table tells
+// which part drives which output; its maps tell what is safe and what is in range.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
@@ -19,43 +19,43 @@ namespace modbus {
 struct Register;
 }
 
-/// What is on an output's wire when all that writes to it was stopped while nothing else went on.
+/// The value on an output's wire when all its writers were stopped while nothing else happened.
 struct LeftBehind {
-    bool holds = false;                  ///< whatever it was before
-    std::vector<std::uint64_t> values{}; ///< beside what is safe
+    bool holds = false;                  ///< it keeps its previous value
+    std::vector<std::uint64_t> values{}; ///< beside the safe value
 };
 using AllLeftBehind = std::map<std::string, LeftBehind>; ///< by the names of outputs
 
-/// Not real-time. Lives as long as the run.
+/// Must live as long as the run. Not real-time.
 class SwarmWires {
 public:
-    /// `left`: null: nobody has looked.
+    /// `left`: null: not learnt.
     SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices, const Struck& struck,
                const AllLeftBehind* left = nullptr);
 
-    /// After the devices were opened: looks at what goes over them.
+    /// Call after the devices were opened: listens to their traffic.
     void listen();
-    /// A new machine drives the wires.
+    /// Starts to judge a new machine that drives the wires.
     void begin(MachineInstance& instance);
-    /// Somebody asks for something of the driver itself: until then its outputs follow who asked.
+    /// Somebody sends a request to the driver itself: until then its outputs follow that request.
     void excuse(std::size_t driver, Time until);
-    /// Somebody forces a port: an axis may be told anything.
+    /// Somebody forces a port: an axis may get any value.
     void excuse_axes(Time until);
-    /// The first rule that is broken at this moment; empty: none.
+    /// Returns the first rule that is broken at this moment; empty: none.
     [[nodiscard]] Sentence broken(Time now);
-    /// All of it is over: in order, and no driver said that its device was not reached, or by the guardian.
+    /// Judges after the end: an orderly stop in which every device was reached, or one by the guardian.
     [[nodiscard]] Sentence broken_at_rest(bool by_guardian) const;
 
-    // ---- to see what is left behind
+    // ---- for learning what is left behind
 
-    /// The components that write to one output, for each output, each set once.
+    /// Returns for each output the components that write to it, each set once.
     [[nodiscard]] std::vector<std::vector<std::size_t>> all_writers() const;
-    /// As long as anything takes from there to a wire.
+    /// Returns the longest time from these writers to a wire.
     [[nodiscard]] Duration settles(const std::vector<std::size_t>& writers) const;
-    /// They stand since so long, and nothing else went on.
+    /// Records what they left: they have been stopped that long, and nothing else happened.
     void note_left(const std::vector<std::size_t>& writers, AllLeftBehind& left) const;
 
-    /// What a wire can say.
+    /// The values that a wire can express.
     struct Numbers {
         double least = 0, most = 0, step = 0;
     };
@@ -66,39 +66,39 @@ private:
         std::size_t driver = 0; ///< the component
         std::string name{};
         std::vector<End> facets{};          ///< of the driver: its input, or the operations that switch it
-        std::vector<std::size_t> writers{}; ///< the components that write there; the driver is none of them
+        std::vector<std::size_t> writers{}; ///< the components that write there, without the driver
         std::optional<std::uint64_t> safe{};
         bool is_switch = false; ///< one bit
         bool is_line = false;
-        Duration settles{};  ///< longer than anything takes from a writer to the wire
-        Duration recovers{}; ///< after a fault its driver may come to it so much later
+        Duration settles{};  ///< longer than any way from a writer to the wire
+        Duration recovers{}; ///< additional time after a fault of its driver
         std::function<std::optional<std::uint64_t>()> read{};
-        // Of this machine.
+        // State of this machine's life.
         std::optional<std::uint64_t> before{}, left{}; ///< while a writer ran; when all had stopped
-        Time since = never;                            ///< no writer runs
+        Time since = never;                            ///< since when no writer runs
         Time excused{};
-        bool is_meddled = false; ///< somebody asked its driver, and it was not safe since
-        // Of one that goes out again and again, as its input says.
+        bool is_meddled = false; ///< somebody sent a request to its driver, and it was not safe since
+        // For an output that is sent cyclically from its input.
         std::size_t goes_in = nowhere; ///< its frame's or request's number
         bool grows_stale = false;      ///< by its row
         Numbers numbers{};
-        std::function<double(std::uint64_t)> physical{}; ///< null: it is another kind
-        std::vector<std::size_t> together{};             ///< outputs that go out with it, and itself
+        std::function<double(std::uint64_t)> physical{}; ///< null: another kind of output
+        std::vector<std::size_t> together{};             ///< outputs that go out with it, including itself
         double wanted = 0;
         Time wanted_since = never;
         Time told_looked{};
     };
-    /// A frame that the machine sends, as it was on the wire last.
+    /// A frame that the machine sends: its last one on the wire.
     struct Sent {
         std::string_view device;
         const can::Identifiers* map = nullptr;
         std::size_t row = 0;
         std::optional<can::Frame> last{};
     };
-    /// An axis of the library, as its facets say, and what its drive tells at the wire.
+    /// An axis of the library, by its facets, and the messages of its drive at the wire.
     struct Axis {
         std::string_view name{}, device{};
-        /// A signal of the bus, and the frame that it is in.
+        /// A signal of the bus, and its frame.
         struct Wire {
             can::Identifier frame{};
             const can::Signal* signal = nullptr;
@@ -106,19 +106,19 @@ private:
         Wire place{}, word{}, mode{}, target{}, control{};
         End state{}, standing{};
         std::size_t driver = 0;          ///< of its wires
-        bool is_enabled = false;         ///< the drive says so
-        bool is_told = false;            ///< so is the drive
-        bool shows_homing = false;       ///< the drive
-        bool goes_home = false;          ///< the axis, at the frame before
-        bool goes_anew = false;          ///< and its drive says that this homing has not ended
-        unsigned follows = 0;            ///< frames one after the other that say it follows positions
+        bool is_enabled = false;         ///< the drive reports enabled
+        bool is_told = false;            ///< the drive is commanded to be enabled
+        bool shows_homing = false;       ///< the drive reports homing
+        bool goes_home = false;          ///< the axis was homing at the previous frame
+        bool goes_anew = false;          ///< the drive reports that this homing has not ended
+        unsigned follows = 0;            ///< consecutive frames that report following of positions
         std::optional<double> sent_to{}; ///< while it follows
         Time rests_since = never;        ///< by its state, which names no motion
         Time astray_since = never;       ///< its state names a motion that its drive does not make
         std::optional<double> rests_at{};
-        double stands_below = -1.0; ///< its property as the table has it
+        double stands_below = -1.0; ///< its property as in the table
         Time excused{};
-        unsigned elsewhere = 0; ///< frames that say so, one after the other
+        unsigned elsewhere = 0; ///< consecutive frames at another position
     };
 
     void add_axes();
@@ -153,7 +153,7 @@ private:
     std::vector<Output> outputs_{};
     std::vector<Sent> sent_{};
     std::vector<Axis> axes_{};
-    Sentence heard_{}; ///< what was wrong with a frame
+    Sentence heard_{}; ///< the fault in a frame
 };
 
 } // namespace tappet

@@ -1,4 +1,4 @@
-// Who moves next, and the times of each clock.
+// Decides which node moves next, and converts the times of each clock.
 #include "toolchain/machine/system_run.hpp"
 
 #include "drivers/can/signal_map.hpp"
@@ -14,7 +14,7 @@ Time ClockFault::local(Time true_time) const noexcept TAPPET_REALTIME {
     const auto drifted = static_cast<std::int64_t>(static_cast<double>(to_ns(true_time)) * drift_ppm * 1e-6);
     return true_time + offset + Duration{drifted};
 }
-/// The first instant of true time at which the clock shows it.
+/// Returns the first instant of true time at which the clock shows the local time.
 Time ClockFault::true_time(Time local_time) const noexcept TAPPET_REALTIME {
     if (local_time == never || local_time == Time::min()) return local_time;
     const Time shifted = local_time - offset;
@@ -44,7 +44,7 @@ can::Receive WireEnd::receive(can::Frame& frame) noexcept TAPPET_REALTIME {
 }
 
 can::Send WireEnd::send(const can::Frame& frame, can::Keep keep) noexcept TAPPET_REALTIME {
-    if (is_cut) return can::Send::queued; // its controller believes so
+    if (is_cut) return can::Send::queued; // its controller believes that it was sent
     can::Frame sent = frame;
     sent.stamp = clock_.true_time(frame.stamp);
     return twin_.send(sent, keep);
@@ -56,7 +56,7 @@ can::Confirmation WireEnd::last_confirmed(can::Identifier of) const noexcept TAP
     return {clock_.local(found.made), clock_.local(found.at + lateness(found.at))};
 }
 
-/// The same of one frame however often it is asked for.
+/// Returns the same lateness for the same frame, on every call.
 Duration WireEnd::lateness(Time of) const noexcept TAPPET_REALTIME {
     Random random{seed_ ^ static_cast<std::uint64_t>(to_ns(of))};
     return Duration{random.between(0, stamps_late.count())};
@@ -79,7 +79,7 @@ void SystemRun::browse_in(std::string_view directory) {
     began_ = std::chrono::steady_clock::now();
 }
 
-/// What is not a millisecond ahead is not worth a sleep.
+/// Does not sleep for less than a millisecond.
 void SystemRun::keep_pace() {
     const auto due = began_ + (now_ - began_at_);
     if (due - std::chrono::steady_clock::now() > 1ms) std::this_thread::sleep_until(due);
@@ -111,7 +111,7 @@ std::expected<void, Sentence> SystemRun::start(std::size_t n) {
         node.run.devices().lend(
             {type_id<can::Device>, system_.wire.name, static_cast<can::Device*>(&node.end)});
     }
-    // A box whose program has died still acknowledges; one that was never switched on does not.
+    // A box whose program died still acknowledges frames; one that was never switched on does not.
     std::size_t on_wire = 1;
     for (const auto& each : nodes_) on_wire += each.get() != &node && each->was_started ? 1u : 0u;
     wire_.set_acknowledged(on_wire > 1);
@@ -143,7 +143,7 @@ bool SystemRun::run_for(Duration time) {
         const Time then = std::max(next(), now_);
         now_ = std::min(then, end);
         if (has_pace_) keep_pace();
-        // Before something comes to a machine: it is served at the time at which it came.
+        // Before a frame arrives: the machine handles it at its time of arrival.
         for (const auto& node : nodes_)
             if (node->is_alive)
                 node->run.clock().advance_to(std::max(node->clock.local(now_), node->run.now()));

@@ -1,5 +1,5 @@
-// Several machines on one wire in one process and one thread: each under a virtual clock of its own, which
-// goes a little faster or slower than the true one; frames take their bit times. One seed, one run.
+// Several machines on one wire, in one process and one thread. Each has its own virtual clock, slightly
+// faster or slower than true time; frames take their bit times. One seed gives one run.
 #pragma once
 
 #include "drivers/can/twin_bus.hpp"
@@ -12,8 +12,8 @@
 
 namespace tappet {
 
-/// How one machine's clock shows the true time, which the wire has: local = true + offset, and `drift_ppm` of
-/// the true time more.
+/// How one machine's clock relates to the wire's true time: local = true + offset, plus `drift_ppm` of the
+/// true time.
 struct ClockFault {
     Duration offset{};
     double drift_ppm = 0;
@@ -22,7 +22,7 @@ struct ClockFault {
     [[nodiscard]] Time true_time(Time local) const noexcept TAPPET_REALTIME;
 };
 
-/// A machine's end of the wire, in the machine's own time; and what strikes this end alone (CAN's
+/// A machine's end of the wire, in the machine's own time, with the faults of this end alone (CAN's
 /// inconsistent omission and duplicates).
 class WireEnd final : public can::Device {
 public:
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] bool wakes(os::Waiter& waiter) noexcept override { return twin_.wakes(waiter); }
 
     std::uint32_t omits_one_in = 0, doubles_one_in = 0;
-    /// What arrives and what is confirmed is stamped up to so much later than it was through.
+    /// Received and confirmed frames are stamped up to this much too late.
     Duration stamps_late{};
     /// Nothing passes: the cable is cut on this side of the node.
     bool is_cut = false;
@@ -67,28 +67,28 @@ private:
 /// Not real-time.
 class SystemRun {
 public:
-    /// `machines`: of the system's nodes, in their order. `plants`: what stands at their other wires; null:
-    /// nothing.
+    /// `machines`: of the system's nodes, in their order. `plants`: the plants at their other wires; null:
+    /// none.
     SystemRun(const SystemView& system, std::span<const AcceptedMachine> machines,
               std::span<Plant* const> plants, std::uint64_t seed);
 
-    /// Before start(): each machine has a socket for browsers there. True time then goes at the pace of the
-    /// host's clock, which is what people see. The characters outlive the run.
+    /// Call before start(): each machine has a socket for browsers there. True time then passes at the pace
+    /// of the host's clock, for people who watch. The characters must outlive the run.
     void browse_in(std::string_view directory);
-    /// Before start().
+    /// Call before start().
     void set_clock(std::size_t node, const ClockFault& fault) { nodes_[node]->clock = fault; }
     std::expected<void, Sentence> start();
     std::expected<void, Sentence> start(std::size_t node);
-    /// The process of the node is gone, without a word; its outputs stay as they are.
+    /// Ends the node's process without warning; its outputs stay as they are.
     void kill(std::size_t node) { nodes_[node]->is_alive = false; }
-    /// It ends in order.
+    /// Stops the node in order.
     void stop(std::size_t node);
     void stop();
     [[nodiscard]] bool is_alive(std::size_t node) const { return nodes_[node]->is_alive; }
-    /// False: a machine asked to stop, or could not go on; see faulted().
+    /// Runs for `time`. Returns false when a machine asked to stop, or could not continue; see faulted().
     bool run_for(Duration time);
     bool run_until(const std::function<bool()>& done, Duration limit);
-    /// Called whenever time has moved: for who judges every moment.
+    /// Sets a function that is called whenever time has moved: for judges that check every moment.
     void judge_by(std::function<void(Time now)> look) { look_ = std::move(look); }
 
     [[nodiscard]] Time now() const { return now_; } ///< the true time

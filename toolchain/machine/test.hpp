@@ -1,5 +1,5 @@
-// A case about a machine with its plant under virtual time, as tappet_machine(.. TESTS ..) of CMake names
-// them.
+// A test case about a machine with its plant under virtual time; tappet_machine(.. TESTS ..) of CMake names
+// the cases.
 #pragma once
 
 #include TAPPET_PLANT_HEADER
@@ -11,7 +11,7 @@
 
 namespace TAPPET_NAMESPACE {
 
-/// Started for each case, and stopped after it:
+/// Starts the machine for each case, and stops it afterwards:
 ///     TEST_F(MachineTest, fills_ten_bottles) {
 ///         run.run_for(10s);
 ///         EXPECT_EQ(plant.bottles, 10);
@@ -23,7 +23,7 @@ struct MachineTest : testing::Test {
         ASSERT_TRUE(started) << started.error().view();
     }
     void TearDown() override {
-        run.judge_by({}); // what it may refer to lived in the test's body
+        run.judge_by({}); // its captures lived in the test's body
         run.stop();
     }
 

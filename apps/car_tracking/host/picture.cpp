@@ -9,7 +9,7 @@ namespace tappet::car_tracking {
 
 namespace {
 
-constexpr double left = 130.0; // of everything, px
+constexpr double left = 130.0; // left edge of all drawings, px
 constexpr double map_top = 60.0;
 constexpr double map_scale = 190.0; // px/m
 constexpr double map_far = 3.6;     // m, the map's upper edge
@@ -57,7 +57,7 @@ void draw_room(Svg& svg) {
     svg.words(map_x(eye.x()) + 12, map_y(eye.y()) + 5, "camera");
 }
 
-/// Line by line, broken where `broken` says so.
+/// Draws a line through all moments, interrupted where `broken` returns true.
 template <class Broken>
 void draw_path(Svg& svg, std::span<const Moment> moments, double Moment::* x, double Moment::* y,
                std::string_view style, Broken broken) {
@@ -129,7 +129,7 @@ void draw_states(Svg& svg, std::span<const Moment> moments, const TimeAxis& time
                   "text-anchor=\"end\" font-size=\"11\"");
 }
 
-/// Each image as a tick: green where the car was located, red where not; grey below: nobody could see it.
+/// Draws each image as a tick: green: car located; red: not; grey below: the car was hidden.
 void draw_looks(Svg& svg, std::span<const Moment> moments, std::span<const Look> looks,
                 const TimeAxis& time) {
     const double top = time_top + static_cast<double>(states.size()) * row_height;

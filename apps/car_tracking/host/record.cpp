@@ -1,4 +1,4 @@
-// Looks at machine and room, and digests what it saw.
+// Samples machine and room, and digests the samples.
 #include "apps/car_tracking/host/record.hpp"
 
 #include "apps/car_tracking/image_recognition.hpp"

@@ -1,4 +1,4 @@
-// What was true and what was believed in a run.
+// The true and the believed values of a run.
 #pragma once
 
 #include "apps/car_tracking/scene/scene.hpp"
@@ -11,22 +11,22 @@
 
 namespace tappet::car_tracking {
 
-/// One look at the run.
+/// One sample of the run.
 struct Moment {
     double at_s = 0.0;
     double car_x = 0.0, car_y = 0.0; ///< true
     bool car_hidden = false;
-    double looks_x = 0.0, looks_y = 0.0; ///< where the camera's axis meets the floor, truly
-    std::string_view state{};            ///< of the tracking component, its outermost one
+    double looks_x = 0.0, looks_y = 0.0; ///< true point where the camera's axis meets the floor
+    std::string_view state{};            ///< outermost state of the tracking component
 };
 
-/// One image that was processed.
+/// One processed image.
 struct Look {
     double at_s = 0.0; ///< when it was taken
     bool located = false;
-    bool whole = false; ///< no part of the car lay outside the image
+    bool whole = false; ///< the whole car was inside the image
     double x = 0.0, y = 0.0;
-    double car_x = 0.0, car_y = 0.0; ///< true then
+    double car_x = 0.0, car_y = 0.0; ///< true position at that time
     bool car_hidden = false;
     [[nodiscard]] double error_m() const { return std::hypot(x - car_x, y - car_y); }
 };

@@ -1,4 +1,4 @@
-// The toy car: it laps the field on a wobbly track, slower and faster, through the tunnel; and now and then
+// The toy car: it laps the field on a wobbly track at varying speed, through the tunnel. Now and then
 // somebody lifts it and puts it down elsewhere.
 #pragma once
 
@@ -41,7 +41,7 @@ public:
         const auto [ahead_x, ahead_y] = place(phase_ + 1e-4);
         return {x, y, std::atan2(ahead_y - y, ahead_x - x), is_lifted()};
     }
-    /// Nobody can see it: in the tunnel or in a hand.
+    /// Returns true while the car cannot be seen: in the tunnel or in a hand.
     [[nodiscard]] bool hidden() const {
         const CarPose now = pose();
         return now.lifted || room::tunnel.holds(now.x, now.y);

@@ -1,4 +1,4 @@
-// Draws the room by one ray per pixel and moment.
+// Draws the room with one ray per pixel and moment.
 #include "apps/car_tracking/scene/renderer.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t pixels = image_columns * image_rows;
 
-/// The floor and what lies flat on it.
+/// Returns the colour of the floor and of the flat things on it.
 Colour floor_colour(double x, double y) {
     if (room::mark.holds(x, y)) return room::mark.colour;
     if (x < -1.0 || x > room::width + 1.0 || y > room::depth + 0.8) return room::wall;
@@ -20,7 +20,7 @@ Colour floor_colour(double x, double y) {
     return tile % 2 == 0 ? room::floor_light : room::floor_dark;
 }
 
-/// What a ray from the camera meets first, from above.
+/// Finds the first thing that a ray from the camera meets, from above.
 class View {
 public:
     View(const Aim& aim, const CarPose& car)
@@ -92,7 +92,7 @@ void Renderer::add(int moment, const Aim& aim, const CarPose& car) {
 void Renderer::finish(Random& noise, Image& into) const {
     for (std::size_t i = 0; i < pixels; ++i) {
         const std::uint64_t drawn = noise.next();
-        // Two bytes a channel: a triangle of some 6.5 steps' standard deviation.
+        // Two bytes a channel: triangular noise with a standard deviation of about 6.5 steps.
         const auto grain = [drawn](int channel) {
             const auto low = static_cast<int>(drawn >> (16 * channel) & 0xff);
             const auto high = static_cast<int>(drawn >> (16 * channel + 8) & 0xff);

@@ -1,5 +1,5 @@
-// What the sensor makes of the room: a bent lens, several moments of one exposure laid over each other, which
-// blurs what moves, and noise.
+// Computes the sensor's image of the room: lens distortion, noise, and several superimposed moments of one
+// exposure, which blur moving objects.
 #pragma once
 
 #include "apps/car_tracking/scene/car.hpp"
@@ -17,7 +17,7 @@ public:
     void begin() { sums_.assign(sums_.size(), {}); }
     /// Adds one moment; `moment` counts from 0.
     void add(int moment, const Aim& aim, const CarPose& car);
-    /// The image of all moments.
+    /// Writes the image of all moments.
     void finish(Random& noise, Image& into) const;
 
 private:
@@ -28,7 +28,7 @@ private:
         int red = 0, green = 0, blue = 0;
     };
 
-    std::vector<Flat> rays_; // moments, rows, columns: each moment looks at another part of its pixels
+    std::vector<Flat> rays_; // moments, rows, columns: each moment samples another part of its pixels
     std::vector<Sum> sums_;
 };
 

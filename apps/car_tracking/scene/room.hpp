@@ -1,5 +1,5 @@
-// The room that the camera sees, in numbers: field, tunnel, calibration mark, things that only look like the
-// car.
+// The room that the camera sees, in numbers: field, tunnel, calibration mark, and things that look similar to
+// the car.
 #pragma once
 
 #include "apps/car_tracking/image.hpp"
@@ -9,7 +9,7 @@ namespace tappet::car_tracking::room {
 inline constexpr double width = 4.0; ///< of the play field, m; from 0 along x
 inline constexpr double depth = 3.0; ///< along y
 
-/// Where the camera hangs.
+/// Returns the position of the camera.
 inline Eigen::Vector3d eye() { return {2.0, -0.6, 2.0}; }
 
 struct Rectangle {
@@ -19,7 +19,7 @@ struct Rectangle {
     }
 };
 
-/// The car drives through it and is not seen there; its roof is as high as said.
+/// The tunnel hides the car. Its roof is at tunnel_height.
 inline constexpr Rectangle tunnel{2.55, 1.75, 3.45, 2.55};
 inline constexpr double tunnel_height = 0.12;
 

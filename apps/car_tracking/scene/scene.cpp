@@ -9,7 +9,7 @@ namespace {
 
 constexpr double acceleration = 600.0; // deg/s^2, of the head's motors
 
-/// Of a sample that nobody measured: some per cent beside the data sheet.
+/// Draws a lens whose parameters differ from the data sheet by some per cent.
 Lens drawn_lens(Random& random) {
     const double side = random.one_in(2) ? 1.0 : -1.0;
     const double off = 0.03 + 0.03 * random.unit();
@@ -100,7 +100,7 @@ void Scene::advance_sensor() {
         renderer_.begin();
     }
     if (sensor_ == Sensor::exposing) {
-        // In the middle of each quarter of the exposure.
+        // One moment in the middle of each quarter of the exposure.
         if (now_ - exposure_began_ >= (2 * moments_taken_ + 1) * exposure_ / (2 * Renderer::moments)) {
             if (moments_taken_ == Renderer::moments / 2) pictured_ = truth();
             renderer_.add(moments_taken_++, {pan_.angle, tilt_.angle}, car_.pose());

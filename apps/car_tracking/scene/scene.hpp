@@ -1,4 +1,4 @@
-// The other end of the camera's wires: its head and sensor, and the room with the car, under virtual time.
+// Simulates the other end of the camera's wires: head, sensor, and the room with the car, in virtual time.
 #pragma once
 
 #include "apps/car_tracking/camera_device.hpp"
@@ -6,14 +6,14 @@
 
 namespace tappet::car_tracking {
 
-/// What nobody in the machine knows.
+/// The true values, which the machine cannot see.
 struct Truth {
     Aim aim{};
     CarPose car{};
     bool car_hidden = false;
 };
 
-/// One seed, one scene, bit for bit. The machine meets it through CameraDevice only.
+/// The same seed gives the same scene, bit for bit. The machine uses CameraDevice only.
 class Scene final : public CameraDevice {
 public:
     explicit Scene(std::uint64_t seed);
@@ -25,12 +25,12 @@ public:
     [[nodiscard]] bool expose(Duration exposure) noexcept TAPPET_REALTIME override;
     [[nodiscard]] bool take(Image& into, Time& taken) noexcept TAPPET_REALTIME override;
 
-    // For the world and for who judges the machine.
-    /// The next moment at which something moves.
+    // For the world and for the machine's judges.
+    /// Returns the next moment at which something moves.
     [[nodiscard]] Time next() const { return now_ + step; }
     void advance(Time now);
     [[nodiscard]] Truth truth() const { return {{pan_.angle, tilt_.angle}, car_.pose(), car_.hidden()}; }
-    /// In the middle of the exposure of the last image.
+    /// Returns the truth in the middle of the exposure of the last image.
     [[nodiscard]] const Truth& pictured() const { return pictured_; }
     [[nodiscard]] const Lens& lens() const { return lens_; }
     [[nodiscard]] const Car& car() const { return car_; }
@@ -44,7 +44,7 @@ private:
         double angle = 0.0;
         double speed = 0.0;
         double wanted_speed = 0.0;
-        double origin = 0.0; // of its counts
+        double origin = 0.0; // angle of count 0
         double index = 0.0;
         bool is_index_seen = false;
         std::int64_t index_counts = 0;

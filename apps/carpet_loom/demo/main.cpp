@@ -1,4 +1,4 @@
-// carpet-loom-demo: boots the bench with the firmware and the plant, shows what the loom does, and sums it
+// carpet-loom-demo: boots the bench with the firmware and the plant, shows the running loom, and sums the run
 // up.
 #include "apps/carpet_loom/demo/scenario.hpp"
 #include "apps/carpet_loom/demo/verdict.hpp"
@@ -21,10 +21,10 @@ enum Ending : int {
     interrupted = 130
 };
 
-/// A loom that weaves nothing for so long of its own time will not go on by itself.
+/// A loom that has woven nothing for this long, in its own time, will not resume.
 constexpr std::int64_t most_idle_ms = 60'000;
-/// The loom says something four times in each second of its own; even a host with a lot to do is not that
-/// slow.
+/// Longest silence before the run is aborted. The loom prints four lines in each second of its own time; even
+/// a loaded host is faster than this.
 constexpr std::chrono::seconds most_silence{120};
 
 volatile std::sig_atomic_t told_to_end = 0;
@@ -36,7 +36,7 @@ std::string contents_of(const std::filesystem::path& path) {
     return std::move(text).str();
 }
 
-/// Everything the guest said beside its status, since the reason is somewhere in it.
+/// Prints all messages of the guest except its status lines, because one of them states the reason.
 int complain(const Story& story, bool already_shown, const std::string& what) {
     if (!already_shown)
         for (const std::string& message : story.messages()) std::fprintf(stdout, "  %s\n", message.c_str());
@@ -62,7 +62,7 @@ int sum_up(const Verdict& verdict, const std::string& file) {
     return verdict.faults.empty() ? all_well : found_faulty;
 }
 
-/// Why there is nothing to sum up; empty: there is.
+/// Returns why the run cannot be summed up; empty when it can.
 std::string fault_of(const bench::Outcome& outcome, const Story& story, bool is_silent) {
     if (outcome.cancelled && is_silent)
         return "the box has said nothing for " + std::to_string(most_silence.count()) +

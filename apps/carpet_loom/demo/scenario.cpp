@@ -1,4 +1,4 @@
-// The command line as a table, and the steps of the bench.
+// The table of command line options, and the steps of the bench.
 #include "apps/carpet_loom/demo/scenario.hpp"
 
 #include "apps/carpet_loom/demo/verdict.hpp"
@@ -10,7 +10,7 @@ namespace tappet::demo {
 
 namespace {
 
-// The first ones name what is built: ci/demo gives them.
+// The first options name built files; ci/demo sets them.
 constexpr std::size_t built = 6;
 constexpr std::array table{
     Option{"--firmware", "FILE", "stripped, as it is flashed"},
@@ -64,8 +64,8 @@ bench::Scenario scenario_of(const CommandLine& options) {
     std::string plant = "carpet-loom-plant --seed " + std::to_string(options.number("--seed", usual_seed)) +
                         " --picks " + std::to_string(picks);
     for (const std::string& word : troubles(picks)) plant += " " + word;
-    // How long the requests of a browser take is the host's affair: the plant weaves on until they are
-    // through, and some picks more.
+    // The duration of a browser's requests depends on the host: the plant weaves until they are done, and
+    // some more picks.
     if (changes_weaves) plant += " --picks-after-usr1 20";
     bench::Scenario scenario;
     bench::add_board(scenario);
@@ -77,8 +77,8 @@ bench::Scenario scenario_of(const CommandLine& options) {
     std::vector<std::string>& steps = scenario.commands;
     steps = {plant + " --report " + plant_report + " &", "@sleep 1",
              std::string{"carpet_loom --summary "} + machine_report + " &"};
-    // A new weave takes over at a shaft angle; a faulty one is refused with its line; one that misbehaves is
-    // taken back. The loom weaves on through all of it.
+    // A new weave takes over at a shaft angle. A faulty one is refused with its line; one that misbehaves is
+    // rolled back. The loom keeps weaving through all of this.
     if (changes_weaves)
         for (const std::string& step :
              {std::string{"@sleep 6"}, load(new_weave, "180"), std::string{"@sleep 2"},
@@ -89,7 +89,7 @@ bench::Scenario scenario_of(const CommandLine& options) {
     for (const char* step :
          {"@wait carpet-loom-plant while carpet_loom", "@signal carpet_loom TERM", "@wait carpet_loom"})
         steps.emplace_back(step);
-    scenario.timeout_s = 180.0 + 6.0 * static_cast<double>(picks); // a host ten times slower than ours
+    scenario.timeout_s = 180.0 + 6.0 * static_cast<double>(picks); // for a host ten times slower than ours
     return scenario;
 }
 

@@ -1,4 +1,4 @@
-// Reading lines, and what the difference between two of them means.
+// Parses lines, and interprets the difference between two of them.
 #include "apps/carpet_loom/demo/story.hpp"
 
 #include "apps/carpet_loom/wires.hpp"
@@ -68,7 +68,7 @@ void Story::note_stop(const Words& now) {
     const auto after = [&now](std::string_view name) { return number_of(text_of(now, name)); };
     const std::string_view cause = text_of(now, "cause");
     const bool at_stop_angle = after("stops") > number("stops");
-    // Everything else the machine counts once the shaft stands at the stop angle.
+    // All other stops are counted by the machine once the shaft stands at the stop angle.
     const bool wherever = cause == "emergency" || cause == "fault";
     const bool came_to_stand = wherever && number("speed") != 0 && after("speed") == 0;
     if (!at_stop_angle && !came_to_stand) return;

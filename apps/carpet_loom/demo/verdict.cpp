@@ -1,4 +1,4 @@
-// One summary of two; the table and the faults, both read from it and from nothing else.
+// Merges two summaries into one; the table and the faults are read from it and from nothing else.
 #include "apps/carpet_loom/demo/verdict.hpp"
 
 #include <nlohmann/json.hpp>
@@ -22,11 +22,11 @@ template <class... Values> std::string format(const char* pattern, Values... val
 
 std::string text(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
 unsigned long long count(const Json& json, const char* key) {
-    return json.at(key).get_ref<const Json::number_unsigned_t&>(); // a negative one is none
+    return json.at(key).get_ref<const Json::number_unsigned_t&>(); // throws on a negative number
 }
 double number(const Json& json, const char* key) { return json.at(key).get<double>(); }
 
-/// Braked by the machine towards the stop angle; an emergency stop ends wherever it can.
+/// Returns true for a stop that the machine brakes towards the stop angle; an emergency stop ends anywhere.
 bool aims_at_stop_angle(const Json& stop) {
     const std::string cause = text(stop, "cause");
     return cause == "weft" || cause == "warp" || cause == "operator";
@@ -36,11 +36,11 @@ std::string row(const char* name, const std::string& words) {
     return format("  %-10s %s\n", name, words.c_str());
 }
 
-/// What the activity used of its processor beside what its row claims; nothing where it claims nothing.
+/// Returns the processor time that the activity used and its row's claim; empty when the row claims nothing.
 std::string claim_of(const Json& activity) {
     const double claimed = number(activity, "claim_us");
     if (claimed == 0) return "";
-    const double measured = number(activity, "most_processor_us"); // 0: it was never in doubt
+    const double measured = number(activity, "most_processor_us"); // 0: the limit was never in doubt
     const double used = measured > 0 ? measured : number(activity, "longest_busy_us");
     return format("%.0f/%.0f us", used, claimed);
 }

@@ -1,4 +1,4 @@
-// A row for each word that the console says and the last stops below; one line a second otherwise.
+// Draws a row for each word of the console and the last stops below; without a terminal, one line a second.
 #include "apps/carpet_loom/demo/view.hpp"
 
 #include <algorithm>

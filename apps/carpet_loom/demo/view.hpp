@@ -1,4 +1,4 @@
-// How the run looks: the browser's watch picture where there is a terminal, the box's own lines elsewhere.
+// Shows the run: as the browser's watch picture on a terminal, as the box's own lines elsewhere.
 #pragma once
 
 #include "apps/carpet_loom/demo/story.hpp"
@@ -13,14 +13,14 @@ namespace tappet::demo {
 
 class View {
 public:
-    /// `plain`: lines also on a terminal.
+    /// `plain`: prints lines even on a terminal.
     View(bool plain, std::int64_t picks_wanted);
 
-    /// After each line of the box.
+    /// Call after each line of the box.
     void show(const Story& story, Story::Kind news);
-    /// Between them: the clock goes on. Draws at most ten times a second.
+    /// Call between lines to advance the clock. Draws at most ten times a second.
     void tick(const Story& story);
-    /// The terminal is as it was.
+    /// Restores the terminal.
     void finish() { screen_.reset(); }
     [[nodiscard]] bool draws() const { return screen_.has_value(); }
 

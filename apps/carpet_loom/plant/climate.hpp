@@ -11,7 +11,7 @@ namespace tappet::loom {
 
 class Climate {
 public:
-    static constexpr Duration period = 10ms; // of its slow physics
+    static constexpr Duration period = 10ms; // step of its slow physics
 
     explicit Climate(Random& random) noexcept TAPPET_REALTIME {
         temperature_c_ = 21.0 + 4.0 * random.unit();

@@ -1,5 +1,4 @@
-// A contact wired to an input of the machine: its level, its bouncing, and the edges it makes, each at its
-// time.
+// A contact wired to an input of the machine: its level, its bouncing, and its edges, each with its time.
 #pragma once
 
 #include "apps/carpet_loom/plant/outbox.hpp"
@@ -39,14 +38,14 @@ public:
     [[nodiscard]] bool closed() const noexcept TAPPET_REALTIME { return wanted_; }
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME { return std::min(flip_at_, open_at_); }
 
-    /// Opens or closes now, and opens again at `open_at`.
+    /// Opens or closes the contact now; a closed one opens again at `open_at`.
     void set(bool closed, Time now, Random& random, EdgeOutbox& out, Time open_at = never) noexcept
         TAPPET_REALTIME {
         open_at_ = closed ? open_at : never;
         if (closed == wanted_) return;
         wanted_ = closed;
         if (level_ != wanted_) flip(now, out);
-        // An even number of flips follows, so that the contact ends where it was put.
+        // An even number of flips follows, so that the contact ends at its commanded level.
         flips_left_ = bounces_ ? 2 * static_cast<int>(random.below(3)) : 0;
         flip_at_ = flips_left_ > 0 ? after(now, random) : never;
     }

@@ -1,4 +1,4 @@
-// The harness head: takes the pattern bits of the next pick when the harnesses cross level, and says so.
+// The harness head: takes the pattern bits of the next pick when the harnesses cross level, and reports it.
 #pragma once
 
 #include "apps/carpet_loom/plant/node.hpp"
@@ -22,7 +22,7 @@ public:
         offered_pattern_ = static_cast<std::uint16_t>(node_.get(0x2311));
     }
     void restart() noexcept TAPPET_REALTIME { offered_ = taken_; }
-    /// The harnesses cross level. False when no new pick was offered: the old pattern is woven again.
+    /// The harnesses cross level. Returns false when no new pick was offered: the old pattern is woven again.
     bool cross(Time now, Wire& out) noexcept TAPPET_REALTIME {
         const bool fresh = offered_ != taken_;
         taken_ = offered_;
@@ -30,7 +30,7 @@ public:
         tell(now, out);
         return fresh;
     }
-    /// The shaft stands at an angle at this moment.
+    /// Follows the shaft, which is at this angle now; reports each change of level.
     void follow(double angle_deg, Time now, Wire& out) noexcept TAPPET_REALTIME {
         const double off = angle_deg - wires::nominal::stop_deg;
         const bool level = off >= -level_deg && off <= level_deg;
@@ -38,7 +38,7 @@ public:
         level_ = level;
         tell(now, out);
     }
-    /// After its network was started it says once where it stands.
+    /// Reports its position once after its network was started.
     void introduce(Time now, Wire& out) noexcept TAPPET_REALTIME { tell(now, out); }
 
 private:

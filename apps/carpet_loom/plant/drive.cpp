@@ -1,4 +1,4 @@
-// What the drive makes of its commands, of silence and of faults.
+// The drive's reaction to commands, to silence and to faults.
 #include "apps/carpet_loom/plant/drive.hpp"
 
 #include "apps/carpet_loom/plant/shapes.hpp"
@@ -12,7 +12,7 @@ constexpr std::int64_t profile_velocity = 3;
 
 std::uint16_t Drive::statusword() const noexcept TAPPET_REALTIME {
     unsigned word = drive_.statusword();
-    if (state() != DriveState::not_ready) word |= 0x0010u; // voltage enabled: the mains are always there
+    if (state() != DriveState::not_ready) word |= 0x0010u; // voltage enabled: the mains are always on
     if (node_.operational()) word |= 0x0200u;              // remote
     if (at_target_ && drive_.is_enabled()) word |= 0x0400u;
     if (at_limit_) word |= 0x0800u;

@@ -1,5 +1,5 @@
-// A velocity drive of the loom: a CiA 402 automaton that supervises itself, its process data and its
-// emergency messages. Not its motor.
+// A velocity drive of the loom without its motor: a CiA 402 automaton that supervises itself, its process
+// data and its emergency messages.
 #pragma once
 
 #include "apps/carpet_loom/plant/node.hpp"
@@ -23,19 +23,19 @@ public:
         return node_.alive() ? drive_.power() : Power::off;
     }
     [[nodiscard]] std::uint16_t statusword() const noexcept TAPPET_REALTIME;
-    /// In the unit of the wire.
+    /// Returns the target velocity in the unit of the wire.
     [[nodiscard]] std::int32_t target() const noexcept TAPPET_REALTIME { return target_; }
     [[nodiscard]] std::uint64_t faults() const noexcept TAPPET_REALTIME { return faults_; }
 
-    /// Its command has come.
+    /// Handles a received command.
     void command(Time now, Wire& wire) noexcept TAPPET_REALTIME;
-    /// Supervision and automatic transitions; the motor stands or not, follows its target or not.
+    /// Runs supervision and automatic transitions, given the motor's standstill, target and limit.
     void supervise(bool standing, bool at_target, bool at_limit, Time now, Wire& wire) noexcept
         TAPPET_REALTIME;
     void trip(std::uint16_t code, Time now, Wire& wire) noexcept TAPPET_REALTIME;
-    /// Power-up or NMT reset node.
+    /// Handles power-up or NMT reset node.
     void restart() noexcept TAPPET_REALTIME;
-    /// Its process data is due.
+    /// Sends its process data when due.
     void send_status(double actual_rpm, Wire& wire) noexcept TAPPET_REALTIME;
 
 private:

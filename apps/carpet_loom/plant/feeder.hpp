@@ -1,4 +1,4 @@
-// The weft feeder (CiA 414-2 like): winds yarn in stock ahead of the picks, until its bobbin is empty.
+// The weft feeder (similar to CiA 414-2): winds yarn in stock ahead of the picks, until its bobbin is empty.
 #pragma once
 
 #include "apps/carpet_loom/plant/node.hpp"
@@ -31,7 +31,7 @@ public:
         const auto wanted = static_cast<std::uint32_t>(wires::nominal::windings_per_pick);
         windings_ -= std::min(wanted, windings_);
     }
-    /// Every status period: winds by the commanded speed, then tells.
+    /// Call once per status period: winds by the commanded speed, then sends its status.
     void send_status(Wire& out) noexcept TAPPET_REALTIME {
         if (!empty_ && windings_ < drum) {
             wound_ += per_minute_ * static_cast<std::uint32_t>(wires::feeder_status_period / 1ms); // 1/60000

@@ -1,5 +1,5 @@
-// The weft: the release valve with its dead time, the flight through the shed, arrival, and what can go
-// wrong.
+// The weft: the release valve with its dead time, the flight through the shed, the arrival, and the possible
+// faults.
 #pragma once
 
 #include "apps/carpet_loom/plant/shapes.hpp"
@@ -11,7 +11,7 @@
 
 namespace tappet::loom {
 
-/// What happened to a weft at the moment its valve opened.
+/// Result for a weft at the moment its valve opened.
 enum class Release : std::uint8_t { nothing, flies, closed_shed, second_weft };
 
 class Insertion {
@@ -28,14 +28,14 @@ public:
         if (on) {
             measure_at_ = now + wires::nominal::weft_release_dead;
             open_at_ = now + dead_;
-        } else { // a pulse shorter than the dead time moves nothing
+        } else { // a pulse shorter than the dead time has no effect
             if (now < open_at_) measure_at_ = never;
             open_at_ = never;
         }
     }
     [[nodiscard]] bool line() const noexcept TAPPET_REALTIME { return line_; }
 
-    /// When the effect is due by the dead time the machine was told; the plant measures the true angle there.
+    /// When the effect is due by the dead time that the machine knows; the plant then measures the angle.
     [[nodiscard]] Time measure_at() const noexcept TAPPET_REALTIME { return measure_at_; }
     void measured() noexcept TAPPET_REALTIME { measure_at_ = never; }
     [[nodiscard]] Time open_at() const noexcept TAPPET_REALTIME { return open_at_; }
@@ -44,7 +44,7 @@ public:
         return std::min({measure_at_, open_at_, arrive_at_});
     }
 
-    /// The valve opens at a true position. `breaks`: this weft never arrives.
+    /// Opens the valve at a true position. `breaks`: this weft never arrives.
     Release open(double position_deg, bool fed, bool breaks, Random& random) noexcept TAPPET_REALTIME {
         open_at_ = never;
         const double angle = angle_of_position(position_deg);
@@ -56,7 +56,7 @@ public:
         if (fed && !breaks) gate_deg_ = position_deg + flight_deg + yarn;
         return Release::flies;
     }
-    /// The shaft moved over a step that began at `begin` and took dt: past the gate, only the yarn's lag is
+    /// Follows the shaft over a step that began at `begin` and took dt: past the gate, only the yarn's lag is
     /// left.
     void follow(double before_deg, double after_deg, Time begin, double dt_s) noexcept TAPPET_REALTIME {
         if (after_deg < gate_deg_) return;
@@ -69,7 +69,7 @@ public:
         arrive_at_ = never;
         arrived_ = true;
     }
-    /// The operator lays the missing weft by hand.
+    /// The operator inserts the missing weft by hand.
     void lay_by_hand() noexcept TAPPET_REALTIME { by_hand_ = true; }
 
     [[nodiscard]] bool released() const noexcept TAPPET_REALTIME { return wefts_ > 0; }
@@ -79,7 +79,7 @@ public:
         return gate_deg_ != no_gate_deg || arrive_at_ != never;
     }
 
-    /// After beat-up the next shed is empty.
+    /// Empties the shed after beat-up.
     void next_shed() noexcept TAPPET_REALTIME {
         wefts_ = 0;
         arrived_ = false;

@@ -1,4 +1,4 @@
-// The operator of the loom: watches lamps and shaft, repairs what is broken, acknowledges, and presses start.
+// The operator of the loom: watches lamps and shaft, repairs faults, acknowledges, and presses start.
 #pragma once
 
 #include "apps/carpet_loom/plant/settings.hpp"
@@ -10,12 +10,12 @@ class Operator {
 public:
     static constexpr Duration period = 10ms; // the operator looks this often
     static constexpr Duration press = 150ms;
-    static constexpr Duration patience = 2s; // then the same is tried again
+    static constexpr Duration patience = 2s; // then the operator retries the same action
 
     struct Sight {
         bool lamp_run, lamp_stop, lamp_fault;
         bool standing; // the shaft
-        bool broken;   // something waits for repair
+        bool broken;   // a repair is needed
         bool finished; // the order is woven
     };
     enum class Action : std::uint8_t { none, repair, acknowledge, start };

@@ -1,4 +1,4 @@
-// The loom's CANopen nodes, each with a clock of its own.
+// The loom's CANopen nodes, each with its own clock.
 #pragma once
 
 #include "apps/carpet_loom/network.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet::loom {
 
-/// Its clock is off by up to 50 ppm, and it boots a while after the power came.
+/// Its clock is off by up to 50 ppm, and it boots some time after power-on.
 template <const canopen::Dictionary& dictionary>
 class Node final : public canopen::SimulatedDevice<dictionary> {
 public:

@@ -1,4 +1,4 @@
-// Reading the options of a loom: which there are, and what is right for each.
+// Parses the options of a loom and checks their values.
 #include "apps/carpet_loom/plant/options.hpp"
 
 #include "apps/carpet_loom/wires.hpp"
@@ -37,7 +37,7 @@ std::optional<Duration> duration(std::string_view text) {
     return Duration{ns};
 }
 
-/// WHEN[/DURATION][:NODE], WHEN a number of picks or a time.
+/// Parses WHEN[/DURATION][:NODE]; WHEN is a number of picks or a time.
 std::optional<ScriptedFault> scripted(Fault fault, std::string_view text) {
     ScriptedFault row{.fault = fault};
     const bool wants_node = fault == Fault::node_lost || fault == Fault::drive_fault;

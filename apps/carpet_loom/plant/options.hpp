@@ -1,4 +1,4 @@
-// The options of a simulated loom, as a command line names them.
+// The options of a simulated loom, as the command line names them.
 #pragma once
 
 #include "apps/carpet_loom/plant/settings.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet::loom {
 
-/// True when the option's value is right, and then it is in `to`; `known`: there is such an option.
+/// Returns true when the option's value is valid, and stores it in `to`. `known`: the option exists.
 [[nodiscard]] bool read_option(std::string_view word, std::string_view value, Settings& to, bool& known);
 [[nodiscard]] std::string_view usage();
 

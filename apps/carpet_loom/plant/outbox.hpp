@@ -1,4 +1,4 @@
-// What waits to be fetched: frames and edges on their way out.
+// A queue of outgoing items: frames and edges until they are fetched.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::loom {
 
-/// A ring. When nobody fetches, the oldest is lost and counted.
+/// A ring buffer. When it is full, the oldest item is lost and counted.
 template <class T, std::size_t N> class Outbox {
 public:
     constexpr void push(const T& item) noexcept TAPPET_REALTIME {

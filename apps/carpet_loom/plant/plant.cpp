@@ -1,4 +1,4 @@
-// The plant's time: steps of integration on a fixed grid, and between them timers in the order they are due.
+// The plant's time: integration steps on a fixed grid, and between them timers in the order they are due.
 #include "apps/carpet_loom/plant/plant.hpp"
 
 namespace tappet::loom {

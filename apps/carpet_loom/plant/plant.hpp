@@ -18,8 +18,8 @@ namespace tappet::loom {
 enum class Button : std::uint8_t { start, stop, acknowledge, emergency_stop };
 
 /// Time begins at Time{0} and never runs backwards: every call that carries a time first advances to it. The
-/// physics runs on a grid of its own, so a run does not depend on how often it is advanced. One thread at a
-/// time. Real-time: a call costs a bounded time per microsecond of plant time advanced.
+/// physics runs on its own grid, so a run does not depend on how often it is advanced. One thread at a time.
+/// Real-time: a call costs a bounded time per microsecond of plant time advanced.
 class Plant {
 public:
     static constexpr Duration step = 100us;
@@ -28,15 +28,15 @@ public:
     Plant(const Settings& settings, std::uint64_t seed) noexcept TAPPET_REALTIME;
 
     void advance(Time now) noexcept TAPPET_REALTIME;
-    /// Moves on to before `until`, but no further than to where something leaves it. When it is to be
-    /// advanced.
+    /// Advances towards `until`, stays before it, and stops where something leaves the plant. Returns when to
+    /// advance it next.
     Time leap(Time until) noexcept TAPPET_REALTIME;
-    /// Nothing leaves the plant before this time unless it is acted upon: a world in virtual time may leap to
-    /// it.
+    /// Nothing leaves the plant before this time unless somebody acts on it: a world in virtual time may leap
+    /// to it.
     [[nodiscard]] Time next_event() const noexcept TAPPET_REALTIME {
         return std::min(next_timer_, step_end_);
     }
-    /// When a contact closes, opens or bounces next.
+    /// Returns when a contact next closes, opens or bounces.
     [[nodiscard]] Time next_contact() const noexcept TAPPET_REALTIME {
         Time next = never;
         for (const Contact& contact : contacts_) next = std::min(next, contact.next());
@@ -44,40 +44,40 @@ public:
     }
     [[nodiscard]] Time now() const noexcept TAPPET_REALTIME { return now_; }
 
-    // CAN: a frame from the machine; the plant's own frames, in the order they were due, which is their
-    // stamp. Unknown identifiers are none of the plant's business, wrong lengths are ignored (a drive answers
-    // with an emergency message).
+    // CAN: a frame from the machine; the plant's own frames, in the order and with the time stamp at which
+    // they were due. The plant ignores unknown identifiers and wrong lengths (a drive answers with an
+    // emergency message).
     void receive(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool transmit(can::Frame& frame) noexcept TAPPET_REALTIME { return wire_.pop(frame); }
 
-    /// The encoder's last sample, as it would be now: a world in real time that is late sends the shaft as it
-    /// is, not as it was.
+    /// Returns the encoder's sample as of now: a real-time world that is late sends the present angle, not
+    /// the past one.
     [[nodiscard]] can::Frame encoder_sample() noexcept TAPPET_REALTIME {
         encoder_.set(0x2100, encoder_code_at(now_));
         return encoder_.pdo(0);
     }
 
-    // GPIO: offsets of wires::line. Lines that are no outputs of the machine are ignored.
+    // GPIO: offsets of wires::line. A line that is no output of the machine is ignored.
     void set_line(unsigned output, bool level, Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] bool line(unsigned input) const noexcept TAPPET_REALTIME;
     [[nodiscard]] bool next_edge(Edge& edge) noexcept TAPPET_REALTIME { return edges_.pop(edge); }
 
-    // Modbus: the server's registers, with the exception a wrong request gets.
+    // Modbus: the server's registers; a wrong request gets its exception.
     [[nodiscard]] const Climate& climate() const noexcept TAPPET_REALTIME { return climate_; }
     [[nodiscard]] Climate& climate() noexcept TAPPET_REALTIME { return climate_; }
 
-    // People. A pressed emergency stop stays pressed for `lasts`, 0: until the operator releases it.
+    // People. A pressed emergency stop stays pressed for `lasts`; 0: until the operator releases it.
     void press(Button button, Duration lasts) noexcept TAPPET_REALTIME;
     void inject(const ScriptedFault& fault) noexcept TAPPET_REALTIME;
-    /// Repairs all that is broken, as the operator does.
+    /// Repairs all faults, as the operator does.
     void repair() noexcept TAPPET_REALTIME;
 
-    // The truth, for reports and tests; no machine sees it.
+    // The truth, for reports and tests; the machine does not see it.
     [[nodiscard]] Report report() const noexcept TAPPET_REALTIME;
-    /// The operator stops when so many picks are woven, and starts no more.
+    /// The operator stops once `picks` are woven, and does not start again.
     void end_at(std::uint64_t picks) noexcept TAPPET_REALTIME { settings_.last_pick = picks; }
     [[nodiscard]] const Damage& damage() const noexcept TAPPET_REALTIME { return report_.damage; }
-    /// As the machine drives it; offsets of wires::line.
+    /// Returns an output's level as the machine drives it; offsets of wires::line.
     [[nodiscard]] bool output(unsigned offset) const noexcept TAPPET_REALTIME {
         return outputs_[offset - wires::line::first_output];
     }
@@ -122,7 +122,7 @@ private:
     }
     void hear(std::uint8_t node, canopen::SimulatedNode::Heard what) noexcept TAPPET_REALTIME;
 
-    // weaving.cpp: what happens at the angles of a turn, and its measures
+    // weaving.cpp: the events at the angles of a turn, and their measurements
     void pass_marks(double position_deg) noexcept TAPPET_REALTIME;
     void beat_up() noexcept TAPPET_REALTIME;
     void note_pattern() noexcept TAPPET_REALTIME;
@@ -177,9 +177,8 @@ private:
     std::uint16_t encoder_samples_ = 0;
 
     // The turn.
-    double turn_deg_ = 0.0; // where the present turn began
-    double next_mark_deg_;  // first the beat-up: it is parked near level. Passed once, however the shaft is
-                            // jogged
+    double turn_deg_ = 0.0; // position at which the present turn began
+    double next_mark_deg_;  // first the beat-up (parked near level); passed once even when jogged
     std::size_t next_mark_ = 0;
     double brake_edge_deg_ = 0.0;
     bool braked_ = false; // since the shaft last began to move

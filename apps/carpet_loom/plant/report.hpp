@@ -1,4 +1,4 @@
-// What the plant saw, measured at the true shaft: the truth a machine's own figures are held against.
+// The plant's measurements at the true shaft: the reference for the machine's own figures.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -17,7 +17,7 @@ enum class StopCause : std::uint8_t {
     warp,
     weft,
     operator_stop,
-    machine, // the machine stopped and the plant knows no reason
+    machine, // the machine stopped, and the plant knows no cause
 };
 [[nodiscard]] const char* name_of(StopCause cause) noexcept TAPPET_REALTIME;
 
@@ -31,20 +31,20 @@ struct Stop {
     bool operator==(const Stop&) const = default;
 };
 
-/// One pattern that the harnesses were lifted to.
+/// One pattern to which the harnesses were lifted.
 struct LiftedPattern {
     std::uint16_t pattern = 0;
     std::uint64_t picks = 0;
     std::uint64_t first_at_pick = 0; // picks woven before
 };
 
-/// Sizes of errors, in bins of 0.01 degree up to 20 degrees; beyond that only the maximum knows.
+/// Histogram of error sizes in bins of 0.01 degree up to 20 degrees; larger errors count in the maximum only.
 class ErrorHistogram {
 public:
     void add(double error_deg) noexcept TAPPET_REALTIME;
     [[nodiscard]] std::uint64_t samples() const noexcept TAPPET_REALTIME { return samples_; }
     [[nodiscard]] double max_deg() const noexcept TAPPET_REALTIME { return max_deg_; }
-    /// The size that `percent` of 100 errors do not exceed; 0 without samples.
+    /// Returns the size that `percent` of 100 errors do not exceed; 0 without samples.
     [[nodiscard]] double percentile_deg(unsigned percent) const noexcept TAPPET_REALTIME;
 
 private:
@@ -54,7 +54,7 @@ private:
     double max_deg_ = 0.0;
 };
 
-/// What no machine may do to its loom.
+/// Damage: what a machine must never do to its loom.
 struct Damage {
     std::uint64_t closed_shed_wefts = 0;     // released outside the open shed
     std::uint64_t double_wefts = 0;          // a second weft in one shed
@@ -107,7 +107,7 @@ struct Report {
     std::uint64_t digest = 0;
 };
 
-/// As fields of an object that is open.
+/// Writes the report as fields of an open object.
 void write_json(const Report& report, JsonText& json);
 
 } // namespace tappet::loom

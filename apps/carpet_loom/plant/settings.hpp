@@ -1,5 +1,4 @@
-// What a simulated loom is asked to do besides weaving: faults by chance and by script, and how its operator
-// works.
+// The settings of a simulated loom beside weaving: random and scripted faults, and how its operator works.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -15,7 +14,7 @@ enum class Fault : std::uint8_t {
     node_lost,      // the CAN node `node` falls silent and, repaired, boots again
     drive_fault,    // the drive `node` (1 or 2) trips
     oil_lost,       // the oil pressure goes although the pump is on
-    oil_level_low,  // the discrete input; by itself it stops nothing
+    oil_level_low,  // the discrete input; it stops nothing by itself
     feeder_empty,   // the feeder's bobbin runs out
     emergency_stop, // the operator hits the emergency stop
     operator_stop,  // the operator presses stop
@@ -42,9 +41,9 @@ struct Settings {
     bool operator_present = true;
     Duration operator_reaction = 1s; // from standstill to the repair; acknowledge and start take a part of it
     std::uint64_t last_pick = 0; // the operator presses stop when it is reached and starts no more; 0 = never
-    /// It ends not before somebody told it so, and so many picks later at least; 0: nobody does.
+    /// Ends only after a request, and at least so many picks after it; 0: no request is expected.
     std::uint64_t picks_after_told = 0;
-    Duration edge_burst_at = Duration::max(); // the weft detector's line flutters
+    Duration edge_burst_at = Duration::max(); // the weft detector's line flutters then
 
     bool contact_bounce = true;         // of buttons and drop wires
     double brake_wear_per_stop = 0.001; // part of the torque lost by each stop, at most 0.15 in all

@@ -4,7 +4,7 @@
 namespace tappet::loom {
 namespace {
 
-constexpr double proportional_nm_s = 40.0; // of the drive's velocity loop
+constexpr double proportional_nm_s = 40.0; // gains of the drive's velocity loop
 constexpr double integral_nm_per_rad = 400.0;
 constexpr double static_over_coulomb = 1.5;
 constexpr double stick_rad_s = 0.02;
@@ -41,8 +41,8 @@ void MainShaft::begin_step(Power power, double target_rad_s, double brake_nm, do
         if (motor < -hold) acceleration_ = (motor + hold) / inertia_kg_m2_;
         return;
     }
-    // A shaft that hardly turns is caught by the friction of rest, or it would creep for ever under a motor
-    // that holds.
+    // Static friction catches a shaft that hardly turns; without it the shaft would creep for ever under a
+    // motor that holds.
     const double hold = brake_nm + coulomb_nm_ * static_over_coulomb;
     if (speed_rad_s_ < stick_rad_s && -speed_rad_s_ < stick_rad_s && motor <= hold && -motor <= hold) {
         acceleration_ = -speed_rad_s_ / dt_s;

@@ -8,8 +8,8 @@
 
 namespace tappet::loom {
 
-/// The electromagnetic brake: dead time after each edge, torque that rises and falls linearly, wears, and is
-/// never quite the same.
+/// The electromagnetic brake: dead time after each edge, linearly rising and falling torque, wear, and some
+/// variation from stop to stop.
 class Brake {
 public:
     Brake(double wear_per_stop, Random& random) noexcept TAPPET_REALTIME : wear_per_stop_(wear_per_stop) {
@@ -31,7 +31,7 @@ public:
         const double change = full_torque_nm_ * (dt_s / rise_s);
         torque_nm_ = on_ ? std::min(full(), torque_nm_ + change) : std::max(0.0, torque_nm_ - change);
     }
-    /// Once per stop from speed: the lining wears, and the next stop differs a little.
+    /// Call once per stop from speed: the lining wears, and the next stop differs slightly.
     void wear(Random& random) noexcept TAPPET_REALTIME {
         worn_ = std::min(0.15, worn_ + wear_per_stop_);
         variation_ = 0.98 + 0.04 * random.unit();
@@ -53,8 +53,8 @@ private:
     Time effect_at_{};
 };
 
-/// Motor, inertia, friction and the cyclic load of the sley. Positions count degrees from the turn the loom
-/// began in.
+/// Motor, inertia, friction and the cyclic load of the sley. Positions are in degrees from the turn in which
+/// the loom began.
 class MainShaft {
 public:
     static constexpr double torque_limit_nm = 90.0;
@@ -67,9 +67,9 @@ public:
         position_deg_ = 305.0 + 10.0 * random.unit(); // parked near the level of the harnesses
     }
 
-    /// Fixes the acceleration of the step that begins now and lasts dt.
+    /// Sets the acceleration of the step that begins now and lasts dt.
     void begin_step(Power power, double target_rad_s, double brake_nm, double dt_s) noexcept TAPPET_REALTIME;
-    /// Moves to the end of the step. True when the shaft came to a standstill in it.
+    /// Advances to the end of the step. Returns true when the shaft came to a standstill in it.
     bool end_step() noexcept TAPPET_REALTIME;
 
     [[nodiscard]] double position_deg() const noexcept TAPPET_REALTIME { return position_deg_; }
@@ -85,7 +85,7 @@ public:
         return speed_rad_s_ == 0.0 && acceleration_ == 0.0;
     }
     [[nodiscard]] bool saturated() const noexcept TAPPET_REALTIME { return saturated_; }
-    /// Into the last step, when the shaft came to its standstill.
+    /// Returns the time into the last step at which the shaft came to a standstill.
     [[nodiscard]] double stopped_into_s() const noexcept TAPPET_REALTIME { return moving_s_; }
 
 private:

@@ -1,4 +1,4 @@
-// Shapes and rounding the plant's physics uses instead of libm, so that every compiler gives the same bits.
+// Functions and rounding that the physics uses instead of libm, for the same bits with every compiler.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -7,12 +7,12 @@
 
 namespace tappet::loom {
 
-/// The nearest whole number, halves away from zero; |x| below 2^62.
+/// Returns the nearest integer, halves away from zero; |x| below 2^62.
 constexpr std::int64_t round_to_int(double x) noexcept TAPPET_REALTIME {
     return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
 }
 
-/// The largest whole number not above x; |x| below 2^62.
+/// Returns the largest integer not above x; |x| below 2^62.
 constexpr std::int64_t floor_to_int(double x) noexcept TAPPET_REALTIME {
     const auto whole = static_cast<std::int64_t>(x);
     return static_cast<double>(whole) > x ? whole - 1 : whole;
@@ -28,14 +28,14 @@ constexpr double sine_of_turns(double turns) noexcept TAPPET_REALTIME {
     return y * (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0))));
 }
 
-/// An angle brought into (-180, 180].
+/// Returns the angle wrapped into (-180, 180].
 constexpr double wrapped_deg(double deg) noexcept TAPPET_REALTIME {
     const double turns = static_cast<double>(floor_to_int((deg + 180.0) / 360.0));
     const double rest = deg - 360.0 * turns;
     return rest == -180.0 ? 180.0 : rest;
 }
 
-/// An angle brought into [0, 360).
+/// Returns the angle wrapped into [0, 360).
 constexpr double angle_of_position(double position_deg) noexcept TAPPET_REALTIME {
     return position_deg - 360.0 * static_cast<double>(floor_to_int(position_deg / 360.0));
 }

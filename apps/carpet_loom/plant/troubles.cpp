@@ -1,4 +1,4 @@
-// Faults, by script, by chance and on demand, and the operator who repairs them.
+// Faults by script, by chance and on demand, and the operator who repairs them.
 #include "apps/carpet_loom/plant/plant.hpp"
 
 namespace tappet::loom {
@@ -35,7 +35,7 @@ void Plant::start_fault(const ScriptedFault& row) noexcept TAPPET_REALTIME {
         break;
     case Fault::warp_break:
         warp_breaks_at_deg_ = shaft_.position_deg() + 360.0 * random_.unit();
-        stays = row.lasts > Duration{}; // the drop wire itself is what stays broken
+        stays = row.lasts > Duration{}; // the drop wire itself stays broken
         break;
     case Fault::node_lost: {
         canopen::SimulatedNode* const node = node_of(row.node);
@@ -76,7 +76,7 @@ void Plant::start_fault(const ScriptedFault& row) noexcept TAPPET_REALTIME {
     }
     if (!stays) return;
     const Time until = row.lasts > Duration{} ? now_ + row.lasts : never;
-    if (!active_.push({row.fault, row.node, until})) return; // 16 troubles at once are all a loom can have
+    if (!active_.push({row.fault, row.node, until})) return; // a loom has at most 16 faults at once
     faults_end_at_ = std::min(faults_end_at_, until);
 }
 
@@ -105,7 +105,7 @@ void Plant::end_faults(Time now, bool repaired) noexcept TAPPET_REALTIME {
         if (active.until <= now || (repaired && active.until == never)) {
             end_fault(active);
         } else {
-            static_cast<void>(left.push(active)); // as large as where it came from
+            static_cast<void>(left.push(active)); // as large as its source
             faults_end_at_ = std::min(faults_end_at_, active.until);
         }
     }

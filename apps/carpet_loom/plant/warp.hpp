@@ -1,5 +1,4 @@
-// The warp between beam and cloth: a spring that the take-up stretches, the let-off feeds and the shed pulls
-// at.
+// The warp between beam and cloth: a spring that the take-up stretches, the let-off feeds and the shed pulls.
 #pragma once
 
 #include "apps/carpet_loom/plant/drive.hpp"
@@ -34,13 +33,13 @@ public:
                                                   : stretch_mm_;
         let_off_mm_ += let_off_mm;
     }
-    /// Once a turn: the beam grows thinner by what it gave.
+    /// Call once a turn: the beam grows thinner by the warp that it gave.
     void thin_beam() noexcept TAPPET_REALTIME {
         radius_mm_ = std::max(
             150.0, radius_mm_ - let_off_mm_ * (warp_thickness_mm / (2.0 * 3.141592653589793)) / radius_mm_);
         let_off_mm_ = 0.0;
     }
-    /// At a shaft angle: the harnesses are level at stop_deg and pull the more the wider the shed is open.
+    /// The tension at a shaft angle: harnesses are level at stop_deg and pull more as the shed opens.
     [[nodiscard]] double tension_n(double shaft_deg) const noexcept TAPPET_REALTIME {
         // (1 - cos) / 2, the cosine as a sine a quarter turn ahead.
         const double open = 0.5 - 0.5 * sine_of_turns((shaft_deg - wires::nominal::stop_deg) / 360.0 + 0.25);
@@ -64,7 +63,7 @@ private:
     double radius_mm_ = wires::nominal::beam_radius_mm;
     double stretch_mm_ = 0.0;
     double beam_rad_s_ = 0.0;
-    double let_off_mm_ = 0.0; // since the beam was last made thinner
+    double let_off_mm_ = 0.0; // since the beam was last thinned
 };
 
 } // namespace tappet::loom

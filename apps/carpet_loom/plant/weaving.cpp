@@ -1,4 +1,4 @@
-// What happens at the angles of a turn, and what the plant measures there.
+// The events at the angles of a turn, and the plant's measurements there.
 #include "apps/carpet_loom/plant/plant.hpp"
 
 namespace tappet::loom {
@@ -12,7 +12,7 @@ struct MarkAt {
 };
 constexpr std::array<MarkAt, 2> marks{{{Mark::beat_up, 0.0}, {Mark::level, wires::nominal::stop_deg}}};
 
-constexpr double running_rad_s = 60.0 * rad_s_per_rpm; // a stop from less is jogging
+constexpr double running_rad_s = 60.0 * rad_s_per_rpm; // a stop from a lower speed is jogging
 constexpr double weaving_rad_s = 0.9 * wires::nominal::speed_rpm * rad_s_per_rpm;
 constexpr Duration settling = 500ms; // after the run-up, before tension counts
 constexpr Duration unpowered_limit = 50ms;
@@ -140,7 +140,7 @@ void Plant::record_standstill(Time at) noexcept TAPPET_REALTIME {
     stop.angle_deg = angle_of_position(shaft_.position_deg());
     stop.error_deg = wrapped_deg(stop.angle_deg - wires::nominal::stop_deg);
     stop.distance_deg = braked_ ? shaft_.position_deg() - brake_edge_deg_ : 0.0;
-    // The weightiest cause stands first in StopCause.
+    // The most important cause stands first in StopCause.
     for (unsigned cause = static_cast<unsigned>(StopCause::machine); cause-- > 0;)
         if ((causes_ & (1u << cause)) != 0) stop.cause = static_cast<StopCause>(cause);
     if (emergency_at_ != never) {

@@ -1,4 +1,4 @@
-// The loom's end of the CAN bus: what its nodes send, in the order in which it is due.
+// The loom's end of the CAN bus: the frames of its nodes, in the order in which they are due.
 #pragma once
 
 #include "apps/carpet_loom/plant/outbox.hpp"
@@ -11,8 +11,8 @@
 
 namespace tappet::loom {
 
-/// Keeps a digest of everything that ever went out, fetched or not. A frame's stamp is when its node asks for
-/// the bus.
+/// Keeps a digest of every frame sent, fetched or not. A frame's time stamp is when its node requests the
+/// bus.
 class Wire final : public Outbox<can::Frame, 256>, public canopen::FrameSink {
 public:
     void send(const can::Frame& frame) noexcept TAPPET_REALTIME override {
@@ -21,7 +21,7 @@ public:
     }
     [[nodiscard]] const Digest& log() const noexcept TAPPET_REALTIME { return log_; }
 
-    /// Either way.
+    /// Adds a frame of either direction to the digest.
     static void note(const can::Frame& frame, Time at, Digest& log) noexcept TAPPET_REALTIME {
         log.add(to_ns(at));
         log.add((std::uint64_t{frame.id} << 8) | frame.length);

@@ -1,4 +1,4 @@
-// Draws the tip's path above, and what happened over time below.
+// Draws the tip's path above, and the events over time below.
 #include "apps/two_robots/host/picture.hpp"
 
 #include "kernel/base/text.hpp"
@@ -34,7 +34,7 @@ struct TimeAxis {
 double path_x(double mm) { return left + (mm + path_mm) * path_scale; }
 double path_y(double mm) { return path_top + (path_mm - mm) * path_scale; }
 
-/// A line through what `place` says of each moment, broken where it says nothing.
+/// Draws a line through `place` of each moment, interrupted where it returns nothing.
 template <class Place>
 void draw_line(Svg& svg, std::span<const Moment> moments, std::string_view colour, Place place) {
     bool is_open = false;
@@ -93,7 +93,7 @@ void draw_strips(Svg& svg, std::span<const Moment> moments, const TimeAxis& time
         y = beside_top + strip_height * (1.0 - std::min(1.0, each.beside_hole * 1e3 / most_beside_mm));
         return each.is_inside;
     });
-    const Eigen::Vector3d rests = [&] { // where it breathes about
+    const Eigen::Vector3d rests = [&] { // centre of the breathing motion
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         int count = 0;
         for (const Moment& each : moments)
@@ -111,7 +111,7 @@ void draw_strips(Svg& svg, std::span<const Moment> moments, const TimeAxis& time
                   });
 }
 
-/// A row for each state that was entered.
+/// Draws a row for each state that was entered.
 double draw_states(Svg& svg, std::span<const Moment> moments, std::string_view Moment::* state,
                    std::string_view colour, const TimeAxis& time, double top) {
     std::vector<std::string_view> rows;
@@ -135,7 +135,7 @@ double draw_states(Svg& svg, std::span<const Moment> moments, std::string_view M
 
 std::string picture_of(std::span<const Moment> moments) {
     const TimeAxis time{moments.empty() ? 1.0 : std::max(1.0, moments.back().at_s)};
-    Svg states{0, 0}; // to learn how high they are
+    Svg states{0, 0}; // to measure their height
     const double between = draw_states(states, moments, &Moment::tool_robot, of_tool, time, states_top);
     const double bottom = draw_states(states, moments, &Moment::body_robot, of_body, time, between);
     Svg svg{width, bottom + 30.0};

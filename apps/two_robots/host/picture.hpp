@@ -1,5 +1,5 @@
-// The picture of a run: the path of the tip as the body sees it, how far the shaft was from the middle of the
-// hole, how the body moved, and the states of both robots.
+// Draws the picture of a run: the tip's path in the body's frame, the distance of the shaft from the middle
+// of the hole, the body's motion, and the states of both robots.
 #pragma once
 
 #include "apps/two_robots/host/record.hpp"
@@ -9,7 +9,7 @@
 
 namespace two_robots {
 
-/// An SVG document.
+/// Returns an SVG document.
 [[nodiscard]] std::string picture_of(std::span<const Moment> moments);
 
 } // namespace two_robots

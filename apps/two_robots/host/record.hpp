@@ -1,4 +1,4 @@
-// What was true of both robots in a run.
+// The true values of both robots in a run.
 #pragma once
 
 #include "apps/two_robots/tool/values.hpp"
@@ -10,8 +10,7 @@
 
 namespace two_robots {
 
-/// One moment: the tip and the shaft as the body sees them, and the body's origin in the base of the robot
-/// that operates.
+/// One moment: tip and shaft in the body's frame, and the body's origin in the base of the operating robot.
 struct Moment {
     double at_s = 0.0;
     Eigen::Vector3d tip{}, body{};               ///< m

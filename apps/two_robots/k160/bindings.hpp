@@ -1,4 +1,4 @@
-// Where this robot's modules and lines stand on the bench, on which both robots are in one box.
+// Maps this robot's modules and lines on the bench, where one box runs both robots.
 #pragma once
 
 #include "apps/two_robots/bound_lines.hpp"

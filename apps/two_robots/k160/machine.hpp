@@ -1,4 +1,4 @@
-// The robot that holds the body on one page: relative encoders, so it looks for its zeros first; then it
+// The robot that holds the body on one page. Its encoders are relative, so it first finds its zeros; then it
 // breathes.
 #pragma once
 
@@ -17,13 +17,13 @@
 namespace two_robots::k160 {
 
 // clang-format off
-// All actuators turn the other way than the joints.
+// All actuators turn opposite to their joints.
 inline constexpr auto counts_per_rad = counts_of({-120.0 * 114 * 106 * 100 / (30 * 40 * 48 * 14), -168.0 * 139 * 111 / (28 * 37 * 15),
                                                        -168.0 * 125 * 106 / (28 * 41 * 15), -150.857, -155.17, -100.0});
 inline constexpr std::array<double, 6> volts_per_rate{-2.5, -2.5, -2.5, -2.0, -2.0, -2.0};
 inline constexpr std::array<double, 6> switch_angles{0.35, 0.30, -0.25, 0.40, -0.30, 0.45}; // rad
 inline constexpr std::array<double, 6> lowest{-2.9, -1.2, -2.6, -3.0, -2.1, -3.0}, highest{2.9, 1.9, 2.6, 3.0, 2.1, 3.0};
-// The dummy's chest is up, its hole 0.75 m above the floor and as far from the other robot's axis.
+// The dummy's chest faces up, its hole is 0.75 m above the floor and 0.75 m from the other robot's axis.
 inline constexpr std::array<double, 6> ready{1.570796, -0.605327, -2.035991, 0.0, 1.070521, 1.570796};
 inline constexpr std::array<double, 3> breath_direction{0.0, 0.8, 0.6};
 
@@ -98,7 +98,7 @@ inline constexpr auto table = machine("k160",
             chain("stand",    "standing", "forward"),
             chain("turn",     "turning",  "forward"),
             chain("path",     "path",     "forward"),
-            chain("path_pid", "path",     "pid"), // to compare
+            chain("path_pid", "path",     "pid"), // for comparison
             chain("simulate", "breath",   "forward")),
         loop("joints by feed-forward", gain("forward.kp"), transport(14ms)), // wires and drives
         loop("joints by PID", gain("pid.kp"), transport(14ms))));

@@ -1,5 +1,5 @@
-// The arm that holds the body, with somebody who lets it look for its zeros, go to where the body lies, and
-// breathe.
+// The arm that holds the body, with an operator who starts its homing, moves it to the body's place, and
+// starts breathing.
 #pragma once
 
 #include "apps/two_robots/arm_plant.hpp"
@@ -51,7 +51,7 @@ private:
                        return at;
                    }()} {}
 
-    /// As the plan of the day says; a button that is not heard is pressed again.
+    /// Works by the plan; presses an ignored button again.
     void work(Time now) {
         const Duration t = elapsed();
         if (t > 100ms && t < 200ms) press("start", now + 100ms);

@@ -11,7 +11,7 @@
 
 namespace two_robots::k361 {
 
-/// The tool's loop runs in an activity of its own.
+/// The tool's loop runs in its own activity.
 inline constexpr auto reach =
     script_reach(reachable<Robot>("robot"), reachable<ChainSwitch>("mode"), reachable<JointPath>("path"),
                  reachable<JointEffector>("drives"), reachable<Replay>("replay", false));

@@ -1,4 +1,4 @@
-// The host's program looks into both machines for the picture of their run.
+// Lets the host's program read both machines for the picture of their run.
 #pragma once
 
 #include "apps/two_robots/host/picture.hpp"

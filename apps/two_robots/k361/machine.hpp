@@ -1,5 +1,5 @@
-// The robot that operates on one page: a loop of the arm as the other robot's, and above it the loop of the
-// tool, which sees the body by a camera and superimposes its motion on the tool's path.
+// The robot that operates on one page: the same arm loop as the other robot's, and above it the tool's loop,
+// which locates the body by a camera and superimposes its motion on the tool's path.
 #pragma once
 
 #include "apps/two_robots/controllers.hpp"
@@ -20,10 +20,10 @@
 namespace two_robots::k361 {
 
 // clang-format off
-// Actuators 1, 4 and 6 turn the other way than the joints.
+// Actuators 1, 4 and 6 turn opposite to their joints.
 inline constexpr auto counts_per_rad = counts_of({-94.14706, -103.23529, 51.44118, -175.0, 150.0, -131.64395});
 inline constexpr std::array<double, 6> volts_per_rate{-2.5545, 2.678, 1.3735, -2.343, 2.0058, -1.7573};
-inline constexpr std::array<double, 6> switch_angles{2.8, 1.8, 2.5, 2.9, 2.9, 2.9}; // of the ends, rad
+inline constexpr std::array<double, 6> switch_angles{2.8, 1.8, 2.5, 2.9, 2.9, 2.9}; // near the ends, rad
 inline constexpr std::array<double, 6> lowest{-2.9, -1.5, -2.6, -3.0, -2.9, -3.0}, highest{2.9, 1.9, 2.6, 3.0, 2.9, 3.0};
 inline constexpr std::array<double, 6> ready{-1.499489, 0.144280, 1.621569, -0.901580, 1.480277, -0.597909}; // the tip above the chest, beside the hole
 
@@ -45,7 +45,7 @@ inline constexpr auto table = machine("k361",
         component<ChainSwitch>("estimation"), component<BodyEstimator>("body"), component<KalmanBodyEstimator>("body_kalman"),
         component<Replay>("replay", set("tool_length", 0.40), properties_file("replay.cpf", optional)),
         component<Superposition>("superposition"),
-        component<udp::PeerClock>("body_clock", device("body-time")), // of the robot that holds the body
+        component<udp::PeerClock>("body_clock", device("body-time")), // clock of the robot that holds the body
         component<can::Restarter>("restarter", device("robot-can")),
         component<BrowserService>("browser"), component<CommandInterpreter>("interpreter")),
     activities( // threads; their priorities follow from the deadlines
@@ -85,13 +85,13 @@ inline constexpr auto table = machine("k361",
         data("drives.volts_5", "can.drives_b.joint_5", stale_after(10ms), substitute(0.0)), data("drives.volts_6", "can.drives_b.joint_6", stale_after(10ms), substitute(0.0)),
         data("drives.enable", "io.enable", wakes, stale_after(50ms), substitute(false)), data("drives.release", "io.release", wakes, stale_after(50ms), substitute(false)),
         // the tool's loop
-        data("camera.leds", "body.leds", stale_after(300ms), hold), data("camera.leds", "body_kalman.leds", stale_after(300ms), hold), // since their exposure
+        data("camera.leds", "body.leds", stale_after(300ms), hold), data("camera.leds", "body_kalman.leds", stale_after(300ms), hold), // age since their exposure
         data("body.model", "body_kalman.before", stale_after(10ms), hold), data("body_kalman.model", "body.before", stale_after(10ms), hold, delayed),
         data("body.model", "replay.model", stale_after(10ms), hold), data("body.model", "superposition.model", stale_after(10ms), hold),
         data("body_kalman.model", "replay.model", stale_after(10ms), hold), data("body_kalman.model", "superposition.model", stale_after(10ms), hold),
         data("joints.positions", "replay.positions", stale_after(20ms), hold),
         data("replay.set_point", "superposition.set_point", stale_after(10ms), hold),
-        data("superposition.command", "cartesian.command", stale_after(10ms), hold), // then the arm stands still
+        data("superposition.command", "cartesian.command", stale_after(10ms), hold), // when stale, the arm stands still
         data("can.faulted", "restarter.faulted")),
     reactions( // execution flow
         uses("cartesian.posture", "kinematics.posture"), uses("twisting.posture", "kinematics.posture"), uses("replay.posture", "kinematics.posture"),
@@ -115,10 +115,10 @@ inline constexpr auto table = machine("k361",
             chain("turn",     "turning",   "forward"),
             chain("twist",    "twisting",  "forward"),
             chain("path",     "path",      "forward"),
-            chain("path_pid", "path",      "pid"), // to compare
+            chain("path_pid", "path",      "pid"), // for comparison
             chain("tool",     "cartesian", "forward")),
         exclusive("estimation", fallback("alpha_beta", "body"), chain("kalman", "body_kalman")),
-        exclusive("geometry", fallback("as_drawn", "kinematics"), chain("as_measured", "measured")), // who asks for postures notices nothing
+        exclusive("geometry", fallback("as_drawn", "kinematics"), chain("as_measured", "measured")), // callers of the posture notice nothing
         loop("joints by feed-forward", gain("forward.kp"), transport(14ms)), // wires and drives
         loop("joints by PID", gain("pid.kp"), transport(14ms))),
     reporting( // what tappet-browse report writes to files

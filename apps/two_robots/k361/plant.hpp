@@ -1,5 +1,5 @@
-// The arm that operates, the camera, and the other robot with the body: that machine runs in here, at the
-// same time.
+// The arm that operates, the camera, and the other robot with the body: that machine runs inside this plant,
+// at the same time.
 #pragma once
 
 #include "apps/two_robots/arm_plant.hpp"
@@ -65,10 +65,10 @@ public:
 
     void leave_alone() { works_by_itself_ = false; }
     void forget_worst_shaft() { worst_beside_ = 0.0; }
-    /// As it is now, without the states.
+    /// Returns the present moment, without the states.
     [[nodiscard]] const Moment& now() const { return now_; }
     [[nodiscard]] double worst_beside_hole() const { return worst_beside_; } ///< m
-    /// For the picture, with the states that the robots are in.
+    /// Records a moment for the picture, with the states of both robots.
     void note(std::string_view tool_robot, std::string_view body_robot) {
         moments_.push_back(now_);
         moments_.back().at_s = to_seconds(elapsed());
@@ -76,7 +76,7 @@ public:
         moments_.back().body_robot = body_robot;
     }
     [[nodiscard]] const std::vector<Moment>& moments() const { return moments_; }
-    /// The machine that runs in here.
+    /// Returns the machine that runs inside this plant.
     [[nodiscard]] VirtualRun& body_robot() {
         if (!body_robot_) {
             const auto started = body_robot_.emplace(k160::on_host(), body_arm_, seed_).start();
@@ -101,7 +101,7 @@ public:
     udp::FarEnd camera_link{ends, "camera-link"};
     TimeLink time_link;
     udp::FarEnd body_time{ends, "body-time"};
-    std::string picture{}; ///< the file to write; empty: none
+    std::string picture{}; ///< the file to write; empty: no picture
 
 private:
     Plant(std::uint64_t seed, Random place)
@@ -116,7 +116,7 @@ private:
           body_arm_{seed},
           seed_{seed} {}
 
-    /// From where it passes the chest downwards to where it comes out again the shaft is in the hole.
+    /// The shaft is in the hole from where it passes the chest downwards until it comes out again.
     void judge(const BodyTip& tip) {
         const Eigen::Vector3d& at = now_.tip = tip.position;
         const double beside_axis = std::sqrt(at.x() * at.x() + at.y() * at.y());
@@ -130,7 +130,7 @@ private:
         now_.beside_hole = now_.is_inside ? shaft_beside_hole(tip) : 0.0;
         worst_beside_ = std::max(worst_beside_, now_.beside_hole);
     }
-    /// Of the arm that holds the body, which runs in here, or elsewhere on the box.
+    /// Moves the arm that holds the body, which runs in here or elsewhere on the box; returns its joints.
     const Joints& move_body() {
         if (link_.listens()) {
             link_.take(told_);
@@ -140,7 +140,7 @@ private:
         moved_ = elapsed();
         return body_arm_.joints();
     }
-    /// The body has been where it is operated on for a while, and moves.
+    /// Returns true when the body has been at its operating place for a while, and moves.
     bool breathes(Time now) {
         if ((now_.body - seen_body_).norm() > 1e-3) {
             seen_body_ = now_.body;
@@ -149,7 +149,7 @@ private:
         if ((now_.body - Eigen::Vector3d{0.75, 0.0, 0.75}).norm() > 0.03) lies_since_ = now;
         return now - lies_since_ > 2s && now - moved_at_ < 1s;
     }
-    /// Ready as soon as there is power; work when the body lies there and breathes.
+    /// Presses ready as soon as there is power, and work when the body lies in place and breathes.
     void work(Time now) {
         const Duration t = elapsed();
         if (t > 100ms && t < 200ms) press("start", now + 100ms);

@@ -1,4 +1,4 @@
-// Estimators of the tool's loop: where the body is now and how it moves, from places of LEDs that are past.
+// Estimators of the tool's loop: the present place and motion of the body, from past places of LEDs.
 #pragma once
 
 #include "apps/two_robots/tool/kalman_track.hpp"
@@ -13,8 +13,8 @@
 
 namespace two_robots {
 
-/// The frame of least squares through at least three LEDs, by Gauss and Newton from `guess`. False: they are
-/// too few, or on one line.
+/// Fits a frame through at least three LEDs by least squares (Gauss-Newton), starting from `guess`. Returns
+/// false when the LEDs are too few, or on one line.
 [[nodiscard]] inline bool fit_body(const Leds& leds, BodyFrame& guess) noexcept TAPPET_REALTIME {
     const int seen = std::popcount(leds.seen);
     if (seen < 3) return false;
@@ -45,10 +45,10 @@ namespace two_robots {
     return true;
 }
 
-/// What all of them have: six tracks, each a filter of a value and its speed, of places and of angles from a
-/// reference. Writes in each step while it knows the body: from two exposures on, until the last one is too
-/// old. What is written is said of now, straight on from what was measured. One that takes the place of
-/// another goes on from its model. `Own` makes its filter. Real-time.
+/// The common part: six tracks, each a filter of a value and its speed, for places and for angles from a
+/// reference. It writes in each step while the body is known: from the second exposure until the last one is
+/// too old. The output is extrapolated linearly from the measurements to now. An estimator that replaces
+/// another one continues from its model. `Own` creates its filter. Real-time.
 template <class Own, class Filter>
 struct AnyBodyEstimator {
     Input<Leds> leds;
@@ -103,7 +103,7 @@ private:
             tracks_[static_cast<std::size_t>(3 + i)].sample(turn[i], at);
         }
     }
-    /// As if the last exposure and one before it had told its place and speed.
+    /// Feeds the tracks with two exposures computed from the model: the last one and one before it.
     void go_on(const BodyModel& from, Time now) noexcept TAPPET_REALTIME {
         constexpr Duration between = 20ms;
         reference_ = from.frame.rotation;
@@ -137,7 +137,7 @@ private:
     Eigen::Matrix3d reference_ = Eigen::Matrix3d::Identity();
 };
 
-/// By alpha-beta filters.
+/// Estimates with alpha-beta filters.
 struct BodyEstimator : AnyBodyEstimator<BodyEstimator, motion::AlphaBeta> {
     static constexpr motion::AlphaBeta usual{motion::AlphaBetaGains{0.5, 0.17}};
     Property<double> alpha{0.5}, beta{0.17};
@@ -152,7 +152,7 @@ struct BodyEstimator : AnyBodyEstimator<BodyEstimator, motion::AlphaBeta> {
     }
 };
 
-/// By Kalman filters, whose gains follow from what they are told of noise.
+/// Estimates with Kalman filters, whose gains follow from the noise properties.
 struct KalmanBodyEstimator : AnyBodyEstimator<KalmanBodyEstimator, KalmanTrack> {
     static constexpr KalmanTrack usual{{.acceleration = 0.02, .noise = 0.02e-3}};
     Property<double> acceleration{0.02}, noise{0.02e-3};

@@ -1,4 +1,4 @@
-// Sensor of the tool's loop: the packets of the 3D camera become places of LEDs at the time of their
+// Sensor of the tool's loop: converts the packets of the 3D camera to places of LEDs at the time of their
 // exposure.
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace two_robots {
 
-/// Packets that are lost leave a gap, those that come after a later one are left out; both are counted. The
-/// camera exposes evenly, so that the packets which came soonest tell when all were: one that was held up on
-/// its way was not exposed later. A camera that restarts counts anew: it is believed when several packets in
-/// turn are late by all that is known. Real-time.
+/// A lost packet leaves a gap; a packet that comes after a later one is dropped; both are counted. The camera
+/// exposes at even intervals, so the fastest packets tell the time of all exposures: a delayed packet was not
+/// exposed later. A camera that restarts begins its count anew; it is accepted when several packets in order
+/// are late by the old count. Real-time.
 struct LedCamera {
     static constexpr const DeviceKind& device_kind = udp::device_kind;
     static constexpr udp::Longest device_map{led_packet::most};
@@ -59,9 +59,9 @@ struct LedCamera {
 
 private:
     static constexpr int most_in_a_step = 4;
-    static constexpr int held_up = 10;        ///< periods that a packet may be held up on its way
-    static constexpr int restarted_after = 8; ///< late packets, one after the other in their order
-    static constexpr Duration drift = 5us;    ///< in a period: so much slower than ours its clock may go
+    static constexpr int held_up = 10;        ///< periods by which a packet may be delayed
+    static constexpr int restarted_after = 8; ///< consecutive late packets in their order
+    static constexpr Duration drift = 5us;    ///< per period: how much slower than ours its clock may run
 
     void take(std::span<const std::byte> packet, Time now) noexcept TAPPET_REALTIME {
         Leds seen;
@@ -72,7 +72,7 @@ private:
         const auto ahead = static_cast<std::int16_t>(seen.cycle - cycle_);
         if (has_seen_ && ahead <= 0) {
             late.write(late.last() + 1);
-            // Those that only come late are never so many in their order.
+            // Merely delayed packets never come in such a long consecutive order.
             late_in_order_ = seen.cycle == static_cast<std::uint16_t>(late_ + 1) ? late_in_order_ + 1 : 0;
             late_ = seen.cycle;
             if (late_in_order_ == restarted_after) has_seen_ = false;
@@ -91,9 +91,9 @@ private:
 
     udp::Device* datagrams_ = nullptr;
     std::uint16_t cycle_ = 0;
-    Time even_{}; ///< when the last one came, had it not been held up
+    Time even_{}; ///< arrival of the last packet, had it not been delayed
     bool has_seen_ = false;
-    std::uint16_t late_ = 0; ///< the last one that came late
+    std::uint16_t late_ = 0; ///< the last packet that came late
     int late_in_order_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// One value and its speed behind noisy measurements, as a Kalman filter of constant speed sees it.
+// One value and its speed from noisy measurements, by a Kalman filter of constant speed.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -8,23 +8,23 @@ namespace two_robots {
 
 using namespace tappet;
 
-/// Asked as motion::AlphaBeta is. Real-time.
+/// Has the interface of motion::AlphaBeta. Real-time.
 class KalmanTrack {
 public:
-    /// Deviations: of the acceleration, which is another one from sample to sample, and of a sample.
+    /// Standard deviations: of the acceleration, which changes from sample to sample, and of a sample.
     struct Noise {
         double acceleration, noise;
     };
     explicit constexpr KalmanTrack(Noise of) noexcept TAPPET_REALTIME : of_{of} {}
 
-    /// A value that was true at `at`; one that is not later than the last one is left out.
+    /// Adds a value that was true at `at`; ignores one that is not later than the last one.
     void sample(double value, Time at) noexcept TAPPET_REALTIME {
         if (samples_ > 0 && at <= at_) return;
         const double h = to_seconds(at - at_);
         const double r = of_.noise * of_.noise;
         if (samples_ == 0) {
             place_ = value;
-        } else if (samples_ == 1) { // two values have no more to say
+        } else if (samples_ == 1) { // two values tell no more
             speed_ = (value - place_) / h;
             place_ = value;
             variances_ = {r, r / h, 2.0 * r / (h * h)};
@@ -50,7 +50,7 @@ private:
         moves << 1.0, h, 0.0, 1.0;
         filter.predict(moves, symmetric({0.25 * q * h * h, 0.5 * q * h, q}));
         const Eigen::Matrix<double, 1, 1> measured{value}, spread{r};
-        if (!filter.update<1>(measured, {1.0, 0.0}, spread)) return; // no number: as if it had not come
+        if (!filter.update<1>(measured, {1.0, 0.0}, spread)) return; // not a number: ignored
         place_ = filter.state()[0];
         speed_ = filter.state()[1];
         const Filter::Covariance& now = filter.covariance();

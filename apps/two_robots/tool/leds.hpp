@@ -1,4 +1,4 @@
-// The LEDs on the body's chest as a 3D camera measures them, and the packets in which it tells them.
+// The LEDs on the body's chest as a 3D camera measures them, and the camera's packets.
 #pragma once
 
 #include "kernel/base/fixed_matrix.hpp"
@@ -16,7 +16,7 @@ namespace two_robots {
 
 inline constexpr std::size_t led_count = 6;
 
-/// In the body's frame, m: around the hole, not in one plane.
+/// Places in the body's frame, m: around the hole, not in one plane.
 inline constexpr std::array<std::array<double, 3>, led_count> leds_on_body{{{0.10, 0.00, 0.00},
                                                                             {0.05, 0.09, 0.02},
                                                                             {-0.05, 0.09, 0.00},
@@ -32,13 +32,13 @@ struct Leds {
 };
 
 /// A packet of the camera, little-endian: u16 length, type, sequence, reply; u8 invalid; u16 body, cycle,
-/// number of LEDs; three doubles for each of them, not numbers for one that is hidden.
+/// number of LEDs; three doubles for each LED, not-a-number for a hidden one.
 namespace led_packet {
 
 inline constexpr std::uint16_t type = 345, body = 122;
 inline constexpr std::size_t head = 4 * 2 + 1 + 3 * 2;
 inline constexpr std::size_t most = head + led_count * 3 * sizeof(double);
-inline constexpr double reach = 10.0; ///< m: what lies beyond is no place, and filters would long remember it
+inline constexpr double reach = 10.0; ///< m: farther places are invalid; filters would remember them
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
@@ -53,7 +53,7 @@ void put_at(std::span<std::byte> packet, std::size_t place, T number) noexcept T
     std::memcpy(packet.data() + place, &number, sizeof number);
 }
 
-/// False: it is no packet of this camera and body, or it says that it is invalid.
+/// Reads a packet. Returns false when it is not of this camera and body, or when it is marked invalid.
 [[nodiscard]] inline bool read(std::span<const std::byte> packet, Leds& leds) noexcept TAPPET_REALTIME {
     if (packet.size() != most || number_at<std::uint16_t>(packet, 0) != most ||
         number_at<std::uint16_t>(packet, 2) != type || number_at<std::uint8_t>(packet, 8) != 0 ||

@@ -1,4 +1,4 @@
-// A movement of the tip that was recorded and is replayed: places at even times, between them a curve.
+// A recorded movement of the tip for replay: places at even times, connected by a curve.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -12,7 +12,7 @@
 
 namespace two_robots {
 
-/// Round the middle at 20 mm and 10 mm/s, one sample each fifth of a second; m, beside the hole's axis.
+/// A circle of 20 mm radius around the hole's axis at 10 mm/s, a sample each fifth of a second; in m.
 inline constexpr std::size_t recorded_samples = 63;
 inline constexpr double recorded_step_s = 0.2;
 inline constexpr double recorded_s = recorded_samples * recorded_step_s;
@@ -28,7 +28,7 @@ inline constexpr auto recorded = [] {
     return samples;
 }();
 
-/// The curve of Catmull and Rom through the samples, round and round. Real-time.
+/// Returns the place on the Catmull-Rom curve through the samples, cyclically. Real-time.
 inline Eigen::Vector3d recorded_at(double seconds) noexcept TAPPET_REALTIME {
     const double place = seconds / recorded_step_s;
     const double whole = std::floor(place);

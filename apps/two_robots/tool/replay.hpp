@@ -1,5 +1,5 @@
-// Generator of the tool's loop: leads the tip in the body's frame, to the hole, through it, and along a path
-// that was recorded.
+// Generator of the tool's loop: leads the tip in the body's frame to the hole, through it, and along a
+// recorded path.
 #pragma once
 
 #include "apps/two_robots/tool/body_estimator.hpp"
@@ -21,8 +21,8 @@ inline FlangeTip tip_of_tool(double length) noexcept TAPPET_REALTIME {
     return tip;
 }
 
-/// The shaft leads from the hole, the body's origin, to a tip inside: whatever the tip does, the hole sees a
-/// shaft that turns in it.
+/// Returns the frame of a tip inside whose shaft leads from the hole, the body's origin: for any motion of
+/// the tip, the shaft only turns in the hole.
 inline BodyTip through_the_hole(const Eigen::Vector3d& tip) noexcept TAPPET_REALTIME {
     const Eigen::Vector3d z = tip / std::sqrt(tip.dot(tip));
     Eigen::Vector3d x = Eigen::Vector3d::UnitX() - z.x() * z;
@@ -33,8 +33,8 @@ inline BodyTip through_the_hole(const Eigen::Vector3d& tip) noexcept TAPPET_REAL
     return frame;
 }
 
-/// Unless it is told to work its set point is where the tip is anyway, so that whoever takes over begins
-/// there. Real-time.
+/// Without a command its set point is the present tip, so that a controller that takes over starts there.
+/// Real-time.
 struct Replay {
     Input<Joints> positions;
     Input<BodyModel> model;
@@ -51,7 +51,7 @@ struct Replay {
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         sees_body_.store(model.good(), std::memory_order_relaxed);
         if (!model.good()) {
-            leg_ = Leg::none; // where the body is not known there is no way to go
+            leg_ = Leg::none; // without the body's place there is no way to go
             return;
         }
         if (begins_) began_ = cycle.now;
@@ -67,13 +67,13 @@ struct Replay {
         leg_ = Leg::none;
         sees_body_.store(false, std::memory_order_relaxed);
     }
-    /// Whoever of the Estimators tells it.
+    /// Returns true when any Estimator knows the body.
     bool sees_body() const noexcept TAPPET_REALTIME { return sees_body_.load(std::memory_order_relaxed); }
 
-    /// Above the hole, into it, along the path, until something else is told.
+    /// Moves above the hole, into it, and along the path, until the next command.
     bool operate() noexcept TAPPET_REALTIME {
         if (!model.good()) return false;
-        // Whoever is inside already does not go out again to come in.
+        // A tip that is already inside does not go out to come in again.
         const auto now = tip_now();
         if (!now) return false;
         const bool is_inside = now->position.z() < -0.5 * depth.get();
@@ -83,7 +83,7 @@ struct Replay {
         if (leg_ == Leg::none) return CommandProgress::failed;
         return leg_ == Leg::path ? CommandProgress::done : CommandProgress::executing;
     }
-    /// Out of the hole.
+    /// Moves out of the hole.
     bool withdraw() noexcept TAPPET_REALTIME {
         if (!model.good()) return false;
         const auto now = tip_now();
@@ -119,7 +119,7 @@ private:
     enum class Leg : std::uint8_t { none, above, in, to_path, path, to_axis, out };
     using Line = motion::Path<Body, Tip>;
 
-    /// Nothing: the component that knows the flange's posture does not run.
+    /// Returns the tip; nothing when the component that knows the flange's posture does not run.
     [[nodiscard]] std::optional<BodyTip> tip_now() noexcept TAPPET_REALTIME {
         const Answer<Posture> flange = posture(SixNumbers{positions.get()});
         if (!flange.given()) return std::nullopt;
@@ -150,7 +150,7 @@ private:
         const motion::PathLimits most{{speed.get(), acceleration.get(), jerk * acceleration.get()},
                                       {turn.get(), turn.get(), jerk * turn.get()}};
         const auto limits = line->limits(most);
-        if (!limits) { // it is there
+        if (!limits) { // already there
             profile_ = motion::Profile{{.position = 1.0}};
         } else {
             const auto planned = motion::jerk_limited(0.0, 1.0, *limits);
@@ -180,7 +180,7 @@ private:
         }
     }
     void follow_path(double h) noexcept TAPPET_REALTIME {
-        pace_ += std::clamp(path_speed.get() - pace_, -h, h); // from standstill within a second
+        pace_ += std::clamp(path_speed.get() - pace_, -h, h); // full pace within a second from standstill
         at_s_ += pace_ * h;
         if (at_s_ >= recorded_s) {
             at_s_ -= recorded_s;
@@ -194,7 +194,7 @@ private:
     }
 
     static constexpr double jerk = 5.0;       // 1/s: of the acceleration
-    static constexpr double moment_s = 0.001; // of which a twist is told
+    static constexpr double moment_s = 0.001; // step over which a twist is computed
     Leg leg_ = Leg::none;
     Line line_ = *Line::line(BodyTip{}, BodyTip{});
     motion::Profile profile_{};

@@ -1,12 +1,12 @@
-// Controller of the tool's loop: what the tip shall do in the body's frame, superimposed on what the body
-// does, is what the flange is commanded (thesis fig. 3.11).
+// Controller of the tool's loop: superimposes the tip's set point in the body's frame on the body's motion,
+// and commands the result to the flange (thesis fig. 3.11).
 #pragma once
 
 #include "apps/two_robots/tool/replay.hpp"
 
 namespace two_robots {
 
-/// Writes nothing while it does not know the body: whom it commands falls back. Real-time.
+/// Writes nothing while the body is unknown: the component that it commands then falls back. Real-time.
 struct Superposition {
     Input<TipSetPoint> set_point;
     Input<BodyModel> model;

@@ -1,13 +1,13 @@
-// What flows in the tool's loop: where the body is, and what the tip shall do in its frame.
+// The values of the tool's loop: the body's place, and the tip's set point in the body's frame.
 #pragma once
 
 #include "apps/two_robots/values.hpp"
 
 namespace two_robots {
 
-/// The body that is operated on: its origin is the middle of the hole, its z points out of the chest.
+/// The body that is operated on. Its origin is the middle of the hole; its z axis points out of the chest.
 struct Body;
-/// The end of the tool's shaft, whose z leads on along the shaft.
+/// The end of the tool's shaft; its z axis extends the shaft.
 struct Tip;
 
 using BodyFrame = motion::Frame<Base, Body>;

@@ -1,5 +1,5 @@
-// The box of each machine of the lane: an industrial PC whose first CAN port runs as fast as 100 m of wire
-// allow.
+// The box of each machine of the lane: an industrial PC whose first CAN port runs at the highest rate for 100
+// m of wire.
 #pragma once
 
 #include "board/ipc-x86_64/board.hpp"

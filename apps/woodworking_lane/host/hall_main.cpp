@@ -1,4 +1,4 @@
-// The hall on the bench: one process at the other ends of all five machines' wires.
+// The hall on the bench: one process simulates the other ends of all five machines' wires.
 #include "apps/woodworking_lane/bindings.hpp"
 #include "apps/woodworking_lane/plant.hpp"
 #include "board/bench/board.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace woodworking;
 
-/// What stands on those wires; nobody runs it.
+/// The devices on those wires; no machine runs this table.
 constexpr auto wires =
     machine("woodworking-hall",
             components(component<can::Bus<belt_signals>>("drive", device("belt-can")),
@@ -22,7 +22,7 @@ constexpr auto wires =
 constexpr Binding bound = binding(belt_can, belt_io, station_io("saw-io", 0), station_io("drill-io", 1),
                                   station_io("polish-io", 2), station_io("glue-io", 3));
 
-/// Told by USR1, somebody acknowledges.
+/// Acknowledges at the conveyor upon the signal USR1.
 class HallPlant final : public Plant {
 public:
     explicit HallPlant(std::uint64_t seed) : hall_{seed} {}

@@ -1,4 +1,4 @@
-// Moves the lane, and judges what became of its boards.
+// Moves the lane and judges the result of its boards.
 #include "apps/woodworking_lane/host/lane_run.hpp"
 
 #include "apps/woodworking_lane/lane.hpp"
@@ -53,7 +53,7 @@ bool LaneRun::run_through(Duration limit) {
 }
 
 Sentence fault_of(const Hall& hall, int& missed) {
-    constexpr std::array<Duration, station_count> takes{800ms, 500ms, 1200ms, 300ms}; // as the tables have it
+    constexpr std::array<Duration, station_count> takes{800ms, 500ms, 1200ms, 300ms}; // as in the tables
     missed = 0;
     for (const Workpiece& board : hall.boards) {
         if (!board.left) continue;

@@ -8,11 +8,11 @@ namespace woodworking {
 
 inline constexpr std::size_t node_count = 5; ///< the conveyor, then the stations
 
-/// What the firmware of each node is made of, for the host. Once in a process: their memory is static.
+/// Returns the accepted machines of all nodes, for the host. Once per process: their memory is static.
 [[nodiscard]] std::array<AcceptedMachine, node_count> machines();
 [[nodiscard]] const SystemView& lane_view();
 
-/// Where everything was at an instant, for judges and pictures.
+/// The state of everything at an instant, for judges and pictures.
 struct Moment {
     double at_s = 0;
     double gone = 0, speed = 0;
@@ -32,15 +32,15 @@ public:
     std::vector<Moment> moments{};
 
     std::expected<void, Sentence> start();
-    /// Somebody at the conveyor presses once.
+    /// Presses acknowledge once at the conveyor.
     void acknowledge();
-    /// Until all boards have left; false: not within that time.
+    /// Runs until all boards have left; returns false when they have not within `limit`.
     bool run_through(Duration limit);
-    /// Runs, and takes down where everything is each 20 ms.
+    /// Runs, and records the state every 20 ms.
     bool run_for(Duration time);
     void kill(std::size_t node) {
         system.kill(node);
-        if (node > 0) hall.tools[node - 1] = false; // by its guardian
+        if (node > 0) hall.tools[node - 1] = false; // as its guardian does
     }
 
 private:
@@ -49,10 +49,10 @@ private:
     }
 };
 
-/// Whether the work on the boards was right; empty: it was. Boards that were missed are told by `missed`.
+/// Returns what was wrong with the boards' work; empty: nothing. Counts missed boards in `missed`.
 [[nodiscard]] Sentence fault_of(const Hall& hall, int& missed);
 
-/// Boards over time, as an SVG document.
+/// Returns the boards over time, as an SVG document.
 [[nodiscard]] std::string picture_of(const LaneRun& run);
 
 } // namespace woodworking

@@ -1,4 +1,4 @@
-// Runs the lane on the host and says what became of the boards.
+// Runs the lane on the host and reports the result of the boards.
 #include "apps/woodworking_lane/host/lane_run.hpp"
 #include "kernel/system/resolve.hpp"
 #include "toolchain/command_line.hpp"

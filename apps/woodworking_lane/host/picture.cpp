@@ -1,4 +1,4 @@
-// The boards of a run over time and along the lane, the stations' work, and who was silent when.
+// Draws the boards of a run over time and along the lane, the stations' work, and the silent machines.
 #include "apps/woodworking_lane/host/lane_run.hpp"
 #include "toolchain/svg.hpp"
 
@@ -7,7 +7,7 @@ namespace woodworking {
 namespace {
 
 constexpr double left = 90, top = 50, width = 1100, height = 620, right = width - 30; // px
-constexpr std::size_t points_apart = 15;                                              // of the moments
+constexpr std::size_t points_apart = 15;                                              // between drawn moments
 constexpr std::array<std::string_view, 6> colours{"#5b8def", "#c8202a", "#2e8b57",
                                                   "#b8860b", "#8a2be2", "#444"};
 

@@ -1,5 +1,5 @@
-// Checks of the section behaviours: a behaviour drives a component of its own type, hears events that exist,
-// and touches nothing of another activity but what is safe there; a slot reserves what exists.
+// Checks of the section behaviours: a behaviour drives a component of its own type, hears existing events,
+// and uses only what is safe in another activity; a slot reserves existing names.
 #pragma once
 
 #include "kernel/machine/check/events.hpp"
@@ -39,7 +39,7 @@ constexpr Sentence resolve_trigger(const MachineView& m, const BehaviourRow& row
     return {};
 }
 
-/// So few that what a slot takes of each is counted in 32 bits.
+/// A limit that keeps every sum over a slot within 32 bits.
 inline constexpr std::uint32_t most_in_slot = 1 << 24;
 
 constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
@@ -95,7 +95,8 @@ constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, con
     return {};
 }
 
-/// A compiled script was compiled for components of some types, some of them in its own activity.
+/// Checks that each peer has the type for which the script was compiled, and runs in its activity where the
+/// script requires that.
 constexpr Sentence check_unit_reach(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
     const ScriptUnit unit = row.unit();
     const std::size_t driven = find_component(m, row.component);
@@ -119,7 +120,7 @@ constexpr Sentence check_unit_reach(const MachineView& m, const TableIndexView& 
     return {};
 }
 
-/// What a unit's programs act on must be safe in the activity that runs them.
+/// Checks that everything a unit's programs use is safe in the activity that runs them.
 constexpr Sentence check_unit_links(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
     const ScriptUnit unit = row.unit();
     const std::size_t here = r.activity[find_component(m, row.component)];
@@ -180,7 +181,7 @@ constexpr Sentence check_unit(const MachineView& m, const TableIndexView& r, con
     return {};
 }
 
-/// What a slot begins with could be loaded again: it reaches what the slot reaches.
+/// Checks that a slot's initial script reaches no more than the slot does, so that it can be loaded again.
 constexpr Sentence check_slot_reach(const BehaviourRow& row) {
     const ScriptUnit unit = row.unit();
     const auto misses = [&](std::string_view peer, std::string_view name, const auto& allowed) {

@@ -1,5 +1,5 @@
-// Checks of a machine against a board and the binding between them: every device and line that a driver names
-// is bound to one that the board has, and every row of the binding is of use.
+// Checks of a machine against a board and its binding: every device and line that a driver names is bound to
+// one that the board has, and every row of the binding is used.
 #pragma once
 
 #include "kernel/base/address.hpp"
@@ -21,7 +21,7 @@ constexpr Sentence of_binding(const Board& board, std::string_view device, const
     return Sentence{"binding to board \"", board.name, "\", wired(\"", device, "\"): ", words...};
 }
 
-/// A word is for one kind of device, and says one thing once. Nothing of it is passed over.
+/// Checks that each word fits the kind of device and is stated once. No word is ignored.
 constexpr Sentence check_words(std::span<const Fact> facts, std::string_view kind) {
     for (std::size_t i = 0; i < facts.size(); ++i) {
         const Word& word = *facts[i].word;
@@ -61,7 +61,7 @@ constexpr Sentence check_bound_device(const ComponentRow& row, const Board& boar
     }
     asked.parts = row.type->device_lines;
     Sentence fault = check_words(facts, kind.name);
-    // Who shares the device leaves it to the row that drives it.
+    // A component that shares the device leaves this check to the row that drives it.
     if (fault.empty() && kind.check != nullptr && !row.type->shares_device) fault = kind.check(asked);
     return fault.empty() ? fault : of_binding(board, bound.name, fault);
 }

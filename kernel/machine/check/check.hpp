@@ -1,5 +1,5 @@
-// The check of a whole table, bound to a board: empty, or the one sentence that names the row, the fault and
-// the cure. The same function runs in the compiler and in tests.
+// The check of a whole table, bound to a board. Returns an empty sentence, or one that names the row, the
+// fault and the cure. The same function runs in the compiler and in tests.
 #pragma once
 
 #include "kernel/machine/check/board.hpp"
@@ -17,7 +17,7 @@
 
 namespace tappet {
 
-/// Checks in the order in which a reader would look, and fills `r`, which holds only as far as the checks
+/// Checks in the order in which a reader would look, and fills `r`, which is valid only as far as the checks
 /// went.
 constexpr Sentence check(const MachineView& m, const Board& board, const Binding& binding, TableIndexView r) {
     const auto first_fault = [&]() -> Sentence {

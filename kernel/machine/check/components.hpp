@@ -1,5 +1,5 @@
-// Checks of the sections components and activities: every component once, in exactly one activity, with
-// properties it has.
+// Checks of the sections components and activities: each component appears once, runs in exactly one
+// activity, and has the properties that its row sets.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -7,13 +7,13 @@
 
 namespace tappet::checks {
 
-/// The engine remembers so many wakes to hold a sporadic activity to its promise.
+/// The number of wakes that the engine remembers to enforce a sporadic activity's limit.
 inline constexpr std::int64_t max_wakes_together = Engine::max_wakes_watched;
-/// Far more than a board has room for, and so little that the sum of all stacks does not wrap.
+/// Far above any board's memory, and small enough that the sum of all stacks does not overflow.
 inline constexpr std::size_t most_stack_bytes = 1 << 30;
 
-/// The first facet without a name or a text, or with the name of one before it; nowhere: there is none. Of
-/// the type alone, so that a compiler which remembers its constant calls looks at each type once.
+/// Returns the first facet without a name or a doc text, or with the name of an earlier one; nowhere: none.
+/// Depends on the type alone, so that a compiler that caches constant calls examines each type once.
 constexpr std::size_t faulty_facet(const ComponentType* type) noexcept {
     const auto& facets = type->facets;
     for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -28,7 +28,7 @@ constexpr Sentence check_interface(const ComponentRow& row) {
     const std::size_t faulty = faulty_facet(row.type);
     if (faulty == nowhere) return {};
     const Facet& facet = row.type->facets[faulty];
-    // A facet's name may have dots: a table row's path is cut at its first one, after the component.
+    // A facet's name may have dots: a table row's path is split at its first dot, after the component.
     if (facet.name.empty())
         return of_component(row.name, ": its interface has a facet without a name; name it in ",
                             row.type->tag->name);
@@ -49,7 +49,8 @@ constexpr Sentence check_life(const ComponentRow& row) {
         found.spelling, "\": spell it so, or rename it");
 }
 
-/// The tapes have one reader that keeps the worst cycles in the one place for them.
+/// Checks that at most one component records cycles: a tape has one reader, and the worst cycles have one
+/// place.
 constexpr Sentence check_recorders(const MachineView& m) {
     const ComponentRow* first = nullptr;
     for (const ComponentRow& row : m.components) {
@@ -62,7 +63,8 @@ constexpr Sentence check_recorders(const MachineView& m) {
     return {};
 }
 
-/// A stopped driver must not go on saying that its device is well.
+/// Checks that each bool output of a driver states its value while stopped: a stopped driver must not keep
+/// reporting that its device is well.
 constexpr Sentence check_says_at_rest(const ComponentRow& row) {
     if (row.type->device_kind == nullptr) return {};
     for (const Facet& each : row.type->facets)
@@ -73,7 +75,8 @@ constexpr Sentence check_says_at_rest(const ComponentRow& row) {
     return {};
 }
 
-/// By its map a guardian could act: the driver says whether it has to.
+/// Checks that a driver with a device map says whether its stop() reached the device: the guardian could act
+/// by the map, and must know whether it has to.
 constexpr Sentence check_says_stopped_safely(const ComponentRow& row) {
     if (row.type->device_map == nullptr || row.type->stop == nullptr || row.type->stopped_safely != nullptr)
         return {};
@@ -82,7 +85,7 @@ constexpr Sentence check_says_stopped_safely(const ComponentRow& row) {
                         "const noexcept TAPPET_REALTIME, true where nothing is driven");
 }
 
-/// Fills the list by name.
+/// Checks each component; fills the list by name.
 constexpr Sentence check_components(const MachineView& m, const TableIndexView& r) {
     if (m.components.empty())
         return Sentence{"the table has no components; add component<Type>(\"name\") rows to components(...)"};
@@ -115,7 +118,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
     return {};
 }
 
-/// How many rows of the other sections name a component, in any of their places.
+/// Returns how many rows of the other sections name a component, in any place.
 constexpr std::size_t count_uses(const MachineView& m, std::string_view name) noexcept {
     const auto starts = [name](std::string_view path) {
         return path.size() > name.size() && path[name.size()] == '.' && path.substr(0, name.size()) == name;
@@ -131,8 +134,8 @@ constexpr std::size_t count_uses(const MachineView& m, std::string_view name) no
     return uses;
 }
 
-/// Where an activity names no component: when several rows agree on the name and none uses the nearest, it is
-/// the row in components(...) that is misspelt.
+/// Returns the fault of an activity that names an unknown component. When several rows agree on the name and
+/// none uses the nearest one, the row in components(...) is misspelt.
 constexpr Sentence unknown_to_activity(const MachineView& m, const ActivityRow& row, std::string_view name) {
     Nearest nearest{name};
     for (const auto& each : m.components)
@@ -143,7 +146,7 @@ constexpr Sentence unknown_to_activity(const MachineView& m, const ActivityRow& 
                         "\", which components(...) has not; rename it to that");
 }
 
-/// Of every activity: also those that are not real-time, whose times no analysis uses.
+/// Checks the times of an activity, even of one that is not real-time, whose times no analysis uses.
 constexpr Sentence check_times(const ActivityRow& row) {
     if (row.at_most_per < Duration::zero())
         return of_activity(row.name, ": the window of at_most is negative; correct at_most(n, per)");
@@ -218,7 +221,7 @@ constexpr Sentence check_loop(const ActivityRow& row, std::string_view name, con
     return {};
 }
 
-/// Fills the activity of each component.
+/// Checks each activity; fills the activity of each component.
 constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
     for (auto& each : r.activity) each = nowhere;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
@@ -256,8 +259,8 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
     return {};
 }
 
-/// Of two writers of one input, or two answerers of one call: whether a section of the table sees to it that
-/// one at a time runs.
+/// Whether a section of the table ensures that two components never run at the same time: two writers of one
+/// input, or two answerers of one call.
 constexpr bool take_turns(const MachineView& m, std::size_t one, std::size_t other) {
     for (std::size_t e = 0; e < m.extras->size(); ++e)
         if (m.extras->at(e)->take_turns(m, one, other)) return true;

@@ -1,12 +1,13 @@
-// Checks of what controls something else: it exists, and a behaviour runs where its task does.
+// Checks of components that control another one: the target exists, and a task runs in the activity of its
+// behaviour.
 #pragma once
 
 #include "kernel/machine/check/behaviours.hpp"
 
 namespace tappet::checks {
 
-/// The behaviour row that a task controls; nowhere: there is none. What is compiled from the task's own
-/// script goes before a slot; of a task without one whatever drives does.
+/// Returns the behaviour row that a task controls; nowhere: none. A row compiled from the task's own script
+/// takes precedence over a slot; a task without a script controls any row that drives the component.
 constexpr std::size_t controlled_behaviour(const MachineView& m, const ComponentRow& task) {
     const ScriptUnit* const script = task.type->script;
     std::size_t found = nowhere;
@@ -20,7 +21,7 @@ constexpr std::size_t controlled_behaviour(const MachineView& m, const Component
     }
     return found;
 }
-/// The number of the instance in a unit that is not loaded later; nowhere: there is none.
+/// Returns the number of the instance in a compiled unit; nowhere: none.
 constexpr std::size_t controlled_instance(const ScriptUnit& unit, const ComponentRow& task) {
     if (task.type->instance.empty()) return 0;
     for (std::size_t i = 0; i < unit.instances.size(); ++i)

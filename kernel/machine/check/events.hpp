@@ -1,5 +1,5 @@
-// Checks of events beyond their two ends: who must hear them, and whether every handle and every wait stands
-// in a row.
+// Checks of events beyond their two ends: required listeners exist, and every handle and every wait is used
+// by a row.
 #pragma once
 
 #include "kernel/component/event.hpp"
@@ -12,7 +12,7 @@ constexpr Sentence of_reaction(const ReactionRow& row, const Pieces&... fault) {
     return Sentence{"reaction \"", row.event, "\" -> \"", row.target.operation, "\"", fault...};
 }
 
-/// Events that must be heard, are: by rows that nobody can disconnect.
+/// Checks that each event that must be heard has enough rows that nobody can disconnect.
 constexpr Sentence check_heard_events(const MachineView& m, const TableIndexView& r) {
     const auto must_be_heard = [](const Facet& facet) { return facet.least_reactions != 0; };
     for (std::size_t c = 0; c < m.components.size(); ++c) {
@@ -33,7 +33,7 @@ constexpr Sentence check_heard_events(const MachineView& m, const TableIndexView
     return {};
 }
 
-/// The handle of row `i`, if it names one.
+/// Checks the handle of row `i`, if it names one.
 constexpr Sentence check_handle(const MachineView& m, const TableIndexView& r, std::size_t i) {
     const ReactionRow& row = m.reactions[i];
     if (row.handle.empty())
@@ -54,7 +54,7 @@ constexpr Sentence check_handle(const MachineView& m, const TableIndexView& r, s
     return {};
 }
 
-/// No other row tells the EventWait that is the target of row `i`.
+/// Checks that no other row tells the EventWait that is the target of row `i`.
 constexpr Sentence check_wait(const MachineView& m, const TableIndexView& r, std::size_t i) {
     const ReactionRow& row = m.reactions[i];
     if (row.target.synchronous)
@@ -66,7 +66,7 @@ constexpr Sentence check_wait(const MachineView& m, const TableIndexView& r, std
     return {};
 }
 
-/// Every handle and every wait that is not optional stands in a row.
+/// Checks that a row names every handle and every wait that is not optional.
 constexpr Sentence check_handles_and_waits(const MachineView& m, const TableIndexView& r) {
     const auto must_be_named = [](const Facet& facet) {
         return facet.required && (facet.kind == FacetKind::handle || facet.kind == FacetKind::wait);

@@ -1,5 +1,5 @@
-// Checks of the section connections: both ends exist, point the right way, carry the same type; every input
-// has one writer; and inside an activity an order exists in which every component sees this cycle's values.
+// Checks of the section connections: both ends exist, have the right direction and the same type; every input
+// has one writer; each activity has an order in which every component sees this cycle's values.
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet::checks {
 
-/// Far more than a board has room for, and so few that no sum of the plan wraps.
+/// Far above any board's memory, and small enough that no sum of the plan overflows.
 inline constexpr std::size_t most_buffered = 1 << 24;
 
 template <class... Pieces>
@@ -39,7 +39,7 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
     return {};
 }
 
-/// Of a row that scales: the ends are numbers with a fraction, and the factor fits what their units say.
+/// Checks a row that scales: the ends are floating-point numbers, and the factor fits their units.
 constexpr Sentence check_scale(const ConnectionRow& row, const Facet& from, const Facet& to) {
     if (row.buffered || to.type->kind != ValueKind::real || !to.type->arithmetic)
         return of_connection(row, ": ", row.buffered ? "a buffer" : to.type->name,
@@ -60,8 +60,8 @@ constexpr Sentence check_scale(const ConnectionRow& row, const Facet& from, cons
                          "; write converted, and the compiler knows it");
 }
 
-/// An end that states no unit takes any: a generic component and a raw signal cannot know; --plan lists them.
-/// "1" is the unit of what has none and must not meet one.
+/// Checks the units. An end without a unit accepts any: a generic component and a raw signal cannot know it;
+/// --plan lists them. "1" is the unit of a dimensionless value, and differs from no unit.
 constexpr Sentence check_units(const ConnectionRow& row, const Facet& from, const Facet& to) {
     if (is_scaled(row) || row.says_scale) return check_scale(row, from, to);
     if (from.unit == to.unit || from.unit.empty() || to.unit.empty()) return {};
@@ -98,7 +98,7 @@ constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view op
     return {};
 }
 
-/// A row between two rates: both ends have a period, and one is a multiple of the other.
+/// Checks a row between two rates: both ends have a period, and one is a multiple of the other.
 constexpr Sentence check_transition(const MachineView& m, const ConnectionRow& row, const Facet& to,
                                     std::size_t writer, std::size_t reader) {
     if (row.transition == RateTransition::unsaid) return {};
@@ -157,7 +157,8 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
     return {};
 }
 
-/// A row against those before it: an input has one writer at a time, a port not too many buffers.
+/// Checks a row against the rows before it: an input has one writer at a time, and a port has a limited
+/// number of buffers.
 constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, std::size_t x) {
     const ConnectionRow& row = m.connections[x];
     const Link& link = r.connections[x];
@@ -185,7 +186,7 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
     return {};
 }
 
-/// Fills the ends of each connection.
+/// Checks each connection; fills its ends.
 constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
     r.connections_into.clear();
     r.connections_from.clear();
@@ -228,12 +229,12 @@ constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
 }
 
 /// Orders the components of each activity by data flow (thesis 3.2: the kernel's data-flow order). A delayed
-/// row turns round: its reader runs before its writer, so that it sees the last cycle's value, always.
+/// row is reversed: its reader runs before its writer, and so always sees the last cycle's value.
 class DataFlowOrder {
 public:
     constexpr DataFlowOrder(const MachineView& m, const TableIndexView& r) noexcept : m_{m}, r_{r} {}
 
-    /// `begin`: where the activity's components stand in r.in_order.
+    /// `begin`: the index of the activity's first component in r.in_order.
     constexpr Sentence order(std::size_t activity, std::size_t begin) {
         activity_ = activity;
         members_.used = 0;
@@ -245,7 +246,7 @@ public:
             for (std::size_t row = first_row(reader); row != nowhere; row = next_row(row))
                 ++r_.waits_for[after(row)];
         for (std::size_t placed = 0; placed < members_.size(); ++placed) {
-            // Of those that may run now, the first one of the activity's row.
+            // The first component of the activity's row that is ready.
             std::size_t next = 0;
             while (next < members_.size() && (!waits(members_[next]) || r_.waits_for[members_[next]] != 0))
                 ++next;
@@ -279,7 +280,7 @@ private:
         return writer(row) != reader(row) && r_.activity[writer(row)] == activity_ &&
                r_.activity[reader(row)] == activity_;
     }
-    /// The rows that order the reader and another, one by one.
+    /// Iterates over the rows that order the reader and another component.
     [[nodiscard]] constexpr std::size_t first_row(std::size_t reader) const noexcept {
         return ordering(r_.connections_into.first[reader], r_.connections_into);
     }
@@ -310,13 +311,13 @@ private:
         return {};
     }
 
-    /// Walks against the flow from a member that waits until it meets itself: every row on the way is one of
-    /// the cycle.
+    /// Returns the fault of a cycle: walks against the flow from a waiting member until it meets itself.
+    /// Every row on the way is in the cycle.
     [[nodiscard]] constexpr Sentence cycle() const {
         std::size_t first = 0;
         while (!waits(members_[first])) ++first;
         std::size_t at = members_[first];
-        // After as many steps as there are members the walk is inside a cycle, whatever led to it.
+        // After as many steps as there are members the walk is inside a cycle, wherever it started.
         for (std::size_t steps = 0; steps < members_.size(); ++steps) at = before(row_into(at));
         const std::size_t met = at;
         std::size_t last = row_into(at);
@@ -332,7 +333,7 @@ private:
                              m_.activities[activity_].name, "\" (", way,
                              "); add delayed to the row whose reader shall see the last cycle's value");
     }
-    /// A row after which the component waits for one that waits too.
+    /// Returns a row by which the component waits for another waiting one.
     [[nodiscard]] constexpr std::size_t row_into(std::size_t component) const noexcept {
         for (const std::size_t reader : members_)
             for (std::size_t row = first_row(reader); row != nowhere; row = next_row(row))

@@ -1,5 +1,5 @@
-// Response times of activities whose periods begin on one grid, with phases: who never begins together does
-// not hold each other up as if they did (Tindell 1994; Palencia and Gonzalez Harbour 1998, with one
+// Response times of activities whose periods begin on one grid, with phases: activities that never begin
+// together delay each other less than if they did (Tindell 1994; Palencia and Gonzalez Harbour 1998, with one
 // transaction).
 #pragma once
 
@@ -11,10 +11,10 @@ namespace tappet {
 
 namespace analysis {
 
-/// The busy period begins with an arrival of `first`; those on the grid then come as soon after it as their
-/// phases and the common divisor of their periods let them, all others with it.
+/// A busy period that begins with an arrival of `first`. Tasks on the grid then arrive as soon as their
+/// phases and the common divisor of their periods allow; all other tasks arrive together with `first`.
 struct BusyPeriod {
-    std::span<const TaskTiming> tasks; ///< up to the own one, which is the last
+    std::span<const TaskTiming> tasks; ///< up to the analysed task, which is the last
     const TaskTiming& first;
 
     [[nodiscard]] constexpr std::int64_t offset_of(const TaskTiming& task) const noexcept {
@@ -35,7 +35,8 @@ struct BusyPeriod {
                             Span{task.budget_ns};
         return sum;
     }
-    /// The worst response of the own jobs in it, the first of which comes after `offset`; none: no end.
+    /// Returns the worst response of the analysed task's jobs in it, the first of which arrives after
+    /// `offset`; none: the busy period is unbounded.
     [[nodiscard]] constexpr Span worst(std::int64_t offset, std::int64_t& steps_left) const noexcept {
         const TaskTiming& own = tasks.back();
         const Span blocking{own.blocking_ns}, budget{own.budget_ns};
@@ -43,7 +44,7 @@ struct BusyPeriod {
         Span end{0};
         for (std::int64_t job = 0;; ++job) {
             const std::int64_t arrival = offset + job * own.period_ns;
-            // What was there before the job must last until it comes: else it begins a busy period of its
+            // Earlier demand must last until the job arrives: otherwise the job begins a busy period of its
             // own.
             const Span before =
                 fixed_point(Span{std::max<std::int64_t>(1, end.ns)}, steps_left, [&](Span window) {
@@ -64,8 +65,8 @@ struct BusyPeriod {
 
 } // namespace analysis
 
-/// As response_time(), which bounds it, with what the phases say. Own periods that have too many places
-/// against another one are not looked into.
+/// Like response_time(), which is an upper bound, but uses the phases. Returns that bound when the task's
+/// period has too many places against another task's.
 constexpr Response response_time_on_grid(std::span<const TaskTiming> by_priority_highest_first,
                                          std::size_t index) noexcept {
     constexpr std::int64_t most_places = 64;

@@ -1,5 +1,5 @@
 // Checks of the uses rows: every call of a component reaches a method or a command of the same signature,
-// from an activity where it may; and of the components that see the machine.
+// from a permitted activity. Also checks the components that see the machine.
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
@@ -7,11 +7,11 @@
 
 namespace tappet::checks {
 
-/// Of the activity that compiles what is loaded: what the compiler takes, and what called it.
+/// Stack of the activity that compiles loaded scripts: the compiler's need plus that of its callers.
 inline constexpr std::size_t compiling_stack_bytes = script_stack_bytes + 64 * 1024;
 
-/// A component that executes lines of the script language: it compiles them, and has a mailbox of its own
-/// into each engine.
+/// Checks the component that executes lines of the script language: it compiles them, and has a mailbox of
+/// its own into each engine.
 constexpr Sentence check_interpreter(const MachineView& m, const TableIndexView& r) {
     std::size_t first = nowhere;
     for (std::size_t c = 0; c < m.components.size(); ++c) {
@@ -36,8 +36,8 @@ constexpr Sentence check_interpreter(const MachineView& m, const TableIndexView&
     return {};
 }
 
-/// The components that see the machine share one mailbox into each engine, which has one sending thread; and
-/// what they do for somebody outside must not delay a deadline.
+/// Checks the components that see the machine. They share one mailbox into each engine, which has one sending
+/// thread; and their work for an outside user must not delay a deadline.
 constexpr Sentence check_observers(const MachineView& m, const TableIndexView& r) {
     std::size_t first = nowhere;
     for (std::size_t c = 0; c < m.components.size(); ++c) {
@@ -60,7 +60,8 @@ constexpr Sentence of_use(const ReactionRow& row, const Pieces&... fault) {
     return Sentence{"use \"", row.event, "\" -> \"", row.target.operation, "\"", fault...};
 }
 
-/// Finds both ends of a uses row. What each is called in a message follows from what the other is.
+/// Finds both ends of a uses row. The kind of each end, as a message names it, follows from the kind of the
+/// other.
 constexpr Sentence resolve_use(const MachineView& m, const TableIndexView& r, const ReactionRow& row,
                                Link& link) {
     const auto kind_of = [&m](End end) {
@@ -108,7 +109,7 @@ constexpr Sentence check_use_kinds(const ReactionRow& row, const Facet& from, co
     return {};
 }
 
-/// What waits for something runs in no activity that has a deadline (thesis 4.5.2).
+/// Checks that no command that may block runs in an activity with a deadline (thesis 4.5.2).
 constexpr Sentence check_blocking_commands(const MachineView& m, const TableIndexView& r) {
     for (std::size_t c = 0; c < m.components.size(); ++c)
         for (const Facet& facet : m.components[c].type->facets)
@@ -131,7 +132,7 @@ constexpr Sentence check_sent_by(const MachineView& m, const TableIndexView& r, 
     return {};
 }
 
-/// Fills the ends of each uses row.
+/// Checks each uses row; fills its ends.
 constexpr Sentence check_uses(const MachineView& m, TableIndexView r) {
     if (Sentence fault = check_blocking_commands(m, r); !fault.empty()) return fault;
     for (std::size_t i = 0; i < m.reactions.size(); ++i) {

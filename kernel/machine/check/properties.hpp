@@ -9,7 +9,7 @@
 
 namespace tappet::checks {
 
-/// What is said of a row: which one, and what is wrong with it.
+/// Begins a fault with the component it is about.
 template <class... Pieces> constexpr Sentence of_component(std::string_view name, const Pieces&... fault) {
     return Sentence{"component \"", name, "\"", fault...};
 }
@@ -17,7 +17,7 @@ template <class... Pieces> constexpr Sentence of_activity(std::string_view name,
     return Sentence{"activity \"", name, "\"", fault...};
 }
 
-/// Whether the value is of the property's kind; a whole number is a real one too.
+/// Whether the value is of the property's kind; a whole number is also a real number.
 constexpr bool of_kind(const PropertyOperations& wanted, const PropertySetting& setting,
                        TypeId element) noexcept {
     using Kind = PropertySetting::Kind;
@@ -34,14 +34,14 @@ constexpr bool fits(const Facet& property, const PropertySetting& setting) {
     return true;
 }
 
-/// In the unit of a range: seconds for a time.
+/// Returns the value in the unit of a range: seconds for a time.
 constexpr double value_of(const PropertySetting& setting) noexcept {
     if (setting.kind == PropertySetting::Kind::real) return setting.real;
     const auto integer = static_cast<double>(setting.integer);
     return setting.kind == PropertySetting::Kind::duration ? integer * 1e-9 : integer;
 }
 
-/// A value as its row spells it.
+/// Returns a value in the spelling of its row.
 constexpr Sentence value_text(const PropertySetting& setting) {
     using Kind = PropertySetting::Kind;
     switch (setting.kind) {
@@ -70,7 +70,7 @@ constexpr std::string_view kind_text(PropertySetting::Kind kind) noexcept {
     return "a time";
 }
 
-/// What the property is, and how its row would be written.
+/// Says what the property is, and how to write its row.
 constexpr Sentence wanted_text(const PropertyOperations& wanted) {
     using Kind = PropertySetting::Kind;
     if (wanted.is_list) {
@@ -102,7 +102,7 @@ constexpr Sentence unknown_property(const ComponentRow& row, std::string_view na
     return text;
 }
 
-/// Whether a port or a property of that type can hold the number exactly, but for the rounding of a float.
+/// Whether a port or a property of that type can hold the number exactly, except for the rounding of a float.
 constexpr bool holds(const TypeTag& type, double number) noexcept {
     if (type.kind == ValueKind::real) {
         constexpr double most = std::numeric_limits<float>::max();
@@ -118,7 +118,7 @@ constexpr bool holds(const TypeTag& type, double number) noexcept {
                        : number == static_cast<double>(static_cast<std::int64_t>(number));
 }
 
-/// Of one value, which is of the kind that is wanted: too large, too small or too long.
+/// Checks one value of the wanted kind: too large, too small or too long.
 constexpr Sentence check_value(const ComponentRow& row, std::string_view name, const Facet& facet,
                                const PropertySetting& setting) {
     using Kind = PropertySetting::Kind;
@@ -227,7 +227,8 @@ constexpr Sentence check_setters(const ComponentRow& row) {
     return {};
 }
 
-/// A property's dots are those of its bags, and all properties together fit one transaction.
+/// Checks that only bags put dots into a property's name, and that all properties together fit one
+/// transaction.
 constexpr Sentence check_bags(const ComponentRow& row) {
     std::size_t properties = 0;
     std::size_t bytes = 0;

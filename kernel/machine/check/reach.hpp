@@ -1,5 +1,5 @@
-// Who may come by where: the activities that run functions of each component, from row to row, and whether
-// what they call there is safe in them.
+// Checks which activities run functions of each component, following the rows, and whether their calls there
+// are safe.
 #pragma once
 
 #include "kernel/machine/check/events.hpp"
@@ -7,15 +7,15 @@
 
 namespace tappet::checks {
 
-/// Whether row `i` runs code of its target's component in the activity of whoever comes there.
+/// Whether row `i` runs code of its target's component in the caller's activity.
 constexpr bool runs_in_caller(const MachineView& m, const TableIndexView& r, std::size_t i) noexcept {
     return m.reactions[i].kind == ReactionKind::when
                ? m.reactions[i].target.synchronous
                : facet_at(m, r.reactions[i].to).kind == FacetKind::method;
 }
 
-/// Fills the reach: which activities run functions of each component, and so may emit its events. Its own
-/// does, and whoever calls its operations and methods without a message.
+/// Fills the reach: the activities that run functions of each component, and so may emit its events. These
+/// are its own activity and every one that calls its operations and methods without a message.
 constexpr void find_reach(const MachineView& m, TableIndexView r) {
     for (std::size_t c = 0; c < m.components.size(); ++c) r.reach[c] = std::uint64_t{1} << r.activity[c];
     bool grown = true;
@@ -31,8 +31,9 @@ constexpr void find_reach(const MachineView& m, TableIndexView r) {
     }
 }
 
-/// What one activity calls in another although the row's two components are run by the same one: it came to
-/// the first through an operation or a method that is any_thread.
+/// Checks calls from one activity into another that the rows do not show: the same activity runs both
+/// components of the row, but another activity entered the first one through an operation or a method that is
+/// any_thread.
 constexpr Sentence check_reach(const MachineView& m, TableIndexView r) {
     if (m.activities.size() >= 64) return {}; // refused by the check of time
     find_reach(m, r);

@@ -1,4 +1,4 @@
-// Checks of the section reactions: events and operations exist and fit, a synchronous call stays inside its
+// Checks of the section reactions: events and operations exist and fit; a synchronous call stays inside its
 // activity or is declared safe.
 #pragma once
 
@@ -6,10 +6,10 @@
 
 namespace tappet::checks {
 
-/// So few that the mailbox of all rows from one activity to another counts them in 32 bits.
+/// A limit that keeps the mailbox of all rows from one activity to another within 32 bits.
 inline constexpr std::uint32_t most_waiting = 1 << 16;
 
-/// Fills the ends of a row.
+/// Checks a row; fills its ends.
 constexpr Sentence check_reaction(const MachineView& m, TableIndexView r, std::size_t i) {
     const ReactionRow& row = m.reactions[i];
     Link& link = r.reactions[i];

@@ -1,5 +1,5 @@
-// Will every deadline be met? Response-time analysis of threads under fixed priorities on one core: integer
-// nanoseconds, so that the compiler can answer before the machine exists.
+// Schedulability: response-time analysis of threads under fixed priorities on one core. It uses integer
+// nanoseconds, so that the compiler can decide whether every deadline is met before the machine exists.
 #pragma once
 
 #include "kernel/base/response.hpp"
@@ -9,29 +9,30 @@
 
 namespace tappet {
 
-/// One periodic or sporadic load on one core. period_ns: the least time between two arrivals. jitter_ns: the
-/// longest from arrival to release. blocking_ns: the longest that something of lower priority holds it up.
+/// One periodic or sporadic load on one core. period_ns: the shortest time between two arrivals. jitter_ns:
+/// the longest time from arrival to release. blocking_ns: the longest delay by anything of lower priority.
 struct TaskTiming {
     std::int64_t period_ns = 0;
     std::int64_t budget_ns = 0;
     std::int64_t deadline_ns = 0;
     std::int64_t jitter_ns = 0;
     std::int64_t blocking_ns = 0;
-    std::int64_t phase_ns = -1; ///< of its arrivals on the grid that all periods have; below nought: on none
+    std::int64_t phase_ns = -1; ///< of its arrivals on the grid of all periods; negative: not on the grid
 
     [[nodiscard]] constexpr bool is_on_grid() const noexcept { return phase_ns >= 0 && jitter_ns == 0; }
 };
 
-/// The job of a task that takes longest. It is the last of `jobs` of its own that fill, with all that is of
-/// higher priority, a window that began with the first one's release.
+/// The job of a task with the worst response. It is the last of `jobs` of its own jobs; with all
+/// higher-priority load they fill a window that begins with the first one's release.
 struct WorstJob {
     Response response{};
     std::int64_t window_ns = 0;
     std::int64_t jobs = 1;
 };
 
-/// Of the task at `index`, of tasks on one core, highest priority first. Deadlines may exceed periods: every
-/// job of the level's busy period is looked at (Joseph and Pandya 1986; Audsley 1993; Lehoczky 1990).
+/// Returns the worst job of the task at `index`; the tasks run on one core, highest priority first. Deadlines
+/// may exceed periods: examines every job of the level's busy period (Joseph and Pandya 1986; Audsley 1993;
+/// Lehoczky 1990).
 constexpr WorstJob worst_job(std::span<const TaskTiming> by_priority_highest_first,
                              std::size_t index) noexcept {
     using analysis::Span;
@@ -56,7 +57,7 @@ constexpr WorstJob worst_job(std::span<const TaskTiming> by_priority_highest_fir
         }
         return sum;
     };
-    // At least 1 ns: an empty window holds no arrival, and a job of no length waits all the same.
+    // At least 1 ns: an empty window holds no arrival, yet a job of zero length waits too.
     const auto not_empty = [](Span start) {
         return start.exists() ? Span{std::max<std::int64_t>(1, start.ns)} : start;
     };
@@ -71,7 +72,7 @@ constexpr WorstJob worst_job(std::span<const TaskTiming> by_priority_highest_fir
     Span end{};
     for (std::int64_t job = 0; job < jobs; ++job) {
         const Span demand = blocking + (job + 1) * budget;
-        // A job ends no earlier than the one before it and its own budget: a start nearer to the fixed point.
+        // A job ends no earlier than the previous one plus its own budget: a start nearer to the fixed point.
         const Span start = not_empty(job == 0 ? demand : end + budget);
         end = analysis::fixed_point(start, steps_left,
                                     [&](Span window) { return demand + interference(window); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the orderly stop takes by what the table claims, against what the board allows.
+// The duration of the orderly stop, as the table claims it, against the limit of the board.
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
@@ -7,18 +7,18 @@
 
 namespace tappet::checks {
 
-/// From the request to safe outputs.
+/// The parts of a stop, from the request to safe outputs.
 struct StopPromise {
-    Duration begins{};     ///< the supervisor, which is not real-time
-    Duration may_block{};  ///< for what is not real-time, together
-    Duration responses{};  ///< of each real-time activity two: the cycle that it is in, and its stop
-    Duration behaviours{}; ///< to their final states, of each activity that has some
+    Duration begins{};     ///< the supervisor's, which is not real-time
+    Duration may_block{};  ///< for all activities that are not real-time, together
+    Duration responses{};  ///< two for each real-time activity: the running cycle, and its stop
+    Duration behaviours{}; ///< reaching final states, for each activity that has behaviours
     [[nodiscard]] constexpr Duration sum() const noexcept {
         return begins + may_block + responses + behaviours;
     }
 };
 
-/// Of an accepted table, one activity after the other. `worst_response_ns`: of each activity.
+/// Computes the promise of an accepted table. `worst_response_ns`: of each activity.
 constexpr StopPromise promised_stop(const MachineView& m, const Board& board,
                                     std::span<const std::size_t> activity_of,
                                     std::span<const std::int64_t> worst_response_ns) {
@@ -39,12 +39,12 @@ constexpr StopPromise promised_stop(const MachineView& m, const Board& board,
     return promise;
 }
 
-/// After the response times.
+/// Checks the promise against stop_within; needs the response times.
 constexpr Sentence check_stop(const MachineView& m, const Board& board, const TableIndexView& r) {
     const StopPromise promise = promised_stop(m, board, r.activity, r.worst_response_ns);
     if (promise.sum() <= board.stop_within) return {};
     const auto in_ms = [](Duration time) { return Sentence{(time + 999'999ns) / 1ms, " ms"}; };
-    // A quarter of it is for the beginning.
+    // A quarter of stop_within is for the beginning.
     const Duration enough = (promise.sum() - promise.begins) / 3 * 4;
     return Sentence{"board \"",
                     board.name,

@@ -1,5 +1,5 @@
-// Urgency and time: priorities follow from deadlines (deadline monotonic; Leung and Whitehead 1982), and
-// response-time analysis says on each processor whether every deadline holds with the declared budgets.
+// Urgency and time: priorities follow from deadlines (deadline monotonic; Leung and Whitehead 1982). For each
+// processor, response-time analysis decides whether every deadline holds with the declared budgets.
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
@@ -19,11 +19,11 @@ constexpr int processor_of(const Board& board, const Binding& binding, std::stri
     return board.default_processor;
 }
 
-/// A number of nanoseconds as an engineer reads it.
+/// Formats nanoseconds in us, as engineers read them.
 constexpr Sentence in_us(std::int64_t ns) { return Sentence{ns / 1000, " us"}; }
 
-/// Fills the ranks and their order: the shortest deadline first, then the order of the table; what is not
-/// real-time last.
+/// Fills the ranks and their order: real-time activities by shortest deadline, then by the order of the
+/// table; activities that are not real-time come last.
 constexpr void rank_activities(const MachineView& m, TableIndexView r) {
     const auto more_urgent = [&m](std::size_t a, std::size_t b) {
         const ActivityRow& x = m.activities[a];
@@ -40,8 +40,8 @@ constexpr void rank_activities(const MachineView& m, TableIndexView r) {
     }
 }
 
-/// Of each activity, whether it runs by its period alone: no timer of a component, and no time-out of a
-/// behaviour, wakes it off the grid. `activity_of`: of each component.
+/// Returns, for each activity, whether it runs by its period alone: no timer of a component, and no time-out
+/// of a behaviour, wakes it off the grid. `activity_of`: of each component.
 constexpr std::array<bool, max_activities> find_on_grid(const MachineView& m,
                                                         std::span<const std::size_t> activity_of) {
     std::array<bool, max_activities> on_grid{};
@@ -58,7 +58,8 @@ constexpr std::array<bool, max_activities> find_on_grid(const MachineView& m,
     return on_grid;
 }
 
-/// Of one activity that is real-time, by the ranks and the processors of all; deadlines are not looked at.
+/// Returns the worst response of one real-time activity, given the ranks and the processors of all. Ignores
+/// deadlines.
 constexpr Response worst_response(const MachineView& m, std::span<const std::size_t> rank,
                                   std::span<const int> processors, std::span<const bool> on_grid,
                                   std::size_t a) {
@@ -77,7 +78,7 @@ constexpr Response worst_response(const MachineView& m, std::span<const std::siz
     return response_time_on_grid(std::span{tasks}.first(count), count - 1);
 }
 
-/// Of all activities of an accepted table; nought: it is not real-time.
+/// Returns the worst response of each activity of an accepted table; 0: it is not real-time.
 constexpr std::array<std::int64_t, max_activities> worst_responses_ns(const MachineView& m,
                                                                       const Board& board,
                                                                       const Binding& binding,
@@ -92,7 +93,7 @@ constexpr std::array<std::int64_t, max_activities> worst_responses_ns(const Mach
     return worst;
 }
 
-/// Fills the worst response times.
+/// Checks every deadline; fills the worst response times.
 constexpr Sentence check_schedulability(const MachineView& m, const Board& board, const Binding& binding,
                                         TableIndexView r) {
     if (m.activities.size() > max_activities)

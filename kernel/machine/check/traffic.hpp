@@ -1,4 +1,4 @@
-// Whether what crosses each device of the board comes through in time, by the drivers' own analyses.
+// Checks by the drivers' own analyses whether the traffic on each device of the board arrives in time.
 #pragma once
 
 #include "kernel/machine/check/board.hpp"
@@ -6,9 +6,8 @@
 
 namespace tappet::checks {
 
-/// How the component drives its device; without a name: it is reached by an address, or its driver has no
-/// deadline.
-/// `worst_ns`: the response of each activity.
+/// Returns how the component uses its device. An empty device name: the device is reached by an address, or
+/// its driver has no deadline. `worst_ns`: the response of each activity.
 constexpr DeviceUse use_of_device(const MachineView& m, const Board& board, const Binding& binding,
                                   const TableIndexView& r, std::span<const std::int64_t> worst_ns,
                                   std::size_t component) {
@@ -21,7 +20,7 @@ constexpr DeviceUse use_of_device(const MachineView& m, const Board& board, cons
     return {device->name, device->facts, Duration{worst_ns[activity]}};
 }
 
-/// Once the worst responses of the activities are known.
+/// Checks the traffic; needs the worst responses of the activities.
 constexpr Sentence check_traffic(const MachineView& m, const Board& board, const Binding& binding,
                                  const TableIndexView& r) {
     for (std::size_t c = 0; c < m.components.size(); ++c) {

@@ -1,5 +1,6 @@
-// Units of measurement as the interfaces spell them: whether two of them mean the same, so that no connection
-// hands litres a minute to whoever reads millilitres a second (ISO 80000-1; symbols of the SI brochure).
+// Units of measurement as the interfaces spell them. Compares two of them, so that no connection passes
+// litres per minute to a reader that expects millilitres per second (ISO 80000-1; symbols of the SI
+// brochure).
 #pragma once
 
 #include "kernel/component/facet.hpp"
@@ -16,7 +17,7 @@ struct Unit {
     static constexpr std::size_t quantities = 8; ///< m, kg, s, A, K, rad, pieces, ratio
     std::array<int, quantities> powers{};
     double size = 1;
-    bool known = true; ///< false: no unit that can be taken apart, a word such as "picks"
+    bool known = true; ///< false: not a unit that can be parsed, but a word such as "picks"
 
     [[nodiscard]] constexpr bool same_kind(const Unit& other) const noexcept {
         return powers == other.powers;
@@ -53,7 +54,8 @@ struct Prefix { char text; double size; };
 inline constexpr Prefix prefixes[] = {{'u', 1e-6}, {'m', 1e-3}, {'c', 1e-2}, {'d', 1e-1}, {'k', 1e3}, {'M', 1e6}};
 // clang-format on
 
-/// One factor: a symbol with its prefix and its power, "mm2". False: it is none.
+/// Multiplies by one factor: a symbol with its prefix and its power, "mm2". Returns false when the symbol is
+/// unknown.
 constexpr bool multiply(Unit& unit, std::string_view factor, int sign) noexcept {
     int power = 1;
     if (!factor.empty() && factor.back() >= '2' && factor.back() <= '9') {
@@ -78,7 +80,7 @@ constexpr bool multiply(Unit& unit, std::string_view factor, int sign) noexcept 
 
 } // namespace units_detail
 
-/// "rpm", "rev/min", "mm/s2", "N m", "deg/s". What stands behind a stroke divides.
+/// Parses "rpm", "rev/min", "mm/s2", "N m", "deg/s". Every factor after a slash divides.
 constexpr Unit parse_unit(std::string_view text) noexcept {
     Unit unit;
     int sign = 1;
@@ -94,11 +96,11 @@ constexpr Unit parse_unit(std::string_view text) noexcept {
 constexpr std::string_view in_unit(const Facet& facet) noexcept {
     return facet.unit.empty() ? "no unit" : facet.unit;
 }
-/// Whether a factor leads from one unit to the other.
+/// Whether a factor converts one unit to the other.
 constexpr bool converts(const Unit& from, const Unit& to) noexcept {
     return from.known && to.known && from.same_kind(to);
 }
-/// What a value is multiplied by on its way along a row that was accepted.
+/// Returns the factor that an accepted row applies to each value.
 constexpr double factor_of(const ConnectionRow& row, const Facet& from, const Facet& to) noexcept {
     if (row.scale != 0) return row.scale;
     return row.converted ? parse_unit(from.unit).size / parse_unit(to.unit).size : 1.0;

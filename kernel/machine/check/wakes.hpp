@@ -1,12 +1,12 @@
-// What wakes a sporadic activity: each step() and work() that it runs must be led to by a row, since its
-// timers and its behaviours' waiting run nothing but themselves.
+// Checks the wakes of sporadic activities: a row must lead to each step() and work() that one runs, since its
+// timers and its behaviours' waits run nothing but themselves.
 #pragma once
 
 #include "kernel/machine/check/behaviours.hpp"
 
 namespace tappet::checks {
 
-/// Whether a row leads to cycles of the activity in which its components are stepped.
+/// Whether a row causes cycles of the activity in which its components are stepped.
 constexpr bool is_woken(const MachineView& m, const TableIndexView& r, std::size_t activity) noexcept {
     for (std::size_t x = 0; x < m.connections.size(); ++x)
         if (m.connections[x].wakes_reader && r.activity[r.connections[x].to.component] == activity)
@@ -17,7 +17,7 @@ constexpr bool is_woken(const MachineView& m, const TableIndexView& r, std::size
             m.reactions[i].kind == ReactionKind::uses && facet_at(m, link.to).kind == FacetKind::command;
         const bool is_told = m.reactions[i].kind == ReactionKind::when && !m.reactions[i].target.synchronous;
         if ((is_told || is_command) && r.activity[link.to.component] == activity) return true;
-        // A command that has ended wakes its sender.
+        // A finished command wakes its sender.
         if (is_command && r.activity[link.from.component] == activity) return true;
     }
     for (const BehaviourRow& row : m.behaviours)
@@ -32,7 +32,7 @@ constexpr Sentence check_wakes(const MachineView& m, const TableIndexView& r) {
         const ActivityRow& row = m.activities[a];
         if (row.trigger != Trigger::on_work || is_woken(m, r, a)) continue;
         std::size_t stepped = nowhere;
-        bool has_driver = false; // which listens to its device itself
+        bool has_driver = false; // a driver listens to its device itself
         for (const auto& name : row.runs) {
             const std::size_t c = find_component(m, r.by_name, name);
             const ComponentType& type = *m.components[c].type;

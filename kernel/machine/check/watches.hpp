@@ -1,11 +1,11 @@
-// Checks of what watchdogs watch: something that exists, lives by itself, and runs elsewhere.
+// Checks of the targets of watchdogs: the target exists, lives by itself, and runs in another activity.
 #pragma once
 
 #include "kernel/machine/check/components.hpp"
 
 namespace tappet::checks {
 
-/// The limit that the row sets; nothing: the component's own.
+/// Returns the limit that the row sets; zero: the component's own.
 constexpr Duration limit_of(const ComponentRow& row) noexcept {
     for (const PropertyRow& setting : row.settings)
         if (setting.name == "limit") return Duration{setting.setting.integer};
@@ -26,7 +26,7 @@ constexpr Sentence check_watched_activity(const MachineView& m, const ComponentR
     return {};
 }
 
-/// After the ends of the connections are known.
+/// Checks a watched output; needs the ends of the connections.
 constexpr Sentence check_watched_output(const MachineView& m, TableIndexView r, const ComponentRow& row,
                                         End output) {
     if (facet_at(m, output).kind != FacetKind::output)

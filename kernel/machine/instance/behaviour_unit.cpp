@@ -1,4 +1,4 @@
-// Gives a unit of behaviour its memory, and tells what failed in it.
+// Places a unit of behaviour in its memory, and describes its faults.
 #include "kernel/machine/slots/behaviour_unit.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -20,7 +20,7 @@ T* make(detail::UnitLayout& layout, std::size_t count) noexcept {
     return memory;
 }
 
-/// Slots for the commands that an instance sends to other activities.
+/// Places slots for the commands that an instance sends to other activities.
 void aim_slots(const ScriptUnit& unit, UnitPart& part, detail::UnitLayout& layout, MachineInstance& machine,
                std::size_t driven) {
     const MachineView& table = machine.machine().table;
@@ -36,7 +36,7 @@ void aim_slots(const ScriptUnit& unit, UnitPart& part, detail::UnitLayout& layou
     });
 }
 
-/// The number of an event among those that a unit may hear, spelled as the script spells it.
+/// Returns the number of an event among those that a unit may hear, spelled as in the script.
 std::size_t find_event(std::span<const std::string_view> events, std::string_view name,
                        std::string_view driven) noexcept {
     for (std::size_t e = 0; e < events.size(); ++e)
@@ -50,7 +50,8 @@ Sentence too_small(std::string_view what) {
     return Sentence{"its ", what, " take more than the slot has room for; make the slot larger"};
 }
 
-/// Native code is made of tables that the C++ compiler checked; what it leaves of them is no program.
+/// Checks one type. Native code is generated from tables that the C++ compiler checked, and the tables that
+/// remain beside it are no program.
 Sentence check_type(const BehaviourType& type, bool is_native) {
     if (!is_native)
         if (Sentence fault = check_tables(type.tables); !fault.empty()) return fault;
@@ -59,8 +60,8 @@ Sentence check_type(const BehaviourType& type, bool is_native) {
     return is_native ? Sentence{} : check_references(type.machine);
 }
 
-/// Which event is which trigger of an instance's state machine. `routes`: its own, those of one event
-/// `instances` apart.
+/// Maps events to the triggers of an instance's state machine. `routes`: those of the instance; those of
+/// consecutive events are `instances` apart.
 Sentence route_events(const ResolvedView& view, std::span<const std::string_view> events,
                       std::string_view component, UnitRoute* routes, std::size_t instances) {
     for (std::size_t t = 0; t < view.triggers.size(); ++t) {

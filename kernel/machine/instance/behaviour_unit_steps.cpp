@@ -1,4 +1,4 @@
-// Steps what is in a unit of behaviour: what its engine calls.
+// Steps the machines and programs of a unit of behaviour; its engine calls these functions.
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/slots/behaviour_unit.hpp"
 
@@ -21,14 +21,14 @@ bool BehaviourUnit::is_quiet() const noexcept TAPPET_REALTIME {
     return true;
 }
 
-// The stop of a component leaves its machines in the final state; the next start leads from there.
+// The stop of a component leaves its machines in the final state; the next start continues from there.
 void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
     reported_ = false;
     may_begin_ = true;
     for (UnitPart& part : parts_) {
         if (part.row->parent != no_instance) continue;
         if (part.program != nullptr) {
-            // What a final state commanded last, and did not see the end of, is over.
+            // A command that a final state sent last, and whose end it did not see, is over.
             static_cast<void>(part.row->on_command ? part.program->stop() : part.program->start());
             continue;
         }
@@ -41,7 +41,7 @@ void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
     }
 }
 
-// In error it stays as it is, for the report.
+// A machine in error stays as it is, for the report.
 void BehaviourUnit::begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIME {
     part.begins_anew =
         part.machine->request_initial(now) == StateOutcome::ignored && !part.machine->in_error();
@@ -65,7 +65,7 @@ bool BehaviourUnit::step_programs(Time now) noexcept TAPPET_REALTIME {
         if (part.program == nullptr) continue;
         const bool ran = part.program->status() == ProgramStatus::running;
         part.program->step(now);
-        if (ran && is_at_rest(part)) await_rest(part); // whoever commanded it looks
+        if (ran && is_at_rest(part)) await_rest(part); // the sender of its command polls
     }
     limit_.until = never;
     return true;

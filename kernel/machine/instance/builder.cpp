@@ -1,4 +1,4 @@
-// Makes a machine out of its plan: constructs, places engines, wires every row and configures.
+// Builds a machine from its plan: constructs components, places engines, wires every row and configures.
 #include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/plan/scope_layout.hpp"
 
@@ -18,7 +18,7 @@ bool is_part_expected(const void* part) noexcept TAPPET_REALTIME {
     return state != ComponentState::stopped && state != ComponentState::inactive;
 }
 
-// One whose thread was given up is not active, but nobody wanted that.
+// An activity whose thread was given up is not active, but that was not requested.
 bool is_engine_expected(const void* self) noexcept TAPPET_REALTIME {
     const auto& engine = *static_cast<const Engine*>(self);
     return engine.is_active() ||
@@ -189,7 +189,7 @@ bool MachineBuilder::has_initial(std::size_t connection) const noexcept {
     return row.substitute.given || row.before_first.given;
 }
 
-/// Whether what a component writes leads back to the writer of one of its inputs, by rows that keep their
+/// Whether a component's outputs lead back to the writer of one of its inputs, by rows that keep their
 /// readers from starting.
 bool MachineBuilder::is_in_circle(const Link& input) const {
     constexpr std::size_t most = 64;
@@ -211,7 +211,7 @@ bool MachineBuilder::is_in_circle(const Link& input) const {
 
 void MachineBuilder::place_needed_inputs() {
     const MachineView& table = machine_.table;
-    // Not the value of the step before: the first step has none.
+    // Not for the value of the previous step: the first step has none.
     const auto awaits = [&](std::size_t x) {
         const Link& link = machine_.index.connections[x];
         for (std::size_t e = 0; e < table.extras->size(); ++e)

@@ -1,5 +1,5 @@
-// Makes a machine come to life: components constructed at their planned places, wired as the rows say,
-// configured. Used by MachineInstance::configure() and gone afterwards.
+// Builds a running machine: constructs components at their planned places, wires them as the rows say, and
+// configures them. MachineInstance::configure() uses it, and it is gone afterwards.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -9,17 +9,17 @@
 
 namespace tappet {
 
-/// Before arming, on one thread; not real-time.
+/// Used before arming, on one thread; not real-time.
 class MachineBuilder {
 public:
     MachineBuilder(MachineInstance& instance, const PropertyStore& store) noexcept
         : instance_{instance}, machine_{instance.machine()}, store_{store} {}
 
-    /// An error is the first component's refusal.
+    /// Builds the machine. The error is the first component's refusal.
     std::expected<void, Sentence> build(std::span<const ProvidedDevice> devices);
 
 private:
-    /// As they are by themselves.
+    /// Constructs objects with their default values.
     template <class T>
     std::span<T> make(const PlacesOf<T>& places) {
         const std::span<T> made = instance_.at(places);

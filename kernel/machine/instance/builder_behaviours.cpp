@@ -1,4 +1,5 @@
-// Places the behaviours that drive components, and the slots for more, and hands them to their engines.
+// Places the behaviours that drive components, and the slots for later ones, and passes them to their
+// engines.
 #include "kernel/machine/check/controls.hpp"
 #include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/instance/controlled.hpp"

@@ -1,4 +1,4 @@
-// Wires the connection rows: ports, rings, policies and who is woken; and the sections of other folders.
+// Wires the connection rows: ports, rings, policies and wakers; and the sections of other folders.
 #include "kernel/machine/instance/builder.hpp"
 
 #include "kernel/base/only_numbers.hpp"
@@ -10,7 +10,7 @@ namespace tappet {
 
 namespace {
 
-// The chain of an output's wakers ends after as many nodes as it has rows that wake.
+// The chain of an output's wakers has as many nodes as the output has rows that wake.
 void wake_chain(void* first) noexcept TAPPET_REALTIME {
     const Time cause = running_cause();
     for (auto* node = static_cast<WakerNode*>(first); node != nullptr; node = node->next) {
@@ -21,7 +21,7 @@ void wake_chain(void* first) noexcept TAPPET_REALTIME {
 
 } // namespace
 
-/// Of the constants that rows name: the compiler knows some of their values only.
+/// Checks the constants that rows name: the compiler knows only some of their values.
 Sentence MachineBuilder::check_constants() const {
     const auto is_good = [](const RowValue& value) {
         return value.constant == nullptr ||
@@ -88,7 +88,7 @@ void MachineBuilder::connect_row(std::size_t x) {
 
 void MachineBuilder::add_waker(std::size_t x) {
     const Link& link = machine_.index.connections[x];
-    // The newest node stands first and leads to the ones before it of the same output.
+    // The newest node is the first and leads to the earlier ones of the same output.
     WakerNode* before = nullptr;
     for (std::size_t j = 0; j < x; ++j)
         if (machine_.index.connections[j].from == link.from && machine_.table.connections[j].wakes_reader)

@@ -83,7 +83,7 @@ void MachineBuilder::place_lanes(std::size_t s, AsyncReaction& reaction) {
     }
     reaction.lanes = lanes.data();
     reaction.lane_of = lane_of;
-    // What a test or a plant emits in virtual time counts as the component's own.
+    // An emission from a test or a plant in virtual time counts as the component's own.
     if (instance_.clock().is_virtual())
         reaction.outside = lane_of[machine_.index.activity[row.event.component]];
     reaction.lane_count = static_cast<std::uint32_t>(count);
@@ -127,7 +127,7 @@ void MachineBuilder::bind_receiver(std::size_t s, AsyncReaction& reaction) {
         reaction.part =
             plan.part_of[find_component(machine_.table, machine_.table.behaviours[row.behaviour].component)];
         break;
-    case SubscriberKind::counter: break; // it is synchronous, and no receiver's
+    case SubscriberKind::counter: break; // it is synchronous and has no receiver
     case SubscriberKind::observer:
         reaction.run = &run_observer;
         reaction.object = new (instance_.at<ObserverBinding>(place.binding_at))

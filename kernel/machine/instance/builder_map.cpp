@@ -1,5 +1,5 @@
-// Gives a machine its map: laid at the beginning of memory that others may map, with the places of all live
-// values.
+// Places a machine's map, with the places of all live values, at the beginning of the memory that other
+// processes may map.
 #include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/map/types.hpp"
 #include "kernel/os/box.hpp"
@@ -15,7 +15,7 @@ namespace tappet {
 
 namespace {
 
-/// The records of one section, to be completed.
+/// Returns the records of one section, for completion.
 template <class Record>
 std::span<Record> records(std::span<std::byte> memory, const map::Section& section) noexcept {
     return {reinterpret_cast<Record*>(memory.data() + section.at), section.count};
@@ -84,8 +84,8 @@ void MachineBuilder::place_facet(End end, map::Facet& record) {
         const PortPlaces places = row.port->places(instance_.facet(end), row.kind == FacetKind::input);
         record.forced_at = offset_of(places.forced);
         record.forced_value_at = offset_of(places.forced_value);
-        // An input that several write by turns is seen at its writers: nobody outside knows which of them it
-        // reads. What is forced stands in the input itself.
+        // An input that several components write in turns is shown at its writers: nobody outside knows which
+        // of them it reads. A forced value is in the input itself.
         std::size_t writers = 0;
         if (machine_.table.extras->size() != 0 && row.kind == FacetKind::input)
             for (const Link& link : machine_.index.connections) writers += link.to == end ? 1u : 0u;

@@ -1,5 +1,5 @@
-// Wires the uses rows: method calls to methods, command objects to the engines that take them up. And the
-// mailboxes of engines, for messages and for commands.
+// Wires the uses rows: method calls to methods, command objects to the engines that accept them. Also places
+// the mailboxes of engines, for messages and for commands.
 #include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/plan/operations.hpp"
 

@@ -1,4 +1,4 @@
-// What a component whose row says controls("...") is given.
+// Access of a component with controls("...") in its row to what it controls.
 #pragma once
 
 #include "kernel/machine/slots/behaviour_slot.hpp"
@@ -7,18 +7,18 @@ namespace tappet {
 
 class MachineLife;
 
-/// Of the component that it controls; of one with a slot the unit is whatever is loaded there.
+/// The controlled component; when it has a slot, the unit is the one that is loaded there.
 struct Controlled {
     MachineLife* life = nullptr;
     std::size_t component = 0;
-    std::string_view name{};        ///< of the one that controls
-    const Engine* engine = nullptr; ///< that runs the behaviour, and the one that controls it
+    std::string_view name{};        ///< of the controlling component
+    const Engine* engine = nullptr; ///< runs the behaviour and the controlling component
     BehaviourSlot* slot = nullptr;
     BehaviourUnit* unit = nullptr;
     std::size_t part = 0;
-    const SlotTask* task = nullptr; ///< of the slot; null: it takes the first behaviour there
+    const SlotTask* task = nullptr; ///< of the slot; null: it controls the first behaviour there
 
-    /// Null: no behaviour is loaded. In that engine. Real-time.
+    /// Returns the active unit; null: no behaviour is loaded. In that engine. Real-time.
     [[nodiscard]] BehaviourUnit* active() const noexcept TAPPET_REALTIME {
         return slot != nullptr ? slot->active() : unit;
     }

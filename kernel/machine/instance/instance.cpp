@@ -1,4 +1,4 @@
-// A machine's beginning and end, and what is kept of it.
+// Configures a machine, requests its stop, and saves its properties.
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/machine/instance/builder.hpp"
 

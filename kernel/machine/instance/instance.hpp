@@ -1,5 +1,5 @@
-// A machine come to life in its static memory. It knows no thread; a world runs its engines. What may be done
-// with it stands in narrow views: its life, what it tells, and what its engines are asked to do.
+// A machine, placed in its static memory. It knows no thread; a world runs its engines. Its functions are
+// divided into narrow views: its life, its observation, and requests to its engines.
 #pragma once
 
 #include "kernel/machine/instance/life.hpp"
@@ -17,14 +17,14 @@
 
 namespace tappet {
 
-/// Why the machine was asked to stop: the first call wins.
+/// The reason of a stop request: the first call wins.
 struct StopRequest {
     StopReason reason = StopReason::none;
     std::uint64_t detail = 0; ///< stale input: the connection row; missed deadline: the function
     const Engine* from = nullptr;
 };
 
-/// Not real-time but for what says so. One machine has one instance at a time.
+/// Not real-time except where stated. One machine has one instance at a time.
 class MachineInstance : public PlacedMachine {
 public:
     MachineInstance(const AcceptedMachine& machine, os::Clock& clock) noexcept
@@ -32,30 +32,31 @@ public:
 
     // ---- before configure()
 
-    /// Where rows with a properties file have their values from.
+    /// Sets the store from which rows with a properties file read their values.
     void read_properties_from(const PropertyStore& store) noexcept {
         expect_unconfigured();
         store_ = store;
     }
-    /// The directory of the socket for browsers, instead of the board's. It outlives the instance.
+    /// Sets the directory of the socket for browsers, instead of the board's. The string must outlive the
+    /// instance.
     void browse_in(std::string_view directory) noexcept {
         expect_unconfigured();
         browsing_directory_ = directory;
     }
 
-    /// Another process will watch its engines: they lie in memory that both have, whether a component sees
-    /// the machine or not.
+    /// Another process will watch its engines: they are placed in memory that both share, whether or not a
+    /// component sees the machine.
     void be_guarded() noexcept {
         expect_unconfigured();
         is_guarded_ = true;
     }
 
-    /// Constructs, wires and configures. Again while the machine stands: all is built anew. An error is the
-    /// first component's refusal.
+    /// Constructs, wires and configures. A repeated call, while the machine is stopped, builds everything
+    /// anew. The error is the first component's refusal.
     std::expected<Standing, Sentence> configure(std::span<const ProvidedDevice> devices);
 
     [[nodiscard]] const PropertyStore& property_store() const noexcept { return store_; }
-    /// Empty: no socket.
+    /// Returns the directory of the socket for browsers; empty: no socket.
     [[nodiscard]] std::string_view browsing_directory() const noexcept {
         return browsing_directory_.empty() ? machine().board->browsing.directory : browsing_directory_;
     }
@@ -70,9 +71,10 @@ public:
         return observation_;
     }
 
-    // ---- the end
+    // ---- stopping
 
-    /// Where another process sees which stop was asked for; it outlives the instance. Before anything runs.
+    /// Places the stop request in memory in which another process can see it; the memory must outlive the
+    /// instance. Call it before anything runs.
     static constexpr std::size_t stop_request_bytes = 64;
     void keep_stop_request_in(std::span<std::byte, stop_request_bytes> shared) noexcept {
         auto* kept = reinterpret_cast<KeptStop*>(shared.data());
@@ -85,7 +87,7 @@ public:
     }
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
-    /// The same for a row of a section of another folder, which describes it.
+    /// Requests a stop for a row of a section of another folder, which describes the reason.
     void ask_section_stop(std::size_t section, std::size_t row, const Engine* from) noexcept TAPPET_REALTIME {
         ask_stop(StopReason::section, std::uint64_t{section} << 32 | row, from);
     }
@@ -93,31 +95,31 @@ public:
         return stop_->asked.load(std::memory_order_acquire) == 2;
     }
     [[nodiscard]] const StopRequest& stop_request() const noexcept { return stop_->request; }
-    /// By the machine's clock; of a stop that was asked for.
+    /// Returns the time of a requested stop, by the machine's clock.
     [[nodiscard]] Time stop_asked_at() const noexcept { return stop_->at; }
-    /// When the outputs are to be safe, or the guardian makes them so.
+    /// Returns when the outputs must be safe; after that the guardian makes them safe.
     [[nodiscard]] Time stop_due() const noexcept { return stop_asked_at() + machine().board->stop_within; }
-    /// What a stop request says, as a sentence.
+    /// Describes a stop request in a sentence.
     [[nodiscard]] Sentence describe_stop() const;
-    /// Woken when a stop is asked for.
+    /// Woken when a stop is requested.
     [[nodiscard]] os::Waiter& supervisor() noexcept TAPPET_REALTIME { return supervisor_; }
 
-    /// Shown by whoever needs that nothing runs; none while something does, or hangs. From the thread that
-    /// starts and stops the activities.
+    /// Returns the proof that nothing runs, for functions that need it; empty while anything runs or hangs.
+    /// Call it from the thread that starts and stops the activities.
     [[nodiscard]] std::optional<Standing> standing() const noexcept {
         return is_configured_ && life_.stands() ? std::optional{Standing{}} : std::nullopt;
     }
-    /// Writes every properties file anew; of a machine that runs see PropertySaving in
-    /// kernel/services/configuration. The first file that cannot be written is the error, the others are
-    /// written all the same; so it is when nothing stands: then no file is touched.
+    /// Writes every properties file anew; for a running machine see PropertySaving in
+    /// kernel/services/configuration. The error is the first file that cannot be written; the others are
+    /// written nevertheless. Without `standing` the result is an error, and no file is touched.
     [[nodiscard]] Sentence save_properties(std::optional<Standing> standing);
 
 private:
     friend class MachineBuilder;
 
-    /// All of it 0: nobody asked.
+    /// All zero: no stop was requested.
     struct KeptStop {
-        std::atomic<int> asked{0}; ///< 1: somebody is writing the request, 2: it is written
+        std::atomic<int> asked{0}; ///< 1: the request is being written; 2: it is written
         StopRequest request{};
         Time at{};
     };

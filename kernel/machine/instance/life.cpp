@@ -1,12 +1,12 @@
-// Starting and stopping parts of a running machine (thesis 3.1.3, 4.2.2): components by their engines,
-// activities by the supervisor, what makers wrote for it by a thread of its own.
+// Starts and stops parts of a running machine (thesis 3.1.3, 4.2.2): components by their engines, activities
+// by the supervisor, and initialise and finalise on a thread of their own.
 #include "kernel/machine/instance/life.hpp"
 
 namespace tappet {
 
 LifeTicket MachineLife::ask_component(std::size_t c, LifeChange change) noexcept TAPPET_REALTIME {
     const std::size_t a = machine_.index.activity[c];
-    // A loop that blocks is broken off with its activity only: it is alone there.
+    // A blocking loop is broken off only with its activity, in which it is the only component.
     if (machine_.table.components[c].type->loop != nullptr) return ask_activity(a, change);
     return placed_.engines()[a].ask(machine_.plan.part_of[c], change);
 }
@@ -117,7 +117,7 @@ bool MachineLife::begin_finalising(std::size_t a, const ActivityControl& control
 void MachineLife::let_makers_work(const ActivityControl& control) {
     if (makers_at_work()) return;
     for (const Change& each : changes_)
-        if (each.phase == Phase::makers) return; // what they answered is to be read yet
+        if (each.phase == Phase::makers) return; // its answer is still to be read
     for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {
         if (changes_[a].phase != Phase::waiting_for_makers) continue;
         changes_[a].phase = Phase::makers;
@@ -173,7 +173,7 @@ void MachineLife::end_stop(std::size_t a) {
 
 void MachineLife::progress(const ActivityControl& control) {
     bool moved = true;
-    while (moved) { // the end of one lets the makers work for the next
+    while (moved) { // the end of one change lets the makers' thread work for the next
         moved = false;
         for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {
             const Phase before = changes_[a].phase;
@@ -237,7 +237,7 @@ void MachineLife::serve_activity_requests(const ActivityControl& control) {
     }
 }
 
-// What runs of the components' functions runs to its end: whoever finalises waits for that.
+// A running initialise or finalise completes: the finalising waits for it.
 void MachineLife::give_up_changes() {
     is_given_up_.store(true, std::memory_order_relaxed);
     for (std::size_t a = 0; a < machine_.table.activities.size(); ++a) {

@@ -8,76 +8,77 @@
 
 namespace tappet {
 
-/// How a world lets the engine of an activity start and stop. Called by the supervisor's thread, which none
-/// of these keeps waiting for a function of a component.
+/// Lets a world start and stop the engine of an activity. Called by the supervisor's thread; none of these
+/// functions makes it wait for a function of a component.
 struct ActivityControl {
-    /// lost: its thread hangs, or broke a contract.
+    /// lost: the thread hangs, or broke a contract.
     enum class Progress : std::uint8_t { pending, done, lost };
     void* world = nullptr;
     void (*start)(void* world, std::size_t activity) = nullptr;
     Progress (*started)(void* world, std::size_t activity) = nullptr;
     void (*stop)(void* world, std::size_t activity) = nullptr;
     Progress (*stopped)(void* world, std::size_t activity) = nullptr;
-    /// Lets MachineLife::run_makers_functions run, on a thread that nobody waits for.
+    /// Runs MachineLife::run_makers_functions, on a thread that nobody waits for.
     void (*run_makers_functions)(void* world) = nullptr;
 };
 
-/// The life of components and activities. Asking is real-time, on any thread.
+/// The life of components and activities. Requests are real-time, on any thread.
 class MachineLife {
 public:
     MachineLife(PlacedMachine& placed, os::Waiter& supervisor) noexcept
         : placed_{placed}, machine_{placed.machine()}, supervisor_{supervisor} {}
 
-    /// Starts, stops or restarts one component while the rest goes on: its engine does it between two steps,
+    /// Starts, stops or restarts one component while the others run: its engine does it between two steps,
     /// and answers.
     LifeTicket ask_component(std::size_t index, LifeChange change) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer answer_of_component(std::size_t index, LifeTicket ticket) noexcept
         TAPPET_REALTIME;
     [[nodiscard]] ComponentState state_of(std::size_t component) noexcept TAPPET_REALTIME;
-    /// The same for a whole activity, with initialise and finalise of its components.
+    /// Starts, stops or restarts a whole activity, with initialise and finalise of its components.
     LifeTicket ask_activity(std::size_t index, LifeChange change) noexcept TAPPET_REALTIME;
     [[nodiscard]] LifeAnswer answer_of_activity(std::size_t index, LifeTicket ticket) const noexcept
         TAPPET_REALTIME;
-    /// What a refusal says, with its cure; empty when nothing was refused. Not real-time.
+    /// Describes a refusal, with its cure; empty when nothing was refused. Not real-time.
     [[nodiscard]] Sentence describe(std::size_t activity, LifeAnswer answer) const;
 
-    // ---- for worlds, on the supervisor's thread; not real-time. Each activity may change beside the others,
-    // step by step: stop, finalise, initialise, start. Only finalise and initialise wait for those of others.
+    // ---- for worlds, on the supervisor's thread; not real-time. Several activities may change at the same
+    // time, in steps: stop, finalise, initialise, start. Only finalise and initialise wait for those of
+    // others.
 
     enum class Begin : std::uint8_t {
         with_the_machine, ///< whatever its components read from other activities
-        alone             ///< that must be valid
+        alone             ///< the values read from other activities must be valid
     };
-    /// It does not change yet.
+    /// Begins a change of an activity that is not changing yet.
     void begin_change(std::size_t index, LifeChange change, Begin begin, const ActivityControl& control);
-    /// Begins the last of an activity that is stopped, when no other changes; false: nothing is to be
-    /// finalised.
+    /// Begins the finalising of a stopped activity, when no other changes; false: nothing needs finalising.
     [[nodiscard]] bool begin_finalising(std::size_t index, const ActivityControl& control);
-    /// As far as all changes get without waiting.
+    /// Advances all changes as far as possible without waiting.
     void progress(const ActivityControl& control);
     [[nodiscard]] bool changes(std::size_t index) const noexcept {
         return changes_[index].phase != Phase::none;
     }
-    /// Some activity does.
+    /// Whether any activity is changing.
     [[nodiscard]] bool changes() const noexcept;
-    /// Begins what somebody asked for.
+    /// Begins the requested changes.
     void serve_activity_requests(const ActivityControl& control);
-    /// The machine stops: what changes goes no further, and who asked for it is refused.
+    /// The machine stops: abandons all changes and refuses their requests.
     void give_up_changes();
-    /// Of the last change that nobody asked for from outside; empty: it was done.
+    /// Returns the refusal of the last change that was not requested from outside; empty: it was done.
     [[nodiscard]] const Sentence& refusal() const noexcept { return refusal_; }
-    /// Initialise or finalise of a component runs, or is about to; of makers_of().
+    /// Whether initialise or finalise of a component of activity makers_of() runs, or is about to.
     [[nodiscard]] bool makers_at_work() const noexcept {
         return makers_at_work_.load(std::memory_order_acquire);
     }
     [[nodiscard]] std::size_t makers_of() const noexcept { return makers_of_; }
-    /// What changes need of initialise and finalise now; mostly nothing. On one thread.
+    /// Runs the initialise and finalise functions that changes need now; mostly none. On one thread.
     void run_makers_functions();
-    /// Its thread was given up.
+    /// Marks the activity's thread as given up.
     void lose(std::size_t activity) noexcept { thread_lost_[activity] = true; }
-    /// No activity runs, no thread of one was given up while it hung, and nobody initialises or finalises.
+    /// Whether nothing runs: no activity, no thread that was given up while it hung, no initialise or
+    /// finalise.
     [[nodiscard]] bool stands() const noexcept;
-    /// The first driver whose last stop() did not reach its device; empty: there is none. Real-time, any
+    /// Returns the first driver whose last stop() did not reach its device; empty: none. Real-time, any
     /// thread.
     [[nodiscard]] std::string_view left_unsafe() const noexcept;
 
@@ -106,11 +107,11 @@ private:
     os::Waiter& supervisor_;
     std::array<LifeRequests, max_activities> activity_requests_{};
     std::array<bool, max_activities> thread_lost_{};
-    std::array<bool, max_activities> is_initialised_{}; ///< whoever runs the makers' functions writes it
+    std::array<bool, max_activities> is_initialised_{}; ///< written by run_makers_functions()
     std::array<Change, max_activities> changes_{};
     Sentence refusal_{};
     std::size_t makers_of_ = 0;
-    Sentence makers_refusal_{}; ///< what they write; read when they are not at work
+    Sentence makers_refusal_{}; ///< result of the makers' functions; read when they do not run
     LifeAnswer makers_answer_{};
     std::atomic<bool> makers_at_work_{false};
     std::atomic<bool> is_given_up_{false};

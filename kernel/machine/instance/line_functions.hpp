@@ -1,5 +1,5 @@
-// A line of the script language that somebody typed, as whoever hands it on meets the component that executes
-// it: without that component nothing of it is in a firmware.
+// Access to a typed line of the script language, for components that pass it on to the one that executes it:
+// without that component no code of it is in a firmware.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -12,32 +12,32 @@
 
 namespace tappet {
 
-/// What became of a line.
+/// The end of a line.
 struct LineEnd {
     CommandState state = CommandState::ready; ///< executing, done or failed
-    Sentence why{};                           ///< of one that is not done
-    /// Of one that is done its value, or its variables: each stands in `data`. Both stay until it is let go.
+    Sentence why{};                           ///< the reason, if it is not done
+    /// The value of a line that is done, or its variables: each is in `data`. Both stay valid until let_go().
     std::span<const VariableRow> values{};
     const std::byte* data = nullptr;
 };
 
-/// Why a line was not begun.
+/// The reason why a line was not begun.
 enum class LineRefusal : std::uint8_t {
     none,
-    wrong,  ///< it does not compile, or asks for more than a line may have
-    denied, ///< whoever asks has not the role
-    not_now ///< another one is at work, or what it needs does not run
+    wrong,  ///< it does not compile, or needs more than a line may have
+    denied, ///< the user does not have the role
+    not_now ///< another line runs, or what it needs does not run
 };
 
-/// In the activity of what sees the machine; not real-time.
+/// In the activity of the component that sees the machine; not real-time.
 struct LineFunctions {
-    /// Begins a line for somebody of this role. An answer that is not empty says why not.
+    /// Begins a line for a user of this role. An answer that is not empty says why it was not begun.
     Sentence (*begin)(void* self, std::string_view line, Role role, LineRefusal& refusal) = nullptr;
-    /// Null: it is at work.
+    /// Returns the end of the line; null: it still runs.
     const LineEnd* (*end)(void* self) = nullptr;
-    /// Whoever began it has seen its end, or wants it no longer: then it is broken off.
+    /// Releases the line: its user has seen its end, or abandons it; then it is broken off.
     void (*let_go)(void* self) = nullptr;
-    /// not_now: none is at work. denied: it belongs to somebody of a higher role.
+    /// Breaks off the line. not_now: none runs. denied: it belongs to a user of a higher role.
     LineRefusal (*break_off)(void* self, Role role) = nullptr;
 };
 

@@ -1,4 +1,4 @@
-// What a machine tells about itself while it runs.
+// Reports the state of a running machine.
 #include "kernel/machine/instance/observation.hpp"
 
 #include "kernel/machine/map/layout.hpp"

@@ -1,16 +1,18 @@
-// The phases of a machine's life as types: what a function needs the machine to be, its caller has to show.
+// The phases of a machine's life as types: the caller of a function proves that the machine is in the
+// required phase.
 #pragma once
 
 namespace tappet {
 
-/// No activity runs, and none of its threads was given up: nobody else touches a component. Given by a world,
-/// and by the configuring; good until the next start.
+/// Proof that no activity runs, and that no thread of one was given up: nobody else touches a component.
+/// Issued by a world, and by the configuring; valid until the next start.
 class Standing {
     friend class MachineInstance;
     constexpr Standing() noexcept = default;
 };
 
-/// The box was found fit, the heap is sealed, the memory locked and the threads wait. Given by RealWorld.
+/// Proof that the box is fit, the heap sealed, the memory locked and the threads waiting. Issued by
+/// RealWorld.
 class Armed {
     friend class RealWorld;
     constexpr Armed() noexcept = default;

@@ -1,4 +1,4 @@
-// Where the parts of a machine lie.
+// Returns the places of the parts of a machine.
 #include "kernel/machine/instance/placed.hpp"
 
 namespace tappet {
@@ -26,7 +26,7 @@ GatedComponent* PlacedMachine::gate_of(std::size_t c) noexcept TAPPET_REALTIME {
 
 Waker PlacedMachine::waker_of(std::size_t activity) noexcept TAPPET_REALTIME {
     Engine& engine = engines()[activity];
-    // A periodic activity serves its messages at its next period: nothing wakes it in between.
+    // A periodic activity serves its messages in its next period: nothing wakes it in between.
     if (engine.plan().periodic) return {};
     return {&os::Waiter::wake_thunk, &engine.waiter()};
 }

@@ -1,4 +1,4 @@
-// A machine in its static memory: where the plan put each part of it.
+// A machine in its static memory: the places of its parts, as planned.
 #pragma once
 
 #include "kernel/base/contract.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet {
 
-/// The parts are there once the machine is configured. Not real-time but for what says so.
+/// The parts exist once the machine is configured. Not real-time except where stated.
 class PlacedMachine {
 public:
     PlacedMachine(const AcceptedMachine& machine, os::Clock& clock) noexcept
@@ -20,7 +20,7 @@ public:
 
     [[nodiscard]] const AcceptedMachine& machine() const noexcept { return machine_; }
     [[nodiscard]] os::Clock& clock() noexcept { return *clock_; }
-    /// In the order of the table's activities. Real-time.
+    /// Returns the engines, in the order of the table's activities. Real-time.
     [[nodiscard]] std::span<Engine> engines() noexcept TAPPET_REALTIME {
         return {at<Engine>(machine_.plan.engines_at), machine_.table.activities.size()};
     }
@@ -29,7 +29,7 @@ public:
     }
     [[nodiscard]] std::span<std::byte> stack_of(std::size_t activity) noexcept;
 
-    /// A component by name, for worlds and tests; null when there is none of that name and type.
+    /// Returns a component by name, for worlds and tests; null when none has that name and type.
     template <class T>
     [[nodiscard]] T* find(std::string_view name) noexcept {
         const std::size_t c = find_component(machine_.table, name);
@@ -42,16 +42,17 @@ public:
                         machine_.table.components.size());
         return machine_.memory.data() + machine_.plan.component_at[index];
     }
-    /// The member of a component that a facet names.
+    /// Returns the member of a component that a facet names.
     [[nodiscard]] void* facet(End end) noexcept;
-    /// The same; null for what is no member (an operation).
+    /// Like facet(); null for a facet that is no member (an operation).
     [[nodiscard]] void* place_of(End end) noexcept {
         return facet_at(machine_.table, end).at == nullptr ? nullptr : facet(end);
     }
 
-    /// What the table's row says that drives a component, or was loaded in its place; null when none does.
+    /// Returns the behaviour that drives a component: that of the table's row, or the one loaded in its
+    /// place; null: none.
     [[nodiscard]] const BehaviourUnit* behaviour_of(std::string_view component) const noexcept;
-    /// Of a behaviour row; null: it is a slot, or it is none.
+    /// Returns the unit of a behaviour row; null: the row is a slot, or has no unit.
     [[nodiscard]] BehaviourUnit* unit_of_row(std::size_t behaviour) noexcept {
         const std::size_t place = machine_.plan.behaviours[behaviour].unit_at;
         return place == nowhere ? nullptr : at<BehaviourUnit>(place);
@@ -60,17 +61,17 @@ public:
         const std::size_t place = machine_.plan.behaviours[behaviour].slot_at;
         return place == nowhere ? nullptr : at<BehaviourSlot>(place);
     }
-    /// The slot reserved for a component; null when there is none.
+    /// Returns the slot reserved for a component; null: none.
     [[nodiscard]] BehaviourSlot* slot_of(std::string_view component) noexcept;
     [[nodiscard]] const BehaviourSlot* slot_of(std::string_view component) const noexcept {
         return const_cast<PlacedMachine*>(this)->slot_of(component);
     }
-    /// The first state machine of that; null when there is none.
+    /// Returns the first state machine of that behaviour; null: none.
     [[nodiscard]] const StateMachineExecution* state_machine_of(std::string_view component) const noexcept;
 
-    // ---- for what makes the machine and looks at it
+    // ---- for builders and observers of the machine
 
-    /// What the plan put at `offset`. Real-time.
+    /// Returns the object that the plan placed at `offset`. Real-time.
     template <class T>
     [[nodiscard]] T* at(std::size_t offset) noexcept TAPPET_REALTIME {
         return reinterpret_cast<T*>(machine_.memory.data() + offset);
@@ -83,14 +84,14 @@ public:
     [[nodiscard]] std::span<T> at(const PlacesOf<T>& places) noexcept TAPPET_REALTIME {
         return {at<T>(places.at), places.count};
     }
-    /// Of a section of another folder.
+    /// Returns the memory of a section of another folder.
     [[nodiscard]] std::span<std::byte> extra_memory(std::size_t section) const noexcept;
-    /// By which everybody but its engine enters a component. Real-time.
+    /// Returns the gate by which everything but its engine enters a component. Real-time.
     [[nodiscard]] GatedComponent* gate_of(std::size_t component) noexcept TAPPET_REALTIME;
-    /// What wakes an activity for a value. A periodic one is not woken: it looks at its next period.
-    /// Real-time.
+    /// Returns the waker of an activity for a new value. A periodic activity is not woken: it reads the value
+    /// in its next period. Real-time.
     [[nodiscard]] Waker waker_of(std::size_t activity) noexcept TAPPET_REALTIME;
-    /// The same for whoever posted to an inbox of that activity just before. Real-time.
+    /// Like waker_of(), for a caller that has just posted to an inbox of that activity. Real-time.
     [[nodiscard]] Waker post_waker_of(std::size_t activity) noexcept TAPPET_REALTIME;
 
 private:

@@ -1,4 +1,4 @@
-// What reaches a running engine from a component that sees the machine.
+// Passes requests of a component that sees the machine to a running engine.
 #include "kernel/machine/instance/requests.hpp"
 
 #include "kernel/machine/plan/operations.hpp"
@@ -8,8 +8,8 @@ namespace tappet {
 bool MachineRequests::post(std::size_t activity, const Message& message, Role role) noexcept TAPPET_REALTIME {
     const MailPlan& mail = machine_.plan.requests[activity];
     Inbox& inbox = placed_.engines()[activity].inbox();
-    // The index of a mailbox that was not planned is another's. What was withdrawn lies there, too, until the
-    // engine comes to it.
+    // The index of an unplanned mailbox belongs to another one. Withdrawn requests stay in the mailbox, too,
+    // until the engine reaches them.
     if (mail.capacity == 0 ||
         inbox.waiting(mail.sender_index) + kept_from(role, mail.capacity) >= mail.capacity ||
         !inbox.post(mail.sender_index, message))

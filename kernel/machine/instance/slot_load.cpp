@@ -1,4 +1,4 @@
-// What a slot does in the background: a script is compiled into the spare bank and made ready to take over.
+// The background part of a slot: compiles a script into the spare bank and prepares it to take over.
 #include "kernel/machine/slots/behaviour_slot.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -52,7 +52,7 @@ Sentence BehaviourSlot::fill(std::size_t number, const ScriptUnit& unit, std::sp
 }
 
 Sentence BehaviourSlot::may_load() const noexcept {
-    // asked_ first: obey() sets the phase before it takes that back.
+    // asked_ first: obey() sets the phase before it clears asked_.
     if (asked_.load(std::memory_order_acquire) || phase() == SlotPhase::waiting ||
         phase() == SlotPhase::handing_over)
         return Sentence{"another change of behaviour of \"", place_.row->component,

@@ -1,25 +1,25 @@
-// The layout of the map that a machine carries at the beginning of its memory: every component, facet, row
-// and type with the place of its live value, flat and by offsets, so that another process can read it (thesis
-// 4.7.2, 4.8).
+// The layout of the map that a machine holds at the beginning of its memory: every component, facet, row and
+// type with the place of its live value. It is flat and uses offsets, so that another process can read it
+// (thesis 4.7.2, 4.8).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <type_traits>
 
-/// One block of memory is shared, read-only for everybody but the machine. It begins with Header; all offsets
-/// (names ending in `_at`) count bytes from there, and 0 means: there is none. All integers are
-/// little-endian. A section is an array of records; a reader steps by the section's stride, so that a later
-/// machine may append members to a record. What changes otherwise gets a new layout_version.
+/// One block of memory is shared, read-only for every process but the machine. It begins with Header; all
+/// offsets (names ending in `_at`) count bytes from there, and 0 means: none. All integers are little-endian.
+/// A section is an array of records; a reader steps by the section's stride, so that a later machine may
+/// append members to a record. Any other change of the layout gets a new layout_version.
 ///
-/// What lies in the map itself never changes once Header::ready is 1. Live values lie after it. A value of a
-/// component changes only while the generation of its activity is odd: read the generation, copy, read it
-/// again; equal and even means the copy is whole. Places of single words (forced flags, counters) need none.
+/// The map itself never changes once Header::ready is 1. Live values follow it. A component's value changes
+/// only while the generation of its activity is odd: read the generation, copy, read it again; equal and even
+/// means the copy is whole. Single words (forced flags, counters) need no generation.
 namespace tappet::map {
 
 inline constexpr std::array<char, 8> magic{'T', 'A', 'P', 'P', 'E', 'T', 'M', 'P'};
 inline constexpr std::uint32_t layout_version = 4;
-/// Of an index: there is none.
+/// An index that refers to nothing.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
 /// Characters in the map; not terminated.
@@ -40,9 +40,9 @@ struct Header {
     std::uint32_t layout_version = 0;
     std::uint32_t header_bytes = 0;
     std::uint64_t map_bytes = 0;   ///< header, sections and texts
-    std::uint64_t block_bytes = 0; ///< of everything that is shared
+    std::uint64_t block_bytes = 0; ///< everything that is shared
     std::uint64_t structure = 0;   ///< digest of the map as the compiler made it: equal for equal tables
-    std::uint32_t ready = 0;       ///< 1 once every place stands; written last
+    std::uint32_t ready = 0;       ///< 1 once every place is valid; written last
     std::int32_t process = 0;      ///< the machine's process
     Text machine;
     Text board;
@@ -60,15 +60,15 @@ struct Header {
     Section enumerators;
     Section figures;
     Section texts; ///< its stride is 1
-    /// scope::Directory of kernel/machine/plan/scope_layout.hpp: what the machine records of its own cycles.
+    /// scope::Directory of kernel/machine/plan/scope_layout.hpp: records of the machine's own cycles.
     std::uint64_t scope_at = 0;
-    /// recorded::Directory of kernel/services/reporting/layout.hpp: what it records of its values.
+    /// recorded::Directory of kernel/services/reporting/layout.hpp: records of the machine's values.
     std::uint64_t report_at = 0;
 };
 
 struct Component {
     Text name;
-    Text type;   ///< of the C++ struct
+    Text type;   ///< the name of the C++ struct
     Text device; ///< the device it drives, by its logical name; empty for none
     std::uint32_t activity = none;
     std::uint32_t first_facet = 0;
@@ -80,13 +80,13 @@ struct Component {
 
 /// Facet::flags.
 enum FacetFlag : std::uint32_t {
-    facet_required = 1,    ///< the table had to connect it
+    facet_required = 1,    ///< the table must connect it
     facet_any_thread = 2,  ///< an operation or method that runs in its caller's activity
     facet_has_range = 4,   ///< low and high are bounds
     facet_can_force = 8,   ///< a data port
     facet_is_shared = 16,  ///< an input or output of a connection between two activities
     facet_connected = 32,  ///< an input with a row
-    facet_can_request = 64 ///< set, call or send reaches it through the socket
+    facet_can_request = 64 ///< browsers may set, call or send it through the socket
 };
 
 /// One facet of one component. Its full name is the component's, a dot, and `name` (which may hold dots).
@@ -97,18 +97,18 @@ struct Facet {
     Text kind; ///< "input", "output", "property", "event", "operation", "method", "command", ...
     std::uint32_t component = none;
     std::uint32_t type = none; ///< of the value, or of the argument list
-    /// Type of what a method returns; of a command the list of its results.
+    /// Type of a method's result; for a command, the list of its results.
     std::uint32_t result = none;
     std::uint32_t flags = 0;
     double low = 0; ///< of a property, both ends included
     double high = 0;
     std::uint64_t value_at = 0; ///< of ports and properties: the value as its component sees it
     std::uint64_t stamp_at = 0; ///< int64: the time at which the value was true, in ns
-    /// uint64: how many values came so far; 0: never written, and the value is the row's initial one.
+    /// uint64: the number of writes so far; 0: never written, and the value is the row's initial one.
     std::uint64_t writes_at = 0;
     std::uint64_t forced_at = 0;       ///< byte: 0, or 1 while the port is forced
-    std::uint64_t forced_value_at = 0; ///< the value it then has
-    /// The least that may set, call or send it: "operator", "engineer"; empty: nobody reaches it so.
+    std::uint64_t forced_value_at = 0; ///< the value that it then has
+    /// The lowest role that may set, call or send it: "operator", "engineer"; empty: no role can.
     Text role;
 };
 
@@ -133,7 +133,7 @@ enum ConnectionFlag : std::uint32_t {
     connection_across = 2, ///< between two activities
     connection_wakes = 4,
     connection_delayed = 8,
-    connection_scaled = 16 ///< the reader sees another number than the writer wrote
+    connection_scaled = 16 ///< the reader gets a different number from the one written
 };
 
 struct Connection {
@@ -158,28 +158,28 @@ struct Reaction {
     std::uint64_t times_at = 0; ///< Times, of a "tell"
 };
 
-/// How long a row took, from the stamp of the edge or the frame that set it off to the end of what the row
-/// leads to, in the receiving activity; guarded by that activity's generation.
+/// The latency of a row: from the stamp of the edge or frame that triggered it to the end of the action that
+/// the row leads to, in the receiving activity; guarded by that activity's generation.
 struct Times {
     std::uint64_t count = 0;
     std::int64_t total_ns = 0;
     std::int64_t longest_ns = 0;
-    /// The first counts those below 1 us, each further one twice the time of the one before it, the last also
-    /// all beyond.
+    /// Counts by latency: the first entry counts those below 1 us, each further one covers twice the time of
+    /// the one before it, the last also all beyond.
     std::array<std::uint32_t, 16> histogram{};
 };
 
 struct Behaviour {
     std::uint32_t component = none;
-    std::uint32_t is_slot = 0; ///< room for a behaviour that is loaded later
+    std::uint32_t is_slot = 0; ///< reserved for a behaviour that is loaded later
     std::uint64_t bytes = 0;   ///< of the slot
     std::uint32_t states = 0;  ///< of a state machine
     std::uint32_t reserved = 0;
 };
 
-/// What a value looks like. The numbers are part of the layout.
+/// The form of a value. The numbers are part of the layout.
 enum class Shape : std::uint8_t {
-    opaque = 0,      ///< bytes that nobody but the machine understands
+    opaque = 0,      ///< bytes that only the machine understands
     boolean = 1,     ///< bool
     integer = 2,     ///< signed integer of 1, 2, 4 or 8 bytes
     natural = 3,     ///< unsigned integer of 1, 2, 4 or 8 bytes
@@ -202,7 +202,7 @@ struct Type {
     std::uint8_t reserved = 0;
     std::uint32_t element = none; ///< type of a matrix' or a sequence's elements
     std::uint32_t rows = 0;
-    std::uint32_t columns = 0; ///< of a matrix; of a text or a sequence: how many there may be
+    std::uint32_t columns = 0; ///< of a matrix; for a text or a sequence: the capacity
     std::uint64_t size = 0;
     std::uint32_t first_field = 0;
     std::uint32_t field_count = 0;
@@ -224,10 +224,10 @@ struct Enumerator {
     std::int64_t value = 0;
 };
 
-/// Whose figure it is; the numbers are part of the layout.
+/// The owner of a figure; the numbers are part of the layout.
 enum class Owner : std::uint32_t { machine = 0, component = 1, activity = 2, connection = 3, reaction = 4 };
 
-/// A counter, a state or a time that the framework keeps of something of the machine: cycles and missed
+/// A counter, a state or a time that the framework keeps for a part of the machine: cycles and missed
 /// deadlines of an activity, the state of a component, losses of a row.
 struct Figure {
     Owner owner = Owner::machine;
@@ -236,7 +236,7 @@ struct Figure {
     Text unit;
     Text doc;
     std::uint32_t type = none;
-    std::uint32_t activity = none; ///< whose generation guards it; none: a single word, whole by itself
+    std::uint32_t activity = none; ///< whose generation guards it; none: a single atomic word
     std::uint64_t value_at = 0;
 };
 

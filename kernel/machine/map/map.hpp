@@ -1,5 +1,5 @@
-// The map of a machine (thesis 4.7.2), derived from its table by the compiler: all that map_layout.hpp holds
-// but the places of live values, which start-up adds.
+// The map of a machine (thesis 4.7.2), derived from its table by the compiler: the contents of map/layout.hpp
+// except the places of live values, which start-up adds.
 #pragma once
 
 #include "kernel/base/digest.hpp"
@@ -14,18 +14,17 @@
 
 namespace tappet::map {
 
-/// How many records of each section, and how many characters.
+/// The number of records of each section, and of characters.
 struct Counts {
     std::size_t components = 0, facets = 0, activities = 0, connections = 0, reactions = 0, behaviours = 0;
     std::size_t types = 0, fields = 0, enumerators = 0, figures = 0, characters = 0;
 };
 
-/// The size of the array for `n` records: one at least, since no array is empty.
+/// The size of the array for `n` records: at least one, since an array cannot be empty.
 constexpr std::size_t room(std::size_t n) noexcept { return std::max<std::size_t>(n, 1); }
 constexpr std::size_t room_of_texts(std::size_t n) noexcept { return (n / 8 + 1) * 8; }
 
-/// The map's memory, in the order in which it is read. Every record's size is a multiple of 8, so that
-/// nothing stands between them.
+/// The map's memory, in reading order. Every record's size is a multiple of 8, so that there are no gaps.
 template <Counts counts>
 struct Storage {
     Header header{};
@@ -41,21 +40,21 @@ struct Storage {
     std::array<Figure, room(counts.figures)> figures{};
     std::array<char, room_of_texts(counts.characters)> characters{};
 
-    /// A text of this map.
+    /// Returns a text of this map.
     [[nodiscard]] constexpr std::string_view text(const Text& text) const noexcept {
         return {characters.data() + (text.at - header.texts.at), text.length};
     }
 };
 
-/// A map, and the types it describes in the same order: their functions know what the compiler does not, the
-/// offsets of a record's fields.
+/// A map, and the types it describes in the same order: their functions know the offsets of a record's
+/// fields, which the compiler does not.
 template <Counts counts>
 struct Drawn {
     Storage<counts> map{};
     std::array<TypeId, room(counts.types)> types{};
 };
 
-/// Where records go; a section without room is only counted.
+/// The arrays that records are written to; a section with an empty array is only counted.
 struct Room {
     std::span<Component> components;
     std::span<Facet> facets;
@@ -68,11 +67,11 @@ struct Room {
     std::span<Enumerator> enumerators;
     std::span<Figure> figures;
     std::span<char> characters;
-    std::span<TypeId> type_ids; ///< the types themselves
+    std::span<TypeId> type_ids; ///< the described types
     std::size_t characters_at = 0;
 };
 
-/// Walks a checked table and writes what it finds into a room, or counts it.
+/// Iterates over a checked table and writes its records into a room, or counts them.
 class Cartographer {
 public:
     constexpr Cartographer(const MachineView& table, const TableIndexView& index, const Room& room)
@@ -111,7 +110,7 @@ private:
     static constexpr std::uint32_t flag(bool set, std::uint32_t bit) { return set ? bit : 0; }
     constexpr std::uint32_t type(TypeId id) { return id == nullptr ? none : types_.of(id); }
     [[nodiscard]] constexpr std::uint32_t facet_index(End end) const {
-        // The components are drawn first; who only counts needs no index.
+        // The components are drawn first; a counting run needs no index.
         return room_.components.empty()
                    ? 0
                    : room_.components[end.component].first_facet + static_cast<std::uint32_t>(end.facet);
@@ -308,7 +307,7 @@ constexpr void Cartographer::draw_figures() {
 }
 
 constexpr void Cartographer::draw_types() {
-    // A type that stands in a field or an element is appended while the list is walked.
+    // A type of a field or an element is appended during this loop.
     for (std::size_t t = 0; t < types_.size(); ++t) {
         const TypeTag& tag = *types_[t];
         Type record = describe(tag);
@@ -338,7 +337,7 @@ constexpr Counts count(const MachineView& table, const Board& board, const Bindi
     return counted.counts();
 }
 
-/// Where the sections of a map stand that has so many records.
+/// Returns a header with the places of the sections for these numbers of records.
 constexpr Header outline(const Counts& counts) {
     Header header;
     header.magic = magic;
@@ -365,7 +364,7 @@ constexpr Header outline(const Counts& counts) {
     return header;
 }
 
-/// Fills the room behind a header that was outlined.
+/// Fills the room behind a header that outline() made.
 constexpr void draw(Header& header, const Room& into, const MachineView& table, const Board& board,
                     const Binding& binding, const TableIndexView& index) {
     Cartographer{table, index, into}.draw(header, board, binding);

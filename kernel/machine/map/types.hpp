@@ -1,5 +1,5 @@
-// The types that a map describes, each once, in the order in which they are met; and what the layout says of
-// each.
+// The types that a map describes, each once, in the order of their first use, and their description in the
+// layout.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -15,13 +15,13 @@ namespace tappet::map {
 
 inline constexpr std::size_t max_types = 512;
 
-/// Not constexpr: a table with more types does not compile, and the error names this.
+/// Not constexpr: a table with more types does not compile, and the error names this function.
 inline void a_map_has_room_for_512_types() {}
 
 /// Used by the compiler only.
 class TypeList {
 public:
-    /// Its index; appended when it is new.
+    /// Returns its index; appends it when it is new.
     constexpr std::uint32_t of(TypeId type) {
         for (std::size_t i = 0; i < types_.size(); ++i)
             if (types_[i] == type) return static_cast<std::uint32_t>(i);
@@ -53,7 +53,7 @@ constexpr Shape shape_of(const TypeTag& tag) noexcept {
     return Shape::opaque;
 }
 
-/// All but names, element, fields and enumerators.
+/// Describes everything but names, element, fields and enumerators.
 constexpr Type describe(const TypeTag& tag) noexcept {
     Type type;
     type.shape = shape_of(tag);
@@ -66,8 +66,8 @@ constexpr Type describe(const TypeTag& tag) noexcept {
     return type;
 }
 
-/// Calls put(name, unit, type, offset) for each field of a record, whose offset start-up adds, or of an
-/// argument list.
+/// Calls put(name, unit, type, offset) for each field of a record, whose offset start-up adds later, or for
+/// each element of an argument list.
 template <class Put>
 constexpr void for_each_field(const TypeTag& tag, Put&& put) {
     for (const RecordField& field : tag.fields) put(field.name, field.unit, field.type, 0);
@@ -78,7 +78,7 @@ constexpr void for_each_field(const TypeTag& tag, Put&& put) {
     }
 }
 
-/// A counter that an engine keeps, and where.
+/// A counter of an engine, and its place.
 struct EngineFigure {
     std::string_view name{};
     std::string_view unit{};

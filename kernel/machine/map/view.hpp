@@ -1,4 +1,4 @@
-// Reads a machine's map out of its shared memory, from another process: checked once, then by plain access.
+// Reads a machine's map from its shared memory, in another process: checked once, then read by plain access.
 // Live values are copied under the generation counter of their activity, never torn.
 #pragma once
 
@@ -61,7 +61,8 @@ class View {
 public:
     View() = default;
 
-    /// `block` is the mapped memory; it outlives the view. The error says why it cannot be read.
+    /// Opens a map. `block` is the mapped memory; it must outlive the view. The error says why the map cannot
+    /// be read.
     static std::expected<View, Sentence> open(std::span<const std::byte> block) noexcept {
         if (block.size() < sizeof(Header))
             return std::unexpected(Sentence{"the memory is too short for a map"});
@@ -90,7 +91,7 @@ public:
         return *reinterpret_cast<const Header*>(block_.data());
     }
     [[nodiscard]] std::span<const std::byte> block() const noexcept { return block_; }
-    /// Empty when the text lies outside the map.
+    /// Returns the characters; empty when the text lies outside the map.
     [[nodiscard]] std::string_view text(const Text& text) const noexcept {
         const std::uint64_t end = std::uint64_t{text.at} + text.length;
         return end <= header().map_bytes
@@ -120,16 +121,16 @@ public:
     }
     [[nodiscard]] Records<Figure> figures() const noexcept { return records<Figure>(header().figures); }
 
-    /// A counter or flag that is whole by itself.
+    /// Reads a counter or flag, which is a single atomic word.
     template <class Word>
     [[nodiscard]] Word word(std::uint64_t at) const noexcept {
         if (at == 0 || at > block_.size() - sizeof(Word)) return Word{};
         return __atomic_load_n(reinterpret_cast<const Word*>(block_.data() + at), __ATOMIC_ACQUIRE);
     }
 
-    /// Runs `copy()`, which copies live values of one activity out of block(), until the activity's
-    /// generation says that no cycle touched them meanwhile; at most `attempts` times. False: the activity
-    /// was busy each time, and what was copied may be torn.
+    /// Repeats `copy()`, which copies live values of one activity from block(), until the activity's
+    /// generation shows that no cycle changed them during the copy; at most `attempts` times. False: the
+    /// activity was busy each time, and the copy may be torn.
     template <class Copy>
     [[nodiscard]] bool consistent(std::uint32_t activity, int attempts, Copy&& copy) const noexcept {
         if (activity >= activities().size()) return false;
@@ -143,8 +144,8 @@ public:
         }
         return false;
     }
-    /// Copies bytes that the machine may be writing; false when they lie outside the block. Whole only inside
-    /// consistent().
+    /// Copies bytes that the machine may be writing; false when they lie outside the block. The copy is whole
+    /// only inside consistent().
     [[nodiscard]] bool copy(std::uint64_t at, std::span<std::byte> into) const noexcept {
         if (at == 0 || into.size() > block_.size() || at > block_.size() - into.size()) return false;
         std::memcpy(into.data(), block_.data() + at, into.size());

@@ -1,4 +1,5 @@
-// The places of commands: a mailbox for each activity that sends to another, and room to follow all at once.
+// The places of commands: a mailbox for each activity that sends to another, and memory to follow all
+// commands at once.
 #pragma once
 
 #include "kernel/machine/plan/places.hpp"
@@ -6,20 +7,21 @@
 
 namespace tappet {
 
-/// So many requests of the components that see the machine wait at one engine, and so many of their commands.
+/// The most requests of the components that see the machine that wait at one engine, and the most of their
+/// commands.
 inline constexpr std::uint32_t requests_waiting = 16;
 
-/// So many commands of lines that people typed may be on their way: four of each of three lines.
+/// The most commands in progress from typed lines: four from each of three lines.
 inline constexpr std::uint32_t line_commands = 12;
 
-/// Their mailbox at a receiver: it stands after that of the requests. Whichever activity a line runs in posts
-/// there: one line is at work at a time, and the next begins after it.
+/// Returns the lines' mailbox at a receiver, which follows that of the requests. The activity that runs a
+/// line posts into it: only one line runs at a time, and the next begins after it.
 constexpr MailPlan line_mail(const MailPlan& requests) noexcept {
     return {requests.storage_at + CommandMailbox::bytes_for(requests.capacity), line_commands,
             requests.sender_index + 1};
 }
 
-/// The activity that sends the command of a uses row.
+/// Returns the activity that sends the command of a uses row.
 constexpr std::size_t sender_of(const MachineView& m, const TableIndexView& r, std::size_t row) noexcept {
     const std::string_view sent_by = m.reactions[row].sent_by;
     return r
@@ -33,8 +35,9 @@ constexpr bool is_command_row(const MachineView& m, const TableIndexView& r, std
 
 namespace detail {
 
-/// Counts the mailboxes of one receiver and takes their room. The senders' come first, the most urgent one's
-/// before the others. The mailbox of requests is the last: who only watches the machine delays no message.
+/// Counts the mailboxes of one receiver and reserves their memory. The senders' mailboxes come first, that of
+/// the most urgent sender before the others. The mailbox of requests is the last, so that an observer of the
+/// machine delays no message.
 template <class Box>
 constexpr void plan_mail(const MachineView& m, const TableIndexView& r, PlacesOf<Box>& boxes,
                          std::span<MailPlan> mail, MailPlan& requests, std::size_t receiver, Layout& layout) {
@@ -49,14 +52,14 @@ constexpr void plan_mail(const MachineView& m, const TableIndexView& r, PlacesOf
     place(requests);
 }
 
-/// Of a checked table.
+/// Needs a checked table.
 constexpr void plan_commands(const MachineView& m, const TableIndexView& r, PlanView& p, Layout& layout) {
     const std::size_t n = m.activities.size();
     const bool has_lines = find_interpreter(m) != nowhere;
     for (std::size_t row = 0; row < m.reactions.size(); ++row) {
         if (!is_command_row(m, r, row)) continue;
         const std::size_t receiver = r.activity[r.reactions[row].to.component];
-        // Each command object is one slot that is sent again only when it has ended: one place for each.
+        // Each command object is one slot, which is sent again only after it has ended: one place for each.
         ++p.command_mail[sender_of(m, r, row) * n + receiver].capacity;
         ++p.activities[receiver].followed.count;
     }
@@ -67,7 +70,7 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
             ++p.command_mail[sender * n + receiver].capacity;
             ++p.activities[receiver].followed.count;
         });
-        // Of a slot each may go to any of its peers, of the old behaviour and of the new one.
+        // Each command of a slot may go to any of its peers, for the old behaviour and for the new one.
         for (std::size_t receiver = 0; receiver < n; ++receiver) {
             bool reached = false;
             for (const std::string_view peer : row.slot.peers)
@@ -82,7 +85,8 @@ constexpr void plan_commands(const MachineView& m, const TableIndexView& r, Plan
         MailPlan& requests = p.command_requests[receiver];
         plan_mail(m, r, activity.command_mailboxes, p.command_mail, requests, receiver, layout);
         activity.followed.count += requests.capacity;
-        // Beside those of browsers, whose places have shares by role: lines would take the others'.
+        // Separate from the commands of browsers, whose places have shares by role: lines would use the
+        // others' places.
         if (has_lines) {
             activity.followed.count += line_commands;
             ++activity.command_mailboxes.count;

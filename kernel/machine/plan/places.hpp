@@ -1,6 +1,6 @@
-// Where everything of a machine lies: one block of static memory, laid out by the compiler from the table.
-// Start-up places objects at these offsets, an observer finds them there; nothing is allocated. Who makes the
-// plan is plan.hpp, which only the compiler's verdict needs.
+// The places of all parts of a machine: one block of static memory, laid out by the compiler from the table.
+// Start-up constructs objects at these offsets, an observer finds them there; nothing is allocated. plan.hpp
+// makes the plan, and only the compiler's verdict needs it.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -21,7 +21,7 @@ enum class SubscriberKind : std::uint8_t {
     observer   ///< the component that sees the machine
 };
 
-/// One possible subscription.
+/// A subscription, connected or not.
 struct Subscription {
     End event;
     SubscriberKind kind = SubscriberKind::operation;
@@ -48,11 +48,11 @@ struct ActivityPlan {
     PlacesOf<EngineTimer> timers;
     PlacesOf<Behaviour> behaviours;
     PlacesOf<GuardedInput> guarded;
-    PlacesOf<NeededInput> inputs; ///< what its components need before they start
-    PlacesOf<Mailbox> mailboxes;  ///< one of each sender
+    PlacesOf<NeededInput> inputs; ///< inputs that its components need before they start
+    PlacesOf<Mailbox> mailboxes;  ///< one for each sender
     PlacesOf<CommandMailbox> command_mailboxes;
-    PlacesOf<CommandSlot*> followed; ///< commands that may be at work at once
-    std::size_t tape_at = nowhere;   ///< CycleTape, where a component records the machine's cycles
+    PlacesOf<CommandSlot*> followed; ///< commands that may run at once
+    std::size_t tape_at = nowhere;   ///< CycleTape, if a component records the machine's cycles
     std::size_t tape_words = 0;
     std::size_t stack_at = 0;
     std::size_t stack_bytes = 0;
@@ -60,10 +60,10 @@ struct ActivityPlan {
     int processor = 0;
 };
 
-/// A connection row's memory: a shared data object, a ring, or nothing; and what it takes to wake the reader.
+/// A connection row's memory: a shared data object, a ring, or nothing; and the memory for waking the reader.
 struct ConnectionPlan {
     std::size_t memory_at = nowhere;
-    bool shared = false;         ///< across activities, or scaled on its way
+    bool shared = false;         ///< across activities, or scaled
     bool first_of_output = true; ///< the row that places the shared data object
     std::size_t waker_at = nowhere;
     std::size_t between_at = nowhere;
@@ -76,9 +76,9 @@ struct SubscriptionPlan {
     PlacesOf<EventLane> lanes;          ///< one for each emitting activity, in their order
     std::size_t lane_of_at = nowhere;   ///< of each activity; shared by the events of a component
     std::size_t latest_at = nowhere;    ///< of each lane, if it keeps the latest only
-    std::size_t parcels_at = nowhere;   ///< of each lane, of arguments that a message has no room for
+    std::size_t parcels_at = nowhere;   ///< of each lane, for arguments that do not fit a message
     std::size_t mailboxes_at = nowhere; ///< of a wait: one for each lane
-    std::size_t mail_at = nowhere;      ///< of a wait: what the mailboxes hold
+    std::size_t mail_at = nowhere;      ///< of a wait: storage of the mailboxes
 };
 
 struct BehaviourPlan {
@@ -87,7 +87,7 @@ struct BehaviourPlan {
     PlacesOf<std::byte> memory;        ///< of the unit; of a slot its two banks, one after the other
     std::size_t slot_at = nowhere;     ///< BehaviourSlot
     std::size_t handles_at = nowhere;  ///< of a slot's events
-    PlacesOf<char> text;               ///< of the script on its way into a slot
+    PlacesOf<char> text;               ///< of a script that is being loaded into a slot
 };
 
 /// A mailbox from one activity to another: its ring's storage, and its index at the receiver.
@@ -97,7 +97,7 @@ struct MailPlan {
     std::size_t sender_index = 0;
 };
 
-/// What is there once.
+/// Places that exist once.
 struct PlanOfAll {
     std::size_t extras_at = 0; ///< of the sections of other folders, one after the other
     std::size_t engines_at = 0;
@@ -106,7 +106,7 @@ struct PlanOfAll {
     std::size_t recordings_at = 0;
     std::size_t recordings = 0;
     std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
-    std::size_t bytes = 0;        ///< of everything below
+    std::size_t bytes = 0;        ///< of everything below this line
     std::size_t stack_bytes = 0;  ///< of these, stacks
 };
 
@@ -124,12 +124,12 @@ struct PlanView : PlanOfAll {
     std::span<MailPlan> command_requests{}; ///< as requests, of commands alone
 };
 
-/// What stands once in a machine for whoever looks at it.
+/// Data that exist once in a machine for its observers.
 struct Observed {
     std::atomic<std::uint32_t> forced{0}; ///< ports that are forced now
 };
 
-/// Runs the triggers of a behaviour out of a message.
+/// Runs the triggers of a behaviour when a message arrives.
 struct TriggerBinding {
     BehaviourUnit* unit; ///< of the row; null: of a slot
     BehaviourSlot* slot;
@@ -137,17 +137,17 @@ struct TriggerBinding {
     std::size_t event; ///< its number in the unit or slot
 };
 
-/// So many bytes of an event's arguments the component that sees the machine is told.
+/// The most bytes of an event's arguments that the component that sees the machine receives.
 inline constexpr std::size_t most_observed_bytes = 512;
 
-/// What is called with each emission that an observer is connected to.
+/// The function that is called at each emission to which an observer is connected.
 struct EventObserver {
     void (*observe)(void* observer, std::size_t event_index, const std::byte* packed_arguments,
                     Time now) noexcept TAPPET_REALTIME = nullptr;
     void* observer = nullptr;
 };
 
-/// Shows one event to the observer out of a message.
+/// Passes one event from a message to the observer.
 struct ObserverBinding {
     const EventObserver* to;
     const Engine* engine;
@@ -162,7 +162,7 @@ struct WakerNode {
     WakingRow row{};
 };
 
-/// A machine that was accepted.
+/// An accepted machine.
 struct AcceptedMachine {
     MachineView table;
     const Board* board;
@@ -170,18 +170,18 @@ struct AcceptedMachine {
     TableIndexView index;
     PlanView plan;
     std::span<std::byte> memory;
-    std::span<const std::byte> map{};    ///< as the compiler drew it; empty when nothing sees the machine
-    std::span<const TypeId> map_types{}; ///< that the map describes, in its order
+    std::span<const std::byte> map{}; ///< as the compiler drew it; empty when no component sees the machine
+    std::span<const TypeId> map_types{}; ///< the types that the map describes, in its order
 };
 
-/// The component to which every event can be shown, or nowhere.
+/// Returns the component that can observe every event, or nowhere.
 constexpr std::size_t find_observer(const MachineView& m) noexcept {
     for (std::size_t c = 0; c < m.components.size(); ++c)
         if (m.components[c].type->sees_machine) return c;
     return nowhere;
 }
 
-/// The component that executes lines of the script language, or nowhere.
+/// Returns the component that executes lines of the script language, or nowhere.
 constexpr std::size_t find_interpreter(const MachineView& m) noexcept {
     for (std::size_t c = 0; c < m.components.size(); ++c)
         if (m.components[c].type->lines != nullptr) return c;

@@ -1,4 +1,4 @@
-// The planning of a machine's memory: one block, laid out by the compiler from a table that was checked.
+// Plans a machine's memory: one block, laid out by the compiler from a checked table.
 #pragma once
 
 #include "kernel/machine/plan/operations.hpp"
@@ -16,7 +16,7 @@ namespace tappet {
 
 namespace detail {
 
-/// The C library starts no thread on less, whatever the row claims.
+/// The C library starts no thread with a smaller stack, whatever the row claims.
 #if defined(__aarch64__)
 inline constexpr std::size_t least_stack_bytes = 128 * 1024;
 #else
@@ -24,7 +24,8 @@ inline constexpr std::size_t least_stack_bytes = 16 * 1024;
 #endif
 
 constexpr void plan_components(const MachineView& m, const TableIndexView& r, PlanView& p, Layout& layout) {
-    // Activity by activity, so that what runs together lies together, each on lines of its own.
+    // Activity by activity, so that components that run together are adjacent, each on cache lines of its
+    // own.
     std::size_t begin = 0;
     for (std::size_t a = 0; a < m.activities.size(); ++a) {
         ActivityPlan& activity = p.activities[a];
@@ -56,7 +57,7 @@ constexpr void plan_connections(const MachineView& m, const TableIndexView& r, P
             const auto& buffer = *from.buffer;
             plan.memory_at = layout.take(buffer.ring_bytes(row.capacity, plan.shared), buffer.ring_align);
         } else if (plan.shared) {
-            // Rows of one output share one object; the chain leads from this row to those before it.
+            // Rows of one output share one object; the chain leads from this row to the earlier ones.
             for (std::size_t j = r.connections_from.next[x]; j != nowhere && plan.first_of_output;
                  j = r.connections_from.next[j])
                 if (r.connections[j].from == link.from && p.connections[j].shared)
@@ -146,7 +147,7 @@ constexpr void plan_behaviours(const MachineView& m, const TableIndexView& r, Pl
 
 } // namespace detail
 
-/// Plans a checked table for a board. The map comes first: whoever looks at the memory begins there.
+/// Plans a checked table for a board. The map comes first: every reader of the memory begins there.
 constexpr void make_plan(const MachineView& m, const Board& board, const Binding& binding,
                          const TableIndexView& r, std::size_t map_bytes, PlanView& p) {
     Layout layout;
@@ -177,7 +178,8 @@ constexpr void make_plan(const MachineView& m, const Board& board, const Binding
     p.stack_bytes = layout.used() - before_stacks;
 }
 
-/// The refusals that need a plan: too many reactions to an event, too little memory. Empty: there is none.
+/// Returns the fault that only the plan shows: too many reactions to an event, or too little memory. Empty:
+/// none.
 constexpr Sentence check_plan(const MachineView& m, const Board& board, std::span<const Subscription> list,
                               std::size_t machine_bytes, std::size_t stack_bytes) {
     if (const Sentence listeners = over_subscribed(m, list); !listeners.empty()) return listeners;
@@ -198,7 +200,7 @@ constexpr Sentence check_plan(const MachineView& m, const Board& board, std::spa
                     "; shorten stacks, buffers or slots, or raise memory_budget_bytes"};
 }
 
-/// The storage of a plan, of the table's own sizes.
+/// The storage of a plan, in the table's sizes.
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t S, std::size_t B>
 struct Plan : PlanOfAll {
     std::array<std::size_t, C> component_at{};

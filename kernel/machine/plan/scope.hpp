@@ -1,5 +1,5 @@
-// The places of what a machine records of its own cycles: a tape for each activity, as long as its row says
-// that it may run, and room for the worst cycles.
+// The places of a machine's records of its own cycles: a tape for each activity, sized by how often its row
+// lets it run, and memory for the worst cycles.
 #pragma once
 
 #include "kernel/machine/plan/places.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet {
 
-/// Whether any component of the table keeps what the machine's cycles did.
+/// Whether any component of the table records the machine's cycles.
 constexpr bool records_cycles(const MachineView& m) noexcept {
     for (const ComponentRow& row : m.components)
         if (row.type->records_cycles) return true;
@@ -19,8 +19,8 @@ constexpr bool records_cycles(const MachineView& m) noexcept {
 
 namespace detail {
 
-/// A tape holds what its activity does within this time at most, as far as it may be so long: whoever looks
-/// that often sees every cycle.
+/// A tape holds this time of its activity, up to most_tape_words: a reader that polls as often sees every
+/// cycle.
 inline constexpr Duration tape_span = 100ms;
 inline constexpr std::size_t most_tape_words = 2048;
 inline constexpr std::size_t fewest_tape_words = 256;
@@ -30,9 +30,9 @@ constexpr std::size_t tape_words(const ActivityRow& row) noexcept {
     const std::int64_t runs = row.periodic() ? 1 : row.at_most_n;
     const auto cycles =
         each > Duration::zero() ? static_cast<std::size_t>(runs * (tape_span / each + 1)) : std::size_t{64};
-    const std::size_t functions = row.runs.size() + 2; // each component's, and two more on an average
+    const std::size_t functions = row.runs.size() + 2; // each component's, and two more on average
     const std::size_t wanted = cycles * (functions + TapeCycle::words_beside_marks);
-    // One cycle's marks take an eighth at most: all components may run and react in it.
+    // One cycle's marks use at most an eighth: all components may run and react in it.
     const std::size_t fewest = std::max(fewest_tape_words, 32 * (row.runs.size() + 2));
     return std::bit_ceil(std::max(fewest, std::min(wanted, most_tape_words)));
 }

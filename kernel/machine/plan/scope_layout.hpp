@@ -1,5 +1,5 @@
-// Where a machine that records its cycles keeps them: one tape for each activity, and places for the worst
-// cycles with everything around them. Flat and by offsets, so that another process can read it.
+// The layout of a machine's cycle records: one tape for each activity, and places for the worst cycles with
+// everything around them. It is flat and uses offsets, so that another process can read it.
 #pragma once
 
 #include "kernel/activity/cycle_tape.hpp"
@@ -7,38 +7,39 @@
 #include <cstdint>
 #include <type_traits>
 
-/// All offsets (`_at`) count bytes from the beginning of Directory, which map::Header::scope_at names. What a
-/// reader of another process may rely on is checked by kernel/machine/map/layout.hpp's version; sections are
-/// stepped by their strides.
+/// All offsets (`_at`) count bytes from the beginning of Directory, whose place is map::Header::scope_at. A
+/// reader in another process relies on the version of kernel/machine/map/layout.hpp; it steps through
+/// sections by their strides.
 namespace tappet::scope {
 
-/// The span is parted into so many generations less one; the oldest gives its places to the one that begins.
-/// So the worst cycles of at least the whole span are there at any time.
+/// The span is divided into generations - 1 parts; the oldest generation gives its places to the new one. So
+/// the worst cycles of at least the whole span are available at any time.
 inline constexpr std::uint32_t generations = 4;
-/// The worst so many of each generation are kept, of each activity that is ranked.
+/// The number of worst cycles kept in each generation for each ranked activity.
 inline constexpr std::uint32_t kept = 2;
-/// What one of them may take with everything around it.
+/// The most words of one recording, including everything around the cycle.
 inline constexpr std::uint32_t recording_words = 224;
 
 struct Tape {
     std::uint64_t at = 0;     ///< CycleTape
-    std::uint32_t ranked = 0; ///< 1: its worst cycles are kept; it is real-time
+    std::uint32_t ranked = 0; ///< 1: its worst cycles are kept, because it is real-time
     std::uint32_t reserved = 0;
-    std::uint64_t judged_until = 0; ///< position on it, after the last cycle that was looked at
+    std::uint64_t judged_until = 0; ///< position on the tape after the last judged cycle
 };
 
-/// A kept cycle. After it stand `words` words: for each activity that ran from `from` on until `to` a word
-/// of activity << 48 and the number of words that follow, which are its cycles, oldest first, as on its tape.
+/// A kept cycle. `words` words follow it: for each activity that ran between `from` and `to` one word,
+/// activity << 48
+/// the number of words that follow, then its cycles, oldest first, as on its tape.
 struct Recording {
     std::uint64_t serial = 0;     ///< of the place's contents; 0: it is empty
-    std::uint64_t generation = 0; ///< so many parts of the span since the clock's zero
+    std::uint64_t generation = 0; ///< the number of the part of the span, since the clock's zero
     std::uint32_t activity = 0;
     std::uint32_t words = 0;
-    std::int64_t rank_ns = 0; ///< its response or its busy time: what it is kept for
+    std::int64_t rank_ns = 0; ///< its response or its busy time, by which it is ranked
     std::int64_t release = 0;
     std::int64_t begin = 0;
     std::int64_t end = 0;
-    std::int64_t from = 0; ///< what is around it: shorter than asked for when there is more than its room
+    std::int64_t from = 0; ///< of the surroundings: less than requested when they need more than the place
     std::int64_t to = 0;
 };
 
@@ -54,12 +55,12 @@ struct Directory {
     std::uint64_t recordings_at = 0;
     std::uint32_t recordings = 0;
     std::uint32_t recording_stride = 0; ///< in bytes, the words included
-    std::int64_t stamp_ns = 0;          ///< what taking one time stamp costs: in each function's time once
-    std::int64_t span_ns = 0;           ///< of which the worst cycles are kept
-    std::int64_t looked_ns = 0;         ///< cycles that ended until then have been judged
+    std::int64_t stamp_ns = 0;          ///< cost of one time stamp, which each function's time includes once
+    std::int64_t span_ns = 0;           ///< for which the worst cycles are kept
+    std::int64_t looked_ns = 0;         ///< cycles that ended before it have been judged
     std::uint64_t judged = 0;           ///< cycles of the ranked activities
-    std::uint64_t taken = 0;            ///< recordings, those included that gave their places away
-    std::uint64_t overtaken = 0;        ///< how often a tape was overwritten before it was looked at
+    std::uint64_t taken = 0;            ///< recordings, including those that were replaced
+    std::uint64_t overtaken = 0;        ///< how often a tape was overwritten before it was read
 };
 
 template <class Record>

@@ -1,5 +1,5 @@
-// Who reacts to which event: the reaction rows, the triggers of the behaviours, and the observer of every
-// event if there is one, in one list, event by event.
+// The subscriptions of all events: the reaction rows, the triggers of the behaviours, and the observer of
+// every event if there is one, in one list, event by event.
 #pragma once
 
 #include "kernel/machine/check/check.hpp"
@@ -9,16 +9,16 @@
 
 namespace tappet {
 
-/// So many unserved emissions a state machine's trigger holds.
+/// The most unserved emissions that a state machine's trigger holds.
 inline constexpr std::uint32_t trigger_quota = 8;
-/// So many unserved emissions of each event wait for the component that sees the machine.
+/// The most unserved emissions of each event that wait for the component that sees the machine.
 inline constexpr std::uint32_t observer_quota = 8;
 
 constexpr bool is_observable(const Facet& facet) noexcept {
     return facet.kind == FacetKind::event && facet.type->size <= most_observed_bytes;
 }
 
-/// How many subscriptions a checked table has.
+/// Returns the number of subscriptions of a checked table.
 constexpr std::size_t count_subscriptions(const MachineView& m) {
     std::size_t count = 0;
     for (const auto& row : m.reactions) count += row.kind == ReactionKind::when;
@@ -34,7 +34,7 @@ constexpr std::size_t count_subscriptions(const MachineView& m) {
 
 namespace detail {
 
-/// Writes them in the order of the table; returns how many.
+/// Writes them in the order of the table; returns their number.
 constexpr std::size_t collect_subscriptions(const MachineView& m, const TableIndexView& r,
                                             std::span<Subscription> into) {
     std::size_t n = 0;
@@ -62,7 +62,7 @@ constexpr std::size_t collect_subscriptions(const MachineView& m, const TableInd
             s.kind = SubscriberKind::trigger;
             s.behaviour = b;
             s.trigger = number++;
-            s.is_connected = !row.is_slot(); // what is loaded says what it hears
+            s.is_connected = !row.is_slot(); // the loaded behaviour states the events that it hears
             s.quota = trigger_quota;
             s.receiver = r.activity[find_component(m, row.component)];
         };
@@ -103,9 +103,9 @@ constexpr std::size_t collect_subscriptions(const MachineView& m, const TableInd
 
 } // namespace detail
 
-/// Writes the subscriptions of a checked table into `into`, which has room for all: those of one event stand
-/// together, in the order in which an emission runs them (thesis 4.6.2): synchronous ones in the order of
-/// the table, then asynchronous ones, the most urgent receiver's first.
+/// Writes the subscriptions of a checked table into `into`, which must have room for all. Those of one event
+/// are adjacent, in the order in which an emission runs them (thesis 4.6.2): first the synchronous ones in
+/// the order of the table, then the asynchronous ones, the most urgent receiver first.
 constexpr void list_subscriptions(const MachineView& m, const TableIndexView& r,
                                   std::span<Subscription> into) {
     const std::size_t n = detail::collect_subscriptions(m, r, into);
@@ -124,7 +124,7 @@ constexpr void list_subscriptions(const MachineView& m, const TableIndexView& r,
         into[i].turn = i != 0 && into[i - 1].event == into[i].event ? into[i - 1].turn + 1 : 0;
 }
 
-/// Empty, or the sentence on an event with more subscriptions than it has bits.
+/// Returns the fault of an event with more subscriptions than it has bits; empty: none.
 constexpr Sentence over_subscribed(const MachineView& m, std::span<const Subscription> list) {
     for (const Subscription& each : list)
         if (each.turn >= max_subscribers)

@@ -1,4 +1,4 @@
-// What a behaviour does when it is told to, be it a program or a state machine.
+// Carries out an action on a behaviour, be it a program or a state machine.
 #include "kernel/machine/slots/behaviour_action.hpp"
 
 namespace tappet {

@@ -1,4 +1,4 @@
-// What a behaviour is told to do from outside (thesis fig. 5.9 and 5.19), by a browser or by its task.
+// Actions that a browser or a task requests from a behaviour (thesis fig. 5.9 and 5.19).
 #pragma once
 
 #include "kernel/machine/slots/behaviour_unit.hpp"
@@ -10,21 +10,22 @@
 namespace tappet {
 
 enum class BehaviourAction : std::uint8_t {
-    start,      ///< a program runs, a machine is activated and goes automatically
-    stop,       ///< a program ends, a machine goes to its final state
-    pause,      ///< where it stands
-    step,       ///< one statement or question of what is paused
-    reset,      ///< a program to its beginning, a machine from the final to the initial state
-    deactivate, ///< a machine runs its exits and is inactive
-    reactive,   ///< a machine hears events and requests only
+    start,      ///< a program runs; a machine becomes active and automatic
+    stop,       ///< a program ends; a machine enters its final state
+    pause,      ///< at the present statement or state
+    step,       ///< one statement or condition of a paused behaviour
+    reset,      ///< a program returns to its beginning; a machine goes from the final to the initial state
+    deactivate, ///< a machine runs its exits and becomes inactive
+    reactive,   ///< a machine reacts to events and requests only
     request     ///< a machine takes the transition to a state, if its guard holds
 };
 
 inline constexpr std::array<std::string_view, 8> behaviour_actions{
     "start", "stop", "pause", "step", "reset", "deactivate", "reactive", "request"};
 
-/// In the engine that runs it. `state`: of a request. False: it does not do that in its present status, or
-/// its component stands or comes to its end, where nothing begins.
+/// Carries out the action in the engine that runs the behaviour. `state`: of a request. Returns false when
+/// the behaviour cannot do that in its present status, or when its component is stopped or stopping, where
+/// nothing may begin. Real-time.
 bool act(BehaviourUnit& unit, UnitPart& part, BehaviourAction action, StateIndex state, Time now) noexcept
     TAPPET_REALTIME;
 

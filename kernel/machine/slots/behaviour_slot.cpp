@@ -1,5 +1,5 @@
-// What a slot does in its engine: the behaviour at work is stepped, the new one takes over at its moment and
-// is taken back when it fails its trial.
+// Runs a slot in its engine: steps the active behaviour, hands over to the new one at its moment, and takes
+// that one back when it fails its trial.
 #include "kernel/machine/slots/behaviour_slot.hpp"
 
 #include "kernel/activity/engine.hpp"
@@ -12,7 +12,7 @@ namespace tappet {
 
 namespace {
 
-/// So many steps an old behaviour has to come to its final state and out of it; then it is dropped.
+/// The steps that an old behaviour has to enter and leave its final state; after them it is dropped.
 constexpr std::uint32_t hand_over_steps = 1000;
 constexpr double full_turn_deg = 360;
 
@@ -39,15 +39,15 @@ void BehaviourSlot::obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME 
     self.asked_.store(false, std::memory_order_release);
 }
 
-/// An angle is passed upwards once a turn: from below it to it or beyond it, by less than half a turn in one
-/// step. One that goes back passes nothing.
+/// Whether the moment has come. The angle is passed upwards once a turn: from below to it or beyond it, by
+/// less than half a turn in one step. An angle that moves backwards passes nothing.
 bool BehaviourSlot::is_due() noexcept TAPPET_REALTIME {
     switch (moment_.kind) {
     case SlotMoment::Kind::now: return true;
     case SlotMoment::Kind::event: return false; // dispatch() sees it
     case SlotMoment::Kind::angle: break;
     }
-    // From the wanted angle on, 0 to 360: a value that is smaller than the last one came round.
+    // The angle beyond the wanted one, 0 to 360: a value below the last one has completed a turn.
     double beyond = place_.angle->last() - moment_.angle_deg;
     beyond -= full_turn_deg * std::floor(beyond / full_turn_deg);
     const bool passed = last_angle_ - beyond > full_turn_deg / 2;
@@ -70,7 +70,7 @@ void BehaviourSlot::connect(bool on) noexcept TAPPET_REALTIME {
 void BehaviourSlot::start(Time now) noexcept TAPPET_REALTIME {
     runs_ = true;
     connect(true);
-    if (phase() == SlotPhase::handing_over) return; // what is active comes to its end
+    if (phase() == SlotPhase::handing_over) return; // the active behaviour is ending
     if (BehaviourUnit* unit = active(); unit != nullptr) unit->start(now);
 }
 
@@ -130,7 +130,8 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
     connect(true);
     BehaviourUnit* const unit = active();
     if (unit == nullptr) return;
-    // What is taken back left no traces: the old one finds its variables as they were, or as people set them.
+    // A taken-back behaviour leaves no traces: the old one gets its variables as they were, or as people set
+    // them.
     for (SlotTask* task = tasks_; task != nullptr; task = task->next)
         task->exchange(*unit, bank(), is_roll_back_ ? SlotTask::When::take_back : SlotTask::When::take_over);
     if (runs_) unit->start(now);
@@ -138,7 +139,7 @@ void BehaviourSlot::switch_to_target(Time now) noexcept TAPPET_REALTIME {
 
 namespace {
 
-/// Both in which a slot's behaviour is at work.
+/// Timings of the two functions in which a slot's behaviour runs.
 struct Timings {
     const FunctionTiming &reactions, &behaviour;
     Timings(const Engine& engine, std::size_t part) noexcept TAPPET_REALTIME
@@ -172,9 +173,11 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
     place_.engine->measure_as_at_first();
     const std::uint64_t over_claim = place_.engine->statistics().over_claim;
     const Duration taken_now = time_taken() - std::exchange(taken_before_, time_taken());
-    // Reactions of the cycle before were there at its judgement, its behaviour's step is seen now.
+    // Reactions of the previous cycle are included in its judgement; the step of its behaviour is seen only
+    // now.
     const Duration taken = taken_now + std::exchange(taken_last_, taken_now);
-    // What the cycle of the hand-over took was the old one's end, too: time is judged from the next one on.
+    // The cycle of the hand-over includes the end of the old behaviour: times are judged from the next cycle
+    // on.
     if (bases_left_ != 0) {
         --bases_left_;
         misses_before_ = misses();
@@ -184,14 +187,14 @@ void BehaviourSlot::judge(Time now) noexcept TAPPET_REALTIME {
         return take_back(RollBack::late, now);
     } else if (over_claim != std::exchange(over_claim_before_, over_claim) && kept_its_claim_ &&
                taken >= place_.engine->claim_exceeded_by()) {
-        // Of an activity that kept its claim until now, and would have kept it without this one.
+        // The activity kept its claim until now, and would have kept it without this behaviour.
         return take_back(RollBack::too_much, now);
     }
-    // Who was asked for nothing has shown nothing: a loom that stands does not try a weave.
+    // A behaviour that received no request has proved nothing: a stopped loom does not test a weave.
     if (unit.has_worked() && (steps_left_ == 0 || --steps_left_ == 0)) set(SlotPhase::steady);
 }
 
-// What failed is not asked to behave: its final state is requested, its exit programs get one chance, and it
+// A failed behaviour is not trusted: its final state is requested, its exit programs get one chance, and it
 // is dropped.
 void BehaviourSlot::take_back(RollBack why, Time now) noexcept TAPPET_REALTIME {
     BehaviourUnit& failed = *active();

@@ -1,6 +1,6 @@
-// Room for a behaviour that is loaded while the machine runs (thesis 5.1.4, 5.2.4): two banks of memory. A
-// script is compiled into the spare one in a background activity; between two steps the engine hands over
-// from the old behaviour to the new one, and back when the new one fails its trial.
+// A slot for a behaviour that is loaded while the machine runs (thesis 5.1.4, 5.2.4): two banks of memory. A
+// background activity compiles a script into the spare one. Between two steps the engine hands over from the
+// old behaviour to the new one, and back when the new one fails its trial.
 #pragma once
 
 #include "kernel/component/event_handle.hpp"
@@ -12,7 +12,7 @@
 
 namespace tappet {
 
-/// When a new behaviour takes over.
+/// The moment at which a new behaviour takes over.
 struct SlotMoment {
     enum class Kind : std::uint8_t { now, event, angle };
     Kind kind = Kind::now;
@@ -22,10 +22,10 @@ struct SlotMoment {
 
 enum class SlotPhase : std::uint8_t {
     empty,        ///< nothing is loaded
-    steady,       ///< the loaded behaviour is at work
-    waiting,      ///< a new one waits for its moment; the old one is at work
-    handing_over, ///< the old one goes to its final state
-    trial         ///< the new one is at work and the old one ready to come back
+    steady,       ///< the loaded behaviour is active
+    waiting,      ///< a new one waits for its moment; the old one is active
+    handing_over, ///< the old one is going to its final state
+    trial         ///< the new one is active, the old one ready to return
 };
 
 constexpr std::string_view to_text(SlotPhase phase) noexcept {
@@ -39,14 +39,14 @@ constexpr std::string_view to_text(SlotPhase phase) noexcept {
     return "?";
 }
 
-/// Why the last behaviour was taken back.
+/// The reason of the last roll-back.
 enum class RollBack : std::uint8_t {
     none,
-    error,     ///< a program of it failed
-    left_over, ///< its statements of one step did not come to an end within their number or the deadline
-    late,      ///< its activity missed a deadline by it
-    too_much,  ///< its activity used more of its processor than its row claims
-    asked      ///< from outside
+    error,     ///< one of its programs failed
+    left_over, ///< the statements of one step exceeded their number or the deadline
+    late,      ///< it made its activity miss a deadline
+    too_much,  ///< its activity used more processor time than its row claims
+    asked      ///< requested from outside
 };
 
 class BehaviourSlot {
@@ -57,50 +57,50 @@ public:
         std::size_t component = 0;
         std::span<std::byte> banks[2]{};
         std::span<char> text{};
-        std::span<const std::string_view> events{}; ///< names, as its routes count them
+        std::span<const std::string_view> events{}; ///< names, in the order of its routes
         std::span<EventHandle> handles{};           ///< of each event
         const Output<double>* angle = nullptr;
         StateMachineExecution::Trace trace = nullptr;
-        Engine* engine = nullptr; ///< that runs it, and is told its transitions
-        std::uint32_t part = 0;   ///< there, of the component that is driven
+        Engine* engine = nullptr; ///< runs the slot, and is told its transitions
+        std::uint32_t part = 0;   ///< of the driven component, in the engine
     };
-    /// By start-up.
+    /// Places the slot, at start-up.
     void place(const Place& place);
-    /// By start-up: a task of what is loaded. From now on nothing is that does not fit it.
+    /// Adds a task of the loaded behaviours, at start-up. From now on every loaded behaviour must fit it.
     void add(SlotTask& task) noexcept {
         task.next = tasks_;
         tasks_ = &task;
     }
-    /// By start-up, after all tasks: what its row begins with is at work from the start.
+    /// Loads the row's initial behaviour, at start-up, after all tasks; it is active from the start.
     [[nodiscard]] Sentence begin();
 
-    // ---- in a background activity, one at a time; not real-time
+    // ---- in a background activity, one call at a time; not real-time
 
-    /// Where the characters of a script are gathered.
+    /// The memory in which the characters of a script are collected.
     [[nodiscard]] std::span<char> text() noexcept { return place_.text; }
-    /// Whether a script may be compiled now; a sentence says why not.
+    /// Says why no script may be compiled now; empty: it may.
     [[nodiscard]] Sentence may_load() const noexcept;
-    /// Compiles the first `characters` of text() into the spare bank. An error is the script's, with its
-    /// line, or says what the slot has no room for; the behaviour that is at work does not notice.
+    /// Compiles the first `characters` of text() into the spare bank. The error is the script's, with its
+    /// line, or says which memory of the slot is too small. The active behaviour is not affected.
     [[nodiscard]] Sentence compile(std::size_t characters, std::string_view name);
-    /// A moment as it is written: "now", "component.event" of the reach, or an angle in degrees.
+    /// Parses a moment: "now", "component.event" of the reach, or an angle in degrees.
     [[nodiscard]] Sentence parse_moment(std::string_view text, SlotMoment& moment) const;
 
-    /// A roll-back of a load that still waits lets that one go, and what is at work stays.
+    /// A roll_back of a load that still waits discards that load, and the active behaviour stays.
     enum class Change : std::uint8_t { take_over, unload, roll_back };
-    /// What obey() is to do; false: it has not obeyed the last one yet.
+    /// Requests a change from obey(); false: the previous request is not yet carried out.
     [[nodiscard]] bool ask(Change change, const SlotMoment& moment = {}) noexcept;
-    /// It could not be posted.
+    /// Withdraws a request that could not be posted.
     void withdraw() noexcept { asked_.store(false, std::memory_order_relaxed); }
-    /// Whether a change makes sense now; a sentence says why not.
+    /// Says why a change makes no sense now; empty: it makes sense.
     [[nodiscard]] Sentence may(Change change) const noexcept;
 
-    // ---- what it tells; any thread, real-time. Of the units only between two steps of the engine.
+    // ---- state; any thread, real-time. The units: only between two steps of the engine.
 
     [[nodiscard]] SlotPhase phase() const noexcept TAPPET_REALTIME {
         return phase_.load(std::memory_order_acquire);
     }
-    /// Null: none.
+    /// Returns the active unit; null: none.
     [[nodiscard]] const BehaviourUnit* active() const noexcept TAPPET_REALTIME {
         const int bank = active_.load(std::memory_order_relaxed);
         return bank == none ? nullptr : &banks_[static_cast<std::size_t>(bank)].unit;
@@ -112,11 +112,12 @@ public:
     [[nodiscard]] std::uint32_t roll_backs() const noexcept TAPPET_REALTIME { return roll_backs_; }
     /// How many times a behaviour took over.
     [[nodiscard]] std::uint32_t loads() const noexcept TAPPET_REALTIME { return loads_; }
-    /// Why, with the line of the script; empty when nothing was taken back. Not real-time.
+    /// Says why the last behaviour was taken back, with the line of the script; empty when none was. Not
+    /// real-time.
     [[nodiscard]] Sentence describe_roll_back() const;
     [[nodiscard]] const BehaviourRow& row() const noexcept { return *place_.row; }
     [[nodiscard]] std::size_t component() const noexcept TAPPET_REALTIME { return place_.component; }
-    /// Of the script that is at work; empty: none.
+    /// Name of the active script; empty: none.
     [[nodiscard]] std::string_view script() const noexcept TAPPET_REALTIME {
         const int bank = active_.load(std::memory_order_relaxed);
         return bank == none ? std::string_view{} : banks_[static_cast<std::size_t>(bank)].name.view();
@@ -124,7 +125,7 @@ public:
 
     // ---- in its engine, real-time
 
-    /// As a message: carries out the change.
+    /// Carries out the requested change, as a message.
     static void obey(void* slot, const std::byte*) noexcept TAPPET_REALTIME;
     void start(Time now) noexcept TAPPET_REALTIME;
     bool step_programs(Time now) noexcept TAPPET_REALTIME;
@@ -132,11 +133,11 @@ public:
     void stop(Time now) noexcept TAPPET_REALTIME;
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME;
     void dispatch(std::size_t event, const std::byte* packed, Time now) noexcept TAPPET_REALTIME;
-    /// Of a task, in what is at work: something is.
+    /// Returns a task's part of the active unit, which must exist.
     [[nodiscard]] UnitPart& part_of(const SlotTask& task) noexcept TAPPET_REALTIME {
         return task.part(*active(), bank());
     }
-    /// The properties of all tasks and the variables behind them become the same again.
+    /// Makes the properties of all tasks and the variables behind them equal.
     void exchange() noexcept TAPPET_REALTIME {
         if (BehaviourUnit* const unit = active(); unit != nullptr)
             for (SlotTask* task = tasks_; task != nullptr; task = task->next) task->exchange(*unit, bank());
@@ -155,7 +156,7 @@ private:
     [[nodiscard]] int spare() const noexcept TAPPET_REALTIME {
         return active_.load(std::memory_order_relaxed) == 0 ? 1 : 0;
     }
-    /// A unit into a bank, ready to take over.
+    /// Places a unit in a bank, ready to take over.
     [[nodiscard]] Sentence fill(std::size_t bank, const ScriptUnit& unit, std::span<const BehaviourCode> code,
                                 std::span<std::byte> memory);
     [[nodiscard]] bool is_due() noexcept TAPPET_REALTIME;
@@ -174,27 +175,28 @@ private:
     std::array<Reachable, Slot::max_names + 1> reachable_{};
     std::size_t reachable_count_ = 0;
     SlotTask* tasks_ = nullptr;
-    // Written by the background while no change is on its way, read by obey().
+    // Written by the background while no change is requested, read by obey().
     Change asked_change_ = Change::take_over;
     SlotMoment asked_moment_{};
     std::atomic<bool> asked_{false};
-    /// The bank that was at work before and is still whole. The engine sets it when one takes over, the
-    /// background takes it away when it compiles into it, which it does while no change is on its way.
+    /// The bank that was active before and is still whole. The engine sets it when a behaviour takes over;
+    /// the background clears it when it compiles into that bank, which it does only while no change is
+    /// requested.
     std::atomic<int> previous_{none};
     // Written by the engine.
     SlotMoment moment_{}; ///< that a change waits for
     std::atomic<SlotPhase> phase_{SlotPhase::empty};
     std::atomic<int> active_{none};
     int target_ = none;
-    bool runs_ = false; ///< its component does
+    bool runs_ = false; ///< whether its component runs
     bool is_roll_back_ = false;
     std::uint32_t steps_left_ = 0;        ///< of the hand-over, then of the trial
-    std::uint32_t bases_left_ = 0;        ///< the next two lines are of now for so many steps
-    std::uint64_t misses_before_ = 0;     ///< the trial
+    std::uint32_t bases_left_ = 0;        ///< steps for which the next two values are taken anew
+    std::uint64_t misses_before_ = 0;     ///< deadlines missed before the trial
     std::uint64_t over_claim_before_ = 0; ///< of the activity
-    bool kept_its_claim_ = false;         ///< the activity, as far as that was measured
+    bool kept_its_claim_ = false;         ///< whether the activity kept its claim, as far as measured
     Duration taken_before_{},
-        taken_last_{}; ///< by this slot's functions: in all, and from one look to the next
+        taken_last_{}; ///< by this slot's functions: in total, and between two judgements
     double last_angle_ = -1;
     RollBack why_ = RollBack::none;
     std::uint32_t roll_backs_ = 0;

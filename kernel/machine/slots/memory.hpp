@@ -1,5 +1,5 @@
-// What behaviours take of a machine's memory: the same sums for the plan, which counts, and for start-up and
-// loading, which lay things there.
+// Memory that behaviours need: the same sums for the plan, which counts, and for start-up and loading, which
+// place objects.
 #pragma once
 
 #include "kernel/base/layout.hpp"
@@ -14,7 +14,7 @@ namespace tappet {
 
 namespace detail {
 
-/// Lays things one after the other in a piece of memory, or, without one, counts.
+/// Places objects one after the other in a block of memory; without a block it only counts.
 class UnitLayout {
 public:
     constexpr UnitLayout() = default;
@@ -40,7 +40,7 @@ private:
     Layout counted_{};
 };
 
-/// The commands of one instance that are sent to other activities: calls visit(link number, facet).
+/// Calls visit(link number, facet) for each command of one instance that is sent to another activity.
 template <class Visit>
 constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& type, const Visit& visit) {
     for (std::size_t i = 0; i < type.tables.links.size(); ++i) {
@@ -51,7 +51,7 @@ constexpr void for_each_slot_link(const ScriptUnit& unit, const BehaviourType& t
 
 } // namespace detail
 
-/// Where a type's resolved state machine lies.
+/// Reserves the memory of a type's resolved state machine.
 constexpr ResolvedRoom take_room(detail::UnitLayout& layout, const ResolvedSizes& sizes) noexcept {
     ResolvedRoom room;
     layout.take(room.plans, sizes.states);
@@ -65,7 +65,7 @@ constexpr ResolvedRoom take_room(detail::UnitLayout& layout, const ResolvedSizes
     return room;
 }
 
-/// Of one instance, what its execution keeps from step to step.
+/// Memory that the execution of one instance keeps from step to step.
 struct MachineMemory {
     std::span<StateIndex> history{};
     std::span<std::byte> deferred{};
@@ -76,10 +76,10 @@ constexpr MachineMemory take_machine_memory(detail::UnitLayout& layout, const Re
     return {{history, sizes.history}, {layout.take(bytes, data_alignment), bytes}};
 }
 
-/// Of the memory of a unit.
+/// Alignment of the memory of a unit.
 inline constexpr std::size_t unit_alignment = std::max(alignof(CommandSlot), data_alignment);
 
-/// What a unit that hears so many events takes of memory aligned to unit_alignment. The same sums as
+/// Returns the bytes of a unit that hears so many events, aligned to unit_alignment. The same sums as in
 /// BehaviourUnit::place.
 constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
     detail::UnitLayout layout;
@@ -111,7 +111,7 @@ constexpr std::size_t unit_bytes(const ScriptUnit& unit, std::size_t events) {
 
 namespace detail {
 
-/// The rows of a compiled script, in a bank.
+/// Reserves the memory of the rows of a compiled script in a bank.
 constexpr ScriptRoom take_script_room(UnitLayout& layout, const ScriptSizes& sizes) noexcept {
     ScriptRoom room;
     for_each_table(
@@ -125,7 +125,7 @@ constexpr ScriptRoom take_script_room(UnitLayout& layout, const ScriptSizes& siz
 
 } // namespace detail
 
-/// Arguments and results of one command that a loaded behaviour sends have so many bytes together.
+/// The bytes of the arguments and results, together, of one command that a loaded behaviour sends.
 inline constexpr std::size_t slot_command_bytes = 128;
 
 constexpr ScriptSizes slot_sizes(const Slot& slot) noexcept {
@@ -134,8 +134,8 @@ constexpr ScriptSizes slot_sizes(const Slot& slot) noexcept {
 constexpr std::size_t slot_text_bytes(const Slot& slot) noexcept {
     return slot.text_bytes != 0 ? slot.text_bytes : 48 * std::size_t{slot.nodes};
 }
-/// What the machines of a script take resolved, of usual proportions: few transitions lead out of a composite
-/// and so out of each of its leaves.
+/// Returns the sizes of a script's resolved machines, assuming usual proportions: few transitions lead out of
+/// a composite state and so out of each of its leaves.
 constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_t events) noexcept {
     ResolvedSizes resolved;
     resolved.states = resolved.regions = sizes.states;
@@ -145,9 +145,9 @@ constexpr ResolvedSizes slot_resolved_sizes(const ScriptSizes& sizes, std::size_
     resolved.steps = 12 * resolved.arcs + 2 * std::size_t{sizes.states};
     return resolved;
 }
-/// What one bank takes: the rows, and the unit made of them, of which each instance keeps `longest` bytes of
-/// arguments of every event that waits. A machine of unusual proportions may need more than this keeps for
-/// its resolved form; then it is refused.
+/// Returns the bytes of one bank: the rows, and the unit made of them. Each instance keeps `longest` bytes of
+/// arguments for every waiting event. A machine of unusual proportions may need more memory for its resolved
+/// form; then it is refused.
 constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events, std::size_t longest) noexcept {
     const ScriptSizes sizes = slot_sizes(slot);
     detail::UnitLayout layout;
@@ -169,12 +169,12 @@ constexpr std::size_t slot_bank_bytes(const Slot& slot, std::size_t events, std:
     layout.take(slot.command_slots * slot_command_bytes, data_alignment);
     return layout.used();
 }
-/// Of either bank of a row: whatever it begins with has room there, too.
+/// Returns the bytes of either bank of a row: the initial behaviour must fit, too.
 constexpr std::size_t bank_bytes(const BehaviourRow& row, std::size_t events, std::size_t longest) {
     detail::UnitLayout layout;
     layout.take(std::max(slot_bank_bytes(row.slot, events, longest), unit_bytes(row.unit(), events)),
                 unit_alignment);
-    layout.take(0, unit_alignment); // the other bank stands after it
+    layout.take(0, unit_alignment); // the other bank follows
     return layout.used();
 }
 

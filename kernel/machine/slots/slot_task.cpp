@@ -1,4 +1,4 @@
-// How the task of a slot meets what is loaded there.
+// Connects the task of a slot to the behaviour that is loaded there.
 #include "kernel/machine/slots/slot_task.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -11,7 +11,7 @@ namespace tappet {
 
 namespace {
 
-/// As a script declares it: "param double heat".
+/// Writes a declaration as in a script: "param double heat".
 void add_declaration(Sentence& text, const VariableRow& row, bool is_program) {
     if (row.kind == VariableKind::result) {
         text.add("a result of type ").add(type_name(row.type));
@@ -96,7 +96,7 @@ void SlotTask::exchange(BehaviourUnit& unit, std::size_t bank, When when) noexce
         std::byte *const own = room_.values.data() + at, *const seen = room_.seen.data() + at,
                          *const its = data + places[i];
         const bool is_set =
-            !std::equal(own, own + size, seen); // not memcmp: under the fuzzer it is no builtin
+            !std::equal(own, own + size, seen); // not memcmp, which is no builtin under the fuzzer
         if (is_set) set_ |= std::uint64_t{1} << i;
         const bool was_set = when == When::take_back && (set_ >> i & 1) != 0;
         const bool gives = is_set || was_set || when == When::take_over;

@@ -1,4 +1,4 @@
-// Activity rows: the threads of the machine, what makes each run, and what it may take.
+// Activity rows: the threads of the machine, their triggers, and their time and memory limits.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -11,7 +11,8 @@
 
 namespace tappet {
 
-// A receiver marks each sending activity, and the requests of what sees the machine, in one 64-bit word.
+// A receiver marks each sending activity, and the requests of components that see the machine, in one 64-bit
+// word.
 inline constexpr std::size_t max_activities = 63;
 
 enum class Trigger : std::uint8_t { every, on_work, on_device, background };
@@ -21,9 +22,9 @@ struct ActivityRow {
     static constexpr std::size_t max_runs = 64;
     std::string_view name{};
     Trigger trigger = Trigger::background;
-    Duration period{};          ///< of every; of background: how often it looks
-    Duration phase{};           ///< of every: after the points of the grid that all periods have
-    std::string_view device{};  ///< of on_device: the component whose device wakes it
+    Duration period{};          ///< every: the period; background: how often it polls
+    Duration phase{};           ///< every: delay of each period after its grid point
+    std::string_view device{};  ///< on_device: the component whose device wakes it
     std::int64_t at_most_n = 1; ///< sporadic activities: at most n wakes ...
     Duration at_most_per{};     ///< ... in any window of this length
     Duration deadline_after{};  ///< zero: the period
@@ -34,7 +35,7 @@ struct ActivityRow {
     Bounded<std::string_view, max_runs> runs{};
     bool too_many_runs = false;
     bool has_trigger = false;
-    std::string_view twice{}; ///< the option that the row was given twice
+    std::string_view twice{}; ///< the option that the row states twice; empty: none
 
     [[nodiscard]] constexpr Duration shortest_period() const noexcept {
         return trigger == Trigger::every ? period : at_most_per;
@@ -42,7 +43,7 @@ struct ActivityRow {
     [[nodiscard]] constexpr Duration deadline() const noexcept {
         return deadline_after.count() != 0 ? deadline_after : shortest_period();
     }
-    /// Real-time functions need less: they call no library that takes much stack.
+    /// Returns the stack size. Real-time functions need less: they call no library that needs much stack.
     [[nodiscard]] constexpr std::size_t stack_bytes() const noexcept {
         return stack.value_or(real_time ? 32 * 1024 : 64 * 1024);
     }
@@ -60,14 +61,17 @@ struct TriggerOption {
 struct Phase {
     Duration after;
 };
-/// Each of its periods begins so much later than those of activities without a phase: behind what it reads.
+/// Delays every period by `after` against activities without a phase, so that it runs after the activities
+/// whose values it reads.
 constexpr Phase phase(Duration after) noexcept { return {after}; }
-/// Periodic. Without not_real_time it needs a budget; its deadline is the period unless stated. The periods
-/// of all activities begin on one grid, whenever each was started: those of 1 ms and of 3 ms meet every 3 ms.
+/// Periodic. Needs a budget unless it is not_real_time; the deadline is the period unless stated. The periods
+/// of all activities begin on one grid, no matter when each activity started: periods of 1 ms and 3 ms
+/// coincide every 3 ms.
 constexpr TriggerOption every(Duration period, Phase phase = {}) noexcept {
     return {Trigger::every, period, {}, phase.after};
 }
-/// Sporadic: runs when a message, a connection that wakes, or a timer of its components asks. Needs at_most.
+/// Sporadic: runs when a message, a connection that wakes, or a timer of its components requests it. Needs
+/// at_most.
 constexpr TriggerOption on_work() noexcept { return {Trigger::on_work, {}, {}}; }
 /// Sporadic: runs when the device of this component is ready. Needs at_most.
 constexpr TriggerOption on_device(std::string_view component) noexcept {
@@ -78,35 +82,35 @@ struct AtMost {
     std::int64_t n;
     Duration per;
 };
-/// At most n wakes in any window of this length: what the schedulability analysis believes.
+/// At most n wakes in any window of this length. The schedulability analysis relies on it.
 constexpr AtMost at_most(std::int64_t n, Duration per) noexcept { return {n, per}; }
 
 struct Budget {
     Duration each;
 };
-/// Processor time of one cycle, synchronous reactions included: what the schedulability analysis believes.
+/// Processor time of one cycle, synchronous reactions included. The schedulability analysis relies on it.
 constexpr Budget budget(Duration each) noexcept { return {each}; }
-/// From the release to the end of the cycle; the period, or that of at_most, unless stated. The shorter, the
-/// higher the priority.
+/// Time from the release to the end of the cycle. Default: the period, or the window of at_most. A shorter
+/// deadline gives a higher priority.
 constexpr RowOptionOnce<ActivityRow, Duration> deadline(Duration after) noexcept {
     return {&ActivityRow::deadline_after, after, "a deadline"};
 }
 struct NotRealTime {};
 /// May block; runs below every real-time activity, without budget or deadline.
 inline constexpr NotRealTime not_real_time{};
-/// The stack of its thread, at least 16 KiB. Without this row option it is 32 KiB, and 64 KiB if the activity
-/// is not_real_time. Its lowest page is a guard: a thread that runs into it stops the machine.
+/// Stack size of its thread, at least 16 KiB. Default: 32 KiB, or 64 KiB when the activity is not_real_time.
+/// The lowest page is a guard: a thread that runs into it stops the machine.
 constexpr RowOption<ActivityRow, std::optional<std::size_t>> stack(std::size_t bytes) noexcept {
     return {&ActivityRow::stack, bytes};
 }
-/// A missed deadline stops the machine; without this it is counted and reported.
+/// A missed deadline stops the machine. By default a miss is counted and reported.
 inline constexpr RowOption stop_when_late{&ActivityRow::when_late, WhenLate::stop};
 
 struct Runs {
     Bounded<std::string_view, ActivityRow::max_runs> names{};
     bool too_many = false;
 };
-/// The components that it runs, 64 at most; their order follows from the data flow.
+/// The components that the activity runs, 64 at most. The data flow determines their order.
 template <class... Names>
 constexpr Runs runs(const Names&... names) {
     Runs row;
@@ -145,7 +149,7 @@ constexpr void apply(ActivityRow& row, const Runs& option) noexcept {
 
 } // namespace detail
 
-/// A thread of the machine, or its share of virtual time.
+/// Declares a thread of the machine; in virtual time, its share of that time.
 template <class... Options>
 constexpr ActivityRow activity(std::string_view name, const Options&... options) {
     ActivityRow row{.name = name};

@@ -1,5 +1,5 @@
-// A board: what one kind of box has and can do. It knows no machine; which of its devices a machine uses, and
-// for what, is said by a binding. One binary is one machine on one board.
+// A board: the devices and properties of one kind of box. It does not know the machine; a binding says which
+// of its devices a machine uses, and for what. One binary is one machine on one board.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -15,12 +15,12 @@
 namespace tappet {
 
 struct BoardDevice {
-    std::string_view name{};    ///< as on the housing: what a binding says
-    std::string_view kind{};    ///< "can", "gpio", "serial", or what a driver of one's own drives
-    std::string_view address{}; ///< where Linux has it: "can0", "/dev/gpiochip0", "/dev/ttyS1"
-    Bounded<Fact, 4> facts{};   ///< in the words of that kind, which its driver declares
+    std::string_view name{};    ///< as on the housing; a binding uses this name
+    std::string_view kind{};    ///< "can", "gpio", "serial", or the kind of a user's own driver
+    std::string_view address{}; ///< the device's name in Linux: "can0", "/dev/gpiochip0", "/dev/ttyS1"
+    Bounded<Fact, 4> facts{};   ///< words of that kind; its driver declares them
 
-    /// Of a board that is another one but for a word: in place of what that one says with it.
+    /// Replaces the fact with the same word, or adds it; for a board that is derived from another one.
     constexpr void say(const Fact& fact) noexcept {
         for (Fact& each : facts)
             if (each.word == fact.word) {
@@ -31,15 +31,15 @@ struct BoardDevice {
     }
 };
 
-/// Whoever is this user, or in this group, has this role at least.
+/// This user, or every member of this group, has at least this role.
 struct BoardRole {
     bool is_group = false;
     std::uint32_t number = 0;
     Role role = Role::observer;
 };
 
-/// The local socket for browsers: where it stands and who may use it. Root and the user that runs the machine
-/// are engineers; whoever else may open the socket's file and is not listed is an observer.
+/// The local socket for browsers: its directory and its users. Root and the user that runs the machine are
+/// engineers; any other user who may open the socket's file and is not listed is an observer.
 struct BoardBrowsing {
     std::string_view directory{}; ///< empty: no socket unless the program's options name one
     unsigned mode = 0660;         ///< of the socket's file
@@ -53,69 +53,68 @@ struct BoardNetwork {
     std::string_view address{};
 };
 
-/// What the box's init does when the firmware ended without being asked to: it starts it again, and leaves it
-/// after so many times within so long. A started machine stands until somebody at it acknowledges.
+/// Restart policy of the box's init when the firmware ends without a request: init restarts it, at most
+/// `most` times within `within`. A restarted machine stays stopped until an operator at the machine
+/// acknowledges.
 struct BoardRestarts {
     int most = 3;
     Duration within = std::chrono::minutes{10};
 };
 
-/// What the box's image carries beside the firmware, and what its init brings up.
+/// Contents of the box's image beside the firmware, and the services that its init starts.
 struct BoardImage {
-    /// Kernel modules, with their parameters after a blank. One that drives devices is loaded when one of
-    /// them is there, any other always; what they need comes with them.
+    /// Kernel modules, with their parameters after a blank. A module that drives devices is loaded when one
+    /// of them is present, any other module always; the modules that they depend on are included.
     Bounded<std::string_view, 48> modules{};
-    Bounded<std::string_view, 48> later_modules{}; ///< as those, but loaded when the machine has armed
-    Bounded<std::string_view, 4>
-        consoles{};                      ///< where kernel, init and firmware speak: "tty0", "ttyS0,115200"
-    Bounded<BoardNetwork, 4> networks{}; ///< Ethernet interfaces that the box brings up
+    Bounded<std::string_view, 48> later_modules{}; ///< like `modules`, but loaded after the machine has armed
+    Bounded<std::string_view, 4> consoles{}; ///< output of kernel, init and firmware: "tty0", "ttyS0,115200"
+    Bounded<BoardNetwork, 4> networks{};     ///< Ethernet interfaces that the box brings up
     int interrupt_priority =
-        0; ///< SCHED_FIFO of the bound devices' interrupt threads; 0: as the kernel has them
+        0; ///< SCHED_FIFO priority of the bound devices' interrupt threads; 0: the kernel's default
     BoardRestarts restarts{};
-    /// TCP, on every network of the box: tells what runs, takes signed updates and orders, which wait for
-    /// consent at the machine. 0: none.
+    /// TCP port on every network of the box: reports the running version, accepts signed updates and orders,
+    /// which wait for consent at the machine. 0: no service.
     std::uint16_t service_port = 0;
 };
 
 struct Board {
     std::string_view name{};
     std::string_view world = "box"; ///< or "host", "bench"
-    /// Of all static memory, the heap's arena and the stacks included.
+    /// Limit of all static memory, including the heap's arena and the stacks.
     std::size_t memory_budget_bytes = 4 * 1024 * 1024;
-    std::size_t heap_bytes = 0; ///< the arena that configuring may use before arming
+    std::size_t heap_bytes = 0; ///< the arena for allocations during configuration, before arming
     int processors = 1;
     int highest_priority = 80; ///< SCHED_FIFO; interrupt threads stay above it
     int default_processor = 0;
     Bounded<BoardDevice, 16> devices{};
-    bool simulated =
-        false; ///< any device that a machine names is there, as its twin: nothing needs a binding
+    bool simulated = false; ///< every device that a machine names exists as its twin: no binding is needed
     Bounded<std::string_view, 16>
         only_warned{}; ///< arming checks that this development board downgrades to warnings
     std::string_view kernel_command_line{}; ///< without console=, which follows from the image's consoles
     BoardImage image{};
-    std::string_view properties_directory{}; ///< where properties files lie; "": they are not kept
+    std::string_view properties_directory{}; ///< directory of the properties files; "": they are not saved
     BoardBrowsing browsing{};
-    std::string_view
-        black_box_directory{}; ///< of what is kept of an ending that nobody asked for; "": nothing
+    std::string_view black_box_directory{}; ///< directory for records of unrequested ends; "": none is kept
     const char* watchdog =
         nullptr; ///< "/dev/watchdog": the guardian kicks it while the machine lives; null: none
-    Duration watchdog_within = 10s; ///< then the watchdog resets the box
-    /// A real-time activity that is due, or in a cycle, and gets no further for so long, ends the machine:
-    /// see kernel/machine/worlds/life_watch.hpp. Longer than any deadline.
+    Duration watchdog_within = 10s; ///< time-out after which the watchdog resets the box
+    /// Ends the machine when a real-time activity that is due, or in a cycle, makes no progress for this
+    /// long: see kernel/machine/worlds/life_watch.hpp. Must be longer than any deadline.
     Duration life_sign_within = 200ms;
-    /// A stop that was asked for leaves every output safe within so long, whatever a component does: what the
-    /// machine has not done by then its guardian does. At least what the table promises: see check/stop.hpp.
+    /// A requested stop makes every output safe within this time, whatever a component does: the guardian
+    /// does what the machine has not done by then. At least the sum that the table promises: see
+    /// check/stop.hpp.
     Duration stop_within = 1s;
-    /// A stop that has not begun by then the guardian does not wait for.
+    /// Returns the time within which a stop must begin; after it the guardian waits no longer.
     [[nodiscard]] constexpr Duration stop_begins_within() const noexcept { return stop_within / 4; }
-    /// How long all activities that are not real-time, together, may hold up the stop of those that are: they
-    /// may block. Who is not stopped by then is waited for when the others stand.
+    /// How long all activities that are not real-time, together, may delay the stop of the real-time ones:
+    /// they may block. An activity that is not stopped by then is waited for after the others have stopped.
     static constexpr Duration stop_grace = 20ms;
 };
 
 /// board_device("can0", "can", "can0", bit_rate(500'000)),
 /// board_device("io", "gpio", "/dev/gpiochip0", lines(32))
-/// The words stand in the driver's kind.hpp, drivers/can/kind.hpp; four at most.
+/// The driver's kind.hpp declares the words, for example drivers/can/kind.hpp; four at most.
 template <std::same_as<Fact>... Facts>
 constexpr BoardDevice board_device(std::string_view name, std::string_view kind, std::string_view address,
                                    const Facts&... facts) {
@@ -146,9 +145,9 @@ constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
 }
 /// The user of that number has this role at least.
 constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {false, number, role}; }
-/// Who is in the group of that number has this role at least.
+/// Every member of the group of that number has at least this role.
 constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {true, number, role}; }
-/// Who may do more than look, 16 rows at most.
+/// The users and groups that may do more than observe, 16 rows at most.
 template <class... Rows>
 constexpr Bounded<BoardRole, 16> roles(const Rows&... rows) {
     return detail::list_of<BoardRole, 16>(rows...);
@@ -173,7 +172,7 @@ constexpr Bounded<std::string_view, 4> consoles(const Names&... names) {
 constexpr BoardNetwork ethernet(std::string_view name, std::string_view address) noexcept {
     return {name, address};
 }
-/// Of a board: the interfaces of Ethernet, as ethernet() writes each.
+/// The Ethernet interfaces of a board, each written with ethernet(); four at most.
 template <class... Rows>
 constexpr Bounded<BoardNetwork, 4> networks(const Rows&... rows) {
     return detail::list_of<BoardNetwork, 4>(rows...);

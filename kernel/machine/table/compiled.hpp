@@ -1,8 +1,9 @@
 // Behaviour rows that run native code:
 //     behaviour("weft", compiled<weft_script>)     a script, compiled with the firmware
 //     behaviour("loom", compiled<loom_cycle>)      a state machine table
-//     behaviour("weft", compiled<weft_script>, slot(...))  likewise, until another one is loaded in its place
-// Both are variables at namespace scope. What their code has folded in is not stored a second time.
+//     behaviour("weft", compiled<weft_script>, slot(...))  the same, until another one is loaded
+// Both are variables at namespace scope. Tables that the native code has folded in are not stored a second
+// time.
 #pragma once
 
 #include "kernel/machine/table/behaviours.hpp"
@@ -22,12 +23,11 @@ struct CompiledBehaviour {
 
 namespace native {
 
-/// Of a state machine with more transitions only the programs and guards are native, and its states stand in
-/// memory: to fold all of them takes the C++ compiler as long as everything else that it does for that
-/// machine.
+/// The most transitions of a state machine that is folded completely. Above it only programs and guards are
+/// native, and the states stay in memory: folding them would double the C++ compiler's time for the machine.
 inline constexpr std::size_t most_folded_transitions = 128;
 
-/// A script without its instructions, and its code.
+/// A script without its instructions, and its native code.
 template <const auto& source> struct CompiledUnit {
     static constexpr std::size_t count = source.types.size();
     using Numbers = std::make_index_sequence<count>;
@@ -79,7 +79,7 @@ template <const auto& source> constexpr CompiledBehaviour compile() noexcept {
 
 } // namespace native
 
-/// `source`: a ScriptUnit, as compiled_script gives one, or a StateMachine of kernel/statechart/rows.hpp.
+/// `source`: a ScriptUnit, as compiled_script returns it, or a StateMachine of kernel/statechart/rows.hpp.
 template <const auto& source> inline constexpr CompiledBehaviour compiled = native::compile<source>();
 
 template <class... Options>

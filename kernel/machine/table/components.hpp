@@ -1,4 +1,4 @@
-// Component rows: what the machine is made of, and the property values it gives to each.
+// Component rows: the components of the machine and their property values.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -42,8 +42,8 @@ inline constexpr ListSetting list_setting{values.size(), [](std::size_t i) { ret
 
 } // namespace detail
 
-/// A property's value in this machine: boolean, a number, a time with its unit, a text, a value of an
-/// enumeration. Of a property in a bag the whole name: "gains.roll.p".
+/// Sets a property's value in this machine: a boolean, a number, a time with its unit, a text, or a value of
+/// an enumeration. A property in a bag is named in full: "gains.roll.p".
 template <class T>
 constexpr PropertyRow set(std::string_view name, const T& value) {
     return {name, detail::setting_of(value)};
@@ -51,7 +51,7 @@ constexpr PropertyRow set(std::string_view name, const T& value) {
 constexpr PropertyRow set(std::string_view name, const char* value) {
     return {name, detail::setting_of(std::string_view{value})};
 }
-/// A list: an array or Sequence that is a constant at namespace scope: set<offsets>("offsets").
+/// Sets a list from an array or Sequence that is a constant at namespace scope: set<offsets>("offsets").
 template <const auto& values>
 constexpr PropertyRow set(std::string_view name) {
     return {name, {.kind = PropertySetting::Kind::list, .list = &detail::list_setting<values>}};
@@ -61,9 +61,9 @@ struct PropertiesFile {
     std::string_view name{};
     bool may_be_missing = false;
 };
-/// The component's properties are read from this file while it is configured, and saved to it. It lies in the
-/// board's properties_directory; one that is missing is an error unless `optional`. What it says goes before
-/// what the row sets.
+/// The component's properties are read from this file during configuration, and saved to it. The file is in
+/// the board's properties_directory; a missing file is an error unless `optional`. Its values override those
+/// of the row.
 constexpr PropertiesFile properties_file(std::string_view name) noexcept { return {name, false}; }
 constexpr PropertiesFile properties_file(std::string_view name, Optional) noexcept { return {name, true}; }
 
@@ -80,11 +80,11 @@ struct ComponentRow {
     PropertiesFile properties{};
 };
 
-/// The logical name of the device that a driver component drives; board/ says what stands behind it.
+/// The logical name of the device that a driver component drives; the binding names the real device.
 constexpr RowOption<ComponentRow, std::string_view> device(std::string_view name) noexcept {
     return {&ComponentRow::device, name};
 }
-/// What a watchdog watches: an activity, or an output that a connection leads to another activity.
+/// The target of a watchdog: an activity, or an output that is connected to another activity.
 constexpr RowOption<ComponentRow, std::string_view> watches(std::string_view name) noexcept {
     return {&ComponentRow::watched, name};
 }
@@ -105,7 +105,7 @@ constexpr void apply(ComponentRow& row, const PropertiesFile& option) noexcept {
 
 } // namespace detail
 
-/// component<Type>("name", ...): its name is the first part of every path to it, so it has no dot.
+/// component<Type>("name", ...). The name is the first part of every path to the component, so it has no dot.
 template <class T, class... Options>
 constexpr ComponentRow component(std::string_view name, const Options&... options) {
     ComponentRow row{.name = name, .type = &component_type<T>};

@@ -1,4 +1,4 @@
-// Connection rows: what flows from an output to an input, and what happens when it does not.
+// Connection rows: the data flow from outputs to inputs, and the reaction when data stop.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -25,19 +25,20 @@ struct ConnectionRow {
     WhenStale when_stale = WhenStale::hold;
     RowValue substitute{};
     RowValue before_first{};
-    std::uint8_t stale_answers = 0; ///< options that say what a stale value means: one at most
+    std::uint8_t stale_answers = 0; ///< options that say how a stale value is handled: one at most
     bool wakes_reader = false;
     bool delayed_step = false;
     double scale = 0; ///< 0: none is given
     bool converted = false;
     RateTransition transition = RateTransition::unsaid;
-    bool says_age = false;   ///< stale_after(...), whatever it says
-    bool says_scale = false; ///< scaled(...), likewise
+    bool says_age = false;   ///< stale_after(...) is given, with any value
+    bool says_scale = false; ///< scaled(...) is given, with any value
 };
 
 namespace detail {
 
-/// What the compiler knows of a constant's number; of others start-up asks before it gives them out.
+/// Returns the number of a constant that the compiler knows, otherwise 0; start-up checks the other constants
+/// before it distributes them.
 template <const auto& Constant>
 constexpr double known_number() noexcept {
     if constexpr (std::is_floating_point_v<std::remove_cvref_t<decltype(Constant)>>)
@@ -57,19 +58,19 @@ constexpr RowValue row_constant() noexcept {
 struct StaleAfter {
     Duration age;
 };
-/// A value older than this, which is above 0, is stale; hold, substitute(x) or stop_machine say what the
-/// reader then gets: hold, if nothing says so. stop_machine is kept whatever the reader's activity waits for.
+/// A value older than `age` (above 0) is stale. hold, substitute(x) or stop_machine state what the reader
+/// then gets; default: hold. stop_machine works even when the reader's activity is waiting.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
-/// Of a stale value: the reader keeps it, and sees that it is stale. From another machine it is the last that
-/// came over the wire, also when that was forced there.
+/// Stale value: the reader keeps it, and sees that it is stale. A value from another machine is the last that
+/// the wire delivered, even when it was forced there.
 inline constexpr WhenStale hold = WhenStale::hold;
-/// Of a stale value: the machine stops.
+/// Stale value: the machine stops.
 inline constexpr WhenStale stop_machine = WhenStale::stop;
 struct Substitute {
     RowValue value;
 };
-/// What the reader gets instead of a stale or never written value: a number, or a constant of the port's
-/// type, which has static storage:
+/// The value that the reader gets instead of a stale or never written one: a number, or a constant of the
+/// port's type with static storage:
 ///     const Eigen::Vector3d parked{0, 0, 120};
 ///     data("arm.pose", "tool.pose", stale_after(4ms), substitute<parked>())
 constexpr Substitute substitute(double value) noexcept { return {{.given = true, .number = value}}; }
@@ -77,8 +78,8 @@ template <const auto& Constant>
 constexpr Substitute substitute() noexcept {
     return {detail::row_constant<Constant>()};
 }
-/// What the reader gets before the first value; spelled as substitute. Without it that is the row's
-/// substitute, or the type's own default.
+/// The value that the reader gets before the first write; spelled like substitute. Default: the row's
+/// substitute, otherwise the default of the type.
 constexpr RowOption<ConnectionRow, RowValue> initially(double value) noexcept {
     return {&ConnectionRow::before_first, {.given = true, .number = value}};
 }
@@ -86,37 +87,38 @@ template <const auto& Constant>
 constexpr RowOption<ConnectionRow, RowValue> initially() noexcept {
     return {&ConnectionRow::before_first, detail::row_constant<Constant>()};
 }
-/// Each write wakes the reader's activity, and so does a value that grows stale: that, too, is news.
+/// Wakes the reader's activity at each write, and when the value becomes stale: that, too, is news.
 inline constexpr RowOption wakes{&ConnectionRow::wakes_reader, true};
 /// The reader sees the value of the previous cycle: breaks a data-flow cycle inside one activity.
 inline constexpr RowOption delayed{&ConnectionRow::delayed_step, true};
 struct Scaled {
     double factor;
 };
-/// The reader gets each value times `factor`. Ports of floating numbers; in real time one multiplication for
-/// each value.
+/// The reader gets each value multiplied by `factor`. For floating-point ports; costs one multiplication for
+/// each value. Real-time.
 constexpr Scaled scaled(double factor) noexcept { return {factor}; }
-/// Likewise, and the factor leads from the unit of the output to the unit of the input.
+/// Scales by the factor from the unit of the output to the unit of the input.
 inline constexpr RowOption converted{&ConnectionRow::converted, true};
-/// Of a slower writer: the reader gets its last value until the next one comes. What is done when nothing is
-/// said; commands from one level of control to another say it.
+/// Slower writer: the reader gets its last value until the next one arrives. This is the default; rows for
+/// commands from one control level to another state it.
 inline constexpr RateTransition in_steps = RateTransition::hold;
-/// Of a slower writer, of floating numbers: a line from value to value, in the reader's own cycles; later by
-/// one of the writer's periods.
+/// Slower writer of floating-point numbers: linear interpolation from value to value in the reader's cycles;
+/// adds a delay of one writer period.
 inline constexpr RateTransition interpolated = RateTransition::interpolate;
-/// Likewise: the line through the last two values, for one of the writer's periods.
+/// Slower writer of floating-point numbers: extrapolates the line through the last two values for one writer
+/// period.
 inline constexpr RateTransition extrapolated = RateTransition::extrapolate;
-/// Of a full buffer: what comes is not taken, and counted. The default.
+/// Full buffer: the new value is rejected and counted. The default.
 inline constexpr Overflow reject_newest = Overflow::reject;
-/// Of a full buffer: what waits longest gives way, and is counted.
+/// Full buffer: the oldest value is dropped and counted.
 inline constexpr Overflow drop_oldest = Overflow::drop_oldest;
 
-/// Whether somebody acts when the value grows stale: the machine stops, or the reader is woken.
+/// Whether staleness has an effect: the machine stops, or the reader is woken.
 constexpr bool is_guarded(const ConnectionRow& row) noexcept {
     return row.max_age > Duration::zero() && (row.when_stale == WhenStale::stop || row.wakes_reader);
 }
 
-/// Whether values are made between those that are written.
+/// Whether the row generates values between the written ones.
 constexpr bool has_values_between(const ConnectionRow& row) noexcept {
     return row.transition == RateTransition::interpolate || row.transition == RateTransition::extrapolate;
 }
@@ -146,7 +148,7 @@ constexpr void apply(ConnectionRow& row, Overflow option) noexcept { row.overflo
 
 } // namespace detail
 
-/// The last value of an output, for an input.
+/// Connects an output to an input; the reader gets the last value.
 template <class... Options>
 constexpr ConnectionRow data(std::string_view from, std::string_view to, const Options&... options) {
     ConnectionRow row{.from = from, .to = to};
@@ -154,7 +156,7 @@ constexpr ConnectionRow data(std::string_view from, std::string_view to, const O
     return row;
 }
 
-/// Every value of a buffered output, in order, for a buffered input; at most Capacity wait.
+/// Passes every value of a buffered output, in order, to a buffered input; at most Capacity values wait.
 template <std::size_t Capacity, class... Options>
 constexpr ConnectionRow buffer(std::string_view from, std::string_view to, const Options&... options) {
     ConnectionRow row{.from = from, .to = to, .buffered = true, .capacity = Capacity};

@@ -1,4 +1,4 @@
-// What the checks found out about a table: indices instead of names. Sized by the table, filled once, read by
+// Results of the checks of a table: indices instead of names. Sized by the table, filled once, read by
 // planning.
 #pragma once
 
@@ -14,8 +14,8 @@ struct Link {
     End to;
 };
 
-/// Which rows of a section begin, or end, at a component: a chain for each, so that no check compares every
-/// row with every other. What was added last comes first.
+/// Lists, as one chain for each component, the rows of a section that begin, or end, at it, so that no check
+/// compares every row with every other. The row added last comes first.
 struct RowsByComponent {
     std::span<std::size_t> first; ///< of each component
     std::span<std::size_t> next;  ///< of each row
@@ -29,8 +29,7 @@ struct RowsByComponent {
     }
 };
 
-/// Views into storage of the table's own sizes. Of a machine that runs only the first part is kept; the rest
-/// is empty.
+/// Views into storage of the table's sizes. A running machine keeps only the first part; the rest is empty.
 struct TableIndexView {
     std::span<std::size_t> by_name;  ///< the components in the order of their names
     std::span<std::size_t> activity; ///< of each component
@@ -41,15 +40,15 @@ struct TableIndexView {
 
     std::span<std::size_t> by_rank;   ///< the activities, the most urgent first
     std::span<std::size_t> in_order;  ///< the components, activity by activity, each in its data-flow order
-    std::span<std::size_t> waits_for; ///< of each component, while they are put in order
-    RowsByComponent connections_into; ///< whose reader is a component
-    RowsByComponent connections_from; ///< whose writer is
-    RowsByComponent reactions_into;   ///< whose operation is a component's
+    std::span<std::size_t> waits_for; ///< of each component: rows it waits for, during ordering
+    RowsByComponent connections_into; ///< rows whose reader is the component
+    RowsByComponent connections_from; ///< rows whose writer is the component
+    RowsByComponent reactions_into;   ///< rows whose operation belongs to the component
     std::span<std::uint64_t> reach; ///< of each component: a bit for each activity that runs functions of it
     std::span<std::int64_t> worst_response_ns; ///< of each activity; 0 for not_real_time
 };
 
-/// What start-up and a running machine read.
+/// The part that start-up and a running machine read.
 template <std::size_t C, std::size_t A, std::size_t X, std::size_t R> struct KeptIndex {
     std::array<std::size_t, C> by_name{};
     std::array<std::size_t, C> activity{};

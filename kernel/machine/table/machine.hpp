@@ -1,5 +1,5 @@
-// The machine table: five sections of rows that say what a machine is, and sections of other folders after
-// them. One value, one page.
+// The machine table: five sections of rows that define a machine, followed by the sections of other folders.
+// One value, one page.
 #pragma once
 
 #include "kernel/machine/table/rows.hpp"
@@ -11,7 +11,7 @@
 
 namespace tappet {
 
-/// A table as spans: what checks, planning and start-up read, whatever its sizes.
+/// A table as spans, independent of its sizes; checks, planning and start-up read it.
 struct MachineView {
     std::string_view name{};
     std::span<const ComponentRow> components;
@@ -43,7 +43,7 @@ struct Machine {
     }
 };
 
-// Each section is a pack of rows of one plain type: the only template argument that remains is their number.
+// Each section is a pack of rows of one plain type: the only template argument left is their number.
 template <class... Rows>
 constexpr Section<ComponentRow, sizeof...(Rows)> components(const Rows&... rows) {
     return {{rows...}};

@@ -1,5 +1,5 @@
-// Names in a table, resolved: "component.facet" becomes two indices, or a sentence that says what is wrong
-// and what was probably meant.
+// Resolves names in a table: "component.facet" becomes two indices, or a sentence that states the fault and
+// the probable spelling.
 #pragma once
 
 #include "kernel/base/compare.hpp"
@@ -42,7 +42,7 @@ constexpr void sort_by_name(const MachineView& m, std::span<std::size_t> by_name
     });
 }
 
-/// As find_component, in logarithmic time: a table of hundreds of components is resolved by the compiler.
+/// Like find_component, in logarithmic time: the compiler resolves tables of hundreds of components.
 constexpr std::size_t find_component(const MachineView& m, std::span<const std::size_t> by_name,
                                      std::string_view name) noexcept {
     std::size_t low = 0;
@@ -74,8 +74,8 @@ constexpr std::size_t find_facet(const ComponentRow& row, std::string_view name)
     return nowhere;
 }
 
-/// Whether a component of the type has such a facet. Of the type alone, so that a compiler which remembers
-/// its constant calls looks at each type once.
+/// Whether a component of the type has such a facet. Depends on the type alone, so that a compiler that
+/// caches constant calls examines each type once.
 template <class Wanted>
 constexpr bool has_facet(const ComponentType* type, Wanted wanted) noexcept {
     for (const Facet& facet : type->facets)
@@ -103,8 +103,8 @@ constexpr Sentence unknown_component(const MachineView& m, std::string_view name
     return text;
 }
 
-/// Finds "component.facet" where the facet is one of the two kinds; `found` is set and the answer empty, or
-/// the answer is the fault and its cure.
+/// Finds "component.facet". `wanted` is the expected kind, for the suggestion. On success sets `found` and
+/// returns an empty sentence, otherwise the fault and its cure.
 constexpr Sentence resolve(const MachineView& m, std::span<const std::size_t> by_name, std::string_view path,
                            FacetKind wanted, End& found) {
     const std::size_t dot = find_character(path, '.');
@@ -138,7 +138,7 @@ constexpr Sentence resolve(const MachineView& m, std::span<const std::size_t> by
     return {};
 }
 
-/// Where no list by name is at hand.
+/// Resolves without a list sorted by name.
 constexpr Sentence resolve(const MachineView& m, std::string_view path, FacetKind wanted, End& found) {
     return resolve(m, {}, path, wanted, found);
 }

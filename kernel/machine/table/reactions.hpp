@@ -1,4 +1,4 @@
-// Reaction rows: which operation runs upon which event, and in whose activity.
+// Reaction rows: the operation that runs upon an event, and the activity that runs it.
 #pragma once
 
 #include "kernel/base/row_option.hpp"
@@ -18,20 +18,20 @@ struct Queue {
     std::uint32_t n;
     bool latest = false;
 };
-/// How many unserved emissions of this row may wait; one more is lost and counted. Eight unless stated.
+/// How many unserved emissions of this row may wait; a further one is lost and counted. Default: 8.
 constexpr Queue queue(std::uint32_t n) noexcept { return {n}; }
-/// Of unserved emissions of this row only the latest waits; the ones it replaced are counted as lost.
+/// Only the latest unserved emission of this row waits; the emissions it replaced are counted as lost.
 inline constexpr Queue keep_latest{1, true};
 
-/// Asynchronous: in the receiver's engine, with the arguments of the emission; to an operation or an
-/// EventWait.
+/// Asynchronous: runs in the receiver's engine, with the arguments of the emission. The target is an
+/// operation or an EventWait.
 constexpr ReactionTarget tell(std::string_view operation, Queue waiting = {8}) noexcept {
     return {operation, false, waiting.n, waiting.latest};
 }
-/// Synchronous: in the emitter, here and now.
+/// Synchronous: runs at once, in the emitter.
 constexpr ReactionTarget call(std::string_view operation) noexcept { return {operation, true, 0, false}; }
 
-/// What a row of the section reactions says.
+/// The kinds of rows in the section reactions.
 enum class ReactionKind : std::uint8_t {
     when, ///< an operation runs upon an event
     uses  ///< a requester of one component reaches a method or a command of another
@@ -48,7 +48,7 @@ struct ReactionRow {
 struct SentBy {
     std::string_view component{};
 };
-/// The command object is sent by this component, to which it is handed on, in that component's activity.
+/// The command object is handed on to this component, which sends it, in that component's activity.
 constexpr SentBy sent_by(std::string_view component) noexcept { return {component}; }
 
 /// A requester (a MethodCall or a CommandCall) of one component reaches a method or a command of another.
@@ -66,10 +66,10 @@ constexpr ReactionRow uses(std::string_view requester, std::string_view operatio
 constexpr RowOption<ReactionRow, std::string_view> handled_by(std::string_view handle) noexcept {
     return {&ReactionRow::handle, handle};
 }
-/// The row is not connected until its handle says so.
+/// The row stays disconnected until its handle connects it.
 inline constexpr RowOption disconnected{&ReactionRow::is_connected, false};
 
-/// Upon each emission of the event, as component.event: tell(...) or call(...).
+/// Runs at each emission of the event, given as component.event: tell(...) or call(...).
 template <class... Options>
 constexpr ReactionRow when(std::string_view event, ReactionTarget target, Options... options) noexcept {
     ReactionRow row;

@@ -1,5 +1,5 @@
-// The rows of a machine table as plain data, and the words that spell them. Nothing here is checked:
-// kernel/machine/check/check.hpp reads the finished table.
+// The rows of a machine table as plain data, and the functions that spell them. Nothing here is checked:
+// kernel/machine/check/check.hpp checks the finished table.
 #pragma once
 
 #include "kernel/machine/table/activities.hpp"

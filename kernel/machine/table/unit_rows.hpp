@@ -1,5 +1,6 @@
-// What a behaviour's unit asks of its machine, row by row: the events that it hears, the components behind
-// its reach, the commands that it sends to other activities. The checks, the plan and start-up walk these.
+// The requests of a behaviour's unit to its machine, row by row: the events that it hears, the components in
+// its reach, the commands that it sends to other activities. The checks, the plan and start-up iterate over
+// them.
 #pragma once
 
 #include "kernel/machine/table/behaviours.hpp"
@@ -38,7 +39,7 @@ constexpr UnitEvents events_of(const ScriptUnit& unit) noexcept {
     return events;
 }
 
-/// The component behind a number of a unit's reach; 0 is the one that the row drives.
+/// Returns the component at a number of a unit's reach; 0 is the one that the row drives.
 constexpr std::size_t component_of(const MachineView& m, std::string_view driven, const ScriptUnit& unit,
                                    std::size_t peer) noexcept {
     return find_component(m, peer == 0 || peer >= unit.reach.size() ? driven : unit.reach[peer].name);
@@ -53,7 +54,8 @@ constexpr void for_each_command_slot(const MachineView& m, std::string_view driv
             if (link.needs_slot) visit(End{component_of(m, driven, unit, link.peer), link.facet});
 }
 
-/// The events that a slot reserves: its own component's, and of its peers those that it names.
+/// Calls visit(event) for each event that a slot reserves: those of its own component, and the events of its
+/// peers that it names.
 template <class Visit>
 constexpr void for_each_slot_event(const MachineView& m, const BehaviourRow& row, const Visit& visit) {
     const std::size_t own = find_component(m, row.component);
@@ -68,7 +70,7 @@ constexpr void for_each_slot_event(const MachineView& m, const BehaviourRow& row
     }
 }
 
-/// Bytes of the longest arguments among them; a message's at least.
+/// Returns the bytes of the longest arguments of these events, at least those of a message.
 constexpr std::size_t longest_slot_event(const MachineView& m, const BehaviourRow& row) {
     std::size_t longest = sizeof(Message::arguments);
     for_each_slot_event(m, row, [&](End event) {

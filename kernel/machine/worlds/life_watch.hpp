@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the activities of a machine show life, seen from outside: by whoever has the machine's memory, to
-// read.
+// Watches from outside whether the activities of a machine show life; needs read access to the machine's
+// memory.
 #pragma once
 
 #include "kernel/machine/instance/placed.hpp"
@@ -11,24 +11,24 @@
 
 namespace tappet {
 
-/// An activity owes a sign while it is in a cycle, was woken, or is past the time it wanted to wake at. It
-/// shows life by beginning or ending a cycle. One that sleeps and is due for nothing owes none, however long.
-/// Those that are not real-time may block, and are not watched.
+/// An activity owes a sign of life while it is in a cycle, was woken, or is past its wake time. It shows life
+/// by beginning or ending a cycle. An activity that sleeps and is not due owes none, however long. Activities
+/// that are not real-time may block, and are not watched.
 class LifeWatch {
 public:
     LifeWatch(PlacedMachine& machine, Duration within) noexcept : machine_{machine}, within_{within} {}
 
     static constexpr std::size_t all_live = ~std::size_t{0};
-    /// How long an activity may owe a sign: `within`, or twice its deadline where that is longer.
+    /// Returns how long an activity may owe a sign: `within`, or twice its deadline if that is longer.
     [[nodiscard]] Duration limit(std::size_t activity) const noexcept {
         return std::max(within_, 2 * machine_.machine().table.activities[activity].deadline());
     }
-    /// The first activity that owed a sign for longer than its limit, or all_live. To be asked several times
-    /// in `within`: a longer pause is taken for a box that was frozen. What it asks of an engine is read in
-    /// one piece and leads nowhere: an engine that is damaged damages nobody here.
+    /// Returns the first activity that owed a sign for longer than its limit, or all_live. Call it several
+    /// times in `within`: a longer pause counts as a frozen box. It reads an engine's values as single words
+    /// and follows no pointers: a damaged engine cannot damage the caller.
     [[nodiscard]] std::size_t look(Time now) noexcept {
-        // The caller has the highest priority: while it did not look, nothing ran. A quarter of the limit
-        // counts of each pause, so that a caller that is always late finds a hang, too.
+        // The caller has the highest priority: while it did not look, nothing ran. A quarter of `within`
+        // counts of each pause, so that even a caller that is always late detects a hang.
         const Duration frozen = std::max(now - last_ - within_ / 4, Duration{});
         last_ = now;
         const auto engines = machine_.engines();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread for functions of components that may take what time they like, so that the supervisor waits for
-// none.
+// A thread for component functions without a time limit, so that the supervisor waits for none of them.
 #pragma once
 
 #include "kernel/os/thread.hpp"
@@ -13,23 +12,26 @@
 
 namespace tappet {
 
-/// Created before arming, below every real-time thread. Not real-time; the supervisor's but for what it runs.
+/// Created before arming, below every real-time thread. Not real-time; used by the supervisor, except for the
+/// work that it runs.
 class MakersThread {
 public:
     MakersThread() = default;
     MakersThread(const MakersThread&) = delete;
     MakersThread& operator=(const MakersThread&) = delete;
 
-    /// `work` runs there after each wake(). An error names the cure. `stack` outlives the thread.
+    /// Creates the thread. `work` runs on it after each wake(). The error names the cure. `stack` must
+    /// outlive the thread.
     std::expected<void, Sentence> create(std::string_view name, std::span<std::byte> stack,
                                          void (*work)(void*), void* context);
     void wake() noexcept { waiter_.wake(); }
-    /// A contract was broken there: nothing runs on it any more.
+    /// Whether a contract was broken on it: it runs nothing any more.
     [[nodiscard]] bool is_lost() const noexcept { return is_lost_.load(std::memory_order_acquire); }
-    /// Ends it, or gives it up where it does not end in time.
+    /// Ends it, or abandons it when it does not end in time.
     void end(int milliseconds) noexcept;
 
-    /// For a thread whose contract is broken: nothing, unless it is such a one. Real-time.
+    /// Marks the calling makers' thread as lost after a broken contract; does nothing on any other thread.
+    /// Real-time.
     static void note_breach() noexcept TAPPET_REALTIME;
 
 private:

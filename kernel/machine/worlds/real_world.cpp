@@ -16,7 +16,7 @@ namespace tappet {
 
 namespace {
 
-// A contract handler and a signal handler have no argument of ours: they find the world here.
+// A contract handler and a signal handler have no argument of ours: they find the world through this pointer.
 std::atomic<RealWorld*> current_world{nullptr};
 thread_local bool supervises = false;
 
@@ -37,7 +37,7 @@ RealWorld::~RealWorld() {
     supervises = false;
 }
 
-// Asked at once, so that the guardian knows since when, should the supervisor not come.
+// Requests the stop at once, so that the guardian knows its time even if the supervisor hangs.
 void RealWorld::on_signal(int) noexcept {
     if (RealWorld* world = current_world.load(std::memory_order_acquire))
         world->instance_.ask_stop(StopReason::requested, 0, nullptr);
@@ -57,8 +57,8 @@ void RealWorld::on_breach(const ContractViolation& breach) noexcept TAPPET_REALT
     bool is_supervisor = false;
     TAPPET_ESCAPE("thread-local memory of the main program", is_supervisor = supervises);
     if (!is_supervisor) Activity::sleep_for_ever(); // the supervisor stops the machine
-    // Nobody else would stop the machine: it is done here, and the process ends when it stands.
-    // It says why without waiting for who reads it.
+    // No other thread would stop the machine: it is stopped here, and then the process ends. The reason is
+    // written without waiting for its reader.
     TAPPET_ESCAPE("the supervisor's thread is not real-time", static_cast<void>(world->make_safe());
                   static_cast<void>(os::write_all(2, describe(breach).add("\n").view())); std::abort());
 }
@@ -79,7 +79,7 @@ Sentence RealWorld::describe_breach(std::size_t index) const noexcept {
 std::optional<Armed> RealWorld::arm(os::ArmingReport& report, int file) {
     const auto& machine = instance_.machine();
     os::never_wait();
-    os::touch(machine.memory); // before there are threads: their stacks are part of it
+    os::touch(machine.memory); // before the threads exist: their stacks are part of it
     const auto engines = instance_.engines();
     int highest = 1;
     Bounded<int, max_activities> processors;
@@ -111,7 +111,7 @@ std::optional<Armed> RealWorld::arm(os::ArmingReport& report, int file) {
     options.processors = {processors.begin(), processors.end()};
     options.highest_priority = highest;
     check_system(report, options, os::observe_process(highest));
-    static_cast<void>(os::prove_processor_counter()); // without it stamps are taken from the clock
+    static_cast<void>(os::prove_processor_counter()); // without it the clock provides the stamps
     const bool fit = report.conclude();
     print(report, file);
     if (fit) return Armed{};
@@ -149,7 +149,7 @@ ActivityControl RealWorld::control() noexcept {
             }};
 }
 
-// Of a thread that hangs nobody knows what it will write: the machine stops, and its guardian ends it.
+// A hanging thread may write anything later: the machine stops, and its guardian ends it.
 ActivityControl::Progress RealWorld::progress_of(std::size_t a, bool is_there, int patience) {
     using Progress = ActivityControl::Progress;
     if (activities_[a].is_lost()) return Progress::lost;
@@ -167,8 +167,7 @@ void RealWorld::ask_to_stop(std::size_t a, int patience) noexcept {
     breaker_.wake();
 }
 
-// A bit stays until its loop was told: one that began anew must not hear what was meant for the one before
-// it.
+// A bit stays until its loop was told: a restarted loop must not receive the request for the previous one.
 void RealWorld::break_loops() noexcept {
     const std::uint64_t loops = loops_to_break_.load(std::memory_order_acquire);
     for (std::size_t a = 0; a < instance_.engines().size(); ++a) {
@@ -180,7 +179,7 @@ void RealWorld::break_loops() noexcept {
 
 void RealWorld::wait_for_change(Time end) {
     if (show_life_ != nullptr) show_life_(life_context_);
-    // Whose start or stop is awaited wakes nobody.
+    // The thread whose start or stop is awaited wakes nobody: poll.
     const Duration look = instance_.life().makers_at_work() ? 5ms : 1ms;
     static_cast<void>(instance_.supervisor().wait(std::min(end, instance_.clock().now() + look)));
 }
@@ -210,7 +209,7 @@ bool RealWorld::start(Armed) {
 
 Sentence RealWorld::change_activity(std::size_t a, LifeChange change) {
     MachineLife& life = instance_.life();
-    bool completed = complete_change(a, Duration::max()); // one that somebody asked for
+    bool completed = complete_change(a, Duration::max()); // one that was requested from outside
     if (completed) {
         life.begin_change(a, change, MachineLife::Begin::alone, control());
         completed = complete_change(a, Duration::max());
@@ -265,7 +264,7 @@ int RealWorld::make_safe() {
         const auto half_of_the_rest = static_cast<int>((due - now()) / 2ms);
         return std::clamp(half_of_the_rest, least_patience_ms, patience_ms);
     };
-    // Before the drivers stop, so that what it leaves reaches them.
+    // Before the drivers stop, so that the values it leaves reach them.
     const Time grace = now() + std::max<Duration>(Board::stop_grace, (due - now()) / 4);
     Bounded<std::size_t, max_activities> late;
     for (std::size_t a = instance_.engines().size(); a-- > 0;) {
@@ -279,7 +278,7 @@ int RealWorld::make_safe() {
         const Duration left = std::max(grace - now(), Duration::zero());
         if (!activities_[a].is_stopped_within(static_cast<int>(left / 1ms))) static_cast<void>(late.push(a));
     }
-    // All of them were asked: they have what is left, but for the least that giving them up takes.
+    // All of them were asked: they get the remaining time, except for the minimum that giving them up needs.
     for (const std::size_t a : late) {
         const auto rest = static_cast<int>((due - now()) / 1ms) - least_patience_ms;
         if (!activities_[a].is_stopped_within(std::max(rest, least_patience_ms)))

@@ -1,4 +1,4 @@
-// The turns of a loop and the world.
+// Passes the turn between a loop and the world.
 #include "kernel/machine/worlds/virtual_loop.hpp"
 
 #include "kernel/base/contract.hpp"

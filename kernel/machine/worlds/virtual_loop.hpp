@@ -1,4 +1,4 @@
-// A blocking loop under virtual time: it has a thread of its own, but only one of it and the world moves, by
+// A blocking loop under virtual time. It has a thread of its own, but only one of it and the world runs, in
 // turns, so that every run is the same.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace tappet {
 
-/// Runs the one component of an engine that loops. Called by the world's thread. Not real-time.
+/// Runs the one looping component of an engine. Called by the world's thread. Not real-time.
 class VirtualLoop {
 public:
     VirtualLoop(Engine& engine, const os::Clock& clock, std::span<std::byte> stack) noexcept;
@@ -18,9 +18,9 @@ public:
     VirtualLoop(const VirtualLoop&) = delete;
     VirtualLoop& operator=(const VirtualLoop&) = delete;
 
-    /// Serves the engine, and lets the loop go on until it waits or returns.
+    /// Serves the engine, and lets the loop run until it waits or returns.
     void run(bool woken) noexcept;
-    /// Makes the loop return. Before the engine's stop.
+    /// Makes the loop return. Call it before the engine's stop.
     void break_off() noexcept;
     [[nodiscard]] Time next_wake() const noexcept;
 
@@ -43,11 +43,11 @@ private:
     os::Thread thread_{};
     os::Waiter loops_turn_{};
     os::Waiter worlds_turn_{};
-    // Whoever has the turn reads and writes these.
+    // The thread that has the turn reads and writes these.
     bool in_loop_ = false;
     bool woken_ = false;
-    bool ends_ = false;   ///< the loop shall return
-    bool ending_ = false; ///< and its thread
+    bool ends_ = false;   ///< the loop must return
+    bool ending_ = false; ///< the thread must end
     Time wakes_at_ = never;
 };
 

@@ -1,4 +1,4 @@
-// The order of virtual time: of what is ready at an instant, the most urgent activity runs next.
+// The order of virtual time: at each instant, the most urgent ready activity runs next.
 #include "kernel/machine/worlds/virtual_world.hpp"
 
 #include "kernel/base/contract.hpp"
@@ -67,7 +67,7 @@ Sentence VirtualWorld::start() {
 
 Sentence VirtualWorld::change_activity(std::size_t a, LifeChange change) {
     MachineLife& life = instance_.life();
-    bool completed = complete_change(a); // one that somebody asked for
+    bool completed = complete_change(a); // one that was requested from outside
     if (completed) {
         life.begin_change(a, change, MachineLife::Begin::alone, control());
         completed = complete_change(a);
@@ -101,7 +101,7 @@ Time VirtualWorld::quiet(const void* but, Time end) const {
 void VirtualWorld::run_engine(std::size_t a, bool woken) {
     Engine& engine = instance_.engines()[a];
     if (engine.looping() == nullptr ||
-        engine.ends_at() != never) { // a loop that was broken off is not entered
+        engine.ends_at() != never) { // a loop that was broken off is not entered again
         if (runner_.run != nullptr)
             runner_.run(runner_.self, engine, woken);
         else
@@ -128,7 +128,7 @@ bool VirtualWorld::is_ready(std::size_t a, Time now) {
         job.woken = engine.waiter().is_woken() && engine.waiter().take();
         if (!job.woken && wake_at_[a] > now) return false;
         job.is_there = true;
-        // A timer that is armed for a time that has passed is due from then on.
+        // A timer that is set to a past time is due from the moment of setting.
         job.release = job.woken                ? now
                       : engine.plan().periodic ? wake_at_[a]
                                                : std::max(wake_at_[a], job.ended);
@@ -177,7 +177,7 @@ void VirtualWorld::run_engines(Time now) {
             run_engine(a, job.woken);
             ++steps_;
             ran = true;
-            break; // the most urgent of those that are ready now runs next
+            break; // the most urgent of the activities that are ready now runs next
         }
         if (!ran || (instance_.stop_asked() && !is_ending_)) return;
     }

@@ -1,4 +1,4 @@
-// How the box is that a machine runs on, as outputs that any machine can name.
+// The state of the box that a machine runs on, as outputs that any machine can name.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -6,13 +6,13 @@
 
 namespace tappet {
 
-/// In an activity that is not_real_time, once in each of its cycles: component<Box>("box"), then
-/// data("box.temperature", "loom.box_temperature"). What cannot be told is not written: nothing came there
-/// then.
+/// Runs in an activity that is not_real_time, once in each of its cycles: component<Box>("box"), then
+/// data("box.temperature", "loom.box_temperature"). An output whose value cannot be read is not written: its
+/// readers then see that nothing arrived.
 struct Box {
     Output<double> temperature, disk_free;
     Output<bool> watchdog;
-    /// A folder of the disk in question.
+    /// A folder on the disk to measure.
     Property<Text<64>> disk{Text<64>{"/var/lib/tappet"}};
 
     void work(const Cycle&) {

@@ -1,4 +1,4 @@
-// Who may do what (thesis 4.8): the role of a peer, from its credentials and the board's list.
+// Access rights (thesis 4.8): the role of a peer, from its credentials and the board's list.
 #pragma once
 
 #include "kernel/machine/table/board.hpp"
@@ -6,8 +6,8 @@
 
 namespace tappet::browsing {
 
-/// The highest role that a row of the board gives the peer. Root and the user that runs the machine are
-/// engineers; whoever else may open the socket, observers.
+/// Returns the highest role that the board's rows give the peer. Root and the user that runs the machine are
+/// engineers; any other user who may open the socket is an observer.
 inline Role role_of(const os::Peer& peer, const BoardBrowsing& board) noexcept {
     Role role = Role::observer;
     if (peer.user == 0 || peer.user == os::own_user()) role = Role::engineer;

@@ -1,4 +1,4 @@
-// What a browser tells a behaviour to do, on its way to the engine that runs it.
+// A browser's order to a behaviour, on its way to the engine that runs the behaviour.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::browsing {
 
-/// False: there is no such action.
+/// Parses an action. False: there is no such action.
 constexpr bool parse(std::string_view text, BehaviourAction& action) noexcept {
     for (std::size_t i = 0; i < behaviour_actions.size(); ++i)
         if (behaviour_actions[i] == text) {
@@ -21,16 +21,16 @@ constexpr bool parse(std::string_view text, BehaviourAction& action) noexcept {
 
 struct BehaviourOrder {
     BehaviourUnit* unit = nullptr;
-    BehaviourSlot* slot = nullptr; ///< that holds the unit; null: a row's own
+    BehaviourSlot* slot = nullptr; ///< holds the unit; null: the unit is a row's own
     const Engine* engine = nullptr;
     std::size_t part = 0;
-    StateIndex state = no_state; ///< that is requested
+    StateIndex state = no_state; ///< the requested state
     BehaviourAction action = BehaviourAction::start;
     bool done = false;
 };
 
-/// The characters of a word of a request: what stands between its outer quotes, \" and \\ for themselves.
-/// False: it is not quoted well.
+/// Passes the characters of a request's word to `put`: those between its outer quotes, with \" and \\
+/// unescaped. False: the quoting is wrong.
 template <class Put>
 constexpr bool unquote(std::string_view word, const Put& put) {
     const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';

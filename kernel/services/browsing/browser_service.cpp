@@ -1,4 +1,4 @@
-// One cycle of the service: let in, hear, answer, follow what is under way.
+// One cycle of the service: accepts clients, receives, answers, and follows pending requests.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -25,7 +25,7 @@ Sentence BrowserService::initialise() {
 void BrowserService::finalise() {
     for (Subscribed& each : subscribed_)
         if (each.taken) drop(each);
-    seen_count_ = 0; // nobody is left whom it could be told
+    seen_count_ = 0; // no client is left to be told
     connections_.close();
 }
 
@@ -117,7 +117,7 @@ BrowserService::Verdict BrowserService::answer(Client& client, const Request& re
     return (this->*serve[row])(client, request);
 }
 
-/// One line: what, when, who, and what was asked, without characters that a terminal would obey.
+/// Prints one line: event, time, user, and the request without characters that a terminal would interpret.
 void BrowserService::note(const Client& client, std::string_view what, std::string_view packet,
                           const Verdict& verdict) {
     if (!log) return;
@@ -134,7 +134,7 @@ void BrowserService::note(const Client& client, std::string_view what, std::stri
     os::print(line.add("\n").view());
 }
 
-// Logs that a request which was accepted is not done. The line of the request names the client.
+// Logs that an accepted request is not done. The line of the request names the client.
 void BrowserService::note_end(const Pending& place, std::string_view how,
                               std::string_view why) const noexcept {
     if (!log.get() || place.is_told) return;

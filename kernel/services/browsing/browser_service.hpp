@@ -1,5 +1,5 @@
 // The machine's side of browsing (thesis 4.8): a component that answers browsers over a local socket, from a
-// background activity. What it changes, it has done by the engine that owns it.
+// background activity. Every change is made by the engine that owns the data.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -10,20 +10,20 @@
 
 namespace tappet {
 
-/// In an activity of its own that is not_real_time: it makes system calls, and may wait for the terminal its
-/// log goes to. Nothing of the machine waits for it. A client that floods it gets its share of each cycle and
-/// fills its own socket.
+/// Runs in an activity of its own that is not_real_time: it makes system calls, and may wait for the terminal
+/// that shows its log. Nothing of the machine waits for it. A client that floods it gets its share of each
+/// cycle and fills only its own socket.
 ///     component<BrowserService>("browser") ... activity("browser", every(20ms), not_real_time,
 ///     runs("browser"))
 class BrowserService {
 public:
     static constexpr bool sees_machine = true;
-    /// No client waits for its answer any longer; a command tells its states as long as it takes.
+    /// The longest time that a client waits for its answer; a command reports its states as long as it runs.
     static constexpr Duration patience = 2s;
     static constexpr std::size_t max_pending = 16;
-    static constexpr std::size_t max_commands = max_pending / 2; ///< of them
+    static constexpr std::size_t max_commands = max_pending / 2; ///< of max_pending
     static constexpr std::size_t max_subscriptions = 32;
-    static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two of its cycles
+    static constexpr std::size_t max_events = 64; ///< of all subscriptions, between two cycles of the service
 
     Output<std::int64_t> clients, requests, refused;
     Property<bool> log{true};
@@ -47,7 +47,7 @@ private:
     using Refusal = browsing::Refusal;
     using Pending = browsing::Pending;
 
-    /// Why a request is not done; an empty sentence: it is, or will be.
+    /// The reason why a request is not done; an empty sentence: it is done, or will be.
     struct Verdict {
         Refusal code = Refusal::bad_request;
         Sentence why{};
@@ -61,17 +61,17 @@ private:
         End event{};
         std::size_t index = nowhere; ///< in the plan's subscriptions
         EventHandle handle{};
-        std::int64_t lost = 0; ///< in this service, less what others had lost before
+        std::int64_t lost = 0; ///< in this service, minus earlier losses of others
     };
-    /// An emission, caught between two cycles.
+    /// An emission, received between two cycles.
     struct Seen {
         std::size_t index = nowhere;
         Time at{};
-        std::size_t arguments = 0; ///< where they stand in seen_bytes_
+        std::size_t arguments = 0; ///< their place in seen_bytes_
     };
 
     using Serve = Verdict(Client&, const Request&);
-    /// True: what the place waits for is over, and its client was answered.
+    /// Checks a pending request. True: it is over, and its client was answered.
     using Look = bool(Pending&);
 #define TAPPET_X(name, ...) Serve serve_##name;
     TAPPET_REQUESTS(TAPPET_X)
@@ -84,15 +84,15 @@ private:
     void hear(Client& client);
     void handle(Client& client, std::string_view packet, bool cut);
     void note(const Client& client, std::string_view what, std::string_view packet, const Verdict& verdict);
-    /// The reply is the answer: nothing is refused.
+    /// Sends the reply as the answer: nothing is refused.
     Verdict finish(Client& client, Reply& reply) noexcept;
-    /// As BrowsingAnswerer.
+    /// Implements BrowsingAnswerer.
     static std::size_t answer_for_nobody(void* self, std::string_view request, std::span<char> into);
     [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {
         return {client.serial, request.number, now_, client.role};
     }
 
-    // What waits for an answer; requests_pending.cpp
+    // Pending requests; requests_pending.cpp
     [[nodiscard]] Pending* free_place(Role role) noexcept;
     static Verdict no_place() noexcept;
     Verdict await(Pending& place, const browsing::Asker& asker, Look BrowserService::* look);
@@ -104,10 +104,10 @@ private:
     bool answer_bad(const Pending& place, Refusal code, const Sentence& why) noexcept;
     void note_end(const Pending& place, std::string_view how, std::string_view why) const noexcept;
 
-    // What is read; requests_read.cpp
+    // Reading; requests_read.cpp
     void put_value(Reply& reply, End end, std::string_view name);
 
-    // What is changed; requests_change.cpp
+    // Changing; requests_change.cpp
     [[nodiscard]] static Verdict check_role(const Client& client, std::string_view what, Role least);
     [[nodiscard]] Verdict read_arguments(const Facet& facet, const Request& request,
                                          std::span<std::byte> into);
@@ -131,7 +131,7 @@ private:
         BehaviourUnit* unit = nullptr;
         std::size_t part = 0;
     };
-    /// A script on its way into a slot.
+    /// A script that is being sent to a slot.
     struct Upload {
         BehaviourSlot* slot = nullptr;
         std::uint64_t client = 0;
@@ -146,8 +146,8 @@ private:
     Sentence find_slot(std::string_view name, BehaviourSlot*& slot) noexcept;
     template <class Copy>
     [[nodiscard]] bool read_between_steps(std::size_t activity, const Copy& copy) {
-        // This activity is in the middle of a cycle and steps no behaviour meanwhile; nothing steps where
-        // nobody waits for the answer.
+        // This activity is in the middle of a cycle and steps no behaviour meanwhile; nothing steps when no
+        // client waits for the answer.
         if (activity == own_activity_ || for_nobody_.data() != nullptr) {
             copy();
             return true;
@@ -159,7 +159,7 @@ private:
                        bool all);
     void put_slot(Reply& reply, const BehaviourSlot& slot);
 
-    // Why one does not come to a state; requests_why.cpp
+    // Why a state machine is not in a state; requests_why.cpp
     Sentence find_state(std::string_view name, browsing::WhyOrder& order);
 
     // Lines of the script language; requests_line.cpp
@@ -183,7 +183,7 @@ private:
     std::size_t seen_bytes_used_ = 0;
     Upload upload_{};
     std::array<char, browsing::max_packet_bytes + 1> packet_{};
-    std::span<char> for_nobody_{}; ///< where the answer goes, and what is left there; empty: to the client
+    std::span<char> for_nobody_{}; ///< the rest of the answer's buffer; empty: answer the client
 };
 
 } // namespace tappet

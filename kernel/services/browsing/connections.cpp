@@ -1,4 +1,4 @@
-// Lets clients in, hears them, and loses nothing of the machine's time on one that does not listen.
+// Accepts clients and receives their packets; a client that does not read costs the machine no time.
 #include "kernel/services/browsing/connections.hpp"
 
 #include "kernel/services/browsing/reply.hpp"
@@ -22,7 +22,7 @@ Client* Connections::accept() noexcept {
         os::LocalConnection connection = listener_.accept();
         if (!connection.open()) return nullptr;
         const auto peer = connection.peer();
-        if (!peer) continue; // it is gone already
+        if (!peer) continue; // it has already left
         const Role role = role_of(*peer, board_);
         Client* place = place_for(role);
         if (place == nullptr) {
@@ -46,7 +46,7 @@ Client* Connections::accept() noexcept {
     return nullptr;
 }
 
-/// A free one, or that of a lower role.
+/// Returns a free place, or that of a client with a lower role.
 Client* Connections::place_for(Role role) noexcept {
     Client* best = nullptr;
     for (Client& each : clients_) {
@@ -62,7 +62,7 @@ Client* Connections::place_for(Role role) noexcept {
 void Connections::turn_away(const os::LocalConnection& connection, const Sentence& why) noexcept {
     ++turned_away_;
     Reply reply{0, Refusal::not_now, why};
-    static_cast<void>(connection.send(reply.finish())); // who does not read it is let go all the same
+    static_cast<void>(connection.send(reply.finish())); // disconnect even a client that does not read it
 }
 
 Client* Connections::find(std::uint64_t serial) noexcept {

@@ -1,4 +1,4 @@
-// Looks names up in the table, and says what was probably meant.
+// Looks names up in the table, and suggests the probable name.
 #include "kernel/services/browsing/names.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Names as a request spells them: "component.facet", "component", "activity:NAME".
+// Names in the spelling of a request: "component.facet", "component", "activity:NAME".
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -8,11 +8,12 @@
 
 namespace tappet::browsing {
 
-/// Finds the facet, of one of the kinds when there are any. An answer that is not empty names the nearest.
+/// Finds the facet, which must be of one of `kinds` if there are any. An answer that is not empty names the
+/// nearest one.
 Sentence find_facet(const MachineView& table, std::string_view path, std::initializer_list<FacetKind> kinds,
                     End& found) noexcept;
 
-/// A component, or an activity as "activity:NAME"; an activity also by its bare name when no component has
+/// A component, or an activity as "activity:NAME"; an activity also by its plain name when no component has
 /// it.
 struct LifeTarget {
     std::size_t component = nowhere;

@@ -1,6 +1,6 @@
-// Requests that wait for an answer: one table, and one rule for all of them. Each is looked at in every cycle
-// of the service until it is over; a client that has waited too long is told that nothing was done, or that
-// it may still happen.
+// Requests that wait for an answer: one table, and one rule for all of them. The service checks each one in
+// every cycle until it is over. A client that has waited too long is told that nothing was done, or that it
+// may still happen.
 #pragma once
 
 #include "kernel/machine/instance/line_functions.hpp"
@@ -19,7 +19,7 @@ class BrowserService;
 
 namespace browsing {
 
-/// Who asked, to whom the answer goes.
+/// The client that asked, and receives the answer.
 struct Asker {
     std::uint64_t client = 0; ///< serial
     std::uint32_t number = 0; ///< of the request
@@ -27,18 +27,17 @@ struct Asker {
     Role role = Role::engineer;
 };
 
-/// A port that is forced or released, an operation or a method that is called.
+/// A port to force or release, or an operation or a method to call.
 struct FacetCall {
     static constexpr std::size_t max_value_bytes = 512;
 
     MachineInstance* machine = nullptr;
     End end{};
     const Facet* facet = nullptr;
-    void* place = nullptr; ///< of the port, or the component
-    bool refused = false;  ///< the engine's: the component had stopped by then
-    bool drives = false;   ///< the port of a driver that says what it sends
-    bool never_written =
-        false; ///< the engine's: an output, or what is sent, that nobody wrote, is not forced
+    void* place = nullptr;      ///< of the port, or the component
+    bool refused = false;       ///< set by the engine: the component had stopped by then
+    bool drives = false;        ///< the port of a driver that controls what it sends
+    bool never_written = false; ///< set by the engine: an unwritten output or sent value is not forced
     alignas(
         16) std::array<std::byte, max_value_bytes> value{}; ///< of a method: the result after the arguments
 };
@@ -59,7 +58,7 @@ struct FollowedLife {
     LifeChange change{};
 };
 
-/// A line of the script language, at work in the component that executes it.
+/// A line of the script language that its interpreter executes.
 struct FollowedLine {
     const LineFunctions* functions = nullptr;
     void* interpreter = nullptr;
@@ -67,10 +66,10 @@ struct FollowedLine {
 
 struct Pending {
     Asker asker{};
-    /// True: it is over, and its client was answered. Null: the place is free.
+    /// Checks the request. True: it is over, and its client was answered. Null: the place is free.
     bool (BrowserService::*look)(Pending&) = nullptr;
-    bool is_told = false; ///< its client heard that nobody answers, or nobody waits for an answer
-    EngineCall call{};    ///< of what one engine does
+    bool is_told = false; ///< its client was told that no answer comes, or no client waits for one
+    EngineCall call{};    ///< the part that one engine does
     std::variant<std::monostate, FacetCall, BehaviourOrder, PropertyTransaction, FollowedCommand,
                  FollowedLife, FollowedLine, PropertySaving, WhyOrder>
         work{};

@@ -1,5 +1,5 @@
 // The language between a browser and a running machine (thesis 4.8): requests as text, replies as JSON, over
-// a local socket. Both ends read it here.
+// a local socket. Both ends use this file.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -13,37 +13,37 @@
 #include <cstdint>
 #include <string_view>
 
-/// The socket is AF_UNIX, SOCK_SEQPACKET, at `<directory>/<machine>.socket`, the directory being the board's
+/// The socket is AF_UNIX, SOCK_SEQPACKET, at `<directory>/<machine>.socket`; the directory is the board's
 /// ("/run/tappet") or the firmware's --browse. One packet is one request or one reply; a packet ends with a
-/// line feed, which a sender may leave out.
+/// line feed, which a sender may omit.
 ///
-/// A request is `NUMBER VERB ARGUMENT...`, words parted by blanks. NUMBER is the client's, 0 to 2^32-1, and
-/// stands in everything that answers the request. A word with blanks is written in double quotes, where \"
-/// and \\ stand for themselves; what stands in brackets ([1, 2], {p: 1}) is one word. Values are spelled as
-/// kernel/base/value_text.hpp reads them: 4ms, 0.25, true, "text", [1, 2, 3].
+/// A request is `NUMBER VERB ARGUMENT...`, words separated by blanks. The client chooses NUMBER, 0 to 2^32-1;
+/// every answer to the request contains it. A word with blanks is written in double quotes, in which \" and
+/// \\ are escapes; text in brackets ([1, 2], {p: 1}) is one word. kernel/base/value_text.hpp defines the
+/// spelling of values: 4ms, 0.25, true, "text", [1, 2, 3].
 ///
 /// Every request gets one reply, {"id": NUMBER, "ok": true, ...} or
 /// {"id": NUMBER, "ok": false, "code": "...", "error": "sentence that names the cure"}; `code` is one of
-/// refusal_codes. After the reply of `send` and `subscribe` there come packets without "ok":
+/// refusal_codes. After the reply to `send` and `subscribe`, packets without "ok" follow:
 ///     {"id": N, "command": "shaft.stop", "state": "executing", "time_ns": T}
 ///         for each new state; with "final": true in the last, then with "results": [..] when the state is
 ///         "done";
 ///     {"id": N, "event": "shaft.beat_up", "time_ns": T, "arguments": [..], "lost": n}
-///         n: emissions of this subscription that were lost so far.
-/// A line of the script language is an expression, which any role may ask for, or statements, each with the
-/// role that it takes to send, call or set what they name. It ends in one packet:
+///         n: the emissions of this subscription that were lost so far.
+/// A line of the script language is an expression, which any role may evaluate, or statements, each with the
+/// role that sending, calling or setting their names needs. It ends with one packet:
 ///     {"id": N, "line": "done", "time_ns": T, "final": true, "value": .. of an expression, "variables":
 ///     {"x": .. of statements}}
 ///     {"id": N, "line": "failed", "time_ns": T, "final": true, "error": "where and why"}
 /// It is broken off when its client leaves.
-/// A script comes in pieces, `script SLOT 0 "..."` and so on at the number of bytes that the last reply said;
-/// `load` compiles it, answers its first error with file, line and column, and lets it take over at once, at
-/// an event of the slot's reach or when the slot's angle is passed. `behaviours SLOT` tells what became of
-/// it. What a client does not read is not kept for it: beyond its socket's buffer packets are dropped, and
-/// the next that it gets says "dropped": n.
+/// A script is sent in pieces, `script SLOT 0 "..."` and so on, each at the number of bytes in the last
+/// reply. `load` compiles it, answers its first error with file, line and column, and lets it take over at
+/// once, at an event of the slot's reach or when the slot's angle is passed. `behaviours SLOT` reports the
+/// result. Packets that a client does not read are not kept: beyond its socket's buffer they are dropped, and
+/// the next packet that it gets says "dropped": n.
 ///
-/// A packet of number 0 that is not "ok" comes before any request: no place was free, or one of a higher role
-/// took this one. The connection ends after it.
+/// A packet of number 0 that is not "ok" may come before any request: no place was free, or a client of a
+/// higher role took this one. Then the connection ends.
 ///
 /// Times are the machine's: nanoseconds of CLOCK_MONOTONIC on a box, virtual ones under virtual time.
 namespace tappet::browsing {
@@ -59,10 +59,10 @@ using tappet::Role;
 using tappet::to_text;
 
 // clang-format off
-/// A request is one row here and its function, BrowserService::serve_NAME, in the requests_*.cpp of its sort.
-/// Name; the least role that may ask for it; the fewest and the most arguments, and how they are spelled; what
-/// stands in the reply beside id and ok. What follows makes it a command of tappet-browse too: which names it
-/// takes (Takes of commands.hpp), its help, and its usage where people spell it otherwise.
+/// A request is one row here and its function, BrowserService::serve_NAME, in the requests_*.cpp of its kind.
+/// Columns: name; lowest role; minimum and maximum number of arguments, and their spelling; contents of the
+/// reply beside id and ok. The further columns make it a command of tappet-browse too: the kind of its names
+/// (Takes of commands.hpp), its help, and its usage where people spell it differently.
 #define TAPPET_REQUESTS(X) \
     X(hello,       observer,         0, 0,         "", \
       R"("protocol": 1, "machine": "...", "board": "...", "world": "...", "role": "...", "build_id": "...", "time_ns": T)") \
@@ -101,7 +101,7 @@ using tappet::to_text;
     X(break_off,   machine_operator, 0, 0,         "", "")
 // clang-format on
 
-/// What the machine knows of a request before it serves it.
+/// The machine's data of a request before it serves it.
 struct VerbRow {
     std::string_view name;
     Role role;
@@ -114,14 +114,14 @@ struct VerbRow {
 inline constexpr auto verbs = std::to_array<VerbRow>({TAPPET_REQUESTS(TAPPET_X)});
 #undef TAPPET_X
 
-/// Why a request was refused; the sentence says more.
+/// The code of a refusal; the sentence says more.
 enum class Refusal : std::uint8_t {
-    bad_request, ///< it cannot be read
-    denied,      ///< the peer's role does not reach so far
-    unknown,     ///< there is nothing of that name
-    bad_value,   ///< of another type, out of range, or the component does not accept it
-    not_now,     ///< in flight already, not running, no room: may be asked again
-    unsupported  ///< this machine has none of it
+    bad_request, ///< it cannot be parsed
+    denied,      ///< the peer's role is too low
+    unknown,     ///< no such name
+    bad_value,   ///< wrong type, out of range, or the component refuses it
+    not_now,     ///< in progress already, not running, no room: may be tried again
+    unsupported  ///< not available in this machine
 };
 
 constexpr std::string_view to_text(Refusal refusal) noexcept {
@@ -136,8 +136,8 @@ constexpr std::string_view to_text(Refusal refusal) noexcept {
     return "bad_request";
 }
 
-/// A request, read; its words point into the packet. A quoted word is without its outer quotes when it holds
-/// no escape, and as it came otherwise.
+/// A parsed request; its words point into the packet. A quoted word without escapes is stored without its
+/// outer quotes; a word with escapes is stored unchanged.
 struct Request {
     std::uint32_t number = 0;
     const VerbRow* verb = nullptr;
@@ -156,7 +156,8 @@ constexpr bool is_blank(char character) noexcept {
     return character == ' ' || character == '\t' || character == '\n' || character == '\r';
 }
 
-/// Takes the next word off `rest`. False: a quote or a bracket is not closed. Empty when nothing is left.
+/// Takes the next word off `rest`. False: a quote or a bracket is not closed. The word is empty when nothing
+/// is left.
 constexpr bool take_word(std::string_view& rest, std::string_view& word) noexcept {
     std::size_t begin = 0;
     while (begin < rest.size() && is_blank(rest[begin])) ++begin;
@@ -186,8 +187,8 @@ constexpr bool take_word(std::string_view& rest, std::string_view& word) noexcep
 
 } // namespace detail
 
-/// Reads one packet, `text` outliving the request. An answer that is not empty says what is wrong; the number
-/// is set as far as it could be read.
+/// Parses one packet; `text` must outlive the request. An answer that is not empty states the fault; the
+/// number is set if it could be parsed.
 inline Sentence parse_request(std::string_view text, Request& request) noexcept {
     request = {};
     if (text.size() > max_packet_bytes)

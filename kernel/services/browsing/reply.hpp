@@ -10,7 +10,7 @@
 
 namespace tappet::browsing {
 
-/// Begins {"id": n and ends with }. What does not fit becomes a refusal that says so.
+/// Begins with {"id": n and ends with }. An answer that does not fit becomes a refusal.
 class Reply {
 public:
     explicit Reply(std::uint32_t number) noexcept : number_{number} { begin(); }
@@ -22,7 +22,7 @@ public:
     Reply& operator=(const Reply&) = delete;
 
     [[nodiscard]] JsonText& json() noexcept { return json_; }
-    /// A value as JSON, after a key or in an array.
+    /// Adds a value as JSON, after a key or in an array.
     Reply& value(const TypeTag& type, const std::byte* value) noexcept {
         std::array<char, max_packet_bytes> text;
         const std::size_t length = format_json(type, value, text);

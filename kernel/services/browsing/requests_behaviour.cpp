@@ -1,4 +1,4 @@
-// Requests about behaviours (thesis 5.1.2, 5.2.5): they are seen, commanded and, into a slot, loaded.
+// Requests about behaviours (thesis 5.1.2, 5.2.5): shows them, commands them and loads them into slots.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t shown_characters = 64;
 
-/// In the engine that runs the behaviour. Another one may have taken over since it was asked for.
+/// Runs in the engine of the behaviour. Another behaviour may have taken over since the request.
 void command_behaviour(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     auto& order = *static_cast<BehaviourOrder*>(self);
     if (order.slot != nullptr && order.slot->active() != order.unit) return;
@@ -37,7 +37,7 @@ BehaviourUnit* BrowserService::unit_of(std::size_t row) noexcept {
 Sentence BrowserService::find_behaviour(std::string_view name, FoundBehaviour& found) noexcept {
     const MachineView& table = machine_->machine().table;
     Nearest nearest{name};
-    std::array<Sentence, 8> names; // Nearest keeps views of what it considered
+    std::array<Sentence, 8> names; // Nearest keeps views of the names it considered
     std::size_t kept = 0;
     for (std::size_t b = 0; b < table.behaviours.size(); ++b) {
         BehaviourUnit* unit = unit_of(b);
@@ -105,7 +105,7 @@ void BrowserService::put_behaviour(Reply& reply, std::size_t row, const Behaviou
     json.field("status", seen.status);
     if (part.machine != nullptr) {
         Sentence path;
-        // By what the unit is bound to, which stays: the machine itself may be dropped and bound anew
+        // By the binding of the unit, which stays: the machine itself may be dropped and bound again
         // meanwhile.
         for (const std::string_view state : path_of(part.binding.machine, seen.state))
             path.add(path.empty() ? "" : "/").add(state);

@@ -1,4 +1,5 @@
-// Requests that change something: prepared here, done by the engine that owns it, answered when it is done.
+// Requests that change something: prepared here, carried out by the engine that owns the data, answered when
+// done.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -18,14 +19,15 @@ bool is_forced(const FacetCall& call) noexcept TAPPET_REALTIME {
     return *call.facet->port->places(call.place, is_input(*call.facet)).forced;
 }
 
-// What a component reads has changed: it looks at it in its next step, which nobody else may bring about.
+// A value that a component reads has changed: the component reads it in its next step, which must come by
+// itself.
 void step_again(const FacetCall& call) noexcept TAPPET_REALTIME {
     Engine& engine = call.machine->engines()[call.machine->machine().index.activity[call.end.component]];
     if (!engine.plan().periodic) engine.waiter().wake();
 }
 
-// What a component left behind when it stopped is its safe value: nothing is laid over that. An input may be
-// forced before its component runs: it may wait for just that value.
+// The values that a component left when it stopped are its safe values: they are not forced. An input may be
+// forced before its component runs: the component may be waiting for that value.
 void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     FacetCall& call = call_of(self);
     const GatedComponent& gate = *call.machine->gate_of(call.end.component);
@@ -33,12 +35,12 @@ void force_port(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     call.refused =
         is_input(*call.facet) ? !waits && !gate.admits(Entry::at_once) : !gate.admits(Entry::queued);
     if (call.refused) return;
-    // One whose writer has stopped lets go at this look.
+    // This read ends the value of a stopped writer.
     const bool is_unwritten = call.drives && call.facet->port->flow(call.place) == Flow::never_written;
     const bool was_forced = is_forced(call);
     call.never_written =
         is_unwritten || !call.facet->port->force(call.place, is_input(*call.facet), call.value.data());
-    // The count is for observers: nobody decides by it, so its sum is not used here.
+    // The count is for observers: no decision uses it, so its sum is not used here.
     if (!was_forced && !call.never_written)
         call.machine->observation().forced_ports().fetch_add(1, std::memory_order_relaxed);
     step_again(call);
@@ -64,7 +66,7 @@ void run_method(void* self, const std::byte*) noexcept TAPPET_REALTIME {
                                          call.value.data(), call.value.data() + call.facet->type->size);
 }
 
-/// Data ports are forced, buffered ones are not: which of its values would stand?
+/// Only data ports can be forced: a buffered port has no single value.
 Sentence find_port(const MachineView& table, std::string_view name, End& end) noexcept {
     if (Sentence fault = browsing::find_facet(table, name, {}, end); !fault.empty()) return fault;
     const FacetKind kind = facet_at(table, end).kind;
@@ -118,7 +120,8 @@ BrowserService::Verdict BrowserService::serve_force(Client& client, const Reques
                                                " bytes cannot be forced; force what it is made of"}};
     if (const Sentence fault = parse_value(type, request.arguments[1], call.value.data()); !fault.empty())
         return {Refusal::bad_value, Sentence{"\"", request.arguments[0], "\": ", fault}};
-    // It keeps what it sent last: where nothing was written, a release would leave it so.
+    // A driver keeps what it sent last: after a release, a port that was never written would keep the forced
+    // value.
     call.drives =
         is_input(facet_at(table, end)) && table.components[end.component].type->device_kind != nullptr;
     return reach(*place, asker(client, request), end, &force_port);
@@ -137,7 +140,7 @@ BrowserService::Verdict BrowserService::serve_release(Client& client, const Requ
 
 BrowserService::Verdict BrowserService::read_arguments(const Facet& facet, const Request& request,
                                                        std::span<std::byte> into) {
-    // A command's results are part of its signature, but come back instead of going in.
+    // A command's results are part of its signature, but are returned, not passed.
     const TypeTag& list = facet.command != nullptr ? *facet.command->arguments : *facet.type;
     const auto types = list.elements;
     if (types.size() + 1 != request.arguments.size())
@@ -148,7 +151,7 @@ BrowserService::Verdict BrowserService::read_arguments(const Facet& facet, const
     for (std::size_t i = 0; i < types.size(); ++i) {
         if (at + types[i]->size > into.size())
             return {Refusal::unsupported, Sentence{"its arguments are too large to come from outside"}};
-        // Packed arguments stand without gaps, a value is read where it may stand.
+        // Packed arguments have no gaps; a value is parsed at an aligned place.
         alignas(16) std::array<std::byte, FacetCall::max_value_bytes> value{};
         if (types[i]->size > value.size())
             return {Refusal::unsupported, Sentence{"its arguments are too large to come from outside"}};
@@ -175,7 +178,7 @@ BrowserService::Verdict BrowserService::serve_call(Client& client, const Request
     if (facet.method != nullptr && facet.type->size + facet.method->result_bytes > values.size())
         return {Refusal::unsupported, Sentence{"its result is too large to be shown"}};
     const ActivityRow& activity = table.activities[machine_->machine().index.activity[end.component]];
-    // Not here, if it is any_thread: everybody else's requests would wait for it.
+    // Not here, even if it is any_thread: the requests of all other clients would wait for it.
     if (facet.may_block && activity.real_time)
         return {Refusal::unsupported,
                 Sentence{"\"", request.arguments[0], "\" may block, and activity \"", activity.name,

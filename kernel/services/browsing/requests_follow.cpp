@@ -1,5 +1,5 @@
-// Requests with more than one answer: commands, followed to their end, and the starting and stopping of parts
-// of the machine.
+// Requests with more than one answer: commands, followed to their end, and starting and stopping parts of the
+// machine.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -20,7 +20,8 @@ BrowserService::Verdict BrowserService::serve_send(Client& client, const Request
     if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
         !role.good())
         return role;
-    // They take as long as they take, also when their client has gone: the others are for what ends them.
+    // Commands may take any time, even after their client has left: the other places are for requests that
+    // end them.
     const auto commands = static_cast<std::size_t>(std::ranges::count_if(
         pending_, [](const Pending& each) { return each.look == &BrowserService::look_at_command; }));
     if (commands + kept_from(client.role, max_commands) >= max_commands)
@@ -43,7 +44,7 @@ BrowserService::Verdict BrowserService::serve_send(Client& client, const Request
 }
 
 bool BrowserService::look_at_command(Pending& place) {
-    place.asker.since = now_; // it takes as long as it takes, and its client knows that it was sent
+    place.asker.since = now_; // it may take any time, and its client knows that it was sent
     auto& call = std::get<FollowedCommand>(place.work);
     const CommandState state = call.slot.state();
     if (state == call.told) return false;

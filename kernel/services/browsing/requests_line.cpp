@@ -1,5 +1,5 @@
-// Lines of the script language (thesis 3.3): handed to the component that executes them, and told how they
-// ended.
+// Lines of the script language (thesis 3.3): passes them to the component that executes them, and reports
+// their ends.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -51,7 +51,7 @@ BrowserService::Verdict BrowserService::serve_execute(Client& client, const Requ
 }
 
 bool BrowserService::look_at_line(Pending& place) {
-    place.asker.since = now_; // it takes as long as a line may take
+    place.asker.since = now_; // it may take as long as a line may
     const auto& line = std::get<FollowedLine>(place.work);
     Client* const client = who_waits(place);
     const LineEnd* const end = line.functions->end(line.interpreter);

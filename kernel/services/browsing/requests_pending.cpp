@@ -1,4 +1,4 @@
-// What waits for an answer, whatever it is: taken up, looked at, and given up by one rule.
+// Pending requests of all kinds: accepted, checked, and given up by one rule.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include <algorithm>
@@ -44,7 +44,8 @@ void BrowserService::follow_pending() {
         if ((this->*each.look)(each)) {
             each.look = nullptr;
         } else if (!each.is_told && now_ - each.asker.since > patience) {
-            // A withdrawn call is over, and the next look frees its place; one that may still run keeps it.
+            // A withdrawn call is over, and the next check frees its place; a call that may still run keeps
+            // it.
             answer_bad(each, Refusal::not_now,
                        each.call.withdraw()
                            ? Sentence{"its engine did not come to it; nothing was done: look at its activity"}

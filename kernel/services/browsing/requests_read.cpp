@@ -1,4 +1,4 @@
-// Requests that only look: they are answered at once.
+// Requests that only read: answered at once.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -89,7 +89,7 @@ void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
         writes = view->word<std::uint64_t>(record.writes_at);
         stamp = view->word<std::int64_t>(record.stamp_at);
     };
-    // Its own activity is in the middle of a cycle, this one, and writes nothing meanwhile.
+    // Its own activity is in the middle of this cycle and writes nothing meanwhile.
     bool whole = true;
     if (component.activity == own_activity_)
         copy();
@@ -105,7 +105,7 @@ void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
         Duration max_age{};
         for (const map::Connection& row : view->connections())
             if (&view->facets()[row.to] == &record) max_age = Duration{row.max_age_ns};
-        // A reader that stands, or hangs, looks at nothing: its own time would keep a value fresh for ever.
+        // A reader that is stopped, or hangs, reads nothing: its own time would keep a value fresh for ever.
         const std::int64_t seen = view->word<std::int64_t>(view->activities()[component.activity].now_at);
         const Duration age{std::max(seen, to_ns(now_)) - stamp};
         const bool stale = max_age > Duration::zero() && age > max_age;

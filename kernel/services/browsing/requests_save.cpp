@@ -1,4 +1,5 @@
-// Properties to their files (thesis 4.7.1): copied by the engines that own them, written by this activity.
+// Saves properties to their files (thesis 4.7.1): the engines that own them copy them, this activity writes
+// them.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"

@@ -1,4 +1,4 @@
-// Events (thesis 4.6), told to whoever subscribed to them.
+// Passes events (thesis 4.6) to the clients that subscribed to them.
 #include "kernel/services/browsing/browser_service.hpp"
 
 #include "kernel/machine/instance/instance.hpp"
@@ -50,7 +50,7 @@ BrowserService::Verdict BrowserService::serve_unsubscribe(Client& client, const 
     return {Refusal::not_now, Sentence{"\"", request.arguments[0], "\" is not subscribed to"}};
 }
 
-/// The row stays connected while anybody else wants the event.
+/// Ends a subscription. The row stays connected while any other client subscribes to the event.
 void BrowserService::drop(Subscribed& subscribed) noexcept {
     subscribed.taken = false;
     for (const Subscribed& each : subscribed_)
@@ -58,13 +58,13 @@ void BrowserService::drop(Subscribed& subscribed) noexcept {
     subscribed.handle.disconnect();
 }
 
-/// On the way here, of all who subscribed to it.
+/// Returns the emissions lost on the way here, for all subscribers of the event.
 std::int64_t BrowserService::lost_of(const Subscribed& subscribed) const noexcept {
     const SubscriptionCounts counts = machine_->observation().counts_of(subscribed.index);
     return static_cast<std::int64_t>(counts.lost + counts.dropped);
 }
 
-/// In this engine, between two cycles.
+/// Runs in this engine, between two cycles.
 void BrowserService::observe(void* self, std::size_t index, const std::byte* arguments, Time now) noexcept
     TAPPET_REALTIME {
     auto& service = *static_cast<BrowserService*>(self);

@@ -1,5 +1,5 @@
-// Why a state machine does not come to a state: the ways there are found here, their guards are asked by the
-// engine that owns them.
+// Explains why a state machine is not in a state: the transitions that lead there are found here, and the
+// engine that owns their guards evaluates them.
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/statechart/ways.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t shown_characters = 64;
 
-/// In the engine that runs the behaviour.
+/// Runs in the engine of the behaviour.
 void ask_guards(void* self, const std::byte*) noexcept TAPPET_REALTIME {
     auto& order = *static_cast<WhyOrder*>(self);
     if (!order.holds()) return;
@@ -68,7 +68,7 @@ void put_way(JsonText& json, const ResolvedView& machine, TransitionIndex transi
 
 } // namespace
 
-/// "component.state", or "component.instance.state".
+/// Finds "component.state", or "component.instance.state".
 Sentence BrowserService::find_state(std::string_view name, WhyOrder& order) {
     const std::size_t dot = name.rfind('.');
     const std::string_view owner = name.substr(0, std::min(dot, name.size()));

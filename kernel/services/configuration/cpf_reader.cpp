@@ -1,5 +1,5 @@
-// Reads CPF: the XML by pugixml, its meaning against the component's interface. Nothing in the file is passed
-// over.
+// Reads CPF: pugixml parses the XML, and the component's interface gives it its meaning. Nothing in the file
+// is ignored.
 #include "kernel/services/configuration/cpf.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -18,10 +18,10 @@ namespace {
 
 std::string_view view(const char* text) noexcept { return text; }
 
-/// The text of an element, put together where a comment or a CDATA section divides it.
+/// The text of an element, joined where a comment or a CDATA section divides it.
 class ElementText {
 public:
-    /// False when it has an element in it, or is longer than any property's value.
+    /// Reads the element. False when it contains an element, or is longer than any property's value.
     bool take(const pugi::xml_node& node) noexcept {
         length_ = 0;
         for (const pugi::xml_node& piece : node.children()) {
@@ -46,7 +46,7 @@ private:
     std::size_t length_ = 0;
 };
 
-/// "gains.roll.p" while the reader is inside those structs.
+/// The path "gains.roll.p" while the reader is inside those structs.
 struct Path {
     static constexpr std::size_t capacity = 256;
     std::array<char, capacity> characters{};
@@ -148,7 +148,7 @@ private:
         return read_value(node, index, is_list);
     }
 
-    /// A value that is wrong leaves what was proposed before.
+    /// Reads a value. A wrong value leaves the earlier proposal.
     Sentence read_value(const pugi::xml_node& node, std::size_t index, bool is_list) noexcept {
         const Facet& facet = facets_[index];
         const bool was_changed = into_.changes(index);
@@ -258,14 +258,14 @@ private:
         return {};
     }
 
-    /// A property or a bag is given once.
+    /// Notes a property or a bag; a second one of the same name is a fault.
     Sentence note(const pugi::xml_node& node, std::size_t index) noexcept {
         for (const Seen& each : seen_)
             if (each.facet == index)
                 return at(node, Sentence{"gives \"", facets_[index].name, "\" again, as line ", each.line,
                                          " did; keep one"}
                                     .view());
-        // There are no more different ones than the component has, which its table's check bounds.
+        // There are no more different ones than the component has, which the check of its table bounds.
         if (!seen_.push({index, line_at(offset_of(node))}))
             return at(node, "has more properties than a transaction holds; divide the component");
         return {};

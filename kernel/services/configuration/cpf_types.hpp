@@ -1,4 +1,4 @@
-// Which CPF type name a value is written with, and which ones it is read from.
+// The CPF type names that a value is written with, and read from.
 #pragma once
 
 #include "kernel/base/type_tag.hpp"
@@ -22,8 +22,8 @@ constexpr std::string_view type_name(const TypeTag& type) noexcept {
 inline constexpr std::array<std::string_view, 6> integer_names{"short", "ushort", "long",
                                                                "ulong", "llong",  "ullong"};
 
-/// A whole number is a number; otherwise the kinds must agree. How wide a number is, is not looked at: the
-/// value itself is.
+/// Whether a value of the type may be read from that CPF type. A whole number may be read as a real number;
+/// otherwise the kinds must agree. The width is not compared: the value itself is checked.
 constexpr bool reads_as(const TypeTag& type, std::string_view name) noexcept {
     bool integer = false;
     for (const std::string_view each : integer_names) integer |= name == each;

@@ -1,4 +1,4 @@
-// Writes CPF into memory that is there already: after arming there is no heap to build a document in.
+// Writes CPF into existing memory: after arming there is no heap for a document.
 #include "kernel/services/configuration/cpf.hpp"
 
 #include "kernel/base/value_text.hpp"
@@ -29,7 +29,7 @@ public:
     }
 
 private:
-    // A bag in a bag is a call in a call: as deep as the component's interface, which its names bound.
+    // A bag in a bag is a nested call: the depth of the component's interface, which its names bound.
     void write_members(std::size_t begin, std::size_t end, std::size_t depth) noexcept {
         const auto facets = from_.type().facets;
         for (std::size_t f = begin; f < end; ++f) {

@@ -1,4 +1,4 @@
-// Between files and their text.
+// Reads and writes the text of properties files.
 #include "kernel/services/configuration/property_files.hpp"
 
 #include "kernel/os/file.hpp"
@@ -87,7 +87,7 @@ Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction&
     if (!name_path(directory_, row))
         return Sentence{"component \"", row.name, "\": the path of its properties file \"",
                         row.properties.name, "\" is too long; name a shorter properties directory"};
-    // A component may give itself what nobody checks; the next start would refuse to arm with it.
+    // A component may set a value that nobody checked; the next start would refuse to arm with it.
     if (const Sentence refused = from.check(); !refused.empty())
         return Sentence{std::string_view{path_.data()},
                         ": component \"",

@@ -1,5 +1,5 @@
-// Each component's properties in a file of their own, in one directory (thesis 4.7.1): read while
-// configuring, replaced as a whole when saved.
+// Each component's properties in a file of their own, in one directory (thesis 4.7.1): read during
+// configuration, replaced as a whole when saved.
 #pragma once
 
 #include "kernel/machine/instance/property_store.hpp"
@@ -10,25 +10,26 @@
 
 namespace tappet {
 
-/// Large: in static memory. One thread at a time, not real-time. Reading takes heap, writing does not.
+/// Large: place it in static memory. One thread at a time, not real-time. Reading allocates from the heap,
+/// writing does not.
 class PropertyFiles {
 public:
     static constexpr std::size_t longest_path = 512;
 
-    /// `directory` outlives it. An empty one keeps nothing: optional files are not there, the others an
-    /// error.
+    /// `directory` must outlive it. With an empty one nothing is kept: optional files are missing, others are
+    /// an error.
     explicit PropertyFiles(std::string_view directory) noexcept : directory_{directory} {}
 
-    /// Another directory; it outlives this too.
+    /// Sets another directory, which must outlive it too.
     void keep_in(std::string_view directory) noexcept { directory_ = directory; }
-    /// What lies in `older`, which outlives it, was written later, by a machine whose properties may be
-    /// others: it overrules what lies in the directory, as far as it fits; `left_out` is told the rest. Saved
-    /// is in the directory alone, so that nothing of `older` is lost.
+    /// Reads also the files in `older`, which must outlive it. They were written later, by a machine whose
+    /// properties may differ: they override those of the directory, as far as they fit; `left_out` receives
+    /// the rest. Files are saved only to the directory, so that nothing in `older` is lost.
     void take_over(std::string_view older, LeftOut left_out) noexcept {
         older_ = older;
         left_out_ = left_out;
     }
-    /// For MachineInstance::read_properties_from.
+    /// Returns the store for MachineInstance::read_properties_from.
     [[nodiscard]] PropertyStore store() noexcept;
 
     [[nodiscard]] Sentence load(const ComponentRow& row, PropertyTransaction& into) noexcept;
@@ -38,7 +39,7 @@ public:
 
 private:
     [[nodiscard]] bool name_path(std::string_view directory, const ComponentRow& row) noexcept;
-    /// Whether there is a file.
+    /// Returns whether there is a file.
     [[nodiscard]] std::expected<bool, Sentence> load_from(std::string_view directory, const ComponentRow& row,
                                                           LeftOut left_out,
                                                           PropertyTransaction& into) noexcept;

@@ -1,4 +1,4 @@
-// Saves properties again and again, so that a sudden end costs no more than one period of them.
+// Saves properties periodically, so that a sudden end loses no more than one period of changes.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -7,8 +7,8 @@
 
 namespace tappet {
 
-/// In an activity that is not_real_time: it writes files. Every component whose row has a properties file is
-/// saved, each as it is between two of its steps.
+/// In an activity that is not_real_time: it writes files. Saves every component whose row has a properties
+/// file, each as it is between two of its steps.
 ///     component<PropertyKeeper>("keeper", set("every", 60s))
 struct PropertyKeeper {
     static constexpr bool sees_machine = true;

@@ -1,4 +1,4 @@
-// One component after the other: asked for, copied by its engine, written.
+// Saves one component after the other: posts a request, its engine copies the values, then writes the file.
 #include "kernel/services/configuration/property_saving.hpp"
 
 namespace tappet {
@@ -30,7 +30,7 @@ bool PropertySaving::step() noexcept {
         asked_at_ = machine_->clock().now();
         ++next_;
     } else if (next_ < end_ && machine_->clock().now() - asked_at_ > patience) {
-        give_up(); // there was no room to ask
+        give_up(); // there was no room for the request
         asked_at_ = machine_->clock().now();
         ++next_;
     }
@@ -42,7 +42,7 @@ bool PropertySaving::step() noexcept {
     return busy_;
 }
 
-/// False: its engine does not come to anything, and this is told.
+/// False: its engine serves no requests, and that is reported.
 bool PropertySaving::is_reached() noexcept {
     const std::size_t activity = machine_->machine().index.activity[next_];
     if (is_alive(*machine_, activity)) return true;
@@ -60,7 +60,7 @@ void PropertySaving::ask(std::size_t component) noexcept {
         copy_.capture();
     else if (!call_.post(*machine_, activity, copy_.capture_message(machine.plan.part_of[component]),
                          Role::engineer))
-        return; // its engine has much to do: again in the next step, for a while
+        return; // its engine is busy: try again in the next step, for a while
     asked_at_ = machine_->clock().now();
     asked_ = true;
 }

@@ -1,5 +1,5 @@
-// Saves the properties of a machine that runs: each component is copied in its own engine between two steps,
-// and written by whoever asked.
+// Saves the properties of a running machine: the engine of each component copies it between two steps, and
+// the caller writes the copy.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -7,22 +7,23 @@
 
 namespace tappet {
 
-/// Of a component that sees the machine: begin(), then step() in each of its cycles until it says that
-/// nothing is left. May block on the file; takes no heap. Large: in static memory.
+/// For a component that sees the machine: call begin(), then step() in each of its cycles until it returns
+/// false. May block on the file; allocates no heap. Large: place it in static memory.
 class PropertySaving {
 public:
-    /// An engine that does not come to be copied for so long is left out, and told of.
+    /// An engine that does not copy within this time is skipped and reported.
     static constexpr Duration patience = 1s;
 
-    /// `activity`: the one that calls; components in it stand still meanwhile. Of one component, or of all.
+    /// Begins to save one component, or all. `activity`: the caller's; components in it do not step
+    /// meanwhile.
     void begin(MachineInstance& machine, std::size_t activity, std::size_t component = nowhere) noexcept;
-    /// False when every file is written or has its fault.
+    /// Continues. False when every file is written or has its fault.
     bool step() noexcept;
     [[nodiscard]] bool busy() const noexcept { return busy_; }
     [[nodiscard]] std::size_t saved() const noexcept { return saved_; }
-    /// The first fault; empty: none.
+    /// Returns the first fault; empty: none.
     [[nodiscard]] const Sentence& fault() const noexcept { return fault_; }
-    /// An engine did not come: what is at fault is the moment.
+    /// Whether an engine did not answer: try again later.
     [[nodiscard]] bool gave_up() const noexcept { return gave_up_; }
 
 private:
@@ -40,7 +41,7 @@ private:
     bool asked_ = false, gave_up_ = false;
     Sentence fault_{};
     PropertyTransaction copy_{};
-    EngineCall call_{}; ///< that copies
+    EngineCall call_{}; ///< the call that copies
     Time asked_at_{};   ///< or when its turn came
 };
 

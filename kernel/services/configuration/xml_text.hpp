@@ -1,4 +1,4 @@
-// What of XML's text the parser does not look at: entities that are none of its own.
+// Checks the XML text for what the parser ignores: unknown entities.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct XmlFault {
     std::size_t at = 0;
 };
 
-/// A number of a character that XML knows, "#10" or "#x41".
+/// Whether the name is the number of a character that XML knows, "#10" or "#x41".
 constexpr bool is_character_number(std::string_view name) noexcept {
     const bool hexadecimal = name.size() > 1 && name[1] == 'x';
     name.remove_prefix(hexadecimal ? 2 : 1);
@@ -37,7 +37,8 @@ constexpr bool is_character_number(std::string_view name) noexcept {
     return number != 0;
 }
 
-/// The parser leaves an entity that it does not know as it stands, and a value would keep it so.
+/// Returns the fault of an unknown entity. The parser leaves such an entity as text, and a value would
+/// contain it.
 constexpr XmlFault find_foreign_entity(std::string_view text) noexcept {
     for (std::size_t at = 0; at < text.size(); ++at) {
         const std::string_view rest = text.substr(at);

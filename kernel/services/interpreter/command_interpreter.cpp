@@ -1,4 +1,4 @@
-// A line from its text to its end: compiled against what it names, posted to that engine again and again.
+// Executes a line: compiles it for the names in it, and posts it repeatedly to the engine that runs it.
 #include "kernel/services/interpreter/command_interpreter.hpp"
 
 #include "kernel/base/value_text.hpp"
@@ -18,7 +18,7 @@ constexpr ComponentType nobody{};
 constexpr std::string_view line_name = "line";
 constexpr std::size_t most_homes = 8;
 
-/// One component of each activity that the words of a line name, in their order.
+/// Returns one component of each activity that the words of a line name, in their order.
 Bounded<std::size_t, most_homes> homes_of(std::string_view text, const AcceptedMachine& machine) {
     Bounded<std::size_t, most_homes> homes;
     script_detail::Lexer lexer{text};
@@ -58,7 +58,7 @@ constexpr LineFunctions CommandInterpreter::line_functions{
     .break_off =
         [](void* self, Role role) {
             auto& own = *static_cast<CommandInterpreter*>(self);
-            const bool ends_waiting = own.waits_ && role == Role::engineer; // as a peer is
+            const bool ends_waiting = own.waits_ && role == Role::engineer; // a peer has this role
             if (!own.is_at_work() && !ends_waiting) return LineRefusal::not_now;
             if (own.is_at_work() && role < own.bank_->role) return LineRefusal::denied;
             if (own.is_at_work() && role > own.bank_->role) own.keep_for(role, own.machine_->clock().now());
@@ -101,7 +101,7 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
         if (is_higher) keep_for(role, now);
         if (!gives_way) return refuse(Sentence{"another line is at work; wait for its end, or break it off"});
         is_broken_off_ = is_at_work();
-        if (asker == Asker::peer) { // does not ask again
+        if (asker == Asker::peer) { // a peer does not ask again
             waits_ = true;
             since_waiting_ = now;
             return {};
@@ -142,7 +142,7 @@ Sentence CommandInterpreter::prepare(std::string_view text, Role role, Bank& ban
     reach.command_slots = interpreter::line_sizes.command_slots;
     ScriptRoom room = bank.rows.room();
     room.reach = {reach_.data(), reach.components.size()};
-    // What a line reads lies in one activity; which of those that it names, is seen when it compiles.
+    // A line reads from one activity only; compiling shows which one of those that it names.
     ScriptOutcome outcome;
     Sentence first_fault;
     for (const std::size_t home : homes) {
@@ -219,7 +219,7 @@ void CommandInterpreter::run(void* self, const std::byte*) noexcept TAPPET_REALT
     bank.unit.step_programs(now);
 }
 
-// One that finds no room is posted in the next cycle.
+// A call that finds no room is posted in the next cycle.
 void CommandInterpreter::post(Bank& bank) noexcept {
     const AcceptedMachine& machine = machine_->machine();
     Message message;
@@ -275,7 +275,7 @@ void CommandInterpreter::finish_good() {
     finish(CommandState::done, Sentence{value_.length == 0 ? std::string_view{"done"} : value_.view()});
 }
 
-// Nobody steps what is broken off: it stands where it was, and its memory is used again when no engine comes
+// Nobody steps a line that is broken off: it stays as it is, and its memory is reused when no engine refers
 // to it any more.
 void CommandInterpreter::finish(CommandState state, const Sentence& why) noexcept TAPPET_REALTIME {
     end_.state = state;
@@ -295,7 +295,7 @@ void CommandInterpreter::stop(const Cycle&) noexcept TAPPET_REALTIME {
 
 // ---- for peers
 
-// One that waits, or has not taken its answer yet, keeps the place of peers.
+// A peer's line that waits, or whose answer was not taken yet, keeps the place of peers.
 bool CommandInterpreter::execute(const Line& line, Line& value) noexcept {
     LineRefusal refusal{};
     const bool is_taken = waits_ || asker_ == Asker::peer;
@@ -306,7 +306,7 @@ bool CommandInterpreter::execute(const Line& line, Line& value) noexcept {
     if (!fault.empty()) return false;
     of_peer_ = line;
     static_cast<void>(number_of_peer_.assign(Sentence{"line ", ++lines_of_peers_}.view()));
-    value = number_of_peer_; // while it is at work
+    value = number_of_peer_; // while it runs
     return true;
 }
 
@@ -318,12 +318,12 @@ void CommandInterpreter::tell(const Sentence& fault) noexcept {
 }
 
 CommandProgress CommandInterpreter::follow(const Line&, Line& value) noexcept TAPPET_REALTIME {
-    // Not by its text: somebody else may send the same.
+    // Not by its text: another peer may send the same.
     const bool is_its_own = value.view() == number_of_peer_.view();
     if (is_its_own && waits_) return CommandProgress::executing;
     if (!is_its_own || asker_ != Asker::peer) {
         value = {};
-        return CommandProgress::failed; // it ended before somebody else's began, or was broken off
+        return CommandProgress::failed; // it ended before another peer's line began, or was broken off
     }
     if (is_at_work()) return CommandProgress::executing;
     asker_ = Asker::none;

@@ -1,5 +1,5 @@
-// The command interpreter (thesis 3.3, 3.4.6): a line of the script language, from a browser or a peer, is
-// compiled here and executed by the engine whose components it names.
+// The command interpreter (thesis 3.3, 3.4.6): compiles a line of the script language, from a browser or a
+// peer, and the engine whose components it names executes it.
 #pragma once
 
 #include "kernel/base/bounded_text.hpp"
@@ -9,24 +9,25 @@
 
 namespace tappet {
 
-/// In the activity of the browser's service, which is not_real_time, with `stack(224 * 1024)` for the
+/// Runs in the activity of the browser's service, which is not_real_time, with `stack(224 * 1024)` for the
 /// compiler. A line is one expression, which changes nothing and whose value is the answer, or statements:
-/// these may wait, and commands that they send are followed to their ends. It may name ports, properties and
-/// methods of components of one activity, whose engine steps it between two cycles as often as the
-/// interpreter's own runs, and commands of all. One line at a time: an expression gives way to a line of a
-/// higher role, which a browser asks for again and a peer is given, and nobody breaks off a line of one.
+/// these may wait, and the commands that they send are followed to their ends. It may name ports, properties
+/// and methods of components of one activity, and commands of all; the engine of that activity steps the line
+/// between two cycles, as often as the interpreter's own activity runs. One line at a time: an expression
+/// gives way to a line of a higher role, which a browser must send again and which a peer's command waits
+/// for; nobody breaks off a line of a higher role.
 ///     component<CommandInterpreter>("interpreter")
-/// A peer sends it `execute` with a line and where its value goes: rejected when it is no good line, of which
-/// `said` tells why.
+/// A peer sends it `execute` with a line and a place for its value; the command is rejected when the line is
+/// not valid, and `said` tells why.
 class CommandInterpreter {
 public:
     static constexpr bool sees_machine = true;
     static constexpr std::size_t max_characters = 480;
-    /// At work, or with commands that are on their way still; one of them is for engineers.
+    /// Lines that run, or whose commands are still in progress; one of them is reserved for engineers.
     static constexpr std::size_t lines_at_most = 3;
-    /// Of a line its engine executes so many between two steps: it belongs to other work.
+    /// The most statements of a line that its engine executes between two steps: the engine has other work.
     static constexpr std::uint32_t statements_between_steps = 64;
-    /// An engine that does not come to a line for so long hangs, or stands.
+    /// An engine that does not serve a line within this time hangs, or is stopped.
     static constexpr Duration patience = 2s;
     using Line = Text<120>;
 
@@ -69,9 +70,9 @@ private:
     [[nodiscard]] bool is_at_work() const noexcept TAPPET_REALTIME {
         return asker_ != Asker::none && in_flight(end_.state);
     }
-    /// Somebody of a higher role waits for the end of the line at work: nobody of a lower one is next.
+    /// A client of a higher role waits for the end of the present line: no lower role is next.
     void keep_for(Role role, Time now) noexcept {
-        if (role < kept_for_ && now < kept_until_) return; // somebody of a role above theirs waits already
+        if (role < kept_for_ && now < kept_until_) return; // a higher role waits already
         kept_for_ = role;
         kept_until_ = now + patience;
     }
@@ -84,20 +85,20 @@ private:
 
     MachineInstance* machine_ = nullptr;
     std::size_t own_ = nowhere;
-    /// Number 0 is nobody: a line drives no component.
+    /// Number 0 is unused: a line drives no component.
     std::array<Reachable, max_line_components + 1> reach_{};
-    /// A command of a line that was broken off may keep one for ever, while the next line runs.
+    /// A command of a line that was broken off may keep one bank for ever, while the next line runs.
     static constexpr std::ptrdiff_t banks_of_engineers = 1;
     std::array<interpreter::Bank, lines_at_most> banks_{};
-    interpreter::Bank* bank_ = nullptr; ///< of the line at work, or that ended last
-    Asker asker_ = Asker::none;         ///< who has not let go of it
+    interpreter::Bank* bank_ = nullptr; ///< of the present line, or of the last one
+    Asker asker_ = Asker::none;         ///< the owner who has not released it
     bool is_broken_off_ = false;
     Role kept_for_ = Role::observer; ///< no line of a lower role is next,
     Time kept_until_{};              ///< until then
-    Line of_peer_{};                 ///< that a peer sent last
-    Line number_of_peer_{};          ///< by which its sender is known
+    Line of_peer_{};                 ///< the last line of a peer
+    Line number_of_peer_{};          ///< identifies its sender
     std::uint64_t lines_of_peers_ = 0;
-    bool waits_ = false; ///< it does: the line at work gives way to it
+    bool waits_ = false; ///< a peer's line waits: the present line gives way to it
     Time since_waiting_{};
     Time since_{};
     Time posted_{};

@@ -1,4 +1,4 @@
-// Whom a line is for, and why it failed.
+// Determines the role that a line needs, and why it failed.
 #include "kernel/program/primitives_facet.hpp"
 #include "kernel/services/interpreter/line_memory.hpp"
 
@@ -57,7 +57,8 @@ Sentence describe_fault(const Bank& bank, std::span<const Reachable> reach) {
     if (number >= tables.nodes.size()) return Sentence{"it failed"};
     const NodeRow& node = tables.nodes[number];
     Sentence text{part.type->name, ":", unsigned{node.line}, ":", unsigned{node.column}, ": "};
-    // The last one that acts on a component says it best; a command's end is asked in the condition after it.
+    // The last instruction that acts on a component explains it best; the condition after it tests a
+    // command's end.
     for (std::size_t i = std::size_t{node.first} + node.count; i-- > node.first;) {
         const Instruction& in = tables.instructions[i];
         if (in.facet == nullptr) continue;

@@ -1,4 +1,4 @@
-// What one line takes: its rows, and the program made of them.
+// The memory of one line: its rows, and the program made of them.
 #pragma once
 
 #include "kernel/machine/slots/memory.hpp"
@@ -21,7 +21,7 @@ inline constexpr ScriptSizes line_sizes{.instructions = 128,
                                         .data = 2048,
                                         .command_slots = 4};
 
-/// The same sums as BehaviourUnit::place, of one program that hears no events.
+/// Returns the bytes of one program that hears no events; the same sums as in BehaviourUnit::place.
 constexpr std::size_t program_bytes(const ScriptSizes& sizes) noexcept {
     tappet::detail::UnitLayout layout;
     layout.take<UnitPart>(1);
@@ -35,25 +35,25 @@ constexpr std::size_t program_bytes(const ScriptSizes& sizes) noexcept {
     return layout.used();
 }
 
-/// A line in its memory, and its way to the engine that runs it.
+/// A line in its memory, and the call to the engine that runs it.
 struct Bank {
     ScriptBuffer<line_sizes> rows{};
     BehaviourUnit unit{};
     alignas(unit_alignment) std::array<std::byte, program_bytes(line_sizes)> memory{};
     EngineCall call{};
-    const Engine* engine = nullptr; ///< of the activity it runs in
-    std::size_t home = nowhere;     ///< a component there
+    const Engine* engine = nullptr; ///< of the activity that runs it
+    std::size_t home = nowhere;     ///< a component of that activity
     bool has_begun = false;
-    Role role = Role::engineer; ///< of who wrote the line
+    Role role = Role::engineer; ///< of the line's author
 
-    /// No engine comes to it any more, and no command of it is on its way.
+    /// Whether no engine refers to it any more, and none of its commands is in progress.
     [[nodiscard]] bool is_free() const noexcept { return call.is_over() && unit.is_quiet(); }
     [[nodiscard]] const ProgramExecution& program() const noexcept { return *unit.parts()[0].program; }
 };
 
-/// What of a line's rows acts on a component: the least role that may ask for it.
+/// Returns the lowest role that may execute the instruction, by its action on a component.
 Role role_of(const Instruction& instruction) noexcept;
-/// Where and why the program of a line stands in error.
+/// Says where and why the program of a line failed.
 Sentence describe_fault(const Bank& bank, std::span<const Reachable> reach);
 
 } // namespace tappet::interpreter

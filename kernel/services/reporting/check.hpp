@@ -1,4 +1,4 @@
-// Which rows of a report are refused, and how large what they record is: the compiler's part.
+// The compiler's part of reporting: refuses wrong rows of a report, and computes the size of its records.
 #pragma once
 
 #include "kernel/base/compare.hpp"
@@ -15,11 +15,11 @@
 
 namespace tappet::reporting_detail {
 
-/// A tape holds what its activity records in this time at most: who reads that often misses nothing.
+/// A tape holds what its activity records in this time at most: a reader that polls as often misses nothing.
 inline constexpr Duration tape_span = 500ms;
 inline constexpr std::size_t fewest_tape_words = 256;
 
-/// Whether who knows the type knows what all its bytes say.
+/// Whether the type describes all bytes of its values.
 constexpr bool can_be_told(TypeId type) noexcept {
     if (type == nullptr || type->kind == ValueKind::opaque || type->kind == ValueKind::arguments)
         return false;
@@ -34,7 +34,7 @@ constexpr bool is_number(const TypeTag& type) noexcept {
            type.kind == ValueKind::natural || type.kind == ValueKind::duration;
 }
 
-/// What keeps a facet from being recorded, with the cure; empty: nothing does.
+/// Says what keeps a facet from being recorded, with the cure; empty: nothing does.
 constexpr Sentence hindrance(const Facet& facet) {
     if (facet.kind != FacetKind::output && facet.kind != FacetKind::property)
         return Sentence{to_text(facet.kind), " has no value that stands; name an output or a property"};
@@ -47,9 +47,9 @@ constexpr Sentence hindrance(const Facet& facet) {
     return {};
 }
 
-constexpr std::size_t all_outputs = nowhere; ///< as a facet: those of the component that can be recorded
+constexpr std::size_t all_outputs = nowhere; ///< as a facet: all recordable outputs of the component
 
-/// Of "component.*" the component, and all_outputs.
+/// Finds the value of a row. For "component.*" the result is the component and all_outputs.
 constexpr Sentence find(const ReportRow& row, const MachineView& m, std::span<const std::size_t> by_name,
                         End& found) {
     if (row.what.ends_with(".*")) {
@@ -60,7 +60,7 @@ constexpr Sentence find(const ReportRow& row, const MachineView& m, std::span<co
     return resolve(m, by_name, row.what, FacetKind::output, found);
 }
 
-/// Calls `take` with each value that a row which was checked names.
+/// Calls `take` with each value that a checked row names.
 template <class Take>
 constexpr void for_each_end(const ReportRow& row, const MachineView& m, Take take) {
     End end;
@@ -71,7 +71,7 @@ constexpr void for_each_end(const ReportRow& row, const MachineView& m, Take tak
         if (facets[f].kind == FacetKind::output && hindrance(facets[f]).empty()) take(End{end.component, f});
 }
 
-/// The event of a row's window: its number among those of all rows.
+/// Returns the number of a window's event among the events of all rows.
 constexpr std::size_t trigger_number(std::span<const ReportRow> rows, std::string_view event) noexcept {
     std::size_t number = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -83,19 +83,19 @@ constexpr std::size_t trigger_number(std::span<const ReportRow> rows, std::strin
     }
     return number;
 }
-/// The event of that number; empty: there is none.
+/// Returns the event of that number; empty: none.
 constexpr std::string_view trigger_of(std::span<const ReportRow> rows, std::size_t number) noexcept {
     for (const ReportRow& row : rows)
         if (!row.trigger.empty() && trigger_number(rows, row.trigger) == number) return row.trigger;
     return {};
 }
 
-/// What one activity records.
+/// Sizes of one activity's records.
 struct OfActivity {
     std::size_t channels = 0;
-    std::uint64_t triggers = 0; ///< a bit for each event, by its number: it has a channel of its own
-    std::size_t words = 0;      ///< of a cycle that records all of them
-    std::size_t span_words = 0; ///< of tape_span at most
+    std::uint64_t triggers = 0; ///< a bit for each event, by its number; each event has a channel of its own
+    std::size_t words = 0;      ///< of a cycle that records all channels
+    std::size_t span_words = 0; ///< of tape_span, at most
 };
 
 struct Sizes {
@@ -107,7 +107,7 @@ struct Sizes {
     std::size_t emissions = 0;  ///< channels of events
 };
 
-/// Cycles of an activity within tape_span.
+/// Returns the number of an activity's cycles within tape_span.
 constexpr std::size_t cycles_of(const ActivityRow& row) noexcept {
     const Duration each = row.periodic() ? row.period : row.at_most_per;
     const std::int64_t runs = row.periodic() ? 1 : row.at_most_n;
@@ -146,12 +146,12 @@ constexpr Sizes sizes_of(std::span<const ReportRow> rows, const MachineView& m) 
     return sizes;
 }
 
-/// A power of two, of which one moment takes an eighth at most.
+/// Returns a power of two, so large that one moment uses at most an eighth.
 constexpr std::size_t tape_words(const OfActivity& of) noexcept {
     return std::bit_ceil(std::max({fewest_tape_words, 8 * of.words, of.span_words}));
 }
 
-/// What is wrong with a row's window.
+/// Returns the fault of a row's window.
 constexpr Sentence check_window(const ReportRow& row, const MachineView& m, const TableIndexView& r) {
     if (row.before < Duration::zero() || row.after < Duration::zero())
         return Sentence{"its window has a negative time; write how long before and after the event"};

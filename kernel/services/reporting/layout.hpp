@@ -1,5 +1,5 @@
-// What a machine records of its values (thesis 3.3, Reporting), as another process reads it: which values,
-// and a tape of them for each activity.
+// The layout of a machine's recorded values (thesis 3.3, Reporting), for a reader in another process: the
+// list of values, and a tape of them for each activity.
 #pragma once
 
 #include "kernel/exchange/word_tape.hpp"
@@ -8,28 +8,29 @@
 #include <cstdint>
 #include <type_traits>
 
-/// All offsets (`_at`) count bytes from the beginning of Directory, which map::Header::report_at names;
-/// sections are stepped by their strides. Nothing here changes once the map is ready, but the tapes, by their
-/// own rules, and the numbers of samples, while the generation of their activity is odd.
+/// All offsets (`_at`) count bytes from the beginning of Directory, whose place is map::Header::report_at;
+/// step through sections by their strides. Nothing here changes once the map is ready, except the tapes, by
+/// their own rules, and the sequence numbers, while the generation of their activity is odd.
 namespace tappet::recorded {
 
-/// Of an index: there is none.
+/// An index that refers to nothing.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
-/// One value that is recorded. The samples of a channel are numbered from 0 on, so that a reader knows how
-/// many it missed.
+/// One recorded value. The samples of a channel are numbered from 0, so that a reader knows how many it
+/// missed.
 struct Channel {
     std::uint32_t component = 0; ///< of the map
     std::uint32_t facet = 0;     ///< within the component
     std::uint32_t bytes = 0;     ///< of its value
     std::uint32_t tape = 0;
-    std::uint32_t every = 0;      ///< so many steps; 0: when it changes
-    std::uint32_t trigger = none; ///< the channel of the event around which its samples count; none: all do
-    double band = 0;              ///< a change up to here is none
-    std::int64_t before_ns = 0;   ///< samples so long before the event count, and so long after it
+    std::uint32_t every = 0; ///< the number of steps; 0: on change
+    std::uint32_t trigger =
+        none;                   ///< the channel of the event around which its samples count; none: all count
+    double band = 0;            ///< the largest change that is not recorded
+    std::int64_t before_ns = 0; ///< how long before the event, and after it, samples count
     std::int64_t after_ns = 0;
     std::uint64_t next_at = 0;  ///< uint32: the number of its next sample
-    std::uint32_t is_event = 0; ///< 1: the facet is an event, and the value how often it was emitted
+    std::uint32_t is_event = 0; ///< 1: the facet is an event, and the value is its number of emissions
     std::uint32_t reserved = 0;
 };
 
@@ -45,7 +46,7 @@ struct Directory {
     std::uint32_t channels = 0;
     std::uint32_t channel_stride = sizeof(Channel);
     std::uint64_t tapes_at = 0;
-    std::uint32_t tapes = 0; ///< one for each activity of which something is recorded
+    std::uint32_t tapes = 0; ///< one for each activity with recorded values
     std::uint32_t tape_stride = sizeof(Tape);
 };
 
@@ -54,10 +55,10 @@ inline constexpr bool is_plain =
     std::is_trivially_copyable_v<Record> && std::is_standard_layout_v<Record> && alignof(Record) <= 8;
 static_assert(is_plain<Channel> && is_plain<Tape> && is_plain<Directory>);
 
-/// So many bytes a recorded value has at most, and so many channels a machine.
+/// The most bytes of a recorded value, and the most channels of a machine.
 inline constexpr std::size_t most_value_bytes = 4096;
 inline constexpr std::size_t most_channels = 4096;
-/// So many events windows may have.
+/// The most events that windows may have.
 inline constexpr std::size_t most_triggers = 64;
 
 /// The first word of a sample; the words of its value follow.
@@ -77,8 +78,8 @@ struct SampleHead {
 
 constexpr std::size_t words_of(std::size_t bytes) noexcept { return (bytes + 7) / 8; }
 
-/// What a cycle recorded, as it lies on a tape: samples, then the time of the cycle and the number of all its
-/// words. It is read from its end.
+/// The samples of one cycle on a tape, followed by the time of the cycle and the number of all its words. It
+/// is read from its end.
 struct Moment {
     static constexpr std::size_t words_beside_samples = 2;
 
@@ -91,19 +92,19 @@ struct Moment {
     }
 };
 
-/// Written by one engine at the end of its cycles.
+/// A tape of values, written by one engine at the end of its cycles.
 class ValueTape : public WordTape {
 public:
     [[nodiscard]] static constexpr std::size_t bytes_for(std::size_t words) noexcept {
         return sizeof(ValueTape) + words * sizeof(std::uint64_t);
     }
-    /// At the beginning of bytes_for(words).
+    /// Construct it at the beginning of bytes_for(words) bytes.
     ValueTape(std::size_t words, std::size_t most_words) noexcept : WordTape{words, most_words} {}
 
-    /// The engine's: begin(), a put() for each word, end(). Real-time.
+    /// For the engine: begin(), a put() for each word, end(). Real-time.
     using WordTape::Pen;
     [[nodiscard]] Pen begin() noexcept TAPPET_REALTIME { return pen(); }
-    /// Of a cycle without a sample nothing is kept.
+    /// Ends a cycle. A cycle without a sample leaves nothing on the tape.
     void end(Pen pen, std::int64_t at_ns) noexcept TAPPET_REALTIME {
         if (pen.at() == position()) return;
         pen.put(static_cast<std::uint64_t>(at_ns));
@@ -111,7 +112,7 @@ public:
         publish(pen.at());
     }
 
-    /// The moment that ends where `after` says: head(), or the `at` of the moment after it. False: there is
+    /// Returns the moment that ends at `after`: head(), or the `at` of the following moment. False: there is
     /// none, or it is overwritten.
     [[nodiscard]] bool moment_before(std::uint64_t after, Moment& moment) const noexcept {
         if (after < Moment::words_beside_samples || after > head()) return false;

@@ -1,4 +1,4 @@
-// What an engine records at the end of a cycle, and how its channels are placed.
+// Records values at the end of a cycle in the engine, and places its channels.
 #include "kernel/services/reporting/reporting.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tappet::reporting_detail {
 
 namespace {
 
-/// Eight bytes of a value, or as many as are left.
+/// Returns eight bytes of a value, or as many as are left.
 std::uint64_t word_at(const std::byte* from, std::size_t left) noexcept TAPPET_REALTIME {
     std::uint64_t word = 0;
     if (left >= sizeof word)
@@ -42,14 +42,14 @@ std::uint64_t word_of(const Recorded& channel, std::uint32_t i) noexcept TAPPET_
     return word_at(channel.value + 8 * i, channel.bytes - 8 * i);
 }
 
-/// Of a number: by more than its band. What is no number is no number's neighbour.
+/// Whether a number differs by more than its band. A NaN always does.
 [[gnu::noinline]] bool is_beyond_band(const Recorded& channel, std::uint64_t word) noexcept TAPPET_REALTIME {
     const double now = number_of(word, channel.kind, channel.bytes);
     const double then = number_of(channel.last[0], channel.kind, channel.bytes);
     return !(std::abs(now - then) <= channel.band);
 }
 
-/// Whether a value of one word is otherwise than it was recorded last; if so, it is last from now on.
+/// Whether a one-word value differs from the last recorded one; if so, it becomes the last one.
 bool is_new(Recorded& channel, std::uint64_t word) noexcept TAPPET_REALTIME {
     if (channel.sequence != 0) { // the first one always is
         if (word == channel.last[0]) return false;
@@ -61,7 +61,7 @@ bool is_new(Recorded& channel, std::uint64_t word) noexcept TAPPET_REALTIME {
 
 using Pen = recorded::ValueTape::Pen;
 
-/// Of a value that is not a whole word: apart from those that are, since most are.
+/// Records a value that is not one whole word: separate from the common case.
 [[gnu::noinline]] Pen record_bytes(Recorded& channel, Pen pen) noexcept TAPPET_REALTIME {
     const std::uint32_t words = recorded::SampleHead::of(channel.head).words;
     if (channel.every == 0 && words == 1) {
@@ -83,7 +83,7 @@ using Pen = recorded::ValueTape::Pen;
 void record(CycleRecorder& self, const Cycle& cycle, bool stepped) noexcept TAPPET_REALTIME {
     auto& recorder = static_cast<Recorder&>(self);
     for (Emissions& each : recorder.events)
-        each.seen = each.counter->load(std::memory_order_relaxed); // no step: the next cycle sees it, or this
+        each.seen = each.counter->load(std::memory_order_relaxed); // no step: this cycle sees it, or the next
     Pen pen = recorder.tape->begin();
     for (Recorded& channel : recorder.channels) {
         if (channel.every != 0) {
@@ -106,7 +106,7 @@ void record(CycleRecorder& self, const Cycle& cycle, bool stepped) noexcept TAPP
 
 constexpr std::uint64_t always_written = 1;
 
-/// Fills the places of one section, channel after channel.
+/// Fills the places of one section, channel by channel.
 class Placer {
 public:
     Placer(std::span<const ReportRow> rows, MachineInstance& machine, std::byte* begin)
@@ -144,7 +144,8 @@ private:
         const OfActivity& of = sizes_.activities[activity];
         const std::size_t place = places_.tape_at[tapes_];
         const std::size_t first = channels_, first_event = emissions_;
-        // The events before the values of the same cycle: so a window is open when these come.
+        // The events come before the values of the same cycle, so that a window is open when the values
+        // follow.
         for (std::size_t t = 0; t < sizes_.triggers; ++t)
             if ((of.triggers >> t & 1) != 0) add_event(t);
         for (const ReportRow& row : rows_)
@@ -230,7 +231,7 @@ private:
     std::size_t last_words_ = 0;
 };
 
-/// Where the places begin: on a line pair.
+/// Returns where the places begin: on a line pair.
 std::byte* first_of(std::span<std::byte> memory) noexcept {
     constexpr std::size_t alignment = recorded::ValueTape::alignment;
     const auto address = reinterpret_cast<std::uintptr_t>(memory.data());

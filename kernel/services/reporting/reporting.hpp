@@ -1,6 +1,6 @@
-// The reporting service (thesis 3.3): a section of the machine table that says which values are recorded. The
-// engines copy them at the end of their cycles onto tapes in the machine's memory; another process reads
-// those and writes files.
+// The reporting service (thesis 3.3): a section of the machine table that lists the recorded values. The
+// engines copy them at the end of their cycles to tapes in the machine's memory; another process reads the
+// tapes and writes files.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -16,11 +16,11 @@ namespace tappet {
 
 namespace reporting_detail {
 
-/// What an engine keeps of a channel: a line.
+/// An engine's data of a channel: one cache line.
 struct Recorded {
     const std::byte* value = nullptr;
     const std::uint64_t* writes = nullptr; ///< 0 there: it has no value yet
-    std::uint64_t head = 0;                ///< of the sample 0
+    std::uint64_t head = 0;                ///< of sample 0
     std::uint64_t* last = nullptr;         ///< on change: the words recorded last
     std::uint32_t every = 0;               ///< 0: on change
     std::uint32_t left = 1;                ///< steps until it is recorded again
@@ -31,20 +31,20 @@ struct Recorded {
 };
 static_assert(sizeof(Recorded) == 64);
 
-/// What an engine has seen of an event that is emitted in whatever activity.
+/// An engine's copy of the counter of an event that any activity may emit.
 struct Emissions {
     const std::atomic<std::uint64_t>* counter = nullptr;
     std::uint64_t seen = 0; ///< the value of its channel
 };
 
-/// Of one activity.
+/// The recorder of one activity.
 struct Recorder : CycleRecorder {
     recorded::ValueTape* tape = nullptr;
     std::span<Emissions> events{};
     std::span<Recorded> channels{};
 };
 
-/// Where what lies in the section's memory, from its first line pair on.
+/// Places in the section's memory, from its first line pair on.
 struct Places {
     std::size_t counters_at = 0, emissions_at = 0;
     std::size_t channels_at = 0, tapes_at = 0, recorders_at = 0, recorded_at = 0, last_at = 0;
@@ -87,7 +87,7 @@ struct Reporting final : ExtraSection {
         return reporting_detail::check(rows, m, r);
     }
     [[nodiscard]] constexpr std::size_t bytes(const MachineView& m) const override {
-        // It begins on a line pair, wherever its memory does.
+        // It begins on a line pair, wherever its memory begins.
         return reporting_detail::places_of(reporting_detail::sizes_of(rows, m)).bytes +
                recorded::ValueTape::alignment;
     }
@@ -104,12 +104,12 @@ struct Reporting final : ExtraSection {
     [[nodiscard]] constexpr std::string_view stands_once() const override { return "reporting"; }
     [[nodiscard]] Sentence describe_stop(std::size_t) const override { return {}; } // no row stops a machine
     [[nodiscard]] SectionCount counted(std::span<const std::byte>, std::size_t) const noexcept override {
-        return {}; // who reads the tapes counts
+        return {}; // the reader of the tapes counts
     }
 };
 
-/// The section: rows of report(..). A component of the table has to see the machine, a BrowserService, so
-/// that somebody can read what is recorded.
+/// The section: rows of report(..). A component of the table must see the machine, a BrowserService, so that
+/// the records can be read.
 template <class... Rows>
 constexpr Reporting<sizeof...(Rows)> reporting(const Rows&... rows) {
     static_assert(sizeof...(Rows) != 0, "reporting() without a row records nothing; leave the section out");

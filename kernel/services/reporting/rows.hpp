@@ -1,4 +1,4 @@
-// What of a machine is recorded, as rows of the table (thesis 3.3, Reporting):
+// The recorded values of a machine, as rows of the table (thesis 3.3, Reporting):
 //     reporting(report("shaft.position", every(2)),
 //               report("tension.force", on_change(0.5)),
 //               report("weft.*", on_change(), before(200ms), after(1s), trigger("weft.missed")))
@@ -14,27 +14,27 @@ namespace tappet {
 
 struct ReportRow {
     std::string_view what{}; ///< "component.facet", or "component.*": all its outputs
-    std::int64_t every = 1;  ///< so many steps of its activity
+    std::int64_t every = 1;  ///< the number of steps of its activity
     bool on_change = false;
     double band = 0.0;
-    std::string_view trigger{}; ///< the event around which it counts
+    std::string_view trigger{}; ///< the event around which its samples count
     Duration before{};
     Duration after{};
 };
 
-/// Recorded in the first step of its activity and in each n-th one after it. The default: in each.
+/// Records it in the first step of its activity and in each n-th step after it. The default: in each step.
 constexpr RowOption<ReportRow, std::int64_t> every(std::int64_t steps) noexcept {
     return {&ReportRow::every, steps};
 }
 struct OnChange {
     double band;
 };
-/// Recorded when a cycle leaves it otherwise than it was recorded last: by more than `band` of its unit.
+/// Records it when it differs after a cycle from the last recorded value: by more than `band`, in its unit.
 constexpr OnChange on_change(double band = 0.0) noexcept { return {band}; }
-/// Of a row with a trigger: what was recorded so long before the event is kept. What is kept after it:
+/// Keeps the records of this time before the event, in a row with a trigger. For the time after it:
 /// after(time).
 constexpr RowOption<ReportRow, Duration> before(Duration time) noexcept { return {&ReportRow::before, time}; }
-/// Recorded values are kept around this event only: "component.event".
+/// Keeps recorded values around this event only: "component.event".
 constexpr RowOption<ReportRow, std::string_view> trigger(std::string_view event) noexcept {
     return {&ReportRow::trigger, event};
 }
@@ -49,7 +49,7 @@ constexpr void apply(ReportRow& row, statechart::After option) noexcept { row.af
 
 } // namespace detail
 
-/// An output or a property, and when it is recorded: every(steps) or on_change(band).
+/// An output or a property, and when to record it: every(steps) or on_change(band).
 template <class... Options>
 constexpr ReportRow report(std::string_view what, const Options&... options) {
     ReportRow row{.what = what};

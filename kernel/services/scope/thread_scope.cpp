@@ -1,5 +1,5 @@
-// Looks at the tapes behind the engines' backs, and copies what is around a cycle that is worse than those
-// kept.
+// Reads the tapes while the engines write them, and copies the surroundings of each cycle that is worse than
+// those kept.
 #include "kernel/services/scope/thread_scope.hpp"
 
 #include <algorithm>
@@ -8,7 +8,8 @@ namespace tappet {
 
 namespace {
 
-/// What reading the clock once costs, in ns: of many rows of readings the one that nothing interrupted.
+/// Returns the cost of reading the clock once, in ns: the shortest of several rows of readings, which nothing
+/// interrupted.
 std::int64_t cost_of_stamp(const os::Clock& clock) noexcept {
     constexpr int rows = 64;
     constexpr int readings = 64;
@@ -38,7 +39,7 @@ Sentence ThreadScope::initialise() {
 void ThreadScope::work(const Cycle& cycle) {
     if (on.get() != was_on_) turn_tapes();
     if (forgets_ || span.get() != span_used_ || by_busy.get() != by_busy_used_) empty();
-    // What is kept after a cycle's end must be on the tapes before they are looked at.
+    // The time kept after a cycle's end must be on the tapes before they are read.
     const std::int64_t until = to_ns(cycle.now - after.get());
     std::uint32_t rank = 0;
     for (std::uint32_t a = 0; a < directory_->tapes; ++a)
@@ -139,7 +140,7 @@ void ThreadScope::record(scope::Recording& into, std::uint32_t activity, const T
     Duration trail = after.get();
     into.from = cycle.release - lead.count();
     into.to = cycle.end + trail.count();
-    // What stands farthest from the cycle is left out first.
+    // The parts farthest from the cycle are left out first.
     for (int halvings = 0; halvings < 24 && words_between(into.from, into.to) > scope::recording_words;
          ++halvings) {
         lead /= 2;

@@ -1,5 +1,5 @@
-// The thread scope (thesis A.2.1) and flight recorder: with it in the table every cycle of every activity is
-// recorded, function by function, and the worst ones of the last hour are kept with everything around them.
+// The thread scope (thesis A.2.1) and flight recorder. With it in the table every cycle of every activity is
+// recorded, function by function, and the worst cycles of the last hour are kept with everything around them.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -7,13 +7,14 @@
 
 namespace tappet {
 
-/// In an activity that is not_real_time and looks several times in 100 ms: so long a tape holds what its
-/// activity's row promises, and that of a very busy one a part of it; what was overwritten first is counted.
+/// Runs in an activity that is not_real_time and polls several times in 100 ms: a tape holds that much time
+/// of an activity that runs as often as its row says, and less of a very busy one; overwritten cycles are
+/// counted.
 ///     component<ThreadScope>("scope") ... activity("browser", every(20ms), not_real_time, runs("scope"))
-/// The engines write their tapes themselves, wait-free, a mark for each function from the stamps they take
-/// anyway, and publish a cycle when its last stamp has been taken. Without this row in the table, or while
-/// `on` is false, that costs them one test. What is kept lies in the machine's shared memory: `tappet-browse
-/// scope` shows it, and writes it as VCD or as a trace for Perfetto.
+/// The engines write their tapes themselves, wait-free, with a mark for each function from stamps that they
+/// take anyway, and publish a cycle after its last stamp. Without this row in the table, or while `on` is
+/// false, this costs them one test. The kept cycles are in the machine's shared memory: `tappet-browse scope`
+/// shows them, and writes them as VCD or as a trace for Perfetto.
 class ThreadScope {
 public:
     static constexpr bool records_cycles = true;

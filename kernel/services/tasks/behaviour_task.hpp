@@ -1,12 +1,12 @@
-// A program or state machine as a light-weight task (thesis 5.1.6, 5.2.5): its status is commanded and asked,
-// its variables are properties, and a program that has parameters is a command. It is a component like any
-// other, so rows, scripts and browsers reach it as they reach those.
+// A program or state machine as a light-weight task (thesis 5.1.6, 5.2.5): commands change its status,
+// methods read it, its variables are properties, and a program with parameters is a command. It is a
+// component like any other: rows, scripts and browsers use it in the same way.
 //
 //     component<BehaviourTask<weft_script, "feed">>("feeding", controls("weft"), set("speed", 0.5)),
 //     uses("console.feed", "feeding.run")          // program feed(int pieces, double speed) { ... } of it
 //
-// Controlled by it is what drives the component: that script, compiled with the machine, or whatever of its
-// shape was loaded into the component's slot.
+// It controls the behaviour that drives the component: that script, compiled with the machine, or any loaded
+// behaviour of the same shape in the component's slot.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -20,13 +20,13 @@ namespace tappet {
 
 namespace detail {
 
-/// What every behaviour is told and asked, whatever it is.
+/// Commands and methods that every behaviour has.
 class AnyBehaviourTask {
 public:
     static constexpr auto controls = ComponentType::Controls::behaviour;
     void control(const Controlled& controlled) noexcept { controlled_ = controlled; }
 
-    // Commands; rejected while nothing is loaded, or in a status in which it does not do that.
+    // Commands; rejected while nothing is loaded, or in a status that does not permit them.
     bool start_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::start); }
     bool stop_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::stop); }
     bool pause_it() noexcept TAPPET_REALTIME { return acts(BehaviourAction::pause); }
@@ -49,7 +49,7 @@ public:
                                                                         : CommandProgress::done;
         });
     }
-    /// A program that was stopped, by whomever, has not come to its end.
+    /// Fails when the program was stopped, by anyone, before its end.
     CommandProgress has_ended() noexcept TAPPET_REALTIME {
         return until([](const UnitPart& part) noexcept TAPPET_REALTIME {
             if (!is_at_rest(part)) return CommandProgress::executing;
@@ -88,7 +88,7 @@ public:
     }
 
 protected:
-    /// A program that may be started; one in error is brought out of it first, as by a stop.
+    /// Whether the program may be started; first clears its error, like a stop.
     [[nodiscard]] bool is_free() noexcept TAPPET_REALTIME {
         const UnitPart* part = controlled_.behaviour();
         if (part == nullptr || !controlled_.active()->may_begin() || !is_at_rest(*part)) return false;
@@ -109,7 +109,7 @@ private:
         await_rest(*part);
         return true;
     }
-    // What was commanded may have been taken over by another one.
+    // Another behaviour may have taken over since the command.
     template <class How> CommandProgress until(const How& how) noexcept TAPPET_REALTIME {
         const UnitPart* part = controlled_.behaviour();
         if (part == nullptr || part != commanded_ || is_in_error(*part)) return CommandProgress::failed;
@@ -127,7 +127,7 @@ private:
     const UnitPart* commanded_ = nullptr;
 };
 
-/// The numbers of the variables that a task of that instance knows: its properties, and of a program its
+/// Returns the numbers of the variables that a task of that instance has: its properties, and a program's
 /// result.
 template <const auto& script, std::size_t number, std::size_t... i>
 constexpr auto task_variables(std::index_sequence<i...>) {
@@ -154,19 +154,18 @@ constexpr auto task_variables(std::index_sequence<i...>) {
 
 } // namespace detail
 
-/// Of which no script is known to the compiler: a table of C++, or what a slot holds just now.
+/// A script that the compiler does not know: a C++ table, or the present contents of a slot.
 inline constexpr ScriptUnit any_script{};
 
 /// In the table: component<BehaviourTask<script, "instance">>("name", controls("component")), in the activity
-/// of that component. `script`: the ScriptUnit that drives it, or of which the scripts for its slot have the
-/// shape: an instance of that name with those variables and parameters; others are refused when they are
-/// loaded. Without one the task has commands and methods alone, which serve the first program or machine that
-/// it finds. Properties are the variables and parameters of a machine and the parameters of a program (whose
-/// variables begin anew with it), but for those of records; they may be set by the row and kept in a
-/// properties file. Those of a slot stay while behaviours come and go: one that takes
-/// over is given them, one that is taken back has changed none. `run` of a program gives its parameters anew
-/// and, where it has one, tells its result; `start` takes them as they are. Commands and methods are
-/// real-time.
+/// of that component. `script`: the ScriptUnit that drives it, or the shape of the scripts for its slot: an
+/// instance of that name with those variables and parameters; loading refuses any other. Without a script the
+/// task has only commands and methods, which apply to the first program or machine that it finds. Properties
+/// are the variables and parameters of a machine and the parameters of a program (whose variables are
+/// initialised at each start), except those of record types; the row may set them, and a properties file may
+/// keep them. The properties of a slot's task stay when behaviours change: one that takes over receives them,
+/// one that is taken back has changed none. `run` of a program sets its parameters and returns its result, if
+/// it has one; `start` uses the present parameters. Commands and methods are real-time.
 template <const auto& script = any_script, text instance = "">
 struct BehaviourTask : detail::AnyBehaviourTask {
     static constexpr bool knows_script = !script.types.empty();
@@ -179,7 +178,7 @@ struct BehaviourTask : detail::AnyBehaviourTask {
             if (script.instances[i].name == instance_name) return i;
         return std::size_t{0};
     }();
-    /// Null: it is not known.
+    /// Null: the type is not known.
     static constexpr const BehaviourType* type =
         knows_script ? &script.types[script.instances[number].type] : nullptr;
     static constexpr bool may_be_machine = type == nullptr || !type->is_program();
@@ -197,7 +196,7 @@ struct BehaviourTask : detail::AnyBehaviourTask {
                 controlled_.task = &in_slot_;
             }
     }
-    /// What was set goes to the behaviour that is loaded.
+    /// Passes changed properties to the loaded behaviour.
     void changed() noexcept TAPPET_REALTIME {
         if (controlled_.slot != nullptr) controlled_.slot->exchange();
     }
@@ -220,8 +219,7 @@ private:
     }();
     template <std::size_t i> using Value = detail::TaskValue<type->tables.variables[known[i]].type>;
 
-    // ---- a program that is a command: its parameters, which stand before all other variables, and its
-    // result
+    // ---- a program that is a command: its parameters, which precede all other variables, and its result
 
     static constexpr std::size_t parameters = is_command ? type->parameters() : 0;
     static constexpr bool gives_result = is_command && known.size() != parameters;
@@ -265,7 +263,7 @@ private:
             if (each == name) return true;
         return false;
     }
-    /// Of a slot they lie here: what is loaded comes and goes.
+    /// The properties of a slot's task are stored here: the loaded behaviours change.
     static void* property_at(void* component, std::size_t i) noexcept {
         auto& task = *static_cast<Self*>(component);
         if (task.controlled_.slot == nullptr)
@@ -320,7 +318,7 @@ private:
         return count;
     }();
 
-    // Of a task of a slot.
+    // For the task of a slot.
     static constexpr std::size_t value_bytes = knows_script ? TaskShape::value_bytes(*type) : 0;
     SlotTask in_slot_{};
     alignas(data_alignment) std::array<std::byte, value_bytes> values_{}, seen_{};

@@ -8,9 +8,9 @@
 namespace tappet {
 
 /// In the table: component<ComponentLife>("printing", controls("printer")); `do printing.stop()` in a script,
-/// uses("console.stop_printer", "printing.stop") in a row. The component may run in any activity; the command
-/// is done when that one says so, and failed when it refuses or another change was asked for meanwhile. Its
-/// own activity is a periodic one. Real-time.
+/// uses("console.stop_printer", "printing.stop") in a row. The component may run in any activity. The command
+/// is done when the component has answered, and failed when it refuses or another change was requested
+/// meanwhile. The activity of this component must be periodic. Real-time.
 struct ComponentLife {
     static constexpr auto controls = ComponentType::Controls::life;
     void control(const Controlled& controlled) noexcept { controlled_ = controlled; }
@@ -52,7 +52,7 @@ private:
     }
 
     Controlled controlled_{};
-    std::array<LifeTicket, 3> tickets_{}; ///< of each change the last that was asked for
+    std::array<LifeTicket, 3> tickets_{}; ///< the last request of each change
 };
 
 } // namespace tappet

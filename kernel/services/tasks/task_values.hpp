@@ -1,4 +1,4 @@
-// Of a script's types those that its task has as properties, and as arguments of its command.
+// The types of a script that a task can have as properties, and as arguments of its command.
 #pragma once
 
 #include "kernel/component/property_interface.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::detail {
 
-/// The C++ type of a script's variable that goes through a command; void: of no other.
+/// The C++ type of a script's variable that a command can pass; void: a command cannot pass it.
 template <TypeId id>
 using TaskValue = std::conditional_t<
     id == script_bool, bool,
@@ -19,8 +19,8 @@ using TaskValue = std::conditional_t<
                            std::conditional_t<id == script_duration, Duration,
                                               std::conditional_t<id == script_text, ScriptText, void>>>>>;
 
-/// What is done with a property of which no C++ type is known but its tag: an enumeration, a vector or a
-/// matrix of doubles.
+/// Property operations for a type that is known only by its tag: an enumeration, a vector or a matrix of
+/// doubles.
 template <TypeId id> struct TaggedProperty {
     static constexpr bool is_list = id->kind == ValueKind::matrix;
     static constexpr TypeId element = is_list ? id->element : id;
@@ -33,7 +33,7 @@ template <TypeId id> struct TaggedProperty {
     }
     static double number(const std::byte* value, std::size_t i) noexcept TAPPET_REALTIME {
         if constexpr (is_list) return load_value<double>(value + i * element->size);
-        std::uint64_t named = 0; // the low bytes stand first
+        std::uint64_t named = 0; // little endian
         std::memcpy(&named, value, element->size);
         return static_cast<double>(named);
     }
@@ -61,7 +61,8 @@ template <TypeId id> struct TaggedProperty {
                                                    .number = &number};
 };
 
-/// Of a property of that type; null: it is none (a record, an opaque type, a sequence).
+/// Returns the operations of a property of that type; null: it cannot be one (a record, an opaque type, a
+/// sequence).
 template <TypeId id>
 inline constexpr const PropertyOperations* task_property = [] {
     if constexpr (!std::is_void_v<TaskValue<id>>)

@@ -1,4 +1,4 @@
-// The time service (thesis 3.3): an event at a time, after a while, or again and again.
+// The time service (thesis 3.3): an event at a time, after a delay, or periodically.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -6,12 +6,12 @@
 namespace tappet {
 
 /// In the table: component<TimedEvent>("rinse"), when("panel.wash", tell("rinse.arm_after")) and
-/// when("rinse.due", tell("pump.start")). Arming again moves it; a time that is past is due at once; a period
+/// when("rinse.due", tell("pump.start")). Arming again moves the event; a past time is due at once; a period
 /// that is not positive arms nothing. It wakes its activity, which is on_work() or not_real_time. A stop of
 /// the component cancels it. Real-time.
 struct TimedEvent {
-    Event<Time> due;              ///< with the time it was armed for
-    Output<std::int64_t> times;   ///< it was due
+    Event<Time> due;              ///< the time it was armed for
+    Output<std::int64_t> times;   ///< how often it was due
     Output<std::int64_t> skipped; ///< periods that passed while its activity was late
 
     Sentence configure(Setup& setup) {
@@ -28,7 +28,8 @@ struct TimedEvent {
         timer_.arm(when);
     }
     void arm_after(Duration after) noexcept TAPPET_REALTIME { arm_at(clock_->now() + after); }
-    /// The first time one period from now; the later ones keep that beat, however late the activity runs.
+    /// Emits the event first one period from now; later ones keep that rhythm, however late the activity
+    /// runs.
     void every(Duration period) noexcept TAPPET_REALTIME {
         cancel();
         if (period <= Duration::zero()) return;
@@ -54,7 +55,7 @@ private:
         const Time when = cycle.release;
         if (period_ > Duration::zero()) {
             Time next = when + period_;
-            if (next <= cycle.now) { // whole periods are lost: they are counted, not made up for
+            if (next <= cycle.now) { // lost whole periods are counted, not repeated
                 const auto lost = (cycle.now - next) / period_ + 1;
                 skipped.write(skipped.last() + lost);
                 next += lost * period_;
@@ -62,7 +63,7 @@ private:
             timer_.arm(next);
         }
         times.write(times.last() + 1);
-        due(when); // last: what hears it may arm it anew
+        due(when); // last: its listener may arm it again
     }
 
     Timer timer_;

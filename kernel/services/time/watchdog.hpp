@@ -1,5 +1,5 @@
-// The time service (thesis 3.3): a watchdog says when an activity, or what is written to a connection, shows
-// no life for too long.
+// The time service (thesis 3.3): a watchdog reports when an activity, or the writer of a connection, shows no
+// life for too long.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -7,19 +7,19 @@
 namespace tappet {
 
 /// In the table: component<Watchdog>("motion_dog", watches("motion"), set("limit", 20ms)). `watches` names an
-/// activity, or an output that another activity reads ("can.encoder.position"). It looks once in each cycle
-/// of its own activity, which is a periodic one and not the watched one: silence is told after the limit,
-/// never before it, and at most two of its own periods later. An activity shows life when a cycle begins and
-/// when it ends, so that one that hangs in a cycle falls silent; give the watchdog a shorter deadline than
-/// what it watches, or another processor, so that the hanging one cannot keep it from looking. What was
-/// stopped by a request is not expected to live; the limit counts anew when it starts. An activity without a
-/// period is silent when it does not begin or does not end what it was woken for, or what was due: a timer,
-/// or the look at an input that grows stale. Real-time.
+/// activity, or an output that another activity reads ("can.encoder.position"). The watchdog checks once in
+/// each cycle of its own activity, which must be periodic and not the watched one: it reports silence after
+/// the limit, never before it, and at most two of its own periods later. An activity shows life when a cycle
+/// begins and when it ends, so an activity that hangs in a cycle becomes silent. Give the watchdog a shorter
+/// deadline than the watched activity, or another processor, so that a hanging activity cannot keep it from
+/// checking. A target that was stopped by a request is not expected to live; the limit restarts when it
+/// starts. An activity without a period is silent when it does not begin or end the work it was woken for, or
+/// that was due: a timer, or the check of an input that becomes stale. Real-time.
 struct Watchdog {
     static constexpr bool watches_life = true;
 
     Output<bool> alive;     ///< written on change
-    Event<Duration> silent; ///< once in each silence, with how long it has lasted
+    Event<Duration> silent; ///< once in each silence, with its duration so far
     Event<Duration> revived;
     Property<Duration> limit{100ms};
 
@@ -40,7 +40,7 @@ struct Watchdog {
         const Duration silence = cycle.now - last_life_;
         count_ = count;
         const bool rests = sign_.rests != nullptr && sign_.rests(sign_.owner, cycle.now);
-        // An activity that rested at the last look may have been woken just now.
+        // An activity that rested at the last check may have been woken just now.
         if (lives || rests || rested_ || !sign_.expected(sign_.owner)) last_life_ = cycle.now;
         rested_ = rests;
         if (lives && silent_) {
@@ -67,7 +67,7 @@ private:
     LifeSign sign_{};
     std::uint64_t count_ = 0;
     Time last_life_{};
-    bool silent_ = false, rested_ = false; ///< at the last look
+    bool silent_ = false, rested_ = false; ///< at the last check
 };
 
 } // namespace tappet

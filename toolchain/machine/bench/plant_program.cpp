@@ -1,4 +1,4 @@
-// Opens the plant's ends where the machine's binding says, and moves the plant along.
+// Opens the plant's ends as the machine's binding says, and advances the plant.
 #include "toolchain/machine/bench/plant_program.hpp"
 
 #include "drivers/hardware/opened.hpp"
@@ -26,14 +26,14 @@ namespace {
 
 enum Ending : int { ended_well = 0, plant_at_fault = 1, wrong_set_up = 2 };
 
-/// SCHED_FIFO: above all other work of the box, below the machine's. Not above the machine: an edge of
-/// gpio-sim is told by a thread of this priority, and two edges before it runs are one.
+/// SCHED_FIFO: above all other work of the box, but below the machine. Not above the machine: gpio-sim
+/// reports an edge from a thread of this priority, and two edges before that thread runs merge into one.
 constexpr int plant_priority = 1;
 
 volatile std::sig_atomic_t told_to_end = 0;
 volatile std::sig_atomic_t usr1_came = 0;
 
-/// Something that happens to the wires, not to the plant: at a time, for a while.
+/// A fault of the wires, not of the plant: at a time, for a while.
 struct Outage {
     Duration at = Duration::max();
     Duration lasts{};
@@ -42,8 +42,8 @@ struct Outage {
 struct Options {
     std::uint64_t seed = 1;
     std::string report{};    ///< a file; empty: standard output
-    Duration period = 200us; ///< of looking at the wires
-    Outage server_stop{};    ///< every Modbus server is gone
+    Duration period = 200us; ///< how often the wires are polled
+    Outage server_stop{};    ///< every Modbus server is down
     Duration bus_off_at = Duration::max();
     Duration die_at = Duration::max(); ///< killed, without a report
     bool help = false;
@@ -78,7 +78,7 @@ bool read(std::string_view word, Outage& into) {
            read(word.substr(slash + 1), into.lasts);
 }
 
-/// Empty: all words are right; what is not of the wires or of the run goes to the plant.
+/// Parses the words; returns empty when all are right. Passes unknown options on to the plant.
 Sentence parse(int count, char** words, Options& to) {
     for (int i = 1; i < count; ++i) {
         const std::string_view word = words[i];
@@ -115,7 +115,7 @@ public:
         for (const ComponentRow& row : machine.components) {
             if (row.type->device_map == nullptr || row.type->device_kind == nullptr) continue;
             std::unique_ptr<BenchEnd> end = BenchKinds<Kinds>::make(*row.type->device_kind);
-            if (end == nullptr) continue; // the machine's own kinds, which no driver here knows
+            if (end == nullptr) continue; // a kind of the machine's own, for which no driver exists here
             if (auto opened = end->open(place_of(row, board, binding)); !opened)
                 return Sentence{"device \"", row.device, "\": ", opened.error()};
             wires_.push_back(end->provided(row.device));
@@ -170,8 +170,8 @@ public:
                 usr1_came = 0;
                 plant_.told();
             }
-            // Not also when the plant wants to move: each time costs the guest a change of processes, and
-            // what a node sends has no time of its own that the machine knows.
+            // Does not also wake when the plant wants to move: each wake-up costs the guest a process switch,
+            // and a frame of a node has no exact time that the machine knows.
             const Time wake = std::min(last + options_.period, std::max(next, last + 20us));
             sleep_until(wake);
             const Time now = clock_.now();
@@ -189,7 +189,7 @@ public:
     }
 
 private:
-    /// The machine may still show how it stopped.
+    /// Leaves the machine time to show how it stopped.
     bool rested(Time now) {
         if (!plant_.is_done())
             done_since_ = never;
@@ -238,7 +238,7 @@ void listen_to_signals() {
     sigaction(SIGINT, &action, nullptr);
     action.sa_handler = [](int) { usr1_came = 1; };
     sigaction(SIGUSR1, &action, nullptr);
-    std::signal(SIGPIPE, SIG_IGN); // a client that went away is no reason to die
+    std::signal(SIGPIPE, SIG_IGN); // a client that disconnects must not end this process
 }
 
 bool write_report(const Plant& plant, const std::string& path) {
@@ -287,7 +287,7 @@ int run_plant(const MachineView& machine, const Board& board, const Binding& bin
     if (const Sentence fault = wires.open(machine, board, binding); !fault.empty()) return fail(fault);
     if (const Sentence fault = plant->connect(wires.all()); !fault.empty()) return fail(fault);
     static_cast<void>(
-        plant->advance(os::Clock{os::Clock::Kind::real}.now())); // no client reads what is not set
+        plant->advance(os::Clock{os::Clock::Kind::real}.now())); // clients must not read unset values
     if (const Sentence fault = wires.listen(); !fault.empty()) return fail(fault);
     become_real_time(name.c_str());
     os::notify_starter("X_TAPPET_PLANT=ready");

@@ -1,4 +1,4 @@
-// The bench's plant of a machine: its program at the other end of SocketCAN, gpio-sim and Modbus TCP, in real
+// The bench's plant of a machine: the program at the other end of SocketCAN, gpio-sim and Modbus TCP, in real
 // time.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace tappet {
 
-/// Runs until the plant is done and has rested for half a second, or it is told to end. The exit code: 0
-/// well, 1 the plant found a fault, 2 a wrong set-up.
+/// Runs until the plant is done and has rested for half a second, or until a signal asks it to end. Exit
+/// code: 0 well, 1 the plant found a fault, 2 a wrong set-up.
 [[nodiscard]] int run_plant(const MachineView& machine, const Board& board, const Binding& binding,
                             const std::function<std::unique_ptr<Plant>(std::uint64_t seed)>& make_plant,
                             int count, char** words);

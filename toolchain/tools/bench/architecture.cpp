@@ -17,7 +17,7 @@ namespace {
 const std::array<Architecture, 2>& architectures() {
     static const std::array<Architecture, 2> all{
         {{EM_X86_64, "x86-64", "", "qemu-system-x86_64", "qemu-system-x86", {"q35"}, "ttyS0", "ci/setup"},
-         // The oldest processor that has the atomic instructions which the firmware is compiled to.
+         // The oldest processor with the atomic instructions for which the firmware is compiled.
          {EM_AARCH64,
           "aarch64",
           "-aarch64",

@@ -31,7 +31,7 @@ namespace {
 // One instruction is 2^1 ns of guest time. A larger shift makes the box slower and the run longer.
 constexpr int instruction_shift = 1;
 
-// The guest's init sends them before the first command, and when everything has been written.
+// The guest's init sends these before the first command, and after all output.
 constexpr char start_of_output = '\x1d';
 constexpr char end_of_output = '\x1e';
 
@@ -39,7 +39,7 @@ double seconds_since(SteadyTime start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// A box is what its programs are built for.
+// The box has the architecture for which its programs are built.
 const Architecture& architecture_for(const Scenario& scenario) {
     std::vector<fs::path> files;
     for (const File& file : scenario.files) {
@@ -101,7 +101,7 @@ void pack(const Scenario& scenario, const Architecture& architecture, const fs::
 
 std::vector<std::string> emulator_arguments(const Scenario& scenario, const Architecture& architecture,
                                             const fs::path& kernel, const WorkFolder& work) {
-    // The self-tests of the kernel's ciphers would be half of the boot.
+    // The self-tests of the kernel's ciphers would take half of the boot time.
     std::string kernel_arguments =
         "console=" + architecture.console + " quiet panic=-1 rdinit=/init cryptomgr.notests";
     if (!scenario.kernel_arguments.empty()) {
@@ -109,17 +109,17 @@ std::vector<std::string> emulator_arguments(const Scenario& scenario, const Arch
     }
     std::vector<std::string> arguments = {
         architecture.emulator, "-nodefaults", "-no-user-config", "-display", "none", "-no-reboot",
-        // Emulation, also where the host could virtualise: the same everywhere, and the instruction clock
-        // needs it.
+        // Emulation, even when the host could virtualise: the same on every host, and required by the
+        // instruction clock.
         "-accel", "tcg", "-m", std::to_string(scenario.memory_mib), "-smp",
         std::to_string(scenario.processors), "-kernel", (kernel / "vmlinux").string(), "-initrd",
         (work / "root.cpio").string(), "-append", kernel_arguments,
-        // The kernel's own words go to a file, read only when something went wrong.
+        // The kernel's own messages go to a file, which is read only after a failure.
         "-serial", "file:" + (work / "kernel.log").string(), "-device", "virtio-serial-pci", "-chardev",
         "stdio,id=console,signal=off", "-device", "virtserialport,chardev=console,name=tappet.console",
         "-chardev", "file,id=results,path=" + (work / "results").string(), "-device",
         "virtserialport,chardev=results,name=tappet.results",
-        // It sleeps until somebody opens it; a reset ends the guest.
+        // The watchdog sleeps until somebody opens it; its reset ends the guest.
         "-device", "i6300esb", "-machine"};
     arguments.insert(arguments.end(), architecture.machine.begin(), architecture.machine.end());
     for (std::size_t i = 0; i < scenario.can_cards.size(); ++i) {
@@ -127,7 +127,7 @@ std::vector<std::string> emulator_arguments(const Scenario& scenario, const Arch
         arguments.insert(arguments.end(), {"-object", "can-bus,id=" + bus});
         if (scenario.can_cards[i] == "ctucan")
             arguments.insert(arguments.end(), {"-device", "ctucan_pci,canbus0=" + bus + ",canbus1=" + bus});
-        else // Kvaser's, with one each
+        else // Kvaser's cards, with one controller each
             for (int channel = 0; channel < 2; ++channel)
                 arguments.insert(arguments.end(), {"-device", "kvaser_pci,canbus=" + bus});
     }
@@ -177,12 +177,12 @@ struct Emulator {
         const pid_t parent = ::getpid();
         pid = ::fork();
         if (pid == 0) {
-            // Ours may be killed at any time; an emulator left behind would eat a processor for ever.
+            // The bench may be killed at any time; an emulator left behind would occupy a processor for ever.
             ::prctl(PR_SET_PDEATHSIG, SIGKILL);
             if (::getppid() != parent) {
                 ::_exit(127);
             }
-            ::setpgid(0, 0); // the terminal's Ctrl-C is for us, who then end the guest
+            ::setpgid(0, 0); // the terminal's Ctrl-C is for the bench, which then ends the guest
             const int errors = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
             ::dup2(to[0], STDIN_FILENO);
             ::dup2(from[1], STDOUT_FILENO);
@@ -202,7 +202,7 @@ struct Emulator {
     }
 };
 
-// The last lines of what the emulator or the kernel had to say.
+// Returns the last lines of the emulator's or the kernel's messages.
 std::string tail_of(const fs::path& path) {
     std::ifstream file(path);
     std::vector<std::string> lines;
@@ -274,11 +274,11 @@ Report read_results(const fs::path& path, const std::vector<File>& wanted) {
 
 enum class End { complete, emulator_gone, timeout, cancelled };
 
-// A guest that boots on a busy host is slow, and has done nothing wrong yet.
+// A guest that boots on a busy host is slow, which is not yet a fault.
 constexpr double boot_limit_s = 300;
 
-// Hands the guest's output on until it says that nothing more will come, then answers, upon which it switches
-// off.
+// Passes the guest's output on until the guest reports its end, then answers; the guest switches off upon the
+// answer.
 End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output& output,
            const Cancelled& cancelled, double& boot_wall_s) {
     std::array<char, 65536> piece{};

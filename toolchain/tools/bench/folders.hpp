@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where ci/setup keeps what it fetched, and a folder that is gone afterwards.
+// The folder in which ci/setup stores its downloads, and a folder that deletes itself.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,10 @@
 
 namespace tappet::bench {
 
-/// The same rule as in ci/setup and toolchain/cache.cmake.
+/// Returns the cache folder, by the same rule as ci/setup and toolchain/cache.cmake.
 std::filesystem::path cache_folder();
 
-/// In the temporary folder, for as long as this lives.
+/// A folder in the temporary folder; it exists as long as this object.
 class WorkFolder {
 public:
     explicit WorkFolder(const std::string& name, bool keep = false);

@@ -28,7 +28,7 @@ std::string read_file(const fs::path& path) {
     return std::move(content).str();
 }
 
-// The loader itself says what a program needs; a static program makes it say nothing.
+// The loader lists the libraries of a program; for a static program it prints nothing.
 std::string libraries_of(const fs::path& program) {
     int ends[2];
     if (::pipe(ends) != 0) {
@@ -53,7 +53,7 @@ std::string libraries_of(const fs::path& program) {
     return text;
 }
 
-// Parts of Python's standard library that no peer on the bench uses; together more than half of it.
+// Returns true for parts of Python's standard library that nothing on the bench uses: more than half of it.
 bool is_ballast(const std::string& folder) {
     static const std::set<std::string> names = {"test",    "idlelib", "ensurepip",
                                                 "lib2to3", "tkinter", "pydoc_data"};
@@ -67,7 +67,7 @@ fs::path find_program(const std::string& name) {
         return name;
     }
     const char* variable = std::getenv("PATH");
-    // The distribution's own come first: what else is on a developer's path may be a script around them.
+    // The distribution's folders come first: other programs on a developer's path may be scripts around them.
     std::istringstream folders("/usr/bin:/usr/sbin:" + std::string(variable != nullptr ? variable : ""));
     for (std::string folder; std::getline(folders, folder, ':');) {
         const fs::path candidate = fs::path(folder) / name;
@@ -84,7 +84,7 @@ Initramfs::Initramfs(const fs::path& archive, const Architecture& architecture)
         throw BenchError("cannot write '" + archive.string() +
                          "'; check the space and rights of the temporary folder");
     }
-    // The kernel opens it for PID 1 before anything is mounted.
+    // The kernel opens this file for PID 1 before anything is mounted.
     add_folder("/dev");
     entry("/dev/console", S_IFCHR | 0600, {}, 5, 1);
 }
@@ -138,7 +138,7 @@ void Initramfs::add_file(const fs::path& host, const std::string& guest) {
                          "; give programs of one architecture, and of the host's tools none to another");
     }
     present_.insert(guest);
-    // Not the file's own mode, which depends on who built it: the same files make the same archive.
+    // Not the file's own mode, which depends on its builder: the same files must give the same archive.
     entry(guest, S_IFREG | (::access(host.c_str(), X_OK) == 0 ? 0755U : 0644U), content);
     if (elf != 0) {
         add_libraries(host);

@@ -13,14 +13,14 @@
 
 namespace tappet::bench {
 
-// What is wrong with a scenario or its surroundings; the text names what, where and the cure.
+// A fault of a scenario or its surroundings; the text names what, where and the cure.
 struct BenchError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
 class Initramfs {
 public:
-    // For a box of this architecture, which refuses programs of another.
+    // For a box of this architecture; refuses programs of another.
     Initramfs(const std::filesystem::path& archive, const Architecture& architecture);
     ~Initramfs();
     Initramfs(const Initramfs&) = delete;
@@ -28,10 +28,10 @@ public:
 
     void add_folder(const std::string& guest);
     void add_text(const std::string& guest, std::string_view text);
-    // A program brings the shared libraries it needs, to where its loader looks for them; a folder comes
-    // whole.
+    // Adds a file. A program includes its shared libraries, at the place where its loader searches them; a
+    // folder is copied completely.
     void add(const std::filesystem::path& host, const std::string& guest);
-    // A program of the host, by its name, to /bin. Python brings its standard library.
+    // Adds a program of the host, by its name, to /bin. Python includes its standard library.
     void add_tool(const std::string& name);
     void finish();
 
@@ -47,7 +47,7 @@ private:
     unsigned next_inode_ = 1;
 };
 
-// Where a program of that name is on the host.
+// Returns where a program of that name is on the host.
 std::filesystem::path find_program(const std::string& name);
 
 } // namespace tappet::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tappet-bench: one scenario on the bench, from the command line. Exit code: that of the guest's first
+// tappet-bench: runs one scenario on the bench, from the command line. Exit code: that of the guest's first
 // failing command, 0 if none failed, 125 if the bench itself did not work.
 
 #include <charconv>
@@ -73,7 +73,7 @@ struct Request {
     bool verbose = false;
 };
 
-// False if the option is none of those that take a value.
+// Returns false if the option takes no value.
 bool take(Request& request, const std::string& option, const std::string& value) {
     Scenario& scenario = request.scenario;
     if (option == "--run") {

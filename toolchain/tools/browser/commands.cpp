@@ -1,4 +1,4 @@
-// The table of commands, and names that are checked before the machine is asked.
+// The table of commands, and the check of names before a request to the machine.
 #include "toolchain/tools/browser/commands.hpp"
 
 #include "toolchain/tools/browser/value.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet::browser {
 
-// One function for each row, in the commands_*.cpp of its sort.
+// One function per row, in the commands_*.cpp of its topic.
 Run run_list, run_get, run_watch, run_tree, run_info, run_manifest, run_reactions, run_forced, run_events,
     run_set, run_call, run_send, run_execute, run_force, run_plain_request, run_behaviour, run_why,
     run_post_mortem, run_scope, run_report;
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t any = browsing::max_words;
 
-/// A request of the machine: what was typed is sent, and its answer told.
+/// Makes a request to the machine: sends the typed line, and prints its answer.
 constexpr Command plain(std::string_view name, std::string_view spelled, std::size_t fewest, std::size_t most,
                         Takes takes, std::string_view help, std::string_view usage = {}) {
     return {name, usage.empty() ? spelled : usage, help, takes, fewest, most, run_plain_request};
@@ -30,7 +30,7 @@ constexpr Command plain(std::string_view name, std::string_view spelled, std::si
 constexpr auto requests = std::to_array<Command>({TAPPET_REQUESTS(TAPPET_X)});
 #undef TAPPET_X
 
-/// A request whose answer is told in its own way.
+/// Makes a request whose answer a function of its own prints.
 constexpr Command asks(std::string_view name, Run* run, Names names = Names::first) {
     Command command = *std::ranges::find(requests, name, &Command::name);
     command.run = run;
@@ -63,7 +63,7 @@ constexpr auto own = std::to_array<Command>({
 });
 // clang-format on
 
-/// A plain request needs no row above.
+/// Adds the plain requests, which need no row above.
 std::vector<Command> with_plain_requests() {
     std::vector<Command> all(own.begin(), own.end());
     auto at = std::ranges::find(all, "behaviour", &Command::name) - all.begin();
@@ -85,7 +85,7 @@ std::string_view wanted_of(Takes takes) {
     }
 }
 
-/// What does what was perhaps meant.
+/// Returns the command that the user probably meant.
 std::string_view cure_of(std::string_view kind) {
     if (kind == "property") return "; read it with get, write it with set";
     if (kind == "command") return "; send it with send";
@@ -95,7 +95,7 @@ std::string_view cure_of(std::string_view kind) {
     return "";
 }
 
-/// True for facets of which a command may be given the name.
+/// Returns true when the command takes names of such facets.
 bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet) {
     const std::string_view kind = map.text(facet.kind);
     switch (takes) {
@@ -110,7 +110,7 @@ bool takes_facet(const MapReader& map, Takes takes, const map::Facet& facet) {
     }
 }
 
-/// Names of facets as they are, names of components for all values in them.
+/// Resolves names of facets, and names of components to all their values.
 Result<std::vector<std::uint32_t>> find_values(const MapReader& map, std::span<const std::string> names) {
     std::vector<std::uint32_t> facets;
     for (const std::string& name : names) {
@@ -233,7 +233,7 @@ std::vector<std::string> names_for(const MapReader& map, Takes takes) {
         for (const map::Activity& each : map.activities()) names.push_back(map.named(each.name));
     for (std::uint32_t i = 0; i < map.facets().size(); ++i)
         if (takes_facet(map, takes, map.facets()[i])) names.push_back(map.full_name(i));
-    // A component and its activity often have one name.
+    // A component and its activity often have the same name.
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;

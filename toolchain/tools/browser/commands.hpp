@@ -1,5 +1,4 @@
-// What the browser can be told to do: one table for the command line, the prompt, the help and the
-// completion.
+// The browser's commands: one table for the command line, the prompt, the help and the completion.
 #pragma once
 
 #include "toolchain/tools/browser/machines.hpp"
@@ -11,7 +10,7 @@
 
 namespace tappet::browser {
 
-/// Which names a command takes; completion and the check before a request look here.
+/// The names that a command takes; used by completion and by the check before a request.
 enum class Takes {
     nothing,
     component,
@@ -25,23 +24,23 @@ enum class Takes {
     anything
 };
 
-/// Where there are several machines, and a line does not name one of them.
+/// Treatment of a line that names no machine when there are several.
 enum class Among {
-    one,   ///< it has to
-    each,  ///< without an argument it is about each of them in turn
-    values ///< each argument may be of another machine
+    one,   ///< the line must name one
+    each,  ///< without an argument it runs for each machine in turn
+    values ///< each argument may belong to another machine
 };
 
-/// Which arguments are names of something in a machine; in Among::values each is.
+/// Which arguments are names in a machine; in Among::values all of them are.
 enum class Names {
-    none, ///< they are words of a line, or files
+    none, ///< words of a line, or files
     first,
     second,
     every_other,
     behind_action ///< of behaviour
 };
 
-/// What a line wants of one machine.
+/// The part of a line for one machine.
 struct Part {
     Session* session = nullptr;
     std::vector<std::string> names{};
@@ -51,27 +50,27 @@ struct Work {
     Session& session;
     const Line& line;
     std::ostream& out;
-    bool screen = false;                                ///< `out` is a terminal that can be drawn on
-    const volatile std::sig_atomic_t* signal = nullptr; ///< not 0 once the user wants no more
-    std::span<const Part> among{}; ///< whose names the arguments are, if not the session's
+    bool screen = false;                                ///< `out` is a terminal that supports drawing
+    const volatile std::sig_atomic_t* signal = nullptr; ///< not 0 once the user wants to stop
+    std::span<const Part> among{}; ///< owners of the argument names, if not the session's
 
-    /// Asked between two pictures and while waiting.
+    /// Returns whether to stop; checked between two pictures and while waiting.
     [[nodiscard]] bool stopped() const { return signal != nullptr && *signal != 0; }
 
-    /// After the command's name.
+    /// Returns the words after the command's name.
     [[nodiscard]] std::span<const std::string> arguments() const { return std::span{line.words}.subspan(1); }
-    /// The arguments, machine by machine.
+    /// Returns the arguments, machine by machine.
     [[nodiscard]] std::vector<Part> parts() const {
         if (!among.empty()) return {among.begin(), among.end()};
         return {{&session, {line.words.begin() + 1, line.words.end()}}};
     }
-    /// What stands before the machine's own names, where others are there.
+    /// Returns the prefix of the machine's own names when there are several machines.
     [[nodiscard]] const std::string& place() const { return session.map().place(); }
 };
 
 using Run = Result<void>(Work& work);
 
-/// With its options, each as "[--option", the usage is all that help, refusals and completion know.
+/// A command. Help, refusals and completion read its options from its usage, each as "[--option".
 struct Command {
     std::string_view name;
     std::string_view usage;
@@ -87,37 +86,36 @@ struct Command {
 [[nodiscard]] std::span<const Command> commands();
 [[nodiscard]] const Command* find_command(std::string_view name);
 [[nodiscard]] std::string unknown_command(std::string_view name);
-/// Runs the line's command; its words are not empty.
+/// Runs the line's command. The line must have words.
 Result<void> run_command(Work& work);
-/// Whether the argument of that number, from 0, is a name of something in a machine.
+/// Returns whether the argument of that number, from 0, is a name in a machine.
 [[nodiscard]] bool is_name(const Command& command, std::span<const std::string> arguments,
                            std::size_t argument);
-/// The line as one request: the machine hears its own names.
+/// Returns the line as one request, with the machine's own names.
 [[nodiscard]] std::string request_of(const Work& work);
-/// A machine's packet for programs: without what is for the two ends only, with the machine among others.
+/// A machine's packet for programs: without internal fields; among several, with the machine's name.
 [[nodiscard]] std::string packet_text(const Work& work, nlohmann::ordered_json packet);
-/// The facet, or why it is none that this command takes, with the nearest name.
+/// Returns the facet, or why this command cannot take it, with the nearest name.
 Result<FoundFacet> find_facet(const MapReader& map, Takes takes, std::string_view name);
-/// Every name that a command may be given.
+/// Returns every name that a command accepts.
 [[nodiscard]] std::vector<std::string> names_for(const MapReader& map, Takes takes);
-/// The values that a line names, machine by machine; a component's name is all of its values.
+/// The values that a line names, for one machine; a component's name means all of its values.
 struct Seen {
     Session* session = nullptr;
     std::vector<std::uint32_t> facets{};
 };
 Result<std::vector<Seen>> find_seen(const Work& work);
-/// Runs the line at the machine or the machines that it is about. What went wrong, machine by machine; empty:
-/// nothing did.
+/// Runs the line on its machine or machines. Returns the failures, machine by machine; empty: none.
 [[nodiscard]] std::vector<Failure> run_among(Machines& machines, const Line& line, std::ostream& out,
                                              bool screen, const volatile std::sig_atomic_t* signal);
-/// The sentence, or the machine's packet; nothing of a failure.
+/// Prints the sentence, or the machine's packet; prints nothing on failure.
 Result<void> told(const Work& work, const Result<nlohmann::ordered_json>& reply, const std::string& sentence);
-/// Whether the command takes each option of the line; null: no command, which takes those of all only.
+/// Checks that the command takes each option of the line; null: no command, so only common options.
 Result<void> check_options(const Command* command, const Line& line);
 [[nodiscard]] std::string usage();
 [[nodiscard]] std::string help_of(const Command& command);
 
-/// What needs no machine: recordings that are there, or are being made.
+/// Returns true for commands that need no machine: about recordings that exist, or are being made.
 [[nodiscard]] bool is_about_files(const Line& line);
 Result<void> run_report_of_files(const Line& line, std::ostream& out);
 

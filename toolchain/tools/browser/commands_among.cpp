@@ -1,4 +1,4 @@
-// Several machines side by side: which of them a line is about, and who is there (thesis 4.8).
+// Several machines side by side: which of them a line is about, and which are there (thesis 4.8).
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/reading_text.hpp"
 
@@ -13,13 +13,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A node that the wire's component of a machine knows of.
+/// A node known to the wire's component of a machine.
 struct Heard {
     std::string node{};
     bool is_there = false;
 };
 
-/// By the facets "NODE.is_there" of the component that a system puts into each of its machines.
+/// Reads the facets "NODE.is_there" of the component that a system adds to each of its machines.
 std::vector<Heard> heard_by(const Session& session) {
     constexpr std::string_view link = "systems::Link<", facet_end = ".is_there";
     const MapReader& map = session.map();
@@ -35,7 +35,7 @@ std::vector<Heard> heard_by(const Session& session) {
     return heard;
 }
 
-/// What the machine says of a row of the system that another node has otherwise; empty: nothing.
+/// Returns the machine's message about a row of the system that differs at another node; empty: none.
 std::string refused_by(const Session& session) {
     const MapReader& map = session.map();
     for (std::uint32_t i = 0; i < map.facets().size(); ++i) {
@@ -50,7 +50,7 @@ std::string refused_by(const Session& session) {
     return {};
 }
 
-/// Nodes of the systems that have no socket here, each with who hears it.
+/// Returns nodes of the systems without a socket here, each with the nodes that hear it.
 std::vector<std::pair<std::string, std::string>> elsewhere(Machines& machines) {
     std::vector<std::pair<std::string, std::string>> nodes;
     for (const Machine& each : machines.all()) {
@@ -65,7 +65,7 @@ std::vector<std::pair<std::string, std::string>> elsewhere(Machines& machines) {
     return nodes;
 }
 
-/// Why the word begins with no machine, and what was perhaps meant.
+/// Returns why the word begins with no machine, and the name probably meant.
 std::unexpected<Failure> not_named(Machines& machines, const std::string& word) {
     static_cast<void>(machines.reachable());
     std::vector<std::string> with_it, names;
@@ -95,7 +95,7 @@ std::unexpected<Failure> not_named(Machines& machines, const std::string& word) 
                  (nearest.empty() ? "; there are " + machines.names() : nearest));
 }
 
-/// What each machine is asked, in the order of the words; or why one of these belongs to none.
+/// Returns the part for each machine, in the order of the words; or why a word belongs to none.
 std::expected<std::vector<std::pair<Machine*, Part>>, Failure>
 parts_of_words(Machines& machines, const Command& command, std::span<const std::string> arguments) {
     std::vector<std::pair<Machine*, Part>> parts;
@@ -131,7 +131,7 @@ struct AtMachines {
         if (auto done = run_command(work); !done)
             failures.push_back({done.error().fault, machine.name + ": " + done.error().sentence});
     }
-    /// The only one needs no name; it may be given, as the system's table spells it.
+    /// The only machine needs no name, but accepts one, as the system's table spells it.
     void at_only() {
         Machine& machine = machines.all().front();
         const MapReader& map = machine.session->map();
@@ -142,7 +142,7 @@ struct AtMachines {
             if (!is_name(command, arguments, i) || map.find(arguments[i])) continue;
             if (!arguments[i].starts_with(machine.name + ".")) continue;
             const std::string rest = arguments[i].substr(machine.name.size() + 1);
-            // A component may be called as the machine is.
+            // A component may have the machine's name.
             if (map.find_component(rest.substr(0, rest.find('.')))) own.words[i + 1] = rest;
         }
         Work work{*machine.session, own, out, screen, signal};
@@ -170,7 +170,7 @@ struct AtMachines {
     }
 };
 
-/// What a machine is about, as list tells it.
+/// A machine's status, as list prints it.
 struct Told {
     ordered_json behaviours{};
     std::vector<Heard> heard{};
@@ -214,7 +214,7 @@ std::string line_of(const Session& session, const Told& told) {
     return line + (told.refused.empty() ? "" : "; refuses " + told.refused);
 }
 
-/// list, where several machines are: who is there, and what each is about.
+/// Runs list with several machines: which are there, and the status of each.
 void AtMachines::list() {
     std::size_t width = 0;
     for (const Machine& each : machines.all()) width = std::max(width, each.name.size());

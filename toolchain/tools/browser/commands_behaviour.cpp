@@ -1,4 +1,4 @@
-// Behaviours: seen, watched, commanded, and scripts loaded into a slot of the running machine.
+// Behaviours: shows, watches and commands them, and loads scripts into a slot of the running machine.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/value.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A piece of a script, quoted, must fit one packet: each character may need an escape.
+// A quoted piece of a script must fit into one packet: each character may need an escape.
 constexpr std::size_t piece_characters = (browsing::max_packet_bytes - 256) / 2;
 
 std::string text_of(const ordered_json& object, const char* key) {
@@ -45,7 +45,7 @@ void print_slot(std::ostream& out, const std::string& place, const ordered_json&
     out << "\n";
 }
 
-/// The name as the machine itself has it, as a word of a request.
+/// Returns the machine's own form of the name, as a word of a request.
 std::string own_word(const Work& work, std::string_view name) {
     return as_word(work.session.map().own_name(name));
 }

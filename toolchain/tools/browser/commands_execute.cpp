@@ -1,4 +1,4 @@
-// A line of the script language, which the machine compiles and executes: its end is awaited and told.
+// A line of the script language: the machine compiles and executes it; the browser awaits and prints its end.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/value.hpp"
 
@@ -30,14 +30,14 @@ Result<void> break_off(Work& work) {
     return {};
 }
 
-/// Its last packet, which comes also when the user has had enough: then the machine was told.
+/// Returns its last packet. It also comes after the user gave up: then the machine was asked to break off.
 Result<ordered_json> await_end(Work& work, std::uint32_t number) {
     Link& link = work.session.link();
     using Steady = std::chrono::steady_clock;
     Steady::time_point given_up = Steady::time_point::max();
     for (;;) {
         if (work.stopped() && given_up == Steady::time_point::max()) {
-            static_cast<void>(link.request("break_off")); // it may have come to its end by itself
+            static_cast<void>(link.request("break_off")); // it may have ended by itself
             given_up = Steady::now() + link.patience;
         }
         if (Steady::now() > given_up)

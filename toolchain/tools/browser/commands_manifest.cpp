@@ -1,4 +1,4 @@
-// The table of a running machine as it is: with the values in effect, derived priorities and all its rows.
+// The table of a running machine: with its effective values, derived priorities and all its rows.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/reading_text.hpp"
 
@@ -21,7 +21,7 @@ public:
     Row& operator=(const Row&) = delete;
     ~Row() { work_.out << (json() ? "}\n" : "\n"); }
 
-    /// `words`: how it is shown to people; nothing where there is nothing to say.
+    /// `words`: the form for people; empty when there is nothing to print.
     Row& add(std::string_view key, std::string_view value, const std::string& words) {
         if (json())
             work_.out << ", " << in_quotes(key) << ": " << in_quotes(value);

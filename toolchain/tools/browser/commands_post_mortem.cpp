@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A machine that is no more, as its guardian kept it.
+// Shows a machine that has ended, from its guardian's black box.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/value.hpp"
 

@@ -1,4 +1,4 @@
-// reactions: from an edge or a frame to the output it caused, row by row.
+// reactions: the time from an edge or a frame to the output that it caused, row by row.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/value.hpp"
 
@@ -33,7 +33,7 @@ std::vector<Shown> rows_of(const Work& work) {
     return rows;
 }
 
-/// "<1us: 3, <2us: 10": only bins that hold something.
+/// Returns "<1us: 3, <2us: 10": non-empty bins only.
 std::string histogram_text(const map::Times& times) {
     std::string text;
     for (std::size_t bin = 0; bin < times.histogram.size(); ++bin) {

@@ -1,5 +1,5 @@
-// What is only looked at: no request leaves the browser, but for the counters that the machine adds up when
-// it is asked.
+// Commands that only read: the browser sends no request, except for counters, which the machine sums up on
+// request.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/reading_text.hpp"
 
@@ -18,7 +18,7 @@ std::string activity_name(const MapReader& map, std::uint32_t activity) {
     return activity == none ? "-" : map.named(map.activities()[activity].name);
 }
 
-/// "double", or "(double) -> bool" for what is called.
+/// Returns "double", or "(double) -> bool" for a callable facet.
 std::string type_of(const MapReader& map, const map::Facet& facet) {
     if (facet.type == none) return "";
     std::string text = type_name(map, facet.type);
@@ -30,7 +30,7 @@ std::string json_text(std::string_view key, std::string_view text) {
     return ", " + in_quotes(key) + ": " + in_quotes(text);
 }
 
-/// "12.5 deg FORCED, wire 13.5 deg"; of what has no value only the unit.
+/// Returns "12.5 deg FORCED, wire 13.5 deg"; only the unit when the facet has no value.
 std::string value_with_unit(Work& work, std::uint32_t index) {
     const MapReader& map = work.session.map();
     if (map.facets()[index].value_at == 0) return std::string{map.text(map.facets()[index].unit)};
@@ -39,7 +39,7 @@ std::string value_with_unit(Work& work, std::uint32_t index) {
     return with_unit(map, reading) + (reading.forced ? " FORCED" : "") + (wire.empty() ? "" : ", ") + wire;
 }
 
-/// Who may set, call or send it; empty: nobody.
+/// Returns the role that may set, call or send it; empty: none.
 std::string role_of(const MapReader& map, const map::Facet& facet, std::string_view before,
                     std::string_view after) {
     const std::string_view role = map.text(facet.role);
@@ -68,7 +68,7 @@ void list_component(Work& work, std::uint32_t index) {
                            padded(std::string{map.text(facet.kind)}, 10) + " " +
                            padded(type_of(map, facet), 14) + " " + padded(value_with_unit(work, i), 16) +
                            " " + std::string{map.text(facet.doc)};
-        // Who sets a property is the same for all of them.
+        // All properties need the same role.
         if (map.text(facet.kind) != "property") line += role_of(map, facet, " [", "]");
         line.erase(line.find_last_not_of(' ') + 1);
         work.out << line << "\n";
@@ -197,7 +197,7 @@ void tell_machine(Work& work) {
     for (std::uint32_t i = 0; i < map.activities().size(); ++i) tell_activity(work, i);
 }
 
-/// What the machine counts for whoever asks, instead of showing it always.
+/// Prints the counters that the machine sums up only on request.
 Result<void> tell_counters(Work& work) {
     const auto counters = work.session.link().request("counters");
     if (!counters) return std::unexpected(counters.error());
@@ -208,7 +208,7 @@ Result<void> tell_counters(Work& work) {
                      << ", \"used_bytes\": " << stack["used_bytes"] << "}\n";
             continue;
         }
-        // Of a world whose activities have no threads nothing is known.
+        // A world without threads knows no stack usage.
         if (stack["used_bytes"] == 0) continue;
         work.out << "stack of " << stack["activity"].get<std::string>() << ": " << stack["used_bytes"]
                  << " of " << stack["bytes"] << " bytes used at most\n";

@@ -1,4 +1,4 @@
-// The report: what the machine records of its values into a file, and such files as tables.
+// The report: records the machine's values into a file, and prints such files as tables.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/csv.hpp"
 #include "toolchain/tools/browser/record_file.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-/// A tape holds half a second: looked at so often, nothing is overwritten unseen unless the box is too busy.
+/// A tape holds half a second: at this interval nothing is overwritten unread unless the box is too busy.
 constexpr std::chrono::milliseconds between_looks{10};
 
 std::int64_t now_of(clockid_t clock) {
@@ -73,11 +73,11 @@ Result<void> start(Work& work, RecordReader reader) {
     const bool is_limited = work.line.length.count() > 0;
     bool has_ended = false;
     for (bool last = false; !last;) {
-        // Asked before the look: what was recorded until the end is taken.
+        // Checked before reading the tapes, so that everything recorded until the end is read.
         has_ended = work.session.link().ended();
         last =
             has_ended || work.stopped() || !(*file)->fault().empty() || (is_limited && Steady::now() >= end);
-        // What waits too long for the disk is overwritten in the machine, and counted as such.
+        // Samples that wait too long for the disk are overwritten in the machine, and counted as lost.
         if (!(*file)->is_behind()) recording.add(reader.follow());
         if (last) recording.end();
         (*file)->write(recording.take());

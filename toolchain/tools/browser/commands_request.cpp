@@ -1,4 +1,4 @@
-// What changes the machine: names are checked here, everything else by the machine, which may refuse.
+// Commands that change the machine: the browser checks names; the machine checks the rest, and may refuse.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/value.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// "[1.5, 2]" as the machine wrote it, without the quotes of a mere text.
+/// Returns "[1.5, 2]" as the machine wrote it, without the quotes of a plain text.
 std::string plain(const ordered_json& value) { return value.dump(); }
 
 } // namespace

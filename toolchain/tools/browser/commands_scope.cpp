@@ -1,4 +1,4 @@
-// The scope: what the machine's cycles did, now and at their worst, as text and as files for the viewers.
+// The scope: the machine's cycles, present and worst ones, as text and as files for viewers.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/value.hpp"
 #include "toolchain/tools/browser/waves.hpp"
@@ -15,11 +15,11 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-/// A tape holds some 100 ms: looked at so often, nothing is overwritten unseen unless the box is too busy.
+/// A tape holds about 100 ms: at this interval nothing is overwritten unread unless the box is too busy.
 constexpr std::chrono::milliseconds between_looks{10};
 constexpr std::chrono::milliseconds usual_length{1000};
 
-/// "12.345 us"; times of functions are compared by eye.
+/// Returns "12.345 us": a fixed number of digits, so that times of functions can be compared by eye.
 std::string us(std::int64_t ns) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f us", static_cast<double>(ns) / 1000);
@@ -49,7 +49,7 @@ Result<void> write_file(Work& work, const Waves& waves) {
     return {};
 }
 
-/// Those that are of the span, and of one activity when one is named: the worst first.
+/// Returns the cycles within the span, and of one activity when one is named, the worst first.
 Result<std::vector<Kept>> worst_of(const ScopeReader& scope, const std::string& activity) {
     auto kept = scope.worst();
     if (!kept) return failure(Fault::too_late, "the machine was busy keeping cycles at each look; try again");
@@ -69,7 +69,7 @@ Result<std::vector<Kept>> worst_of(const ScopeReader& scope, const std::string& 
         const bool old = each.of.generation + scope::generations <= current;
         return old || (!activity.empty() && names.activities[each.of.activity].name != activity);
     });
-    // Of several activities the one that came nearest to its deadline.
+    // Among several activities, the cycle nearest to its deadline comes first.
     const auto share = [&](const Kept& each) {
         const std::int64_t deadline = names.activities[each.of.activity].deadline_ns;
         return static_cast<double>(each.of.rank_ns) / static_cast<double>(deadline > 0 ? deadline : 1);
@@ -101,7 +101,7 @@ void tell_worst(std::ostream& out, const ScopeReader& scope, const Kept& kept) {
     out << "; began " << us(kept.of.begin - kept.of.release) << " late, " << us(kept.of.end - kept.of.begin)
         << " busy; " << ago(scope.directory().looked_ns - kept.of.end) << "\n";
     std::size_t beside = 0;
-    std::int64_t others_ran = 0; // while it waited; on several processors together more than the time passed
+    std::int64_t others_ran = 0; // while it waited; on several processors possibly more than the time passed
     for (const WaveCycle& each : waves.cycles)
         if (each.activity == kept.of.activity && each.end == kept.of.end && each.begin == kept.of.begin)
             tell_blocks(out, activity, each);

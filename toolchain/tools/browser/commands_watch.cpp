@@ -1,4 +1,4 @@
-// What goes on until it is ended: values again and again, and events as they are emitted.
+// Commands that run until ended: repeated values, and events as they are emitted.
 #include "toolchain/tools/browser/commands.hpp"
 #include "toolchain/tools/browser/reading_text.hpp"
 #include "toolchain/tools/browser/screen.hpp"
@@ -15,14 +15,14 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-/// As the user calls it.
+/// Returns the name that the user uses.
 std::string name_of(const Seen& seen) {
     const MapReader& map = seen.session->map();
     return map.place().empty() ? std::string{map.text(map.header().machine)}
                                : map.place().substr(0, map.place().size() - 1);
 }
 
-/// Of those that were looked at, who has ended; nothing: none has.
+/// Returns which of the watched machines have ended, as a failure; nothing: none has.
 Result<void> ended(std::span<const Seen> all, const std::vector<bool>& has_ended) {
     std::string names;
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -33,7 +33,7 @@ Result<void> ended(std::span<const Seen> all, const std::vector<bool>& has_ended
                                           : names + " ended; what was shown last is the last");
 }
 
-/// Looks at those that are still there; true: none is.
+/// Updates which machines have ended. Returns true when all have.
 bool all_ended(std::span<const Seen> all, std::vector<bool>& has_ended) {
     for (std::size_t i = 0; i < all.size(); ++i)
         if (!has_ended[i]) has_ended[i] = all[i].session->link().ended();
@@ -107,7 +107,7 @@ Result<void> watch_on_screen(Work& work, std::span<const Seen> all) {
     return ended(all, has_ended);
 }
 
-/// Of one among others, at once: its values just stop otherwise.
+/// Reports the end of one machine among others at once: otherwise its values would just stop.
 void tell_end(const Work& work, const Seen& seen) {
     if (work.line.json)
         work.out << "{\"machine\": " << in_quotes(name_of(seen)) << ", \"ended\": true}" << std::endl;
@@ -188,7 +188,7 @@ Result<void> run_events(Work& work) {
         for (std::size_t i = 0; i < parts.size();) {
             if (work.line.count != 0 && told >= work.line.count) break;
             auto packet = parts[i].session->link().next(patience);
-            if (!packet) { // who has ended hinders no other
+            if (!packet) { // an ended machine does not affect the others
                 outcome = std::unexpected(packet.error());
                 parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(i));
                 continue;

@@ -7,7 +7,7 @@ namespace tappet::browser {
 
 namespace {
 
-/// Of all machines that answered before, and the machines themselves where there are several.
+/// Returns the names of all machines that answered before, and the machines' names when there are several.
 std::vector<std::string> names_in(Machines& machines, const Command& command,
                                   std::span<const std::string> arguments) {
     std::vector<std::string> names;

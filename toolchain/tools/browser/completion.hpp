@@ -1,4 +1,4 @@
-// What a half-typed line can go on with: commands, names that the command takes, options.
+// Completion of a half-typed line: commands, names that the command takes, options.
 #pragma once
 
 #include "toolchain/tools/browser/commands.hpp"
@@ -6,9 +6,9 @@
 namespace tappet::browser {
 
 struct Completion {
-    std::size_t begin = 0;                 ///< of the word that is typed, in the line
+    std::size_t begin = 0;                 ///< of the typed word, in the line
     std::vector<std::string> candidates{}; ///< whole words, sorted
-    /// What all candidates begin with; at least what is typed when there are any.
+    /// Returns the common prefix of all candidates; at least the typed word when there are any.
     [[nodiscard]] std::string common() const;
 };
 

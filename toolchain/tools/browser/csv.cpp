@@ -1,4 +1,4 @@
-// Messages of one time share a line, unless one channel has several.
+// Writes messages with the same time on one line, unless a channel has several.
 #include "toolchain/tools/browser/csv.hpp"
 
 #include <nlohmann/json.hpp>
@@ -21,7 +21,7 @@ std::string in_cell(std::string_view text) {
 
 std::string cell_of(const mcap::Message& message) {
     const auto json = nlohmann::ordered_json::parse(message.data, nullptr, false);
-    if (json.is_discarded()) return in_cell(message.data); // of another program's channel: as it is
+    if (json.is_discarded()) return in_cell(message.data); // another program's channel: unchanged
     const auto& value = json.is_object() && json.size() == 1 && json.contains("value") ? json["value"] : json;
     if (value.is_null()) return {};
     return in_cell(value.is_string() ? value.get<std::string>() : value.dump());
@@ -47,7 +47,7 @@ std::string as_csv(const mcap::Contents& recording) {
     text += "\r\n";
     std::vector<const mcap::Message*> messages;
     for (const mcap::Message& each : recording.messages) messages.push_back(&each);
-    // What was kept from before an event stands behind it in the file. Of one time: in the file's order.
+    // Samples from before an event stand behind it in the file. Equal times keep the file's order.
     std::ranges::sort(messages, {}, [](const mcap::Message* each) { return std::pair{each->log_ns, each}; });
     std::vector<std::string> cells(column.size());
     std::vector<bool> used(column.size());

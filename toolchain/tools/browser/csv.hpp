@@ -5,8 +5,8 @@
 
 namespace tappet::browser {
 
-/// Times stand in the first column, in seconds since 1970; a channel without a message at a time has an empty
-/// cell. Of a message {"value": VALUE} the cell is the value, and what is a list or an object stays JSON.
+/// The first column holds the times, in seconds since 1970; a channel without a message at a time has an
+/// empty cell. The cell of a message {"value": VALUE} is the value; lists and objects stay JSON.
 [[nodiscard]] std::string as_csv(const mcap::Contents& recording);
 
 } // namespace tappet::browser

@@ -1,4 +1,4 @@
-// One packet a request, one packet a reply, over AF_UNIX (see unix(7)).
+// One packet per request, one per reply, over AF_UNIX (see unix(7)).
 #include "toolchain/tools/browser/link.hpp"
 
 #include "kernel/services/browsing/protocol.hpp"
@@ -81,7 +81,7 @@ Result<Link> Link::connect(const std::string& path) {
     std::ranges::copy(path, address.sun_path);
     Link link;
     link.path_ = path;
-    // It stands in the queue for a while, beside whoever tries to get in again and again.
+    // Waits in the queue for a while, beside others that retry their connection.
     constexpr timeval in_queue{.tv_sec = 5, .tv_usec = 0};
     link.socket_ = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
     if (link.socket_ < 0 ||
@@ -96,7 +96,7 @@ Link Link::to_nobody(const std::string& path, const std::string& answers) {
     Link link;
     link.path_ = path;
     std::istringstream lines{answers};
-    for (std::string line; std::getline(lines, line) && !lines.eof();) // the last may be cut off
+    for (std::string line; std::getline(lines, line) && !lines.eof();) // the last line may be cut off
         if (const std::size_t tabulator = line.find('\t'); tabulator != std::string::npos)
             link.answers_[line.substr(0, tabulator)] = line.substr(tabulator + 1);
     return link;
@@ -150,7 +150,7 @@ Result<std::optional<ordered_json>> Link::receive(Milliseconds within) {
     message.msg_iov = &place;
     message.msg_iovlen = 1;
     message.msg_control = control.data();
-    message.msg_controllen = CMSG_LEN(sizeof(int)); // one: what is passed beyond it the kernel closes
+    message.msg_controllen = CMSG_LEN(sizeof(int)); // room for one: the kernel closes further descriptors
     const ssize_t count = ::recvmsg(socket_, &message, MSG_CMSG_CLOEXEC);
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::optional<ordered_json>{};
     if (count < 0) return std::unexpected(gone());
@@ -164,7 +164,7 @@ Result<std::optional<ordered_json>> Link::receive(Milliseconds within) {
     if (!parsed.is_object())
         return failure(Fault::no_machine, "the machine's answer is no JSON object: " +
                                               std::string{packet.data(), static_cast<std::size_t>(count)});
-    // Our own requests count from 1: the door tells us that we have no place, or lost it.
+    // The browser's requests count from 1; id 0 reports that this connection got no place, or lost it.
     if (parsed.value("id", std::int64_t{-1}) == 0 && parsed.contains("error"))
         return failure(Fault::refused, parsed.value("error", std::string{}));
     return std::optional{std::move(parsed)};

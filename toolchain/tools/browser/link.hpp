@@ -1,5 +1,5 @@
-// The wire to a running machine: its socket, connected; requests with their replies; the memory that it hands
-// over.
+// The connection to a running machine: its socket, requests with their replies, and the memory that the
+// machine passes.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,11 +19,11 @@
 
 namespace tappet::browser {
 
-/// Why nothing came of a request; the numbers are the exit codes of the program.
+/// The causes of failed requests; their numbers are the program's exit codes.
 enum class Fault : int {
-    refused = 1,     ///< the machine said no: role, value, state
-    bad_request = 2, ///< a wrong command line, or a name that the machine does not have
-    no_machine = 3,  ///< it cannot be reached, or it ended meanwhile
+    refused = 1,     ///< the machine refused: role, value, state
+    bad_request = 2, ///< a wrong command line, or an unknown name
+    no_machine = 3,  ///< unreachable, or ended meanwhile
     failed = 4,      ///< a command was accepted and then rejected or failed
     too_late = 5     ///< no answer in time, or a value that was busy at every attempt
 };
@@ -42,10 +42,10 @@ template <class T> using Result = std::expected<T, Failure>;
     return failure(Fault::bad_request, std::move(sentence));
 }
 
-/// Memory of the machine, read-only; unmapped at the end.
+/// Memory of the machine, read-only; unmapped by the destructor.
 class SharedBlock {
 public:
-    /// From `at` on, which is whole pages.
+    /// Maps from `at` on, which is a multiple of the page size.
     static Result<SharedBlock> map(int descriptor, std::size_t at = 0);
     SharedBlock(SharedBlock&& other) noexcept;
     SharedBlock& operator=(SharedBlock&& other) noexcept;
@@ -57,32 +57,32 @@ private:
     std::span<const std::byte> bytes_{};
 };
 
-/// One connection. Replies are JSON objects; packets that answer no waiting request (events, states of
-/// commands) are kept in the order of their arrival.
+/// One connection. Replies are JSON objects. Packets that answer no waiting request (events, states of
+/// commands) are queued in the order of their arrival.
 class Link {
 public:
     static Result<Link> connect(const std::string& path);
-    /// Of a machine that is no more, kept in the file `path`: it gives the answers that it gave before, as
-    /// map/black_box.hpp lays them out.
+    /// Opens the black box `path` of an ended machine: it repeats the stored answers, laid out as in
+    /// map/black_box.hpp.
     static Link to_nobody(const std::string& path, const std::string& answers);
     Link(Link&& other) noexcept;
     Link& operator=(Link&& other) noexcept;
     ~Link();
 
-    /// Waits for the reply of this request. A refusal is a failure that says the machine's own sentence.
+    /// Waits for the reply of this request. A refusal becomes a failure with the machine's own sentence.
     Result<nlohmann::ordered_json> request(std::string_view line);
-    /// The same; `number` is what later packets of this request carry.
+    /// The same; `number` identifies later packets of this request.
     Result<nlohmann::ordered_json> request(std::string_view line, std::uint32_t& number);
-    /// The descriptor that came with the reply of `map`; -1 when none did. It is the caller's.
+    /// Returns the descriptor that came with the reply of `map`, which the caller then owns; -1: none came.
     [[nodiscard]] int take_descriptor();
-    /// The next packet that answers no request; nothing when none came within `patience`.
+    /// Returns the next packet that answers no request; nothing when none came within `patience`.
     Result<std::optional<nlohmann::ordered_json>> next(std::chrono::milliseconds patience);
-    /// The machine has closed the connection, or ended.
+    /// Returns true when the machine has closed the connection, or ended.
     [[nodiscard]] bool ended();
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] int descriptor() const { return socket_; }
 
-    /// How long a reply may take.
+    /// The longest wait for a reply.
     std::chrono::milliseconds patience{3000};
 
 private:
@@ -95,7 +95,7 @@ private:
     std::uint32_t last_number_ = 0;
     std::string path_{};
     std::vector<std::string> waiting_{};
-    std::map<std::string, std::string, std::less<>> answers_{}; ///< of a machine that is no more
+    std::map<std::string, std::string, std::less<>> answers_{}; ///< of an ended machine
 };
 
 } // namespace tappet::browser

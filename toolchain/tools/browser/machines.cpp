@@ -1,4 +1,4 @@
-// Which sockets there are, and who answers at them.
+// Finds the sockets, and the machines that answer there.
 #include "toolchain/tools/browser/machines.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ std::vector<std::string> sockets_in(const std::string& directory) {
     return found;
 }
 
-/// "NAME=FILE", or "FILE" for the name that the file has.
+/// Parses "NAME=FILE", or "FILE", which takes the name of the file.
 Machine machine_at(std::string_view given) {
     const std::size_t equals = given.find('=');
     if (equals != std::string_view::npos && equals > 0 && given.find('/') > equals)

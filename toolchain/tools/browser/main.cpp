@@ -1,4 +1,4 @@
-// tappet-browse: looks into a running machine of the same box, and asks it to change (thesis 4.8).
+// tappet-browse: inspects a running machine on the same box, and requests changes (thesis 4.8).
 #include "toolchain/tools/browser/program.hpp"
 #include "toolchain/tools/browser/screen.hpp"
 

@@ -1,4 +1,4 @@
-// Checking a map before anything in it is believed.
+// Validates a map before any of its content is used.
 #include "toolchain/tools/browser/map_reader.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -9,7 +9,7 @@ namespace tappet::browser {
 
 namespace {
 
-/// A type may hold types; deeper than this it holds itself.
+/// A type may contain types; a deeper nesting means that it contains itself.
 constexpr int deepest_type = 16;
 
 bool fits(std::uint32_t index, std::size_t count) { return index == map::none || index < count; }
@@ -111,7 +111,7 @@ std::string MapReader::check_types() const {
     }
     for (const map::Enumerator& each : enumerators_)
         if (!holds(each.name)) return "an enumerator's name lies outside";
-    // Depth first, so far that only a type which holds itself gets there.
+    // Depth first: only a type that contains itself reaches the limit.
     const auto too_deep = [this](auto& self, std::uint32_t type, int depth) -> bool {
         if (depth > deepest_type) return true;
         const map::Type& each = types_[type];

@@ -1,4 +1,4 @@
-// The map of a machine as its memory carries it: checked once, then asked by name (thesis 4.7.2, 4.8).
+// The map of a machine in its memory: validated once, then searched by name (thesis 4.7.2, 4.8).
 #pragma once
 
 #include "kernel/machine/map/view.hpp"
@@ -15,18 +15,18 @@
 
 namespace tappet::browser {
 
-/// One facet, found: its place in the map and its record.
+/// A facet that was found: its index in the map and its record.
 struct FoundFacet {
     std::uint32_t index = 0;
     map::Facet record{};
 };
 
-/// Reads a block that begins with a map. Nothing in it is believed before it was checked: a reader of a
-/// half-written or foreign block gets a sentence, never a place outside the block.
+/// Reads a block that begins with a map. Validates everything before use: a half-written or foreign block
+/// yields an error sentence, never an access outside the block.
 class MapReader {
 public:
-    /// The block outlives the reader. The error says what does not fit and how to put it right. `place`: what
-    /// all names begin with, "saw." of a machine among others.
+    /// The block must outlive the reader. The error states what is invalid, and the cure. `place`: the prefix
+    /// of all names, such as "saw." when there are several machines.
     static std::expected<MapReader, std::string> open(std::span<const std::byte> block,
                                                       std::string place = {});
 
@@ -45,19 +45,19 @@ public:
     [[nodiscard]] const std::vector<map::Enumerator>& enumerators() const { return enumerators_; }
     [[nodiscard]] const std::vector<map::Figure>& figures() const { return figures_; }
 
-    /// The name of a component or an activity, behind the machine's place.
+    /// Returns the name of a component or an activity, with the machine's prefix.
     [[nodiscard]] std::string named(map::Text name) const { return place_ + std::string{text(name)}; }
-    /// As the machine itself has it: without its place.
+    /// Returns the machine's own name: without its prefix.
     [[nodiscard]] std::string_view own_name(std::string_view name) const {
         return name.starts_with(place_) ? name.substr(place_.size()) : name;
     }
     [[nodiscard]] const std::string& place() const { return place_; }
 
-    /// "shaft.angle_deg", or "loom.shaft.angle_deg" of a machine among others.
+    /// Returns "shaft.angle_deg", or "loom.shaft.angle_deg" when there are several machines.
     [[nodiscard]] std::string full_name(std::uint32_t facet) const;
     [[nodiscard]] std::optional<FoundFacet> find(std::string_view full_name) const;
     [[nodiscard]] std::optional<std::uint32_t> find_component(std::string_view name) const;
-    /// ", did you mean \"shaft.angle\"?" or nothing; among the facets for which `wanted` is true.
+    /// Returns ", did you mean \"shaft.angle\"?" or nothing; among the facets for which `wanted` is true.
     template <class Wanted> [[nodiscard]] std::string suggestion(std::string_view written,
                                                                  Wanted&& wanted) const {
         std::vector<std::string> names;
@@ -66,9 +66,9 @@ public:
         return nearest_of(written, names);
     }
     static std::string nearest_of(std::string_view written, std::span<const std::string> names);
-    /// The row by which a device's driver gives an input its last value; null: no device does.
+    /// Returns the row by which a device's driver gives an input its last value; null: no device does.
     [[nodiscard]] const map::Connection* device_row_of(std::uint32_t facet) const;
-    /// The activity whose generation guards a facet's value; none for a component that no activity runs.
+    /// The activity whose generation guards a facet's value; none for a component without an activity.
     [[nodiscard]] std::uint32_t activity_of(const map::Facet& facet) const;
 
 private:

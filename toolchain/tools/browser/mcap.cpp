@@ -33,7 +33,7 @@ void put_record(std::string& file, Opcode opcode, std::string_view fields) {
     file += fields;
 }
 
-/// Takes fields off the front of a record; what is not there leaves it broken.
+/// Reads fields from the front of a record; a missing field marks it broken.
 class Fields {
 public:
     explicit Fields(std::string_view left) : left_{left} {}
@@ -75,7 +75,7 @@ private:
     bool broken_ = false;
 };
 
-/// Reads one record's fields into what is known so far; false: they contradict their length.
+/// Reads one record's fields into `into`; returns false when they contradict their length.
 bool take_record(Opcode opcode, std::string_view bytes, Contents& into) {
     Fields fields{bytes};
     switch (opcode) {
@@ -102,7 +102,7 @@ bool take_record(Opcode opcode, std::string_view bytes, Contents& into) {
         message.channel = fields.number<std::uint16_t>();
         message.sequence = fields.number<std::uint32_t>();
         message.log_ns = fields.number<std::uint64_t>();
-        static_cast<void>(fields.number<std::uint64_t>()); // when it was sent
+        static_cast<void>(fields.number<std::uint64_t>()); // the publish time
         message.data = fields.rest();
         into.messages.push_back(message);
         break;
@@ -121,7 +121,7 @@ bool take_record(Opcode opcode, std::string_view bytes, Contents& into) {
 }
 
 constexpr std::size_t head_bytes = 9;
-/// By the specification: its own, and those of others.
+/// Returns true for an opcode in neither range of the specification: its own and the private one.
 bool is_of_no_kind(char opcode) {
     const auto kind = static_cast<unsigned char>(opcode);
     return kind > 0x0F && kind < 0x80;
@@ -138,7 +138,7 @@ void tell_damage(Contents& into, const std::string& what, std::size_t at) {
 std::expected<void, std::string> take_records(std::string_view bytes, std::size_t begin, bool in_chunk,
                                               Contents& into);
 
-/// The error: as of take_records().
+/// The error is that of take_records().
 std::expected<void, std::string> take_chunk(std::string_view fields, std::size_t at, Contents& into) {
     Fields chunk{fields};
     const auto first_ns = chunk.number<std::uint64_t>(), last_ns = chunk.number<std::uint64_t>();
@@ -165,7 +165,7 @@ std::expected<void, std::string> take_chunk(std::string_view fields, std::size_t
     return taken;
 }
 
-/// Records of a file, or of a chunk, which begins at byte `begin`. The error: what is not read here.
+/// Reads the records of a file, or of a chunk, from byte `begin`. The error names what cannot be read here.
 std::expected<void, std::string> take_records(std::string_view bytes, std::size_t begin, bool in_chunk,
                                               Contents& into) {
     std::string_view left = bytes;
@@ -238,7 +238,7 @@ void put_chunk(std::string& file, std::uint64_t first_ns, std::uint64_t last_ns,
     put(fields, last_ns);
     put(fields, std::uint64_t{records.size()});
     put(fields, checksum(records));
-    put_text(fields, ""); // it is not packed
+    put_text(fields, ""); // not compressed
     put(fields, std::uint64_t{records.size()});
     fields += records;
     put_record(file, Opcode::chunk, fields);

@@ -1,5 +1,5 @@
-// Recordings as MCAP, version 0 (mcap.dev/spec): append-only records that say themselves what they hold, in
-// small chunks with checksums, so that a file that was cut off or damaged is good in all other chunks.
+// Recordings as MCAP, version 0 (mcap.dev/spec): append-only self-describing records in small chunks with
+// checksums, so that a truncated or damaged file is good in all other chunks.
 #pragma once
 
 #include <cstdint>
@@ -47,25 +47,25 @@ void put_begin(std::string& file, std::string_view library);
 void put_schema(std::string& file, std::uint16_t id, std::string_view name, std::string_view json_schema);
 void put_channel(std::string& file, const Channel& channel);
 void put_message(std::string& file, const Message& message);
-/// `records`: of schemas, channels and messages, from the first to the last time of these.
+/// `records`: schemas, channels and messages, from the first to the last time of the messages.
 void put_chunk(std::string& file, std::uint64_t first_ns, std::uint64_t last_ns, std::string_view records);
 void put_metadata(std::string& file, std::string_view name, const Pairs& values);
-/// What a file that was not cut off ends with.
+/// Writes the end of a complete file.
 void put_end(std::string& file);
 
-/// A file as far as it goes. Its messages point into the bytes that were read.
+/// The readable content of a file. Its messages point into the read bytes.
 struct Contents {
     std::vector<Channel> channels{};
-    std::map<std::uint16_t, std::string> schemas{}; ///< what they say
+    std::map<std::uint16_t, std::string> schemas{}; ///< their text
     std::vector<Message> messages{};                ///< in the order of the file
     std::map<std::string, Pairs, std::less<>> metadata{};
     bool has_end = false;        ///< it was not cut off
     std::size_t whole_bytes = 0; ///< up to the end of its last whole record
-    std::string damage{};        ///< what first was found damaged, and is left out; empty: nothing
+    std::string damage{};        ///< the first damage, which is left out; empty: none
 };
 
-/// The error says what is no MCAP that is read here; what stands behind a cut is none, and neither are
-/// noughts to the end, which a power cut leaves. Records that are not known are passed over.
+/// The error states why the file is no readable MCAP. A truncated end is no error, nor are zeros up to the
+/// end, which a power cut leaves. Skips unknown records.
 [[nodiscard]] std::expected<Contents, std::string> read(std::string_view file);
 
 } // namespace tappet::browser::mcap

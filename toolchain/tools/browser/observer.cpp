@@ -1,4 +1,4 @@
-// The reader's side of the generations: read, copy, read again.
+// The reader's side of the generations: reads the generation, copies, reads it again.
 #include "toolchain/tools/browser/observer.hpp"
 
 #include <ctime>
@@ -7,7 +7,7 @@ namespace tappet::browser {
 
 namespace {
 
-/// Attempts without giving the processor away: a cycle takes some microseconds.
+/// Attempts before the first sleep: a cycle takes some microseconds.
 constexpr int hasty_attempts = 8;
 constexpr long pause_ns = 50'000;
 
@@ -40,7 +40,7 @@ void Observer::copy_reading(Reading& reading) const {
     const std::uint64_t from =
         reading.forced && facet.forced_value_at != 0 ? facet.forced_value_at : facet.value_at;
     reading.value.resize(from == 0 ? 0 : size);
-    static_cast<void>(map_->view().copy(from, reading.value)); // the map was checked: it lies inside
+    static_cast<void>(map_->view().copy(from, reading.value)); // the map was checked: in range
     copy(facet.stamp_at, reading.stamp_ns);
     reading.has_writes = facet.writes_at != 0;
     copy(facet.writes_at, reading.writes);

@@ -1,4 +1,4 @@
-// Reading a line: options are few, the same for every command, and never taken for a value.
+// Parses a line: options are few, the same for every command, and never taken for a value.
 #include "toolchain/tools/browser/options.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -37,7 +37,7 @@ std::string unknown(std::string_view word) {
     return what + "; did you mean " + std::string{nearest.best()} + "?";
 }
 
-/// What is wrong with the value; empty: nothing.
+/// Returns what is wrong with the value; empty: nothing.
 std::string take(Line& line, const Option& option, const std::string& value) {
     if (const auto* const text = std::get_if<std::string Line::*>(&option.goes_to)) {
         line.*(*text) = value;

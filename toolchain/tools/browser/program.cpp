@@ -1,4 +1,4 @@
-// From words to an exit code: one command, or a prompt full of them.
+// From words to an exit code: one command, or a prompt with many.
 #include "toolchain/tools/browser/program.hpp"
 
 #include "toolchain/tools/browser/shell.hpp"
@@ -48,7 +48,7 @@ std::string help_about(std::span<const std::string> words) {
     return text + "help [COMMAND]\n    this\nquit\n    ends the prompt, as ^D does\n";
 }
 
-/// One line of the prompt. The code of the last that failed is the program's, for lines from a file.
+/// Runs lines of the prompt. For lines from a file, the program's exit code is that of the last failure.
 class Lines {
 public:
     Lines(Machines& machines, const Line& first, Surroundings& surroundings)
@@ -127,7 +127,7 @@ int run(std::span<const std::string> words, Surroundings& surroundings) {
         surroundings.out << help_of(*command);
         return 0;
     }
-    // A misspelt command is told without a machine.
+    // Reports a misspelt command without a machine.
     const Command* const command = line->words.empty() ? nullptr : find_command(line->words.front());
     if (command == nullptr && !line->words.empty())
         return tell(surroundings, {Fault::bad_request, unknown_command(line->words.front())}, line->json);

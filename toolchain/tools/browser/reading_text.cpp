@@ -5,7 +5,7 @@ namespace tappet::browser {
 
 namespace {
 
-/// How old a value at this facet may be; 0: it never becomes stale.
+/// Returns the maximum age of a value at this facet; 0: it never becomes stale.
 std::int64_t max_age_of(const MapReader& map, std::uint32_t facet) {
     for (const map::Connection& each : map.connections())
         if (each.to == facet) return each.max_age_ns;

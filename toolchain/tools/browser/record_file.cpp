@@ -1,4 +1,4 @@
-// The file is locked by who writes it: so the one who is to end is found, and no second one begins.
+// The writer locks the file: `report stop` finds its process by the lock, and a second writer is refused.
 #include "toolchain/tools/browser/record_file.hpp"
 
 #include <cerrno>
@@ -22,7 +22,7 @@ struct flock whole_file() {
     return lock;
 }
 
-/// So that the file's name outlives a power cut as its bytes do.
+/// Syncs the folder, so that the file's name survives a power cut like its content.
 void sync_folder_of(const std::string& name) {
     const std::filesystem::path folder = std::filesystem::absolute(name).parent_path();
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -40,7 +40,7 @@ Result<std::unique_ptr<RecordFile>> RecordFile::create(const std::string& name) 
         return wrong("'" + name + "' cannot be made: " + std::strerror(errno) +
                      "; is its folder there, and yours?");
     struct flock lock = whole_file();
-    static_cast<void>(::fcntl(descriptor, F_SETLK, &lock)); // without it nobody finds who writes: no harm
+    static_cast<void>(::fcntl(descriptor, F_SETLK, &lock)); // without it the writer cannot be found: no harm
     sync_folder_of(name);
     return std::unique_ptr<RecordFile>{new RecordFile{name, descriptor}};
 }
@@ -121,7 +121,7 @@ Result<void> stop_recording(const std::string& name) {
     ::close(descriptor);
     if (!asked || lock.l_type == F_UNLCK) return wrong("nobody records into '" + name + "'");
     if (lock.l_pid <=
-        1) // of a lock that belongs to no process: as a number for kill() it would mean all of them
+        1) // the lock belongs to no process: as an argument of kill() it would mean all processes
         return wrong("'" + name + "' is locked by something that is no 'report start'; end that instead");
     if (::kill(lock.l_pid, SIGTERM) != 0)
         return wrong("process " + std::to_string(lock.l_pid) + ", which records into '" + name +

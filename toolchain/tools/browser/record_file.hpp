@@ -1,4 +1,4 @@
-// A file that grows while a machine runs, and is on the disk up to the last second when the power fails.
+// A file that grows while a machine runs, and is on the disk up to the last second at a power failure.
 #pragma once
 
 #include "toolchain/tools/browser/link.hpp"
@@ -9,26 +9,26 @@
 
 namespace tappet::browser {
 
-/// Its own thread writes and waits for the disk, so that who reads the machine does not.
+/// Its own thread writes and waits for the disk, so that the reader of the machine need not wait.
 class RecordFile {
 public:
-    /// How often the disk is waited for.
+    /// The interval of disk syncs.
     static constexpr std::chrono::milliseconds between_syncs{500};
-    /// So much may wait for the disk; then who reads the machine is to wait.
+    /// The largest amount that may wait for the disk; above it the machine's reader must pause.
     static constexpr std::size_t most_waiting = std::size_t{64} << 20;
 
-    /// A new file; one that is there is refused.
+    /// Creates a new file; refuses an existing one.
     static Result<std::unique_ptr<RecordFile>> create(const std::string& name);
-    /// Writes what is left.
+    /// Writes the rest.
     ~RecordFile();
     RecordFile(const RecordFile&) = delete;
     RecordFile& operator=(const RecordFile&) = delete;
 
     void write(std::string bytes);
     [[nodiscard]] bool is_behind() const;
-    /// Waits until all is on the disk; the sentence says why it could not be written.
+    /// Waits until everything is on the disk; the failure states why it could not be written.
     Result<void> finish();
-    /// The same sentence as soon as it is known; empty: all is well.
+    /// Returns the same sentence as soon as it is known; empty: no fault.
     [[nodiscard]] std::string fault() const;
 
 private:
@@ -46,10 +46,10 @@ private:
     std::thread thread_{};
 };
 
-/// Asks the program that records into the file to end; the sentence says that none does.
+/// Asks the program that records into the file to end; the failure states that none does.
 Result<void> stop_recording(const std::string& name);
 
-/// All of a file.
+/// Returns the whole content of a file.
 Result<std::string> read_whole(const std::string& name);
 
 } // namespace tappet::browser

@@ -15,7 +15,7 @@ std::string of_object(const std::string& properties) {
     return R"({"type": "object", "properties": {)" + properties + "}}";
 }
 
-/// What is older goes; of what is recorded on change the last one stays, since it stood until then.
+/// Drops older samples; for recording on change keeps the last one, whose value held until then.
 void forget_until(std::deque<RecordedSample>& samples, std::int64_t at_ns, bool stands) {
     const std::size_t kept = stands ? 1 : 0;
     while (samples.size() > kept && samples[kept].at_ns < at_ns + static_cast<std::int64_t>(kept))
@@ -31,7 +31,7 @@ std::string json_schema(const MapReader& map, std::uint32_t index) {
     case map::Shape::integer:
     case map::Shape::natural: return R"({"type": "integer"})";
     case map::Shape::duration: return R"({"type": "number", "description": "seconds"})";
-    case map::Shape::real: return R"({"type": ["number", "null"]})"; // null: infinite, or no number
+    case map::Shape::real: return R"({"type": ["number", "null"]})"; // null: infinite, or not-a-number
     case map::Shape::matrix:
     case map::Shape::sequence: {
         const std::string list = R"({"type": "array", "items": )" + json_schema(map, type.element) + "}";
@@ -47,7 +47,7 @@ std::string json_schema(const MapReader& map, std::uint32_t index) {
         }
         return of_object(properties);
     }
-    case map::Shape::enumeration: return R"({"type": ["string", "integer"]})"; // a number: without a name
+    case map::Shape::enumeration: return R"({"type": ["string", "integer"]})"; // a number: it has no name
     case map::Shape::text:
     case map::Shape::opaque:
     case map::Shape::arguments: break;
@@ -135,7 +135,7 @@ void Recording::keep(const RecordedSample& sample) {
 
 void Recording::end() {
     close_chunk();
-    mcap::put_chunk(bytes_, 0, 0, description_); // once more: without it nothing is read
+    mcap::put_chunk(bytes_, 0, 0, description_); // repeated: without it nothing can be read
     mcap::put_end(bytes_);
 }
 

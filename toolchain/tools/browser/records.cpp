@@ -1,5 +1,5 @@
-// Tapes are read from their ends: a moment that was overwritten ends the look, and its samples are missed by
-// their numbers.
+// Reads tapes from their ends: an overwritten moment ends the reading, and sequence numbers reveal its
+// missing samples.
 #include "toolchain/tools/browser/records.hpp"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ std::string RecordReader::add_channel(const recorded::Channel& of) {
                   : type == map::none || map_->types()[type].size != of.bytes))
         return "a channel's values are of another size";
     if (of.trigger != recorded::none && of.trigger >= channels_.size())
-        return "a channel's window is around none"; // those of events stand before it
+        return "a channel's window is around none"; // channels of events stand before it
     if (at<std::uint32_t>(of.next_at) == nullptr) return "a channel is numbered outside";
     channels_.push_back({map_->full_name(facet), facet, of});
     return {};
@@ -92,7 +92,7 @@ std::optional<RecordedSample> RecordReader::standing(std::uint32_t channel) cons
     const bool is_whole = map_->view().consistent(activity, attempts, [&] {
         sample.sequence = *at<std::uint32_t>(of.next_at);
         sample.at_ns = map_->view().word<std::int64_t>(map_->activities()[activity].now_at);
-        static_cast<void>( // the map was checked: it lies inside
+        static_cast<void>( // the map was checked: in range
             map_->view().copy(map_->facets()[channels_[channel].facet].value_at,
                               std::as_writable_bytes(std::span{sample.words}).first(of.bytes)));
     });
@@ -169,9 +169,9 @@ void RecordReader::take(const recorded::Moment& moment, std::span<const std::uin
         words = words.subspan(1);
         if (head.channel >= channels_.size() || head.words > words.size() ||
             head.words != recorded::words_of(channels_[head.channel].of.bytes))
-            return; // of a damaged memory: the numbers say what is missed
+            return; // damaged memory: the numbers reveal the loss
         std::optional<std::uint32_t>& next = next_[head.channel];
-        // Told by begin() already.
+        // begin() reported it already.
         const bool is_known = next && static_cast<std::int32_t>(head.sequence - *next) < 0;
         const auto value = words.first(head.words);
         words = words.subspan(head.words);

@@ -1,4 +1,4 @@
-// The second screen of an xterm and its kin, drawn from the top left corner (ECMA-48, xterm's control
+// The alternate screen of xterm-like terminals, drawn from the top left corner (ECMA-48, xterm's control
 // sequences).
 #include "toolchain/tools/browser/screen.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 void put(std::string_view text) {
     while (!text.empty()) {
         const ssize_t written = ::write(STDOUT_FILENO, text.data(), text.size());
-        if (written <= 0) return; // the terminal is gone, and the next key says so
+        if (written <= 0) return; // the terminal is gone; the next key read reports it
         text.remove_prefix(static_cast<std::size_t>(written));
     }
 }

@@ -1,4 +1,4 @@
-// A terminal that is drawn on: its size, keys without a return, and everything as it was afterwards.
+// A terminal for drawing: its size, keys without return, and its state restored afterwards.
 #pragma once
 
 #include "toolchain/tools/browser/watch_view.hpp"
@@ -16,17 +16,17 @@ enum class Key { quit, up, down, page_up, page_down, other };
 
 class Screen {
 public:
-    /// Takes the terminal at standard input and output over.
+    /// Takes over the terminal at standard input and output.
     Screen();
     ~Screen();
     Screen(const Screen&) = delete;
     Screen& operator=(const Screen&) = delete;
 
-    /// Both ends are a terminal that knows cursor movements.
+    /// Returns true when both ends are a terminal with cursor movements.
     [[nodiscard]] static bool possible();
     [[nodiscard]] Size size() const;
     void show(const std::vector<std::string>& lines) const;
-    /// The next key, if one comes within `patience`.
+    /// Returns the next key, if one comes within `patience`.
     [[nodiscard]] std::optional<Key> key(std::chrono::milliseconds patience) const;
 
 private:

@@ -1,4 +1,4 @@
-// hello, then map: what every browser asks first.
+// hello, then map: every browser's first requests.
 #include "toolchain/tools/browser/session.hpp"
 
 #include "kernel/services/browsing/protocol.hpp"

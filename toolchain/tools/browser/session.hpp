@@ -1,4 +1,4 @@
-// A browser at work on one machine: the connection, the machine's memory and the map in it.
+// A browser's session with one machine: the connection, the machine's memory and the map in it.
 #pragma once
 
 #include "kernel/machine/map/black_box.hpp"
@@ -10,12 +10,12 @@ namespace tappet::browser {
 
 class Session {
 public:
-    /// Connects, asks who is there, and maps the memory. `place`: what its names begin with.
+    /// Connects, identifies the machine, and maps the memory. `place`: the prefix of its names.
     static Result<std::unique_ptr<Session>> open(const std::string& socket,
                                                  std::chrono::milliseconds patience, std::string place = {});
-    /// What is left of a machine, in a file that its guardian kept.
+    /// Opens a machine's remains, in a file that its guardian kept.
     static Result<std::unique_ptr<Session>> open_black_box(const std::string& file);
-    /// Null: the machine lives.
+    /// Returns the black box; null: the machine lives.
     [[nodiscard]] const map::black_box::Record* black_box() const { return black_box_.get(); }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -23,7 +23,7 @@ public:
     [[nodiscard]] Link& link() { return link_; }
     [[nodiscard]] const MapReader& map() const { return map_; }
     [[nodiscard]] const Observer& observer() const { return observer_; }
-    /// What the machine takes us for: "observer", "operator" or "engineer".
+    /// Returns this browser's role at the machine: "observer", "operator" or "engineer".
     [[nodiscard]] const std::string& role() const { return role_; }
 
 private:

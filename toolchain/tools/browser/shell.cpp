@@ -1,4 +1,4 @@
-// The prompt on libedit: tab completes or lists, arrows and ^R walk the history.
+// The prompt with libedit: tab completes or lists, arrows and ^R search the history.
 #include "toolchain/tools/browser/shell.hpp"
 
 #include "toolchain/tools/browser/completion.hpp"
@@ -18,7 +18,7 @@ namespace {
 constexpr int history_lines = 500;
 constexpr std::size_t listed_most = 60;
 
-/// What libedit's callbacks reach through EL_CLIENTDATA.
+/// The data of libedit's callbacks, passed through EL_CLIENTDATA.
 struct Client {
     Machines& machines;
     std::string prompt{};
@@ -51,7 +51,7 @@ unsigned char on_tab(EditLine* editor, int) {
     const Completion completion = complete(client_of(editor).machines, before);
     if (completion.candidates.empty()) return CC_REFRESH_BEEP;
     std::string more = completion.common().substr(before.size() - completion.begin);
-    // A component's name goes on with a dot: no blank after it while others begin with it.
+    // A component's name continues with a dot: no blank after it while others begin with it.
     if (completion.candidates.size() == 1) more += ' ';
     if (more.empty()) {
         print_candidates(completion);
@@ -60,8 +60,8 @@ unsigned char on_tab(EditLine* editor, int) {
     return ::el_insertstr(editor, more.c_str()) == 0 ? CC_REFRESH : CC_REFRESH_BEEP;
 }
 
-/// While a line is typed a signal is let in only where it ends the wait for the next character: one that came
-/// a moment before would be lost until then.
+/// While a line is typed, signals are unblocked only during the wait for the next character, which they end:
+/// a signal just before the wait would otherwise have no effect until the next character.
 class SignalsHeld {
 public:
     SignalsHeld() {
@@ -86,7 +86,7 @@ int read_character(EditLine*, wchar_t* character) {
     if (::ppoll(&input, 1, nullptr, &SignalsHeld::open) < 0) return -1;
     char byte = 0;
     const ssize_t count = ::read(STDIN_FILENO, &byte, 1);
-    // An end of input that was typed before the terminal was given to the prompt comes as a zero.
+    // An end of input typed before the prompt owned the terminal arrives as a zero.
     constexpr wchar_t end_of_input = 4;
     *character = byte == 0 ? end_of_input : static_cast<unsigned char>(byte);
     return static_cast<int>(count);

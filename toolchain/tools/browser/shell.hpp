@@ -1,4 +1,4 @@
-// The prompt: lines edited with completion and history, each run as if it were given on a command line.
+// The prompt: edits lines with completion and history, and runs each like a command line.
 #pragma once
 
 #include "toolchain/tools/browser/machines.hpp"
@@ -9,23 +9,23 @@
 
 namespace tappet::browser {
 
-/// What became of a typed line.
+/// The result of a typed line.
 enum class Next { prompt, end };
 
 class Shell {
 public:
-    /// Runs a line; the sentences of failures are told by it.
+    /// Runs a line, and reports its failures.
     using Run = std::function<Next(const std::string& line)>;
 
-    /// `history_file`: kept over sessions; empty for none. `signal`: the last that came; an interrupt gives
-    /// the typed line up, any other ends the prompt.
+    /// `history_file`: kept across sessions; empty for none. `signal`: the last signal; an interrupt discards
+    /// the typed line, any other ends the prompt.
     Shell(Machines& machines, std::string history_file, const volatile std::sig_atomic_t* signal, Run run)
         : machines_{machines},
           history_file_{std::move(history_file)},
           signal_{signal},
           run_{std::move(run)} {}
 
-    /// Until "quit" or the end of the input.
+    /// Runs until "quit" or the end of the input.
     void run();
 
 private:

@@ -1,4 +1,4 @@
-// Walking a type and its bytes, both from the machine's memory.
+// Walks a type and its bytes, both from the machine's memory.
 #include "toolchain/tools/browser/value.hpp"
 
 #include <nlohmann/json.hpp>
@@ -56,7 +56,7 @@ bool is_clock(const MapReader& map, const map::Type& type) {
     return map.text(type.name).find("time_point") != std::string_view::npos;
 }
 
-/// In the largest unit that leaves a whole part, with so many significant digits.
+/// Returns the time in the largest unit with a whole part, with `digits` significant digits.
 std::string rounded_time(std::int64_t nanoseconds, int digits) {
     if (nanoseconds == 0) return "0s";
     const double magnitude = std::abs(static_cast<double>(nanoseconds));
@@ -113,7 +113,7 @@ private:
         const std::string_view characters{reinterpret_cast<const char*>(bytes.data()) + type.items_at,
                                           length};
         if (!is_json()) return in_quotes(characters);
-        // Characters that are no UTF-8 become U+FFFD.
+        // Invalid UTF-8 becomes U+FFFD.
         return nlohmann::json(characters).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     }
 
@@ -121,7 +121,7 @@ private:
         const std::int64_t value = whole(bytes, type.size);
         for (std::uint32_t i = 0; i < type.enumerator_count; ++i) {
             const map::Enumerator& each = map_.enumerators()[type.first_enumerator + i];
-            // An unsigned one may be written without its sign.
+            // The value of an unsigned enumeration may be written without its sign.
             if (each.value == value ||
                 (type.size < 8 && each.value == static_cast<std::int64_t>(natural(bytes, type.size)))) {
                 const std::string_view name = map_.text(each.name);
@@ -296,7 +296,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string as_word(std::string_view text) {
-    // Brackets keep their blanks together, and so do quotes.
+    // Brackets and quotes keep their blanks together.
     const bool one = !text.empty() && (text.front() == '[' || text.front() == '{' || text.front() == '"' ||
                                        text.find_first_of(" \t\"\\") == std::string_view::npos);
     return one ? std::string{text} : in_quotes(text);

@@ -1,4 +1,4 @@
-// Columns: the name, the value (which keeps its end when it is too long for its place), the unit, the marks.
+// Columns: the name, the value (whose end is kept when it is too long), the unit, the marks.
 #include "toolchain/tools/browser/watch_view.hpp"
 
 #include <algorithm>

@@ -31,10 +31,10 @@ struct Size {
     std::size_t rows = 24;
 };
 
-/// How many of the rows have a place.
+/// Returns how many of the rows fit.
 [[nodiscard]] std::size_t visible_rows(const WatchPicture& picture, Size size);
-/// At most `size.rows` lines of at most `size.columns` visible characters; `colour` adds sequences that take
-/// no place.
+/// Returns at most `size.rows` lines of at most `size.columns` visible characters; `colour` adds invisible
+/// control sequences.
 [[nodiscard]] std::vector<std::string> draw(const WatchPicture& picture, Size size, bool colour);
 
 } // namespace tappet::browser

@@ -1,4 +1,4 @@
-// Reading tapes and kept cycles: places are checked once, words when they are used.
+// Reads tapes and kept cycles: places are checked once, words at their use.
 #include "toolchain/tools/browser/waves.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 4> kinds{"step", "timers", "reactions", "
 constexpr int attempts = 64;
 constexpr std::chrono::milliseconds between_attempts{5};
 
-/// A cycle out of its marks. What the stamp at a function's end cost is no part of it.
+/// Decodes a cycle from its marks. The cost of the stamp at a function's end is subtracted.
 WaveCycle cycle_from(std::uint32_t activity, const TapeCycle& read, const std::uint64_t* marks,
                      std::int64_t stamp_ns) {
     WaveCycle cycle{activity, read.release, read.begin, read.end, read.left_out};
@@ -29,7 +29,7 @@ WaveCycle cycle_from(std::uint32_t activity, const TapeCycle& read, const std::u
     return cycle;
 }
 
-/// The cycles of one activity out of words that end with one of them; false: they contradict themselves.
+/// Decodes the cycles of one activity from words that end with a cycle; returns false on a contradiction.
 bool add_cycles(std::uint32_t activity, std::span<const std::uint64_t> words, Waves& into) {
     const std::size_t first = into.cycles.size();
     for (std::size_t after = words.size(); after > 0;) {
@@ -131,7 +131,7 @@ std::optional<std::vector<Kept>> ScopeReader::worst() const {
     std::vector<Kept> found;
     bool whole = false;
     for (int attempt = 0; attempt < attempts && !whole; ++attempt) {
-        if (attempt > 0) std::this_thread::sleep_for(between_attempts); // it is in its cycle, or kept from it
+        if (attempt > 0) std::this_thread::sleep_for(between_attempts); // it is in its cycle, or preempted
         whole = copy_worst(found);
     }
     if (!whole) return std::nullopt;
@@ -168,7 +168,7 @@ Waves ScopeReader::waves_of(const Kept& kept) const {
         if (!add_cycles(static_cast<std::uint32_t>(activity), words.subspan(at + 1, count), waves)) break;
         at += 1 + count;
     }
-    // Cycles that reach over the edge are whole.
+    // Cycles across the edge are included whole.
     for (const WaveCycle& each : waves.cycles) {
         waves.from = std::min({waves.from, each.release, each.begin});
         waves.to = std::max(waves.to, each.end);

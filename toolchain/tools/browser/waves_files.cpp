@@ -1,4 +1,4 @@
-// Block waves as files for the public viewers: VCD for GTKWave, a trace for Perfetto.
+// Writes block waves as files for public viewers: VCD for GTKWave, a trace for Perfetto.
 #include "toolchain/tools/browser/value.hpp"
 #include "toolchain/tools/browser/waves.hpp"
 
@@ -22,7 +22,7 @@ std::string identifier(std::string_view name) {
     return text;
 }
 
-/// An identifier code: printable characters from '!' to '~', the shortest first.
+/// Returns an identifier code: printable characters from '!' to '~', the shortest first.
 std::string code_of(std::size_t number) {
     std::string code;
     for (++number; number > 0; number = (number - 1) / 94) code += static_cast<char>('!' + (number - 1) % 94);
@@ -33,10 +33,10 @@ struct Change {
     std::int64_t time = 0;
     std::size_t wire = 0;
     bool value = false;
-    std::size_t nth = 0; ///< of two at one time the first comes first
+    std::size_t nth = 0; ///< order of changes at the same time
 };
 
-/// The wires of one activity, and what becomes of them.
+/// The wires of one activity, and their changes.
 class Wires {
 public:
     explicit Wires(const Waves& waves) : waves_{waves} {
@@ -103,7 +103,7 @@ private:
     }
     void change(const WaveCycle& cycle) {
         OfActivity& wires = of_[cycle.activity];
-        // What was due while the cycle before it ran waited for that one's end.
+        // A release during the previous cycle waited for that cycle's end.
         if (const std::int64_t due = std::max(cycle.release, wires.last_end); due < cycle.begin)
             pulse(wires.due, due, cycle.begin);
         wires.last_end = cycle.end;
@@ -119,7 +119,7 @@ private:
     std::size_t wires_ = 0;
 };
 
-/// Microseconds, as the trace format counts, to the nanosecond.
+/// Returns microseconds, as in the trace format, to the nanosecond.
 std::string microseconds(std::int64_t ns) {
     char text[40];
     std::snprintf(text, sizeof text, "%s%lld.%03lld", ns < 0 ? "-" : "",

@@ -1,4 +1,4 @@
-// A row for each frame: dark its time on the wire, light its longest response, a mark at its deadline.
+// Draws one row per frame: dark its time on the wire, light its longest response, a mark at its deadline.
 #include "toolchain/tools/chart/bus.hpp"
 
 #include "drivers/can/kind.hpp"
@@ -44,8 +44,8 @@ std::string draw_bus(const AcceptedMachine& machine, std::size_t component, std:
                   "font-size=\"16\"");
     picture.words(20, 45,
                   fault.empty() ? std::string_view{"each frame comes through in time"} : fault.view());
-    // Deadlines reach from hundreds of microseconds to seconds: a logarithmic scale, from the shortest frame
-    // on.
+    // Deadlines range from hundreds of microseconds to seconds: a logarithmic scale, starting at the shortest
+    // frame.
     Duration shortest = longest;
     for (const TrafficRow& frame : frames) shortest = std::min(shortest, frame.wire_time);
     const double decades = std::max(1.0, std::log10(static_cast<double>(longest.count()) /

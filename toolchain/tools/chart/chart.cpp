@@ -1,4 +1,4 @@
-// Regions from rows, and the labels of programs, guards and events.
+// Derives regions from rows, and the labels of programs, guards and events.
 #include "toolchain/tools/chart/chart.hpp"
 
 #include "toolchain/tools/chart/program_text.hpp"

@@ -1,5 +1,5 @@
-// A state machine with what its table alone does not say: who runs it, and what its program may name. Every
-// export reads this and nothing else; scripts and C++ tables look the same here.
+// A state machine with the facts beyond its table: its component, and the components that its program may
+// name. All exports read only this; scripts and C++ tables look the same here.
 #pragma once
 
 #include "kernel/script/reach.hpp"
@@ -14,17 +14,17 @@
 
 namespace tappet::chart {
 
-/// A state machine, or a program alone: then `machine` has no states.
+/// A state machine; or a program alone, when `machine` has no states.
 struct Chart {
-    std::string name;      ///< "loom", "weft.cycle": the component, and the instance where it has several
-    std::string component; ///< whose machine it is; events without a component are this one's
-    StateMachineTable machine{}; ///< its rows outlive the chart
+    std::string name;      ///< "loom", "weft.cycle": the component, and the instance if there are several
+    std::string component; ///< owner of the machine; events without a component belong to it
+    StateMachineTable machine{}; ///< its rows must outlive the chart
     const ProgramTables* programs = nullptr;
-    std::span<const Reachable> reach{}; ///< by LinkRow::peer; empty where there is no script
+    std::span<const Reachable> reach{}; ///< by LinkRow::peer; empty without a script
     std::span<const std::byte> image{}; ///< of this instance; empty: the image of its type
 };
 
-/// Where states are active at the same time, each is in a region of its own.
+/// States that are active at the same time are in different regions.
 struct Region {
     StateIndex parent = no_state; ///< the composite around it; no_state: the machine
     std::string name;             ///< empty: the only one
@@ -32,14 +32,14 @@ struct Region {
     StateIndex initial = no_state;
 };
 
-/// Regions of a machine, those of a composite side by side and in the order of their first state.
+/// The regions of a machine; those of one composite are adjacent, in the order of their first state.
 class Regions {
 public:
     explicit Regions(const StateHierarchy& names);
     [[nodiscard]] const std::vector<Region>& all() const { return regions_; }
     [[nodiscard]] std::vector<std::size_t> inside(StateIndex composite) const;
     [[nodiscard]] std::size_t of(StateIndex state) const { return region_of_[state]; }
-    /// Some states are active at the same time.
+    /// Returns true when some states are active at the same time.
     [[nodiscard]] bool orthogonal() const;
 
 private:
@@ -47,13 +47,13 @@ private:
     std::vector<std::size_t> region_of_;
 };
 
-/// Where an argument of an event comes to lie.
+/// Returns where an argument of an event is stored.
 DataOffset captured_at(const Chart& chart, const CaptureRow& capture);
 
-/// The texts that an arrow and a box bear.
+/// The labels of arrows and boxes.
 std::string program_label(const Chart& chart, ProgramRef program);
 std::string guard_label(const Chart& chart, ConditionRef guard);
-/// "component.event(a, b)" with the variables that receive the arguments.
+/// Returns "component.event(a, b)" with the variables that receive the arguments.
 std::string event_label(const Chart& chart, const TransitionRow& row);
 
 } // namespace tappet::chart

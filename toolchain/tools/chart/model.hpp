@@ -1,6 +1,6 @@
-// What a machine's verification says beside its table: the few truths that matter, what C++ programs and
-// operations do to them, what the world may do, and what must never happen. Plain rows; the Promela export
-// puts them together with the machine table and its state machines.
+// The verification model of a machine beside its table: a few variables, the effects of C++ programs and
+// operations on them, the possible events of the world, and the properties that must hold. Plain rows; the
+// Promela export combines them with the machine table and its state machines.
 //
 //     inline constexpr auto model = verification(
 //         remembers("ready", 0, 1),
@@ -9,10 +9,10 @@
 //         emits("weft.open_valve")), happens("shaft.weft_opens", when_true("angle == 1"), sets("angle = 2")),
 //         only_when("weft.open_valve", "!braking", "no weft is released while the shaft is braked"));
 //
-// Conditions and assignments are Promela over the names that remembers(...) gives; "in_<component>_<state>"
-// is true while that state is active, "settled_<activity>" while no message waits for that activity. What no
-// row speaks of is free: a C++ guard says yes or no, a C++ program does nothing to the truths, an event that
-// nobody emits may come at any time.
+// Conditions and assignments are Promela over the names of remembers(...). "in_<component>_<state>" is true
+// while that state is active, "settled_<activity>" while no message waits for that activity. Everything
+// without a row is free: a C++ guard may be true or false, a C++ program changes no variable, and an event
+// that nobody emits may come at any time.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -27,10 +27,10 @@ namespace tappet::chart {
 
 enum class ModelKind : std::uint8_t {
     remembers, ///< a number with its first and its largest value
-    program,   ///< what a C++ program of a state machine does
-    guard,     ///< what a C++ guard says
-    operation, ///< what an operation does; of several rows of one operation the first that holds
-    happens,   ///< when an event of the world may come, and what is so from then on
+    program,   ///< the effect of a C++ program of a state machine
+    guard,     ///< the result of a C++ guard
+    operation, ///< the effect of an operation; the first of its rows whose condition holds applies
+    happens,   ///< when an event of the world may come, and its effect
     always,    ///< an invariant: after every step
     only_when  ///< an invariant of an event: at every emission
 };
@@ -43,7 +43,7 @@ struct ModelRow {
     StateGuard guard = nullptr;
     std::string_view when{};
     std::string_view sets{};    ///< assignments, separated by semicolons
-    std::string_view because{}; ///< what an invariant is for, in words
+    std::string_view because{}; ///< the purpose of an invariant, in words
     Bounded<std::string_view, max_emits> emits{};
     unsigned first = 0;
     unsigned largest = 1;

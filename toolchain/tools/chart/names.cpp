@@ -1,4 +1,4 @@
-// Looks addresses up in the running program's own symbols.
+// Looks up addresses in the running program's own symbols.
 #include "toolchain/tools/chart/names.hpp"
 
 #include <algorithm>
@@ -9,9 +9,8 @@ namespace tappet::chart {
 
 namespace {
 
-/// The last of the names that a symbol is made of (Itanium C++ ABI 5.1): of
-/// "...callIXadL_ZNS_5Press4liftEv..." the member function that is the template's argument, "lift". Not every
-/// demangler reads what clang writes.
+/// Returns the last name of a mangled symbol (Itanium C++ ABI 5.1): for "...callIXadL_ZNS_5Press4liftEv..."
+/// the member function that is the template's argument, "lift". Not every demangler reads clang's symbols.
 std::string last_name(std::string_view symbol) {
     if (const std::size_t argument = symbol.find("XadL_Z"); argument != symbol.npos)
         symbol.remove_prefix(argument + 6);
@@ -22,7 +21,7 @@ std::string last_name(std::string_view symbol) {
     while (symbol.starts_with('N') || symbol.starts_with('K')) symbol.remove_prefix(1);
     std::string name;
     while (!symbol.empty()) {
-        if (symbol.front() == 'S') { // a scope that stood before: "S_", "S1_", "St"
+        if (symbol.front() == 'S') { // a substituted scope: "S_", "S1_", "St"
             const bool is_standard = symbol.starts_with("St");
             symbol.remove_prefix(is_standard ? 2 : std::min(symbol.find('_'), symbol.size() - 1) + 1);
             continue;

@@ -1,4 +1,4 @@
-// What a machine's chart program takes, which the front door reads before it builds that program.
+// The options of a machine's chart program; `tappet` reads them before it builds that program.
 #pragma once
 
 #include "toolchain/command_line.hpp"
@@ -14,7 +14,7 @@ inline constexpr std::array chart_options{
            10'000'000},
     Option{"--help", "", "this text"}};
 
-/// Its words; none: svg.
+/// Its words; without one: svg.
 inline constexpr std::array chart_words{
     Option{"svg", "", "the table, each state machine and each program, drawn by the tools dot and plantuml"},
     Option{"bus", "", "what each bus carries, with its proven response times"},

@@ -7,7 +7,7 @@ namespace tappet::chart {
 
 namespace {
 
-/// Characters that PlantUML takes for markup or a line's end are spelled as numbers.
+/// Writes characters that PlantUML would read as markup or line end as numbers.
 std::string plain(std::string_view text) {
     std::string escaped;
     for (const char character : text) switch (character) {
@@ -54,12 +54,12 @@ private:
     }
 
     // PlantUML draws an arrow between states of one region only inside that region, and none across its
-    // border: such an arrow begins or ends at the composite, and says from where.
+    // border. Such an arrow starts or ends at the composite, and its label names the state.
     [[nodiscard]] bool is_concurrent(std::size_t region) const {
         return regions_.inside(regions_.all()[region].parent).size() > 1 &&
                regions_.all()[region].parent != no_state;
     }
-    /// The innermost region beside others around a state; nowhere: none.
+    /// Returns the innermost concurrent region around a state; nowhere: none.
     [[nodiscard]] std::size_t concurrent_around(StateIndex state) const {
         for (; state != no_state; state = names_.parent[state])
             if (is_concurrent(regions_.of(state))) return regions_.of(state);
@@ -70,7 +70,7 @@ private:
             if (regions_.of(state) == region) return true;
         return false;
     }
-    /// Where an arrow between this state and the other one is attached.
+    /// Returns the state to which an arrow between this state and the other one is attached.
     [[nodiscard]] StateIndex anchor(StateIndex state, StateIndex other) const {
         for (std::size_t k = concurrent_around(state); k != nowhere && !is_around(k, other);
              k = concurrent_around(state))
@@ -136,7 +136,7 @@ private:
         const StateIndex end = names_.to[t] == no_state ? from : names_.to[t];
         std::string source = id(anchor(from, end));
         if (anchor(from, end) != from) label.insert(0, "in " + std::string{name(from)} + ": ");
-        if (row.has_otherwise) { // a choice: UML's branch of a guard that says no
+        if (row.has_otherwise) { // a choice: UML's else branch of a guard
             const std::string choice = "c_" + std::to_string(t);
             text_ +=
                 "state " + choice + " <<choice>>\n" + source + " --> " + choice + arrow_label(label) + "\n";

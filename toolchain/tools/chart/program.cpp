@@ -1,5 +1,5 @@
-// The state machines and programs of a machine as pictures, as SCXML and as models, its table as a picture;
-// and the verification of the models.
+// Draws the state machines, programs and table of a machine, exports SCXML and models, and verifies the
+// models.
 #include "toolchain/tools/chart/program.hpp"
 
 #include "drivers/can/dbc/writer.hpp"
@@ -36,7 +36,7 @@ bool write(const std::string& path, const std::string& text) {
     return static_cast<bool>(file);
 }
 
-/// All at once: a tool takes longer to start than to draw.
+/// Draws all pictures with one call: starting a tool takes longer than drawing.
 bool draw(const char* tool, const std::string& options, const Paths& paths) {
     std::string command = tool + options;
     for (const std::string& path : paths) command += " '" + path + "'";
@@ -128,7 +128,7 @@ private:
         return good;
     }
 
-    /// Empty: one could not be written, or there is none.
+    /// Writes the pictures' sources. Returns empty when one could not be written, or when there is none.
     Paths write_pictures() {
         Paths paths;
         bool good = true;

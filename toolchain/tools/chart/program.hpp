@@ -1,4 +1,4 @@
-// The program that draws one machine: what toolchain/machine/chart_main.cpp is made of.
+// The program that draws one machine: the body of toolchain/machine/chart_main.cpp.
 #pragma once
 
 #include "toolchain/tools/chart/model.hpp"
@@ -8,8 +8,8 @@
 
 namespace tappet::chart {
 
-/// Does what its command line says, see options.hpp. `model`: what spin knows beside the table. The exit
-/// code: 0 well, 1 something could not be drawn, written or proved, 2 a wrong option.
+/// Runs the command line, see options.hpp. `model`: the rows for spin beside the table. Exit code: 0 well, 1
+/// something could not be drawn, written or proved, 2 a wrong option.
 [[nodiscard]] int run_chart(const AcceptedMachine& machine, std::span<const ModelRow> model, int count,
                             char** words);
 

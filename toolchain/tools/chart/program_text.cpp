@@ -1,4 +1,4 @@
-// Follows the instructions of a node with texts in place of values.
+// Executes the instructions of a node with texts in place of values.
 #include "toolchain/tools/chart/program_text.hpp"
 
 #include "kernel/base/value_text.hpp"
@@ -14,10 +14,10 @@ namespace tappet::chart {
 
 namespace {
 
-/// Spelled as in a script; what it does to the truths that a model keeps.
+/// Spelled as in a script, with its effect on a model's variables.
 struct Word {
     std::string_view text;
-    std::string_view model{}; ///< of Promela; empty: no model follows it
+    std::string_view model{}; ///< in Promela; empty: no model follows it
     TypeId a = nullptr;
     TypeId b = nullptr;
 };
@@ -176,7 +176,7 @@ bool ProgramText::read_expression(const Instruction& in, Reading& reading) const
         if (function->b != nullptr) text += ", " + value(in.b, function->b, reading).text;
         give(in, unknown(text + ")"), reading);
     } else if (in.run == p::bytes_equal || in.run == p::bytes_unequal) {
-        // Of two enumerations one is a variable or a value whose type is known; the other is of the same.
+        // One of two compared enumerations has a known type (variable or value); the other has the same.
         const VariableRow* const a_row = row_at(in.a);
         const VariableRow* const b_row = row_at(in.b);
         const TypeId type = a_row != nullptr ? a_row->type : b_row != nullptr ? b_row->type : nullptr;
@@ -263,8 +263,8 @@ void ProgramText::read_one(const Instruction& in, Reading& reading) const {
     }
 }
 
-// What a skip leaves out is read with what was there before; afterwards a && b and a || b are put together
-// again, and other statements stand there as done only sometimes.
+// Reads a skipped part with the values before it. Afterwards a && b and a || b are recombined, and other
+// skipped statements are marked as done only sometimes.
 void ProgramText::read(std::size_t first, std::size_t count, Reading& reading) const {
     for (std::size_t i = 0; i < count; ++i) {
         const Instruction& in = tables_.instructions[first + i];
@@ -288,7 +288,7 @@ void ProgramText::read(std::size_t first, std::size_t count, Reading& reading) c
                     both.model = "(" + decides.model + sign + then.model + ")";
                 reading.values[at] = std::move(both);
             } else if (before == reading.values.end()) {
-                reading.values[at] = then; // scratch of the part that was left out
+                reading.values[at] = then; // scratch of the skipped part
             } else {
                 reading.values[at] = unknown("(" + decides.text + " ? ...)");
             }

@@ -1,5 +1,5 @@
-// Programs read back from their flat form: the instructions of a node or condition as the text of a script,
-// and the part of it that a model of truths and enumerations can follow.
+// Programs decoded from their flat form: the instructions of a node or condition as the text of a script, and
+// the part that a model of Boolean and enumeration variables can follow.
 #pragma once
 
 #include "toolchain/tools/chart/chart.hpp"
@@ -11,7 +11,7 @@
 
 namespace tappet::chart {
 
-/// An expression. `model` is empty where its value depends on what no model keeps: numbers, times, ports.
+/// An expression. `model` is empty when its value depends on what no model keeps: numbers, times, ports.
 struct Expression {
     std::string text;
     std::string model;
@@ -21,26 +21,26 @@ struct Statement {
     enum class Kind : std::uint8_t {
         assign, ///< a variable of the machine
         emit,   ///< an event
-        act,    ///< anything else that is done to a component
+        act,    ///< any other action on a component
         fail    ///< the action fails
     };
     Kind kind = Kind::act;
     std::string text;
     DataOffset at = no_data; ///< of the variable
     std::string event;       ///< "component.event"
-    Expression value;        ///< that the variable is given
+    Expression value;        ///< of the assignment
     bool may_fail = false;
-    bool only_sometimes = false; ///< a condition inside the node decides
+    bool only_sometimes = false; ///< depends on a condition inside the node
 };
 
 struct Node {
     std::vector<Statement> statements;
     bool may_fail = false;
-    /// The statements, one a line; empty: it only waits.
+    /// Returns the statements, one per line; empty: it only waits.
     [[nodiscard]] std::string text() const;
 };
 
-/// Reads the programs of a chart that has some.
+/// Reads the programs of a chart that has programs.
 class ProgramText {
 public:
     explicit ProgramText(const Chart& chart) : chart_{chart}, tables_{*chart.programs} {}
@@ -48,13 +48,13 @@ public:
     [[nodiscard]] Node node(NodeIndex number) const;
     [[nodiscard]] std::string condition(ConditionIndex number) const { return expression(number).text; }
     [[nodiscard]] Expression expression(ConditionIndex number) const;
-    /// A variable's name, or "#offset" where none lies.
+    /// Returns a variable's name, or "#offset" when there is no variable.
     [[nodiscard]] std::string variable(DataOffset at) const;
-    /// A whole program on one line: what its nodes do, in their order; or its name where that is long.
+    /// A whole program on one line: its nodes' actions, in their order; or its name if that is too long.
     [[nodiscard]] std::string program(ProgramIndex number) const;
-    /// Truths and enumerations are followed by a model; null: another variable.
+    /// Returns the variable if a model can keep it (Boolean or enumeration); otherwise null.
     [[nodiscard]] const VariableRow* kept(DataOffset at) const;
-    /// Its value when the machine begins; its name in a model.
+    /// Returns its initial value; below: its name in a model.
     [[nodiscard]] unsigned initial_value(const VariableRow& row) const;
     [[nodiscard]] static std::string model_name(const Chart& chart, const VariableRow& row);
 
@@ -66,7 +66,7 @@ private:
         bool may_fail = false;
     };
     void read(std::size_t first, std::size_t count, Reading& reading) const;
-    /// Of an instruction that only computes; false: it does something.
+    /// Reads an instruction that only computes; returns false when it has an effect.
     [[nodiscard]] bool read_expression(const Instruction& in, Reading& reading) const;
     void read_one(const Instruction& in, Reading& reading) const;
     void give(const Instruction& in, Expression value, Reading& reading) const;

@@ -1,4 +1,4 @@
-// Puts the state machines, the reactions of a machine table and the rows of a verification together.
+// Combines the state machines, the reactions of a machine table and the rows of a verification.
 #include "toolchain/tools/chart/promela.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -12,9 +12,9 @@ namespace tappet::chart {
 
 namespace {
 
-/// How many triggers may wait for a machine, messages for an activity. The world waits while a trigger is
-/// there, world and machines while more than a few messages are: that receivers keep up is what the
-/// schedulability analysis shows. That what one step sends fits is asserted.
+/// How many triggers may wait for a machine, and messages for an activity. The world waits while a trigger is
+/// present; world and machines wait while more than a few messages are: the schedulability analysis shows
+/// that receivers keep up. An assertion checks that the messages of one step fit.
 constexpr std::size_t queue = 6;
 constexpr const char* few = " <= 1";
 
@@ -45,7 +45,7 @@ public:
 private:
     struct Activity {
         std::string name;
-        std::vector<std::string> messages; ///< operations that are told to it, by number
+        std::vector<std::string> messages; ///< operations sent to it, by number
         std::vector<std::string> world;    ///< events of its components that the world causes
     };
 
@@ -93,7 +93,7 @@ private:
         for (const std::string_view event : row.emits) text += emission(std::string{event});
         return text.empty() ? "skip;\n" : text;
     }
-    /// Of several rows the first whose condition holds.
+    /// Among several rows, the first whose condition holds applies.
     std::string effects(const std::vector<const ModelRow*>& all) {
         std::string text;
         std::size_t open = 0;
@@ -125,7 +125,7 @@ private:
         return {};
     }
 
-    // ---- events: synchronous reactions here and now, then messages, then the machines that hear it
+    // ---- events: synchronous reactions at once, then messages, then the machines that hear them
 
     std::string emission(const std::string& event) {
         emitted_.insert(event);
@@ -167,7 +167,7 @@ private:
                std::to_string(place - to.messages.begin()) + "; /* " + operation + " */\n";
     }
 
-    // ---- activities: what the world causes in them, and their messages
+    // ---- activities: their events from the world, and their messages
 
     Activity& activity_of(const std::string& component) {
         std::string name = "world";
@@ -180,7 +180,7 @@ private:
     }
 
     void find_activities() {
-        // What is told to an activity, and what anybody emits, shows when everything was written once.
+        // A first pass over all texts shows which messages and events exist.
         for (MachineModel& machine : machines_) static_cast<void>(machine.process());
         for (const ModelRow& row : of_.model)
             if (row.kind == ModelKind::operation || row.kind == ModelKind::happens)
@@ -197,7 +197,7 @@ private:
         for (const std::string& event : world)
             if (!emitted.contains(event) || !rows(ModelKind::happens, event).empty())
                 activity_of(component_of(event)).world.push_back(event);
-        // A world event's own messages make their channels known.
+        // The messages of a world event declare their channels.
         for (std::size_t a = 0; a < activities_.size(); ++a)
             for (const std::string& event : std::vector<std::string>{activities_[a].world})
                 static_cast<void>(emission(event));
@@ -251,7 +251,7 @@ private:
         return text;
     }
 
-    // ---- who asks for final and initial states, and who lets others go on
+    // ---- requests for final and initial states, and the release of others
 
     std::string operators() {
         std::string text = "#ifdef REQUESTS\nactive proctype requests() {\nend_requests:\ndo\n";
@@ -352,7 +352,7 @@ std::vector<Chart> charts_of(const ScriptUnit& unit, std::string_view component)
 std::vector<Chart> charts_of(const MachineView& machine) {
     std::vector<Chart> charts;
     for (const BehaviourRow& row : machine.behaviours) {
-        const ScriptUnit unit = row.unit(); // of a C++ table a view of the row itself
+        const ScriptUnit unit = row.unit(); // for a C++ table, a view of the row itself
         for (Chart& each : charts_of(unit, row.component)) charts.push_back(std::move(each));
     }
     return charts;

@@ -1,13 +1,13 @@
-// State machines, and what a machine table connects them with, as a Promela model that spin searches.
+// State machines and their connections in a machine table, as a Promela model that spin searches.
 //
 // Order and atomicity are those of an engine's step (kernel/activity/engine.cpp): an activity's own events
-// first, then every message that waits for it; a state machine runs until it waits. A message overtakes
-// nothing of its own sender. Time is not modelled: a time-out may come at any time after its state was
-// entered, and a step may be as late as it likes. What a model does not know may be either way.
+// first, then every message that waits for it; a state machine runs until it waits. Messages of one sender
+// keep their order. Time is not modelled: a time-out may come at any time after its state was entered, and a
+// step may be arbitrarily late. Anything unknown to a model may be true or false.
 //
-// Compiled with REQUESTS the model also asks for the final and the initial state at any time, with FAILURES
-// any action may fail, and with STOP the world falls silent once and every machine is asked for its final
-// state: then each run must end there.
+// Compiled with REQUESTS, the model also requests the final and the initial state at any time. With FAILURES,
+// any action may fail. With STOP, the world becomes silent once and every machine gets a request for its
+// final state: each run must then end there.
 #pragma once
 
 #include "kernel/machine/table/machine.hpp"
@@ -31,14 +31,14 @@ struct PromelaModel {
     std::string fault; ///< what, where and the cure
 };
 
-/// One state machine alone: its events come whenever its active states hear them.
+/// Models one state machine alone: its events come whenever its active states hear them.
 PromelaModel to_promela(const Chart& chart);
-/// Several of them, the reactions between their components, and the rows of a verification.
+/// Models several, the reactions between their components, and the rows of a verification.
 PromelaModel to_promela(const Composition& composition);
 
-/// The state machines of a table, scripts' instances among them; slots are empty until something is loaded.
+/// The state machines of a table, including scripts' instances; slots are empty until something is loaded.
 std::vector<Chart> charts_of(const MachineView& machine);
-/// Those of one script, on the component that it drives.
+/// Returns those of one script, on the component that it drives.
 std::vector<Chart> charts_of(const ScriptUnit& unit, std::string_view component);
 
 } // namespace tappet::chart

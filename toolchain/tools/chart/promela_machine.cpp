@@ -24,7 +24,7 @@ MachineModel::MachineModel(const Chart& chart, const ModelWords& words)
         triggers_.push_back(name.contains('.') ? name : chart.component + "." + name);
     }
     if (chart.programs == nullptr) return;
-    // A variable that no program writes is one that only the world may change: nothing is known of it.
+    // A variable that no program writes can only be changed by the world: its value is unknown.
     const ProgramText reader{chart};
     for (const VariableRow& row : chart.programs->variables) {
         if (reader.kept(row.at) == nullptr) continue;
@@ -101,7 +101,7 @@ void MachineModel::ask(Guard& guard, ConditionRef condition) const {
         known = words_.guard(condition.call);
     } else if (chart_.programs != nullptr) {
         known = ProgramText{chart_}.expression(condition.condition).model;
-        for (const VariableRow& row : chart_.programs->variables) // one that is not kept makes it free
+        for (const VariableRow& row : chart_.programs->variables) // an unkept one makes the guard free
             if (known.contains(ProgramText::model_name(chart_, row)) &&
                 std::ranges::find(variables_, row.at) == variables_.end())
                 known.clear();
@@ -146,7 +146,7 @@ MachineModel::Guard MachineModel::guard_of(std::size_t t) const {
     return guard;
 }
 
-// ---- leaving and entering
+// ---- exit and entry
 
 std::string MachineModel::exit_region(std::size_t region) {
     std::string options;
@@ -193,7 +193,7 @@ std::string MachineModel::enter_path(std::size_t kept, StateIndex target, EntryK
         const StateIndex state = names_.ancestor(target, level);
         text += enter(state);
         if (state == target) break;
-        for (const std::size_t k : regions_.inside(state)) { // regions beside the path begin as usual
+        for (const std::size_t k : regions_.inside(state)) { // regions beside the path: initial state
             const StateIndex next = names_.ancestor(target, level + 1);
             const StateIndex first = regions_.all()[k].initial;
             if (regions_.of(next) != k && first != no_state)
@@ -203,7 +203,7 @@ std::string MachineModel::enter_path(std::size_t kept, StateIndex target, EntryK
     return text + enter_inside(target, kind);
 }
 
-// The transition program, exits from the inside, entries from the outside (thesis 5.2.1).
+// Writes the transition program, exits from the inside, entries from the outside (thesis 5.2.1).
 std::string MachineModel::take(StateIndex from, StateIndex to, ProgramRef then, EntryKind kind) {
     std::string text = program(then, false);
     if (to == no_state) return text;
@@ -224,7 +224,7 @@ std::string MachineModel::captures(const TransitionRow& row) const {
 
 // ---- transitions
 
-// Inner states first, then in the order of the table; what is known of an earlier one keeps a later one shut.
+// Inner states first, then in the order of the table; the known part of an earlier guard disables later ones.
 std::string MachineModel::conditions() {
     std::string text;
     std::vector<std::pair<std::size_t, std::string>> certain;
@@ -374,13 +374,13 @@ std::string MachineModel::process() {
         for (std::size_t k = 0; k < regions_.all().size(); ++k)
             text += "bool taken" + std::to_string(k) + ";\nbyte was" + std::to_string(k) + ";\n";
     text += "atomic {\n" + m_ + "_started = true;\n" + begin + "CHECK;\n}\n";
-    text += m_ + "_loop:\natomic {\nROOM;\n"; // others may go on between two transitions
+    text += m_ + "_loop:\natomic {\nROOM;\n"; // others may run between two transitions
     for (std::size_t i = 0; i < names_.states(); ++i)
         text += "if\n:: " + in(static_cast<StateIndex>(i)) + " -> here = 0;" +
                 mark("state " + chart_.name + " " + std::string{chart_.machine.states[i].name}) +
                 "\n:: else -> skip\nfi;\n";
     text += resumes() + run;
-    // Where nothing is under way it waits here: for a condition, an event or a request.
+    // An idle machine waits here: for a condition, an event or a request.
     text += m_ + "_wait:\nif\n" + conditions();
     for (std::size_t i = 0; i < triggers_.size(); ++i) text += on_event(i);
     text += ":: " + m_ + "_wants_final || " + m_ + "_wants_initial -> goto " + m_ + "_request\n";

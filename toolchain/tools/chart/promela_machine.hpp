@@ -10,8 +10,8 @@
 
 namespace tappet::chart {
 
-/// What the composition lends: the text of an emission, an operation and a C++ program; the condition of a
-/// C++ guard, empty where it is free.
+/// Functions of the composition: the text of an emission, an operation and a C++ program; the condition of a
+/// C++ guard, empty when it is free.
 struct ModelWords {
     std::function<std::string(const std::string& event)> emit;
     std::function<std::string(const std::string& operation)> operation;
@@ -23,10 +23,10 @@ class MachineModel {
 public:
     MachineModel(const Chart& chart, const ModelWords& words);
 
-    /// Full names, "component.event", by trigger number.
+    /// Returns full names, "component.event", by trigger number.
     [[nodiscard]] const std::vector<std::string>& triggers() const { return triggers_; }
     [[nodiscard]] std::string prefix() const { return m_; }
-    /// True in a state in which an event is heard.
+    /// Returns a condition that is true in the states that hear the event.
     [[nodiscard]] std::string hears(std::size_t trigger) const;
     [[nodiscard]] std::string declarations() const;
     [[nodiscard]] std::string process();
@@ -34,8 +34,8 @@ public:
 
 private:
     struct Guard {
-        std::string model;    ///< what is known of it; empty: nothing, it holds always
-        bool is_free = false; ///< something of it is not known: it may also say no
+        std::string model;    ///< its known part; empty: nothing is known, it always holds
+        bool is_free = false; ///< a part of it is unknown: it may also be false
     };
     [[nodiscard]] std::string in(StateIndex state) const;
     [[nodiscard]] std::string active(std::size_t region) const { return m_ + "_r" + std::to_string(region); }
@@ -77,7 +77,7 @@ private:
     Regions regions_;
     std::string m_;
     std::vector<std::string> triggers_;
-    std::vector<DataOffset> variables_; ///< that the model keeps
+    std::vector<DataOffset> variables_; ///< the variables that the model keeps
     std::vector<std::string> waits_;    ///< labels at which a run program may be interrupted
     std::size_t labels_ = 0;
 };

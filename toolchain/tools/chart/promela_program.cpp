@@ -49,7 +49,7 @@ std::string MachineModel::statement(const ProgramText& reader, const Statement& 
     return text;
 }
 
-// A program's node waits where no arc is open; others go on meanwhile, and a run program may be left there.
+// A program's node waits while no arc is open. Meanwhile others run, and a run program may be aborted there.
 std::string MachineModel::node(const ProgramText& reader, NodeIndex number, const std::string& label,
                                bool is_run) {
     const ProgramTables& tables = *chart_.programs;

@@ -107,7 +107,7 @@ private:
             text_ += in + "<onexit>" + cancels + call(row.exit) + "</onexit>\n";
     }
     static std::string timer_id(std::size_t t) { return "time." + std::to_string(t); }
-    /// CSS2 times, as SCXML asks for.
+    /// Returns a CSS2 time, as SCXML requires.
     static std::string delay(Duration time) {
         const std::string text = time_text(time);
         if (text.ends_with(" s")) return text.substr(0, text.size() - 2) + "s";
@@ -146,7 +146,7 @@ private:
         return to;
     }
 
-    // A history is declared where a transition asks for it, with the initial states for the first time.
+    // A history is declared where a transition needs it, with the initial states as its default.
     void write_history(StateIndex state, const std::string& in) {
         for (const EntryKind kind : {EntryKind::shallow_history, EntryKind::deep_history}) {
             bool asked = false;

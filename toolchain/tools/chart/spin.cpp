@@ -1,4 +1,4 @@
-// Spin, the C compiler and the search, one after the other.
+// Runs spin, the C compiler and the search, one after the other.
 #include "toolchain/tools/chart/spin.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string found_in(const std::string& text, const char* pattern) {
     return std::regex_search(text, match, std::regex{pattern}) ? match[1].str() : std::string{};
 }
 
-/// The words between the comment signs of a line; the empty line has none.
+/// Returns the words between the comment signs of a line; empty for an empty line.
 std::string mark_of(const std::vector<std::string>& lines, std::size_t number) {
     if (number == 0 || number > lines.size()) return {};
     const std::string& line = lines[number - 1];
@@ -54,7 +54,7 @@ SpinSearch search(const std::string& model, const std::vector<std::string>& defi
     std::ofstream{place + "/model.pml"} << model;
     std::string options;
     for (const std::string& each : defines) options += " -D" + each;
-    // Without merged statements each line is reported by itself.
+    // Without merged statements, each line is reported by itself.
     const int status =
         run("cd '" + place + "' && spin -a -o3" + options +
                 " model.pml && cc -O0 -w -DSAFETY -DVECTORSZ=4096 -o search pan.c && ./search -m2000000 -w22",
@@ -83,7 +83,7 @@ SpinSearch search(const std::string& model, const std::vector<std::string>& defi
         if (std::ranges::find(result.unreached, each) == result.unreached.end())
             result.unreached.push_back(each);
     if (result.errors > 0) {
-        // The first way that was found may be a long one: a shallow search often knows a short one.
+        // The first error trail may be a long one: a shallow search often finds a short one.
         std::string said;
         static_cast<void>(
             run("cd '" + place +

@@ -1,4 +1,4 @@
-// Reads the rows of a table, joins those between the same two components to one arrow, and writes it.
+// Reads the rows of a table, merges those between the same two components, and writes the graph.
 #include "toolchain/tools/chart/table_graph.hpp"
 
 #include "toolchain/tools/chart/promela.hpp"
@@ -23,7 +23,7 @@ std::string quoted(std::string_view text) {
     return safe + "\"";
 }
 
-/// "component.facet" as its two names; a name alone is a facet.
+/// Splits "component.facet" into its two names; a single name is a facet.
 std::pair<std::string_view, std::string_view> ends_of(std::string_view path) {
     const std::size_t dot = path.find('.');
     if (dot == path.npos) return {{}, path};
@@ -76,7 +76,7 @@ private:
         const auto [from, output] = ends_of(row.from);
         const auto [to, input] = ends_of(row.to);
         std::string label{output};
-        // Where both ends have one name, it is said once.
+        // Writes the name once when both ends have the same one.
         if (output != input && !output.ends_with("." + std::string{input}))
             label += " → " + std::string{input};
         if (row.buffered) label += ", buffer of " + std::to_string(row.capacity);
@@ -98,7 +98,7 @@ private:
         add(from, to, Flows::happening, label);
     }
 
-    /// Events that a behaviour hears, and what its script asks of others.
+    /// Adds the events that a behaviour hears, and the requests of its script to others.
     void add_behaviour(const Chart& chart) {
         const std::string_view component = row_of(chart.component).name; // lives as long as the table
         for (const TransitionRow& row : chart.machine.transitions) {

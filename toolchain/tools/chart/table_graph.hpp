@@ -1,4 +1,4 @@
-// The table itself as a graph: who runs where and how often, what flows between them, what acts on what.
+// The table as a graph: which activity runs a component and how often, the data flow, and the reactions.
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
@@ -7,9 +7,9 @@
 
 namespace tappet::chart {
 
-/// In the language of the tool dot: components in boxes of their activities, with rates, deadlines and the
-/// priorities of the machine's plan; solid arrows for data, dashed ones for what makes something happen;
-/// devices at the edge. Both are in the order of the table.
+/// Writes the language of the tool dot: components in boxes of their activities, with rates, deadlines and
+/// the priorities of the machine's plan; solid arrows for data, dashed ones for reactions; devices at the
+/// edge. All in the order of the table.
 std::string to_dot(const AcceptedMachine& machine);
 
 } // namespace tappet::chart

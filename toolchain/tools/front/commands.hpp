@@ -1,4 +1,4 @@
-// The words of the front door as one table: help, completion and what is refused follow from it.
+// The commands of `tappet` as one table: it defines help, completion and refusals.
 #pragma once
 
 #include "toolchain/command_line.hpp"
@@ -10,26 +10,26 @@ namespace tappet::front {
 
 using Words = std::vector<std::string>;
 
-/// What stands after a command.
+/// The words after a command.
 struct Given {
-    CommandLine line{}; ///< views of `words`; empty where the command passes everything on
+    CommandLine line{}; ///< views of `words`; empty if the command passes everything on
     Words words{};
-    Words behind{}; ///< after "--": they go as they are to the program that the command starts
+    Words behind{}; ///< after "--": passed unchanged to the program that the command starts
 };
 
 struct Command {
     std::string_view name;
-    std::string_view takes; ///< its words, as they are printed
+    std::string_view takes; ///< its words, as printed
     std::string_view help;
     std::span<const Option> options{};
     Others others = Others::refused;
-    std::span<const Option> kinds{}; ///< of its words, if they are limited
-    bool passes_on = false;          ///< it is somebody else's command line
+    std::span<const Option> kinds{}; ///< its allowed words, if they are limited
+    bool passes_on = false;          ///< the command line belongs to another program
     int (*run)(const Given&) = nullptr;
 };
 
-/// For a shell: what may stand in place of the last word, which is begun. Not real-time; it looks into the
-/// folder's CMakeLists.txt. Empty: file names, or whatever the shell thinks of.
+/// Returns candidates for the last, unfinished word, for a shell. Reads the folder's CMakeLists.txt. Empty:
+/// file names, or the shell's default. Not real-time.
 [[nodiscard]] Words completions(std::span<const Command> commands, const Words& words);
 
 } // namespace tappet::front

@@ -1,4 +1,4 @@
-// What a shell completes.
+// Completes words for a shell.
 #include "toolchain/tools/front/commands.hpp"
 #include "toolchain/tools/front/project.hpp"
 

@@ -1,4 +1,4 @@
-// Reads summaries.
+// Parses summaries.
 #include "toolchain/tools/front/figures.hpp"
 
 #include <nlohmann/json.hpp>

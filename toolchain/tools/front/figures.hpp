@@ -1,4 +1,4 @@
-// What a machine's activities took, from the summary of a run.
+// The time that a machine's activities took, from the summary of a run.
 #pragma once
 
 #include <expected>
@@ -6,8 +6,8 @@
 
 namespace tappet::front {
 
-/// A line for each activity: processor time beside what its row claims, response beside its deadline. The
-/// error is what is wrong with the summary's text.
+/// Returns one line per activity: processor time and its row's claim, response and its deadline. The error
+/// states the fault in the summary's text.
 [[nodiscard]] std::expected<std::string, std::string> figures_of(const std::string& summary);
 
 } // namespace tappet::front

@@ -1,6 +1,6 @@
-// tappet: the front door. Writes a new machine's project, builds it, runs it, tests it, measures it, draws
-// it, boots it on the bench, writes its image, flashes it and looks into it; each by a program that also
-// stands for itself.
+// tappet: the command line tool. It creates a new machine's project, builds, runs, tests, measures and draws
+// it, boots it on the bench, writes and flashes its image, and browses it. Each command starts a program that
+// also works by itself.
 #include "toolchain/machine/host_options.hpp"
 #include "toolchain/tools/chart/options.hpp"
 #include "toolchain/tools/front/commands.hpp"
@@ -34,10 +34,10 @@ int fail(const std::string& why) {
     return wrong_use;
 }
 
-/// Where this program lies, and with it the others.
+/// Returns the folder of this program and the others.
 fs::path beside_us() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
-/// Installed at <prefix>/lib/tappet; else the tools of a clone's build tree.
+/// Returns true when installed at <prefix>/lib/tappet; otherwise these are the tools of a clone's build tree.
 bool is_installed() { return fs::exists(beside_us() / "../cmake/Tappet/TappetConfig.cmake"); }
 
 int become(const Words& words) {
@@ -67,7 +67,7 @@ Words with(Words words, const Words& more) {
     return words;
 }
 
-/// Of this folder: the one that --machine names, or the first. Empty: why was said.
+/// Returns the machine that --machine names, or the first of this folder. Empty: the reason was printed.
 std::string machine_here(const Given& given) {
     const auto machines = machines_of("CMakeLists.txt");
     if (!machines) {
@@ -81,7 +81,7 @@ std::string machine_here(const Given& given) {
     return {};
 }
 
-/// The project of this folder, configured and built: all of it, or these targets. False: why was said.
+/// Configures and builds this folder's project, or these targets. False: the reason was printed.
 bool is_built(const Words& targets) {
     if (!fs::exists("build/build.ninja")) {
         Words configure{"cmake", "-S", ".", "-B", "build", "-G", "Ninja"};
@@ -114,7 +114,7 @@ int build(const Given& given) {
 
 int run_host(const Given& given) {
     const auto machines = machines_of("CMakeLists.txt");
-    if (given.line.has("--help")) { // who asks what there is does not want to wait for a build
+    if (given.line.has("--help")) { // help must not wait for a build
         const std::string program = machines ? "build/" + machines->front() : "";
         if (fs::exists(program)) return become({program, "--help"});
         std::cout << "tappet run: a machine with its plant in one process; the plant's own options are shown "
@@ -150,7 +150,7 @@ int test(const Given& given) {
     return is_built({}) ? become(with(ctest, given.behind)) : 1;
 }
 
-/// Kernels and foreign sources of the package, unless somebody has others.
+/// Uses the kernels and foreign sources of the package, unless the environment names others.
 void use_what_is_installed() {
     if (is_installed()) ::setenv("TAPPET_CACHE", (beside_us() / "../../share/tappet/foreign").c_str(), 0);
 }
@@ -161,14 +161,14 @@ int bench(const Given& given) {
     if (!is_built({machine + "-bench", machine + "-plant"})) return 1;
     use_what_is_installed();
     return become({(beside_us() / "tappet-bench").string(),
-                   "--board", // what the machine is not bound to lies idle
+                   "--board", // devices that the machine is not bound to stay idle
                    "--timeout", "600", "--file", "build/" + machine + "-bench.stripped=/bin/firmware",
                    "--file", "build/" + machine + "-plant=/bin/plant", "--run", "plant &", "--run",
                    "@sleep 0.3", "--run", "firmware --for " + std::string{given.line.text("--for", "10")},
                    "--run", "@signal plant TERM", "--run", "@wait plant"});
 }
 
-/// For the bench's board the plant comes along, since nobody else stands at its wires.
+/// Writes the image; for the bench's board with the plant, because nothing else is at its wires.
 int image(const Given& given) {
     const std::string machine = machine_here(given);
     if (machine.empty()) return wrong_use;
@@ -211,7 +211,7 @@ int chart(const Given& given) {
     return become(program);
 }
 
-/// In a clone they are those of the framework.
+/// Shows the figures; in a clone, those of the framework.
 int figures(const Given& given) {
     if (fs::exists("ci/figures")) return become(with({"ci/figures"}, given.words));
     const std::string machine = machine_here(given);
@@ -220,7 +220,7 @@ int figures(const Given& given) {
     const std::string summary = "build/figures.json";
     const int ending = run({"build/" + machine, "--real", "--quiet", "--summary", summary, "--for",
                             std::string{given.line.text("--for", "10")}});
-    if (ending != 0 && ending != 1) return ending; // 1: the plant had not seen enough, which is no figure
+    if (ending != 0 && ending != 1) return ending; // 1: the plant wanted a longer run; the figures are valid
     std::ifstream file{summary};
     const auto text = figures_of({std::istreambuf_iterator<char>{file}, {}});
     if (!text) return fail(text.error());
@@ -348,7 +348,7 @@ int help() {
     return 0;
 }
 
-/// Whose option one of the words is that is none of this command. A plant may have options of any name.
+/// Returns the command to which a word's option belongs, if not to this one. A plant may have any option.
 std::string owner_of(const Command& command, const Words& words) {
     for (const std::string& word : words)
         for (const Command& each : commands) {

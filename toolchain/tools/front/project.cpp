@@ -1,4 +1,4 @@
-// Writing projects from templates.
+// Writes projects from templates.
 #include "toolchain/tools/front/project.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A name that C++, CMake and a file system take.
+/// Returns true for a name that is valid in C++, CMake and a file system.
 bool is_name(const std::string& name) {
     static const std::regex good{"[a-z][a-z0-9]*(_[a-z0-9]+)*"};
     return std::regex_match(name, good);

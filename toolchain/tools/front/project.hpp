@@ -1,4 +1,4 @@
-// A machine's project: written from templates, and its machine's name read back.
+// A machine's project: writes it from templates, and reads the names of its machines.
 #pragma once
 
 #include <expected>
@@ -16,24 +16,24 @@ struct Choice {
     bool cam = false;
 };
 
-/// Into a folder of that name, which is not there yet; files without a line are left out. Empty: it is
-/// written; else what is wrong and the cure.
+/// Writes the project into a new folder of that name; leaves out files without a line. Returns empty on
+/// success; otherwise the fault and its cure.
 [[nodiscard]] std::string write_project(const std::filesystem::path& templates, const Choice& choice);
 
-/// A template's text for a choice: @NAME@ and @TITLE@ stand for its names; a line that begins with @can,
-/// @modbus, @cam or @bus (of CAN, for one of the two) is there with it, one with @nocan and so on without it;
-/// with several when all are so.
+/// Fills in a template's text for a choice: @NAME@ and @TITLE@ stand for its names. A line that begins with
+/// @can, @modbus, @cam or @bus (CAN, for one of the two) is kept if it was chosen, one with @nocan and so on
+/// if not; a line with several is kept if all apply.
 [[nodiscard]] std::string filled(std::string_view text, const Choice& choice);
 
-/// Of each tappet_machine(..) of a project, one at least. The error names the cure.
+/// Returns the name of each tappet_machine(..) of a project, at least one. The error includes the cure.
 [[nodiscard]] std::expected<std::vector<std::string>, std::string>
 machines_of(const std::filesystem::path& cmake);
 
-/// The names of a machine's boards, as its programs have them: of boards/my_box.hpp it is my_box.
+/// Returns the names of a machine's boards, as in its programs: for boards/my_box.hpp, my_box.
 [[nodiscard]] std::vector<std::string> boards_of(const std::filesystem::path& cmake,
                                                  std::string_view machine);
 
-/// Whether a source in the folder names an option, as a plant of its own does. What was built is passed over.
+/// Returns whether a source in the folder names an option, as the machine's plant may. Skips built files.
 [[nodiscard]] bool has_option(const std::filesystem::path& folder, std::string_view option);
 
 } // namespace tappet::front

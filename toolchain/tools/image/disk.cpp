@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Partitions laid out here, written by sgdisk, mtools and mke2fs, none of which needs root or a mount.
+// Lays out the partitions; sgdisk, mtools and mke2fs write them, without root or a mount.
 #include "toolchain/tools/image/disk.hpp"
 
 #include "board/box/slot.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t sectors_of_mib(std::uint64_t mib) { return mib * 1024 * 1024 / sector_bytes; }
 
-/// Fixed: nothing of an image is drawn by lot.
+/// Fixed: nothing in an image is random.
 std::string guid(unsigned number) { return "74617070-6574-4d00-8000-00000000000" + std::to_string(number); }
 
 void make_fat(const fs::path& file, const Partition& partition, unsigned number) {
@@ -32,7 +32,7 @@ void put(const fs::path& fat, const fs::path& file, const std::string& name) {
     run_tool({"mcopy", "-i", fat.string(), file.string(), "::" + name});
 }
 
-/// The file system of a slot: the kernel, the loader's state, its label.
+/// Writes the file system of a slot: the kernel, the loader's state, its label.
 void write_slot(const fs::path& file, const Partition& partition, const DiskParts& parts,
                 const init::BootState& state, unsigned number, const fs::path& work) {
     make_fat(file, partition, number);
@@ -49,7 +49,7 @@ void write_slot(const fs::path& file, const Partition& partition, const DiskPart
     put(file, parts.kernel, file_in_slot);
 }
 
-/// Blocks of zeros stay holes.
+/// Copies a file; blocks of zeros stay holes.
 void copy_into(std::fstream& disk, const fs::path& file, const Partition& partition) {
     std::ifstream from{file, std::ios::binary};
     std::string block(1024 * 1024, '\0');
@@ -84,7 +84,7 @@ std::string kernel_of(const Partition& slot) { return "C:" + slot.label + ":" + 
 std::uint64_t disk_bytes() {
     const Partition& last = partitions().back();
     return last.first_sector * sector_bytes + last.bytes() +
-           1024 * 1024; // the table's second copy stands there
+           1024 * 1024; // the last MiB holds the table's second copy
 }
 
 void write_data(const fs::path& file) {

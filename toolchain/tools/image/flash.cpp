@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t piece_bytes = 1024 * 1024;
-/// At the end of a disk the second copy of an old partition table may stand.
+/// The end of a disk may hold the second copy of an old partition table.
 constexpr std::size_t old_table_bytes = 64 * 512;
 
 class File {
@@ -73,7 +73,7 @@ private:
     int descriptor_;
 };
 
-/// Of a disk its own name and those of its partitions, as the kernel has them: "sdb", "sdb1".
+/// Returns the disk's own name and the base of its partitions', as in the kernel: "sdb", "sdb1".
 std::string disk_of(const fs::path& device) {
     struct stat facts{};
     if (::stat(device.c_str(), &facts) != 0 || !S_ISBLK(facts.st_mode)) return {};
@@ -85,7 +85,7 @@ std::string disk_of(const fs::path& device) {
     return (fs::exists(real / "partition") ? real.parent_path() : real).filename().string();
 }
 
-/// The line of /proc/mounts or /proc/swaps that uses a disk or a part of it.
+/// Returns the line of /proc/mounts or /proc/swaps that uses a disk or a part of it.
 std::string user_of(const std::string& disk) {
     for (const char* table : {"/proc/mounts", "/proc/swaps"}) {
         std::ifstream lines{table};
@@ -142,13 +142,13 @@ void flash(const fs::path& image, const fs::path& device,
         }
     };
     {
-        const File to{device, O_WRONLY | O_EXCL}; // of a disk in use the kernel refuses it, too
+        const File to{device, O_WRONLY | O_EXCL}; // the kernel also refuses this for a disk in use
         if (to.bytes() > all + old_table_bytes)
             to.write(to.bytes() - old_table_bytes, std::string(old_table_bytes, '\0'));
         pieces([&](std::uint64_t at, const std::string& bytes) { to.write(at, bytes); }, 0);
         if (::fsync(to.descriptor()) != 0)
             throw Fault("cannot write " + device.string() + ": " + std::strerror(errno));
-        ::ioctl(to.descriptor(), BLKFLSBUF, 0); // of a file there is nothing to forget
+        ::ioctl(to.descriptor(), BLKFLSBUF, 0); // fails for a file, which has no such cache
         ::posix_fadvise(to.descriptor(), 0, 0, POSIX_FADV_DONTNEED);
     }
     const File back{device, O_RDONLY};

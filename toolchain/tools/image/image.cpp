@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Root file system, unified kernel image, disk.
+// Builds the root file system, the unified kernel image and the disk.
 #include "toolchain/tools/image/image.hpp"
 
 #include "board/box/disk.hpp"
@@ -26,12 +26,12 @@ constexpr const char* boot_guard = "/usr/lib/x86_64-linux-gnu/efibootguard/";
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// Everything inside: kernel, loader, what the firmware is linked of, Tappet itself. Init is linked of a part
-/// of that.
+/// Lists the contents: kernel, loader, the libraries linked into the firmware, Tappet itself. Init is linked
+/// from a part of those.
 std::string bill_of(const Request& request, const box::Facts& facts, const std::string& release) {
     fs::path list = request.firmware; // <name>.stripped
     std::vector<Component> parts = linked_into(list.replace_extension("inputs"), request.kernel / "../..");
-    // Init's list lies beside it.
+    // Init's list is beside it.
     fs::path of_init = request.init;
     for (Component& each : linked_into(of_init += ".inputs", request.kernel / "../.."))
         parts.push_back(std::move(each));
@@ -60,18 +60,18 @@ std::string command_line_of(const box::Facts& facts) {
 
 namespace {
 
-/// What sign() finds in the folder.
+/// The files that sign() finds in the folder.
 struct Folder {
     fs::path at;
     [[nodiscard]] fs::path disk() const { return at / "disk.img"; }
     [[nodiscard]] fs::path kernel() const { return at / "tappet.efi"; }
     [[nodiscard]] fs::path loader() const { return at / "loader.efi"; }
     [[nodiscard]] fs::path update() const { return at / "update.tap"; }
-    /// Without a signature, with the watchdog's time behind it.
+    /// Without a signature; followed by the watchdog's time.
     [[nodiscard]] fs::path header() const { return at / "manifest"; }
 };
 
-/// The disk and the update from what lies in the folder, signed if there are keys.
+/// Writes the disk and the update from the files in the folder, signed if there are keys.
 void finish(const Folder& folder, const fs::path& keys) {
     const std::string known = read_file(folder.header());
     DiskParts parts{.loader = folder.loader(), .kernel = folder.kernel(), .header = {}, .certificates = {}};
@@ -93,7 +93,7 @@ void finish(const Folder& folder, const fs::path& keys) {
     write_disk(folder.disk(), parts, work / "");
 }
 
-/// What the box's init reads of the firmware, and of the request.
+/// Returns the lines that the box's init reads, from the firmware and the request.
 std::string lines_of(const Request& request) {
     if (!fs::exists(request.kernel / "vmlinuz"))
         throw Fault("there is no kernel for a box at " + request.kernel.string() +

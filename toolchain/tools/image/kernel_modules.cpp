@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads modules.dep, modules.alias and modules.builtin, which depmod wrote.
+// Reads modules.dep, modules.alias and modules.builtin, as depmod writes them.
 #include "toolchain/tools/image/kernel_modules.hpp"
 
 #include "toolchain/tools/image/tool.hpp"
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The kernel takes - and _ for the same.
+/// Maps - to _: the kernel treats them as the same.
 std::string plain(std::string name) {
     std::ranges::replace(name, '-', '_');
     return name;
@@ -26,7 +26,7 @@ struct Known {
     fs::path file{};
     std::vector<std::string> needs{};
     std::vector<std::string>
-        wants{}; ///< by name or by what they offer; the kernel would ask modprobe for them
+        wants{}; ///< by name, or by an alias that they offer; the kernel would ask modprobe for them
     std::vector<std::string> devices{};
     std::vector<std::string> offers{};
 };
@@ -49,7 +49,7 @@ public:
             std::istringstream words{line};
             std::string word, pattern, module;
             if (!(words >> word >> pattern >> module) || word != "alias" || !find(module)) continue;
-            // A device has a bus before a colon. These boxes have no device tree.
+            // A device alias has a bus before a colon. These boxes have no device tree.
             if (pattern.starts_with("of:")) continue;
             Known& of = known_.at(plain(module));
             (pattern.contains(':') ? of.devices : of.offers).push_back(pattern);
@@ -75,7 +75,7 @@ public:
         const auto found = known_.find(plain(name));
         return found == known_.end() ? nullptr : &found->second;
     }
-    /// What must be there before a module, each before those that need it.
+    /// Adds the modules required by a module, each before those that need it.
     void order(const std::string& name, std::vector<std::string>& before) const {
         const Known& module = known_.at(name);
         const auto add = [&](const std::string& other) {
@@ -89,7 +89,7 @@ public:
     }
 
 private:
-    /// Of several the one that every processor can run.
+    /// Returns the module that offers it; among several, the one that every processor can run.
     [[nodiscard]] std::string who_offers(const std::string& wanted) const {
         if (find(wanted) != nullptr) return plain(wanted);
         for (const auto& [name, module] : known_)
@@ -135,7 +135,7 @@ KernelModules choose_modules(const std::vector<std::string>& rows, const std::ve
     const std::set<std::string> unnamed{others.begin(), others.end()};
     for (const std::string& name : unnamed)
         if (!chosen.files.contains(name))
-            add(name, {}, "module "); // else it has a row of its own, perhaps with parameters
+            add(name, {}, "module "); // else it has its own row, perhaps with parameters
     return chosen;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files of a kernel a board's modules need, and the table that the box's init reads instead of udev's.
+// Finds the kernel files that a board's modules need, and the table that the box's init reads, not udev.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,9 @@ struct KernelModules {
     std::map<std::string, std::filesystem::path> files{}; ///< by name
 };
 
-/// `rows` are the board's: a name, and parameters after it; `later` are those that come when the machine has
-/// armed. `tree` is <kernel>/lib/modules/<release>, with
-/// depmod's tables. What the kernel has built in is left out. A fault: a name that the kernel does not have.
+/// `rows` are the board's: a name, and parameters after it. `later` are modules to load once the machine has
+/// armed. `tree` is <kernel>/lib/modules/<release>, with depmod's tables. Leaves out built-in modules. Throws
+/// a fault for a name that the kernel does not have.
 KernelModules choose_modules(const std::vector<std::string>& rows, const std::vector<std::string>& later,
                              const std::filesystem::path& tree);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs by libsodium and openssl; signatures of UEFI's programs by osslsigncode, whose clock stands still.
+// libsodium and openssl make the pairs; osslsigncode, under a fixed clock, signs UEFI programs.
 #include "toolchain/tools/image/keys.hpp"
 
 #include "toolchain/tools/image/tool.hpp"
@@ -16,7 +16,7 @@ struct Pair {
     const char* name;
     const char* subject;
 };
-/// In the order in which a box's setup takes them: with the last one it locks.
+/// In the order in which a box's setup accepts them: the last one locks it.
 constexpr Pair pairs[] = {
     {"db", "Tappet images"}, {"KEK", "Tappet key exchange key"}, {"PK", "Tappet platform key"}};
 

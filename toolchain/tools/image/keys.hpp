@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys of who makes a machine's images: one pair signs updates, three are UEFI's (platform key, key
-// exchange key, and db, which signs what boots).
+// The image maker's keys: one pair signs updates, three are UEFI's (platform key, key exchange key, and db,
+// which signs bootable programs).
 #pragma once
 
 #include "board/box/update.hpp"
@@ -10,20 +10,20 @@
 
 namespace tappet::image {
 
-/// All of them anew into a folder, unless some are there. `public`, `*.crt` and `*.cer` may be shown to
-/// everybody; `secret` and `*.key` sign, and stay with their maker.
+/// Creates all keys in a folder, unless some exist. `public`, `*.crt` and `*.cer` may be published; `secret`
+/// and `*.key` sign, and must stay with their owner.
 void write_keys(const std::filesystem::path& folder);
 
-/// In 64 hexadecimal digits; a fault: there is none.
+/// Returns the key as 64 hexadecimal digits; throws a fault when there is none.
 [[nodiscard]] std::string public_key(const std::filesystem::path& folder);
-/// Whether what signs lies there too.
+/// Returns whether the secret keys are there too.
 [[nodiscard]] bool can_sign(const std::filesystem::path& folder);
 [[nodiscard]] box::SecretKey secret_key(const std::filesystem::path& folder);
 
-/// A program of UEFI, signed in its place by db. The same in makes the same out.
+/// Signs a UEFI program in place with db. The same input gives the same output.
 void sign_program(const std::filesystem::path& program, const std::filesystem::path& folder);
 
-/// What the box's setup is given once, in the order in which it takes them: db.cer, KEK.cer, PK.cer.
+/// The certificates for the box's setup, in the order in which it accepts them: db.cer, KEK.cer, PK.cer.
 [[nodiscard]] std::vector<std::filesystem::path> certificates(const std::filesystem::path& folder);
 
 } // namespace tappet::image

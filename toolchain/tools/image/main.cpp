@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tappet-image: writes what is flashed onto a box, from the firmware that shall run there; flashes it; renews
-// a slot.
+// tappet-image: builds an image for a box from a firmware; flashes it; renews a slot.
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/image/flash.hpp"
 #include "toolchain/tools/image/image.hpp"
@@ -82,7 +81,7 @@ int write(const CommandLine& line) {
     return 0;
 }
 
-/// A progress by tenths.
+/// Prints progress by tenths.
 class Tenths {
 public:
     void operator()(std::uint64_t bytes, std::uint64_t of) {

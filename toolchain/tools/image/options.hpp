@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be said of an image and of flashing it: to this program, and to the front door, which hands it on.
+// The options for an image and for flashing it: of this program, and of `tappet`, which passes them on.
 #pragma once
 
 #include "toolchain/command_line.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connection for each request.
+// Opens one connection per request.
 #include "toolchain/tools/image/remote.hpp"
 
 #include "board/box/facts.hpp"
@@ -22,17 +22,17 @@ namespace tappet::image {
 
 namespace {
 
-constexpr timeval patience{30, 0};            // for the other end; the box needs seconds to judge an update
-constexpr std::size_t most_told = 256 * 1024; // of what may be no box
+constexpr timeval patience{30, 0};            // for the other end; the box needs seconds to check an update
+constexpr std::size_t most_told = 256 * 1024; // limit, since the other end may be no box
 
-/// What comes from the network is text on a terminal, and does nothing there.
+/// Returns text from the network without control characters, which could affect the terminal.
 std::string only_text(std::string text) {
     std::ranges::replace_if(
         text, [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c > '~'; }, '?');
     return text;
 }
 
-/// Closed also when what follows its opening is thrown.
+/// Closes the socket even when an exception follows its opening.
 struct Socket {
     int number = -1;
     Socket() = default;
@@ -75,7 +75,7 @@ public:
         const box::Words& words = facts.lines().front();
         order_ = {{}, words[0], words[1], words[2]};
     }
-    /// False: the other end has hung up; it may have said why.
+    /// Sends the bytes. Returns false when the other end has hung up; it may have sent the reason.
     bool send(std::string_view bytes) const {
         while (!bytes.empty()) {
             const ssize_t n = ::send(socket_.number, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -93,7 +93,7 @@ public:
                         " hung up without an answer; ask for its status by tappet box " + box_);
         return {all.substr(0, line) == "ok", only_text(all.substr(line + 1))};
     }
-    /// To be given a verb.
+    /// Returns the order; the caller adds a verb.
     [[nodiscard]] box::Order order() const { return order_; }
 
 private:

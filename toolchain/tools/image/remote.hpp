@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A box over the network: what runs there, an update for it, an order. board/box/service.hpp is the other
-// end.
+// A box over the network: reads its status, sends it an update or an order. board/box/service.hpp is the
+// other end.
 #pragma once
 
 #include "board/box/update.hpp"
@@ -17,9 +17,9 @@ struct Answer {
     std::string text{};
 };
 
-/// "192.168.8.1", or "192.168.8.1:4848". What is wrong is thrown as a Fault.
+/// `box`: "192.168.8.1", or "192.168.8.1:4848". Throws a Fault on failure.
 [[nodiscard]] Answer ask_status(const std::string& box);
-/// `done` is told how far.
+/// Calls `done` with the progress.
 [[nodiscard]] Answer send_update(const std::string& box, const std::filesystem::path& file,
                                  const std::function<void(std::uint64_t bytes, std::uint64_t of)>& done);
 /// `verb`: one of box::order_verbs.

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Archives that this tree builds from somebody else's source, and where its version stands.
+/// Archives that this tree builds from foreign source, and the place of their version.
 struct BuiltHere {
     std::string_view archive;
     const char* source; ///< a folder of the cache, or a Debian package
@@ -28,8 +28,8 @@ constexpr BuiltHere built_here[] = {{"libtappet_libmodbus.a", "libmodbus", true}
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// dpkg knows some files by their name before /usr took in the other folders. It is asked once: each time it
-/// reads all that is installed.
+/// Returns the packages of the files. dpkg knows some files by their path before /usr was merged. Calls dpkg
+/// once, because each call reads the whole database.
 std::set<std::string> packages_of(const std::set<std::string>& files) {
     std::vector<std::string> words{"dpkg-query", "-S"};
     for (const std::string& file : files) {
@@ -39,7 +39,7 @@ std::set<std::string> packages_of(const std::set<std::string>& files) {
     std::istringstream lines{files.empty() ? std::string{} : run_tool(words, Trouble::is_told)};
     std::set<std::string> packages, owned;
     for (std::string line;
-         std::getline(lines, line);) { // "libc6-dev:amd64: /usr/lib/..", or that nobody has it
+         std::getline(lines, line);) { // "libc6-dev:amd64: /usr/lib/..", or that no package has the file
         const std::size_t at = line.rfind(": /");
         if (at == line.npos || line.starts_with("dpkg-query: ")) continue;
         packages.insert(line.substr(0, line.find_first_of(":,")));
@@ -83,7 +83,7 @@ std::vector<Component> linked_into(const fs::path& list, const fs::path& cache) 
             components.push_back({path.parent_path().filename().string(),
                                   first_line(read_file(path.parent_path() / "VERSION"))});
         else if (word.starts_with('/') &&
-                 path.extension() != ".ld") // a program's own parts are named from its build tree on
+                 path.extension() != ".ld") // a program's own parts have names relative to its build tree
             files.insert(path.string());
     }
     packages.merge(packages_of(files));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is inside an image, by package and version, in the form CycloneDX.
+// The contents of an image, by package and version, in the format CycloneDX.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ struct Component {
     friend auto operator<=>(const Component&, const Component&) = default;
 };
 
-/// Of every file that the linker took for a program, from the list that it wrote (ld --dependency-file): the
-/// Debian package it belongs to. Foreign libraries that are built here have their version in `cache`. A file
-/// of nobody is a fault: nothing is left out.
+/// Returns, for every file that the linker used for a program, by its list (ld --dependency-file), the Debian
+/// package that it belongs to. Foreign libraries built here have their version in `cache`. A file without a
+/// package is a fault: nothing is left out.
 [[nodiscard]] std::vector<Component> linked_into(const std::filesystem::path& list,
                                                  const std::filesystem::path& cache);
 
-/// The installed package's version.
+/// Returns the installed package's version.
 [[nodiscard]] Component debian_package(const std::string& name, const std::string& kind = "library");
 
-/// Sorted, each once. No date and no random number: the same image has the same list.
+/// Writes the list sorted, each entry once. No date and no random number: the same image has the same list.
 [[nodiscard]] std::string bill_of_materials(const std::string& machine, const std::string& board,
                                             std::uint32_t version, std::vector<Component> components);
 

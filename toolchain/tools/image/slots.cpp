@@ -50,14 +50,14 @@ std::uint32_t install(const fs::path& disk, const fs::path& kernel) {
         write(disk, to, work / "text", name);
     };
     init::BootState state = read_slot(disk, other).value();
-    state.state = init::SlotState::good; // it boots whatever becomes of the new version
+    state.state = init::SlotState::good; // it boots whatever happens to the new version
     write_text(other, init::boot_state_file, init::encode(state));
     write(disk, slot, kernel, file_in_slot);
     read(disk, slot, file_in_slot, work / "back");
     if (read_file(work / "back") != read_file(kernel))
         throw Fault(disk.string() + " does not keep what was written to " + slot.name +
                     "; take another disk");
-    // What it is its header would tell, and that is an update's.
+    // Deletes the slot's header, which identifies a kernel: only an update brings one.
     run_tool({"mdel", "-i", place(disk, slot), "::" + std::string{box::header_file}}, Trouble::is_told);
     write_text(slot, box::record_file, box::encode(box::Record{}));
     state.kernel = kernel_of(slot);

@@ -22,7 +22,7 @@ namespace {
     ::setenv("E2FSPROGS_FAKE_TIME", standing_clock, 1);
     ::setenv("TZ", "UTC", 1);
     ::setenv("LC_ALL", "C", 1);
-    ::setenv("PATH", "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", 1); // sgdisk is root's
+    ::setenv("PATH", "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", 1); // for sgdisk: sbin
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);

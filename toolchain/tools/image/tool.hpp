@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong, and other people's programs that do a part of the work.
+// Faults, and the external programs that do a part of the work.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace tappet::image {
 
-/// What, where and the cure.
+/// The text names what, where and the cure.
 struct Fault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The clock of those programs, in seconds: 1980-01-02, since a FAT knows nothing older.
+/// The fixed clock of those programs, in seconds: 1980-01-02, because a FAT has no earlier date.
 inline constexpr const char* standing_clock = "315619200";
 
-/// Runs a program of this machine under a clock that stands still, so that what it writes is the same at any
-/// time. Its standard output; a fault carries its last words.
-enum class Trouble : std::uint8_t { is_a_fault, is_told }; ///< told: the caller reads it in what was said
+/// Runs a program of this machine under a fixed clock, so that its output does not depend on the time.
+/// Returns its standard output; a fault includes its last words.
+enum class Trouble : std::uint8_t { is_a_fault, is_told }; ///< told: the caller reads it in the output
 std::string run_tool(const std::vector<std::string>& words, Trouble trouble = Trouble::is_a_fault);
 
 std::string read_file(const std::filesystem::path& path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses in the table of sections of a portable executable.
+// Edits addresses in the section table of a portable executable.
 #include "toolchain/tools/image/unified_kernel.hpp"
 
 #include "toolchain/tools/image/tool.hpp"
@@ -13,7 +13,7 @@ namespace tappet::image {
 
 namespace {
 
-// As the format has them.
+// Offsets and sizes of the format.
 constexpr std::size_t at_header = 0x3c, section_count = 6, optional_bytes = 20, optional_header = 24,
                       section_alignment = 32, image_bytes = 56, section_row = 40, name_bytes = 8,
                       virtual_bytes = 8, virtual_address = 12;
@@ -57,7 +57,7 @@ void draw_together(std::string& unified) {
     for (std::size_t i = 0; i < image.number(header + section_count, 2); ++i) {
         const std::size_t row = rows + i * section_row;
         const std::string_view name = image.text(row, name_bytes);
-        // The stub finds these by their row; the others know where they stand.
+        // The stub finds these two by their row; the other sections depend on their address.
         if (name.starts_with(".kernel") || name.starts_with(".initrd"))
             image.set(row + virtual_address, aligned(end));
         end = std::max(end, image.number(row + virtual_address) + image.number(row + virtual_bytes));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A unified kernel image that a box with little memory can load.
+// Makes a unified kernel image loadable on a box with little memory.
 #pragma once
 
 #include <string>
 
 namespace tappet::image {
 
-/// The maker of unified kernels places kernel and root far behind its stub, so that the loader asks for 100
-/// MB in one piece. They are placed one behind the other instead, before the image is signed. A fault: it is
-/// none.
+/// Places kernel and root directly behind the stub, before the image is signed. The tool that makes unified
+/// kernels places them far behind it, so that the loader would request 100 MB in one piece. Throws a fault
+/// when the input is no unified kernel.
 void draw_together(std::string& unified);
 
 } // namespace tappet::image

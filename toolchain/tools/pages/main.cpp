@@ -1,4 +1,4 @@
-// tappet-pages refusals|reference TREE FILE: writes one of the pages that the code makes.
+// tappet-pages refusals|reference TREE FILE: writes one of the pages that are generated from the code.
 #include "toolchain/tools/pages/pages.hpp"
 
 #include <fstream>

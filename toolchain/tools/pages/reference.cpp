@@ -39,7 +39,7 @@ namespace tappet::pages {
 
 namespace {
 
-// Each kind of row once, so that each kind of facet is shown.
+// Each kind of row once, so that each kind of facet appears.
 constexpr auto frames = can::signal_map(
     can::receive(can::standard(1), "in_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
                  can::signal("measure", 16, 16).times(0.1).in("mm")),
@@ -60,7 +60,7 @@ constexpr auto registers =
                                        modbus::stale_after(3s), modbus::word("measure", 0).in("mm").safe(0)));
 
 constexpr auto bus_clock = can::clock(can::standard(0x100), can::every(100ms));
-/// What crosses a wire, once each.
+/// Everything that crosses a wire, once each.
 struct Crosses {
     Output<double> value{};
     Input<double> heard{};
@@ -218,7 +218,7 @@ std::optional<std::string> put(std::ostream& page, std::string_view heading, con
     return std::nullopt;
 }
 
-/// Of a kind of device without words nothing stands in a row but its names.
+/// Returns the drivers with words. For a driver without words, a row contains only names.
 std::vector<std::string> drivers_with_words(const std::filesystem::path& tree) {
     std::vector<std::string> found;
     for (const auto& folder : std::filesystem::directory_iterator{tree / "drivers"})

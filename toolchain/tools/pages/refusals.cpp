@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// After the cause; a sentence of a map has a colon there.
+/// Returns where the cure starts, after the cause; a sentence of a map has a colon there.
 std::size_t cure_of(std::string_view sentence) {
     const std::size_t semicolon = sentence.rfind("; ");
     return semicolon != sentence.npos ? semicolon : sentence.rfind(": ");
@@ -27,7 +27,7 @@ std::vector<fs::path> sources_in(const fs::path& folder) {
     return files;
 }
 
-/// A row is {"name", what plants it, R"(sentence)"}.
+/// Reads rows {"name", the planted fault, R"(sentence)"}.
 void add_rows(const fs::path& file, std::vector<Refusal>& found) {
     static const std::regex part{R"((?:^|\n)\s*\{\"([a-z0-9_]+)\",|R\"(~?)\(([^\n]*)\)\2\"\})"};
     const std::string text = contents_of(file);
@@ -52,7 +52,7 @@ void add_case(const fs::path& file, std::vector<Refusal>& found) {
         found.push_back({"seen by a compiler only, or through it", name, line.substr(refused.size())});
 }
 
-/// What the tests of a check beside it expect, word by word, with its cure: a whole sentence, or a row's.
+/// Adds the sentences that a check's tests expect, word by word, with cures: whole, or of a row.
 void add_expected(const fs::path& file, const std::string& topic, std::vector<Refusal>& found) {
     static const std::regex test{R"(\nTEST\w*\((\w+), (\w+)\)|,\s*((?:"(?:\\.|[^"\\])*"\s*)+)(?:\);|\},))"};
     static const std::regex literal{R"~("((?:\\.|[^"\\])*)")~"}, escape{R"(\\(.))"};

@@ -1,4 +1,4 @@
-// What headers say of their words: the comment above a declaration.
+// Reads the comments above the declarations of headers.
 #include "toolchain/tools/pages/pages.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace tappet::pages {
 
 namespace {
 
-/// "/// a" and "/// b" are "a b"; an indented line of one is an example and begins anew.
+/// Joins "/// a" and "/// b" to "a b"; an indented line is an example and starts a new line.
 void add_comment(std::string& text, std::string_view line) {
     line.remove_prefix(std::min<std::size_t>(line.size(), 3));
     const std::size_t first = line.find_first_not_of(' ');
@@ -18,7 +18,7 @@ void add_comment(std::string& text, std::string_view line) {
     text += (text.empty() ? "" : " ") + (first > 1 ? "`" + words + "`" : words);
 }
 
-/// The words of rows stand in `tappet` or in the namespace of their driver, and what serves them one deeper.
+/// The words of rows are in `tappet` or in a driver's namespace; their implementation is one level deeper.
 bool is_detail(std::string_view line) {
     return line.starts_with("namespace ") &&
            (line.contains("detail") || !line.starts_with("namespace tappet"));
@@ -43,7 +43,7 @@ std::string text_of(std::string_view header, std::string_view type) {
 }
 
 std::expected<std::vector<Word>, std::string> words(const std::string& header, std::string_view text) {
-    // What answers a number or nothing is no part of a row.
+    // Functions that return a number or nothing are not part of a row.
     static const std::regex function{
         R"(^constexpr (?!bool|void|unsigned|std::size_t)[\w:<>, ]+? (\w+\([^{]*\))(?: noexcept)?(?: \{.*)?$)"};
     static const std::regex constant{R"(^inline constexpr (?!std::size_t|unsigned)[\w:]+ (\w+)\b.*;)"};
@@ -61,7 +61,7 @@ std::expected<std::vector<Word>, std::string> words(const std::string& header, s
         static const std::regex parameters{"^template <.*> (?=constexpr )"};
         line = std::regex_replace(line, parameters, "");
         if (inside_detail || line.starts_with("template")) continue;
-        std::string joined = line; // a declaration may go over the end of a line
+        std::string joined = line; // a declaration may continue on the next line
         while (line.starts_with("constexpr ") && !joined.ends_with('{') && !joined.ends_with('}') &&
                std::getline(lines, line))
             joined += ' ' + line.substr(std::min(line.find_first_not_of(' '), line.size()));
