@@ -170,7 +170,7 @@ inline constexpr auto table = machine("carpet-loom",
         behaviour("weft", slot(nodes(200), data_bytes(2048), depth(8), command_slots(4), timers(2),
                                peers("shaft", "loom"), operations("weft.lift", "weft.weave_carpet"),
                                events("shaft.beat_up", "shaft.offer_pattern"), angle_of("shaft.angle_deg"), trial(4)))),
-    limits( // upper bounds for the drives, whatever a component writes
+    limits( // bounds of the drives' targets, whatever a component writes
         limit("main.target",                 0.0, 700.0, stop_on_breach),
         limit("warp.target",                -5.0,  40.0)));
 // clang-format on

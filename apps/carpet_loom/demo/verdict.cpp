@@ -40,7 +40,7 @@ std::string row(const char* name, const std::string& words) {
 std::string claim_of(const Json& activity) {
     const double claimed = number(activity, "claim_us");
     if (claimed == 0) return "";
-    const double measured = number(activity, "most_processor_us"); // 0: the limit was never in doubt
+    const double measured = number(activity, "most_processor_us"); // 0: the claim was never in doubt
     const double used = measured > 0 ? measured : number(activity, "longest_busy_us");
     return format("%.0f/%.0f us", used, claimed);
 }
