@@ -12,6 +12,7 @@
 #include "kernel/component/operation_interface.hpp"
 #include "kernel/component/peer_property.hpp"
 
+#include <algorithm>
 #include <new>
 #include <span>
 #include <string_view>
@@ -30,8 +31,9 @@ namespace tappet {
     if (!is_whole(*facet.type, value)) return text.add("is longer than its type; propose a shorter value");
     for (std::size_t i = 0; i < of.size(value); ++i) {
         if (of.kind == PropertySetting::Kind::text) {
-            const auto* const element = value + i * type.size;
-            if (std::memchr(element, 0, length_in(type, element)) != nullptr)
+            const std::byte* const element = value + i * type.size;
+            if (std::find(element, element + length_in(type, element), std::byte{0}) !=
+                element + length_in(type, element))
                 return text.add("holds a zero character, which no file keeps; leave it out");
             continue;
         }

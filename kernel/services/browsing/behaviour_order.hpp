@@ -29,8 +29,8 @@ struct BehaviourOrder {
     bool done = false;
 };
 
-/// Passes the characters of a request's word to `put`: those between its outer quotes, with \" and \\
-/// unescaped. False: the quoting is wrong.
+/// Passes the characters of a request's word to `put`: those between its outer quotes, with escaped quotes
+/// and backslashes unescaped. False: the quoting is wrong.
 template <class Put>
 constexpr bool unquote(std::string_view word, const Put& put) {
     const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
