@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telling the host, and giving up.
+// Reports to the host, and stops on errors.
 #include "board/bench/host.hpp"
 
 #include <cerrno>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guest's side of its ports to the host.
+// The guest's ports to the host.
 #pragma once
 
 #include "board/init/system.hpp"
@@ -9,8 +9,8 @@
 
 namespace tappet::bench {
 
-// What the host reads: one line per fact, written at once, so that a bench that hangs still tells how far it
-// got.
+// Output for the host: one line per fact, written at once, so that even a bench that hangs shows its
+// progress.
 class Results {
 public:
     void open(int descriptor) { descriptor_ = descriptor; }
@@ -25,12 +25,12 @@ private:
 
 extern Results results;
 
-// The guest cannot go on: the host must learn why, and on the kernel's console too if no port is up yet.
+// Stops the guest: tells the host why, and also the kernel's console if no port is open yet.
 [[noreturn]] void give_up(const std::string& reason);
-// The same, unless it was done.
+// Does the same when `done` is an error.
 void must(const init::Done& done);
 
-/// The port of this name to the host, opened; waits for it to appear.
+/// Opens the port of this name to the host; waits until it appears.
 int open_port(const std::string& wanted);
 
 } // namespace tappet::bench

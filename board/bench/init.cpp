@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PID 1 of the bench: brings up the box the manifest describes (kernel modules, CAN interfaces, GPIO chips),
-// runs the manifest's commands in order, hands results to the host and switches the power off. There is
-// nothing else in the guest: no shell, no service, nothing that wakes up by itself and disturbs a
-// measurement.
+// PID 1 of the bench: brings up the box in the manifest (kernel modules, CAN interfaces, GPIO chips), runs
+// the manifest's commands in order, sends results to the host and switches off. The guest contains nothing
+// else: no shell, no service, nothing that wakes up by itself and disturbs a measurement.
 
 #include "board/bench/host.hpp"
 #include "board/init/devices.hpp"
@@ -29,12 +28,12 @@ using std::chrono::milliseconds;
 struct BackgroundCommand {
     std::string name;
     pid_t pid = -1;
-    int exit_code = -1; // of a command that ended, until somebody asks
+    int exit_code = -1; // of a command that ended, until it is read
 };
 
 int console = -1;
 
-// Marks in the stream of output, for the host's eyes only; the same in bench.cpp.
+// Marks in the output stream, for the host only; the same as in bench.cpp.
 constexpr char start_of_output = '\x1d';
 constexpr char end_of_output = '\x1e';
 
@@ -42,8 +41,7 @@ bool say_to_host(char mark) { return ::write(console, &mark, 1) == 1; }
 
 std::vector<BackgroundCommand> background;
 
-// Words are parted by blanks; single or double quotes keep blanks. Nothing else is special: what needs a
-// shell brings one along.
+// Splits at blanks; single or double quotes keep blanks. A command that needs a shell must bring one.
 std::vector<std::string> split(const std::string& line) {
     std::vector<std::string> words;
     std::string word;
@@ -120,7 +118,7 @@ int report_misuse(const std::string& message) {
 }
 
 BackgroundCommand* find_background(const std::string& name) {
-    // The last one of a name is meant, so that a command can be started again.
+    // Returns the last one with this name, so that a command can be started again.
     for (auto command = background.rbegin(); command != background.rend(); ++command) {
         if (command->name == name) {
             return &*command;
@@ -129,7 +127,7 @@ BackgroundCommand* find_background(const std::string& name) {
     return nullptr;
 }
 
-// Ends when `wanted` ends, with its code; when `other` ends first, with that one's, which then is a failure.
+// Waits until `wanted` ends, and returns its code; when `other` ends first, returns its code as a failure.
 int wait_while(const BackgroundCommand& wanted, const BackgroundCommand& other) {
     while (wanted.pid > 0 && other.pid > 0) {
         int status = 0;
@@ -274,7 +272,7 @@ void hand_over(const std::string& path) {
     results.write_all(bytes);
 }
 
-/// What the host wants of this bench, line by line.
+/// The host's manifest for this bench, line by line.
 struct Manifest {
     std::vector<std::string> modules, commands, files;
     std::vector<std::pair<std::string, std::string>> devices;

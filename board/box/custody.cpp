@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps are those of tests/models/outputs.pml.
+// The steps follow tests/models/outputs.pml.
 #include "board/box/custody.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -10,9 +10,9 @@ namespace tappet::box {
 
 namespace {
 
-constexpr int touched_nothing = 2; // Ending::wrong_set_up, which no guardian hands on of what it ended
+constexpr int touched_nothing = 2; // Ending::wrong_set_up; no guardian passes it on from a machine
 constexpr std::chrono::milliseconds look_every{10};
-constexpr std::chrono::seconds reset_grace{2}; // until what was said is on the disk
+constexpr std::chrono::seconds reset_grace{2}; // time for the messages to reach the disk
 
 } // namespace
 
@@ -71,7 +71,7 @@ void Custody::end_everything() {
             processes_.say("the firmware does not end: its machine is killed, and its guardian makes the "
                            "outputs safe");
             processes_.kill_children_of(firmware_); // init.kill_machine
-            // The guardian has said so: nobody waits for its black box.
+            // Once the guardian has reported safe outputs, its black box is not awaited.
             await(guardian_patience, [this] { return !firmware_runs() || outputs_.is_safe(); });
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Partitions by name; the data partition.
+// Finds partitions by name; mounts the data partition.
 #include "board/box/disk.hpp"
 #include "kernel/base/crc.hpp"
 
@@ -35,11 +35,11 @@ std::expected<std::string, std::string> find_partition(const std::string& name) 
 
 namespace {
 
-/// As the image's writer makes the data partition.
+/// The block size that the image's writer uses for the data partition.
 constexpr std::size_t block_bytes = 1024;
 constexpr std::size_t number_bytes = sizeof(std::uint64_t);
 
-/// Where the second copy of its head is.
+/// The location of the second superblock.
 const std::vector<std::string> second_head{"-b", "8193", "-B", "1024"};
 
 struct Checked {
@@ -47,7 +47,7 @@ struct Checked {
     std::string said{};
 };
 
-/// Mends what needs no guess. Nobody else has children yet.
+/// Repairs what needs no guess. init has no other children at this time.
 Checked check(const std::string& device, const std::vector<std::string>& more,
               const std::function<void()>& meanwhile) {
     std::vector<std::string> words{"/bin/e2fsck", "-p"};
@@ -88,7 +88,7 @@ std::string numbered_blocks(std::string_view file_system) {
 
 namespace {
 
-/// Its head last: a power cut in between leaves none that could be taken for whole.
+/// Writes the superblock last, so that a power cut in between leaves none that looks valid.
 init::Done make_anew(const std::string& device, const std::function<void()>& meanwhile) {
     const std::string blocks = init::read_text(empty_data_file);
     if (blocks.empty()) return std::unexpected("the image has no empty one; write the image anew");
@@ -96,7 +96,7 @@ init::Done make_anew(const std::string& device, const std::function<void()>& mea
     std::uint64_t bytes = 0;
     bool done = disk >= 0 && ::ioctl(disk, BLKGETSIZE64, &bytes) == 0;
     for (std::array<std::uint64_t, 2> part{0, 0}; done && part[0] < bytes; part[0] += part[1]) {
-        part[1] = std::min<std::uint64_t>(4 * 1024 * 1024, bytes - part[0]); // from, and how many
+        part[1] = std::min<std::uint64_t>(4 * 1024 * 1024, bytes - part[0]); // offset and length
         done = ::ioctl(disk, BLKZEROOUT, part.data()) == 0;
         meanwhile();
     }
@@ -113,7 +113,7 @@ init::Done make_anew(const std::string& device, const std::function<void()>& mea
     return done ? init::Done{} : init::failed("write " + device);
 }
 
-/// A head of ext4 is whole when its magic number is there and its checksum, if it has one, is right.
+/// An ext4 superblock is valid when its magic number and its checksum, if it has one, are correct.
 enum class Head : std::uint8_t { none, whole, unreadable };
 
 Head look_at_head(int disk, off_t at) {
@@ -133,8 +133,8 @@ Head look_at_head(int disk, off_t at) {
                : Head::none;
 }
 
-/// e2fsck says with one code that there is no file system, that the disk cannot be read and that it had no
-/// memory. Only the first is a reason to make one: neither head is one, and both can be read.
+/// e2fsck has a single code for a missing file system, an unreadable disk and lack of memory. Only the first
+/// permits making a new one: both superblocks are readable and neither is one.
 bool has_no_file_system(const std::string& device) {
     constexpr off_t first = 1024, second = 8193 * 1024;
     const int disk = ::open(device.c_str(), O_RDONLY | O_CLOEXEC);
@@ -154,13 +154,13 @@ bool mount_it(const std::string& device, const std::string& folder) {
 
 std::expected<std::string, std::string> mount_data(const std::string& device, const std::string& folder,
                                                    const std::function<void()>& meanwhile) {
-    constexpr int mended = 1;     // above: what only a guess would mend
-    constexpr int failed = 8;     // from here on it could not do its work
-    constexpr int not_begun = 16; // and from here on it has judged nothing
+    constexpr int mended = 1;     // above: a repair would need a guess
+    constexpr int failed = 8;     // from here on the check failed
+    constexpr int not_begun = 16; // from here on it did not start
     Checked checked = check(device, {}, meanwhile);
     bool is_mounted = checked.code <= mended && mount_it(device, folder);
-    // A power cut may tear the head, of which the sum is then wrong; and of one that calls itself clean it
-    // looks at nothing else.
+    // A power cut may tear the superblock, whose checksum is then wrong; and when a superblock says that it
+    // is clean, e2fsck checks nothing else.
     for (const auto& more : {second_head, std::vector<std::string>{"-f"}}) {
         if (is_mounted || checked.code >= not_begun) break;
         checked = check(device, more, meanwhile);

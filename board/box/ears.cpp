@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One descriptor for each kind of thing that is heard.
+// One descriptor for each kind of input.
 #include "board/box/ears.hpp"
 
 #include <array>
@@ -22,7 +22,7 @@ namespace tappet::box {
 namespace {
 
 constexpr std::string_view notify_name{"\0tappet-init", 12};
-constexpr int most_at_once = 16; // whoever talks without end is not listened to without end
+constexpr int most_at_once = 16; // limit per call, so that endless output cannot block init
 
 } // namespace
 
@@ -81,7 +81,7 @@ void Ears::take_notices(const std::function<void(std::string_view)>& take) const
         message.msg_controllen = about.size();
         const ssize_t count = ::recvmsg(notices_, &message, 0);
         if (count <= 0) return;
-        // The service, which strangers talk to, reaches the socket too; it has nothing to say here.
+        // The service, which strangers talk to, can reach the socket too, but its notices are ignored.
         const cmsghdr* const header = CMSG_FIRSTHDR(&message);
         ucred sender{};
         const bool is_told = header != nullptr && header->cmsg_type == SCM_CREDENTIALS;

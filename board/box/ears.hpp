@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What PID 1 hears: signals, the notices of its children, what they print, and the power buttons.
+// The inputs of PID 1: signals, the notices and the output of its children, and the power buttons.
 #pragma once
 
 #include "board/init/system.hpp"
@@ -12,21 +12,21 @@ namespace tappet::box {
 
 class Ears {
 public:
-    /// From here on signals wait, and NOTIFY_SOCKET leads here.
+    /// Starts to queue signals, and sets NOTIFY_SOCKET to this.
     [[nodiscard]] init::Done open();
-    /// What is there by then.
+    /// Opens the buttons that are present at this time.
     void open_power_buttons();
 
-    /// Until something comes, or the time is over.
+    /// Waits until something arrives, or the time is over.
     void wait(std::chrono::milliseconds time) const;
-    /// Some of it; what is left makes the next wait short.
+    /// Takes some of the output; a rest makes the next wait() short.
     void take_prints(const std::function<void(std::string_view piece)>& take) const;
-    /// Of who is of our own user: nobody else says that the machine has armed or has proven itself.
+    /// Takes notices of init's own user only: no other may report that the machine armed or proved itself.
     void take_notices(const std::function<void(std::string_view notice)>& take) const;
     void take_signals(const std::function<void(int signal)>& take) const;
     [[nodiscard]] bool power_button_was_pressed() const;
 
-    /// Where a child prints to.
+    /// Returns the descriptor for a child's output.
     [[nodiscard]] int mouth() const { return mouth_; }
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of words.
+// Splits lines into words.
 #include "board/box/facts.hpp"
 
 #include <algorithm>

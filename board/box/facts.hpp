@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a box is to bring up: the lines of the firmware's --board, which the image carries.
+// The facts that a box needs to start: the lines of the firmware's --board, stored in the image.
 #pragma once
 
 #include <string>
@@ -15,9 +15,9 @@ class Facts {
 public:
     explicit Facts(std::string_view text);
 
-    /// The values of each line of a word, in their order.
+    /// Returns the values of each line with this word, in their order.
     [[nodiscard]] std::vector<Words> all(std::string_view word) const;
-    /// One value of the first line of a word; `otherwise` when there is none.
+    /// Returns one value of the first line with this word; `otherwise` when there is none.
     [[nodiscard]] std::string one(std::string_view word, std::size_t which = 0,
                                   std::string_view otherwise = {}) const;
 

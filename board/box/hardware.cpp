@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CAN, GPIO, serial, Ethernet; the processors; the interrupts' threads.
+// CAN, GPIO, serial, Ethernet; the processors; the interrupt threads.
 #include "board/box/hardware.hpp"
 
 #include "board/init/devices.hpp"
@@ -23,7 +23,7 @@ std::string base_name(const std::string& path) { return path.substr(path.rfind('
 
 bool exists(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
 
-/// A chip's path, or its label as gpiodetect shows it.
+/// Returns whether the chip exists, by its path, or by its label as gpiodetect shows it.
 bool has_chip(const std::string& address) {
     if (address.starts_with('/')) return exists(address);
     return std::ranges::any_of(init::names_in("/dev"), [&](const std::string& name) {
@@ -38,12 +38,12 @@ bool has_chip(const std::string& address) {
 
 init::Done nothing_to_do() { return {}; }
 
-/// What the firmware opens itself needs to be there only.
+/// Hardware that the firmware opens itself only has to exist.
 Need awaited(const std::string& what, const std::string& cure, std::function<bool()> is_there) {
     return {what, cure, std::move(is_there), nothing_to_do};
 }
 
-/// Its name, its bit rate, and that of CAN FD's data phase where the board has CAN FD.
+/// Takes name, bit rate, and the rate of CAN FD's data phase where the board has CAN FD.
 Need can_bus(const Words& bus, bool is_emulated) {
     const std::string& name = bus[0];
     if (is_emulated)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings up what a board's facts name, as it appears, and says what is missing.
+// Brings up the hardware in a board's facts as it appears, and reports what is missing.
 #pragma once
 
 #include "board/box/facts.hpp"
@@ -11,7 +11,7 @@
 
 namespace tappet::box {
 
-/// One thing that the box is said to have.
+/// One item of hardware that the box should have.
 struct Need {
     std::string what{};
     std::string cure{};
@@ -20,26 +20,26 @@ struct Need {
     bool is_up = false;
 };
 
-/// What the facts name and a machine needs to arm: CAN, GPIO and serial ports. On an emulated box ("world
-/// bench") CAN interfaces and GPIO chips are made instead of awaited.
+/// Returns the items that a machine needs to arm: CAN, GPIO and serial ports. On an emulated box ("world
+/// bench") CAN interfaces and GPIO chips are created instead of awaited.
 [[nodiscard]] std::vector<Need> needs_of(const Facts& facts);
-/// Ethernet ports: who is at their other end comes and goes.
+/// Returns the Ethernet ports; the devices at their other end may come and go.
 [[nodiscard]] std::vector<Need> networks_of(const Facts& facts);
 
-/// Loads modules and brings up what is there. Whether nothing is missing now.
+/// Loads modules and brings up the hardware that is present. Returns whether nothing is missing.
 bool bring_up(std::vector<Need>& needs, Modules& modules, Modules::Which which, const Voice& voice);
-/// One sentence for each thing that is missing.
+/// Reports each missing item in one sentence.
 void tell_missing(const std::vector<Need>& needs, const Voice& voice);
 
-/// The governor of every processor that has one: no change of frequency.
+/// Sets the frequency governor of every processor that has one, so that the frequency does not change.
 void set_governor(const Voice& voice);
 /// See init::stop_throttling.
 void stop_throttling(const Voice& voice);
 
-/// The threads of the bound devices' interrupts, which the kernel starts when somebody opens the device.
+/// Sets the priority of the bound devices' interrupt threads, which exist once a device is opened.
 void raise_interrupts(const Facts& facts, const Voice& voice);
 
-/// The kernel locks itself down when the box's firmware says that it checked it: Secure Boot.
+/// Returns whether the kernel is locked down: the box's UEFI firmware verified it (Secure Boot).
 [[nodiscard]] bool is_locked_down();
 
 } // namespace tappet::box

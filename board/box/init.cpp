@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PID 1 of a box: brings up what its board's facts name, starts the firmware and stays with it until the
-// power goes. What is missing is said on every console, in one sentence each. There is no shell and no way to
-// one.
+// PID 1 of a box: brings up the hardware of its board's facts, starts the firmware and supervises it until
+// power-off. It reports each missing item on every console in one sentence. There is no shell and no way to
+// get one.
 
 #include "board/box/custody.hpp"
 #include "board/box/disk.hpp"
@@ -36,15 +36,15 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double patience_s = 5.0; // for hardware that comes late
+constexpr double patience_s = 5.0; // for hardware that appears late
 constexpr int no_process = -1;
-constexpr double gone_patience_s = 2.0; // for the end of what is killed
+constexpr double gone_patience_s = 2.0; // for killed processes to end
 constexpr double again_after_s = 1.0;
 constexpr std::chrono::seconds renewal_patience{300};
-constexpr std::chrono::seconds mount_patience{300}; // its check, or making it anew
+constexpr std::chrono::seconds mount_patience{300}; // for the check, or for a new file system
 constexpr int starts_anew = 1;
 constexpr std::size_t longest_last_words = 240;
-constexpr double tell_trial_s = 5.0; // for who stands there to read why
+constexpr double tell_trial_s = 5.0; // for a person at the machine to read the reason
 
 const std::string log_file = std::string{data_folder} + "/box.log";
 constexpr std::size_t told_of_log = 4000;
@@ -77,17 +77,17 @@ private:
         voice_.say(is_locked_down_ ? "Secure Boot is on: nothing but signed code runs"
                                    : "Secure Boot is off: who has the disk can change what runs");
         ::setenv("PATH", "/bin", 1);
-        ::reboot(RB_DISABLE_CAD); // Ctrl-Alt-Del comes as SIGINT, and ends in order
+        ::reboot(RB_DISABLE_CAD); // Ctrl-Alt-Del arrives as SIGINT, and causes an orderly end
         if (const auto opened = ears_.open(); !opened) voice_.say(opened.error());
         modules_.take_signatures_off(!is_locked_down_);
     }
 
-    /// No more than that: the rest comes when the machine has armed.
+    /// Brings up only what arming needs: the rest follows when the machine has armed.
     void bring_up_to_arm() {
         stage("file systems and consoles");
         if (const auto up = init::set_link("lo", true); !up) voice_.say(up.error());
         std::vector<Need> needs = needs_of(facts_);
-        if (facts_.one("world") == "bench") // what the others are made of comes first
+        if (facts_.one("world") == "bench") // the others depend on these modules
             if (const auto came = modules_.load_what_fits(Modules::Which::to_arm); !came)
                 voice_.say(came.error());
         if (const std::string path = facts_.one("watchdog"); !path.empty())
@@ -111,7 +111,7 @@ private:
             voice_.say("the firmware is not started: without the data partition it has no settings");
     }
 
-    /// Which version runs must be known before it touches anything.
+    /// Reads the slots: the running version must be known before it changes anything.
     void look_at_slots() {
         custody_.kick();
         if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
@@ -132,7 +132,7 @@ private:
         if (const auto begun = slot_check_.begin(slots_); !begun) voice_.say(begun.error());
     }
 
-    /// Once; what is late is looked for again, see await_networks().
+    /// Brings up the rest, once; late hardware is retried, see await_networks().
     void bring_up_rest() {
         if (std::exchange(has_all_, true)) return;
         const double before_s = uptime_s();
@@ -140,7 +140,7 @@ private:
         await_networks_until_s_ = uptime_s() + patience_s;
         await_networks();
         ears_.open_power_buttons();
-        nonce_ = new_nonce(); // it waits until the kernel has gathered enough by chance
+        nonce_ = new_nonce(); // waits until the kernel has gathered enough entropy
         start_service();
         if (!slots_.on_trial()) compare_slots();
         voice_.say("networks, buttons and service, for which no machine waits: " +
@@ -188,7 +188,7 @@ private:
                        .value_or(no_process);
     }
 
-    /// For who asks over the network.
+    /// Writes the status for requests over the network.
     void tell_status() const {
         if (facts_.one("service").empty() || !has_all_) return;
         std::string text = "machine " + facts_.one("machine") + ", board " + facts_.one("board") + ", " +
@@ -204,7 +204,7 @@ private:
         text += log.substr(log.size() - std::min(log.size(), told_of_log));
         const std::string file = std::string{service_folder} + "/" + status_file;
         static_cast<void>(write_through(file, O_CREAT | O_TRUNC, text));
-        ::chmod(file.c_str(), 0644); // who serves it is nobody
+        ::chmod(file.c_str(), 0644); // the service that reads it runs as `nobody`
     }
 
     void stage(const std::string& what) {
@@ -228,7 +228,7 @@ private:
         tell_status();
     }
 
-    /// Of a test board. Its ends of the wires come first.
+    /// Starts the plant of a test board; its ends of the wires come first.
     void start_plant() {
         const auto given = facts_.all("plant");
         if (given.empty()) return;
@@ -249,7 +249,7 @@ private:
         take_signals();
         if (has_all_)
             await_networks();
-        else if (uptime_s() > start_s_ + patience_s) // it has neither armed nor ended
+        else if (uptime_s() > start_s_ + patience_s) // the firmware has neither armed nor ended
             bring_up_rest();
         if (service_again_at_s_ != 0.0 && uptime_s() >= service_again_at_s_) {
             service_again_at_s_ = 0.0;
@@ -330,7 +330,7 @@ private:
                 voice_.say(said);
                 tell_status();
             }
-            if (pid == service_ && code != 1) // else it has said why
+            if (pid == service_ && code != 1) // with code 1 it has reported the reason itself
                 service_again_at_s_ = uptime_s() + again_after_s;
         });
     }
@@ -340,7 +340,7 @@ private:
         take_notices();
         custody_.firmware_ended(code);
         if (is_ending_) return;
-        if (custody_.outputs_are_safe()) bring_up_rest(); // else nothing may hold up the reset
+        if (custody_.outputs_are_safe()) bring_up_rest(); // otherwise nothing may delay the reset
         last_ending_ = "the firmware ended with code " + std::to_string(code) + " after " +
                        text_of_seconds(uptime_s() - start_s_) + "; it said last: " + last_words_;
         voice_.say(last_ending_);
@@ -373,7 +373,7 @@ private:
         return true;
     }
 
-    /// It comes back when the outputs are safe.
+    /// Returns when the outputs are safe.
     void stop_everything() {
         is_ending_ = true;
         custody_.end_everything();
@@ -402,15 +402,15 @@ private:
     }
     void kill_others() override {
         ::kill(-1, SIGKILL);
-        // With them go what they have open, and what they have mounted.
+        // This also closes their files and releases their mounts.
         for (const double gone_s = uptime_s() + gone_patience_s;
              ::waitpid(-1, nullptr, WNOHANG) >= 0 && uptime_s() < gone_s;)
             init::pause_for(milliseconds{1});
     }
     void reset_box() override { init::reset_box(); }
 
-    /// A trial, and a start, goes on at the next boot: who switched off has not judged it. One that has
-    /// failed is over.
+    /// Ends in order. A trial, and a start, continues at the next boot, because switching off is no verdict
+    /// on it. A failed trial is over.
     [[noreturn]] void end_in_order(const std::string& by, bool again) {
         const bool has_failed = again_at_s_ != 0.0 && slots_.on_trial();
         bring_up_rest();
@@ -424,8 +424,8 @@ private:
         init::power_off();
     }
 
-    /// A watchdog that cannot be stopped counts on, and writing a slot takes its time: a child does it, and
-    /// is waited for so long and no longer.
+    /// Runs the renewal in a child, and waits for it only for a limited time, because a watchdog that cannot
+    /// be stopped continues to count while a slot is written.
     bool renew_under_watchdog() {
         if (const auto held = custody_.hold_watchdog(); !held) voice_.say(held.error());
         const pid_t worker = ::fork();
@@ -451,15 +451,15 @@ private:
     SlotCheck slot_check_{};
     std::string nonce_{};
     std::vector<Need> networks_{};
-    double await_networks_until_s_ = 0.0; // 0: no longer
+    double await_networks_until_s_ = 0.0; // 0: not awaited any more
     bool has_all_ = false;
-    bool may_start_ = false; // settings are never guessed: not without the data partition
+    bool may_start_ = false; // false without the data partition, since settings are never guessed
     bool is_armed_ = false;
     bool is_locked_down_ = false;
     bool plant_is_ready_ = false;
     bool is_ending_ = false;
     std::string data_device_{};
-    std::string line_{}; // of what firmware and plant say, as far as it came
+    std::string line_{}; // the incomplete last line of firmware and plant
     std::string last_words_{};
     std::string last_ending_{};
     std::deque<double> restarts_s_{};
@@ -468,7 +468,7 @@ private:
     pid_t plant_ = no_process;
     pid_t service_ = no_process;
     double start_s_ = 0.0;
-    double again_at_s_ = 0.0; // 0: nothing is started or restarted
+    double again_at_s_ = 0.0; // 0: nothing is to be started or restarted
     double service_again_at_s_ = 0.0;
     Ears ears_{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Folders by a layout's name, and a file that names the last.
+// Folders named after layouts, and a file that names the last one.
 #include "board/box/layouts.hpp"
 
 #include "board/box/disk.hpp"

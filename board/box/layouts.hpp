@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where settings and learned values lie on the data partition: each layout of properties has its own folder,
-// so that a version that knows fewer loses none of the others'.
+// The folders of settings and learned values on the data partition: one for each layout of properties, so
+// that an older version with fewer properties does not lose the others.
 #pragma once
 
 #include "board/init/system.hpp"
@@ -9,13 +9,12 @@
 
 namespace tappet::box {
 
-/// Where the data partition is mounted: settings, learned values, black boxes, what was said.
+/// Mount point of the data partition: settings, learned values, black boxes, the log.
 inline constexpr const char* data_folder = "/var/lib/tappet";
 
 [[nodiscard]] std::string properties_folder(const std::string& layout);
 
-/// The layout that was in use last, and proven: a trial that fails has changed nothing of it. Empty: none
-/// yet.
+/// Returns the last layout in use by a proven version; a failed trial does not change it. Empty: none yet.
 [[nodiscard]] std::string last_layout();
 [[nodiscard]] init::Done note_layout(const std::string& layout);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Matches devices with modules, and loads them.
+// Matches devices with modules, and loads these.
 #include "board/box/modules.hpp"
 
 #include <algorithm>
@@ -84,7 +84,7 @@ std::expected<int, std::string> Modules::load_what_fits(Which which) {
                 return ::fnmatch(pattern.c_str(), device.c_str(), 0) == 0;
             });
         });
-        if (!fits || module.was_refused) continue; // once is enough: the hardware does not change its mind
+        if (!fits || module.was_refused) continue; // one refusal is final, since the hardware does not change
         const auto done = load(module);
         module.was_refused = !done;
         if (!done && refused.empty()) refused = done.error();

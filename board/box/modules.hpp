@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image's kernel modules: a table instead of udev says which drives what and needs which.
+// The image's kernel modules: in place of udev, a table states their devices and dependencies.
 #pragma once
 
 #include "board/box/facts.hpp"
@@ -12,25 +12,25 @@
 
 namespace tappet::box {
 
-/// Of lines that the image's writer made of the kernel's own tables:
+/// The table has lines that the image's writer made from the kernel's own tables:
 ///
 ///     module i6300esb heartbeat=10
 ///     needs watchdog
 ///     alias pci:v00008086d000025ABsv*sd*bc*sc*i*
 ///
-/// "later-module" is of one without which a machine can arm. Files are /modules/NAME.ko. "alias always" is of
-/// one that drives no device; one without an alias comes with those that need it.
+/// "later-module" is a module that a machine does not need to arm. Files are /modules/NAME.ko. "alias always"
+/// is for a module without a device; one without an alias is loaded as a dependency.
 class Modules {
 public:
     explicit Modules(std::string_view table);
 
     enum class Which : std::uint8_t { to_arm, all };
-    /// Loads what is always wanted and every module of which a device is there. Again when devices may have
-    /// come: what is loaded stays. How many came, and of the first that the kernel refused the reason.
+    /// Loads the modules that are always needed, and those of the present devices. Call again when devices
+    /// may have appeared: loaded modules stay. Returns the number loaded, or the reason of the first refusal.
     std::expected<int, std::string> load_what_fits(Which which);
 
     [[nodiscard]] int loaded() const;
-    /// Whether the kernel gets modules without their signature, see init::load_module().
+    /// Selects whether the kernel gets modules without their signature, see init::load_module().
     void take_signatures_off(bool off) { signature_ = off ? init::Signature::off : init::Signature::on; }
 
 private:
@@ -51,7 +51,7 @@ private:
     init::Signature signature_ = init::Signature::on;
 };
 
-/// The aliases of all devices that are there, as the kernel's bus drivers made them.
+/// Returns the aliases of all present devices, as reported by the kernel's bus drivers.
 [[nodiscard]] std::vector<std::string> device_aliases(const std::string& folder = "/sys/devices");
 
 } // namespace tappet::box

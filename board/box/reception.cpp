@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client says a line, and of an update its header and its kernel; then it is answered and hangs up.
+// A client sends a line, and for an update its header and kernel; then it is answered and closed.
 #include "board/box/reception.hpp"
 
 #include "board/box/facts.hpp"
@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::size_t longest_line = 512;
 
-/// A client that does not listen is not waited for: its window holds more than is said.
+/// Does not wait for a client that does not read: its window is larger than any answer.
 void say(int socket, std::string_view text) {
     [[maybe_unused]] const ssize_t n = ::send(socket, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
-/// The version of the update that waits for the power button. 0: none waits.
+/// Returns the version of the update that waits for the power button. 0: none waits.
 std::uint32_t waiting_version() {
     std::string header(update_header_bytes, '\0');
     std::FILE* const file = std::fopen(offered_update, "rb");
@@ -35,7 +35,7 @@ std::uint32_t waiting_version() {
     return claimed_bytes(header) == 0 ? 0 : manifest_of(header).version;
 }
 
-/// Writes the whole file or none. An offer replaces the one before.
+/// Writes the whole file or none. A new offer replaces the previous one.
 bool keep(const char* name, std::string_view bytes) {
     const std::string part = std::string{name} + ".part";
     std::FILE* const file = std::fopen(part.c_str(), "wb");
@@ -80,12 +80,12 @@ void Reception::greet(int socket, std::uint32_t address, Time now) {
                     facts_.nonce + "\n");
 }
 
-// Not by silence: a client that sends a byte now and then would outstay one that waits for its answer.
+// Not by silence: a client that sends a byte at times would outstay one that waits for its answer.
 void Reception::make_room() {
     const auto places = [this](const Client& of) {
         return of.stage == Stage::kernel ? 0 : std::ranges::count(clients_, of.address, &Client::address);
     };
-    const auto leaves = std::ranges::max_element(clients_, {}, places); // the first of several
+    const auto leaves = std::ranges::max_element(clients_, {}, places); // the first of equal ones
     ::close(leaves->socket);
     clients_.erase(leaves);
 }
@@ -186,7 +186,7 @@ std::string Reception::refusal_of_header(const Client& client) const {
     if (!has_signed_header(client.said, *facts_.key))
         return "its header's signature does not fit this box's key: it is somebody else's, or damaged, or an "
                "older tappet wrote it; write it anew";
-    // Older ones are signed, too: somebody could keep a newer one from ever being taken.
+    // Older versions are signed, too: with one, somebody could block a newer one for ever.
     if (const auto waiting = waiting_version(); offered.version < waiting)
         return "it is version " + std::to_string(offered.version) + ", and version " +
                std::to_string(waiting) + " waits for the power button";
@@ -227,7 +227,7 @@ void Reception::enter(Client& client, Stage stage, Time now) {
     client.since = now;
 }
 
-// Reads for a while what the client still sends: a socket that is closed with unread bytes drops the answer.
+// Then reads for a while: closing a socket with unread bytes would drop the answer.
 void Reception::answer(Client& client, std::string_view text, Time now) {
     say(client.socket, text);
     ::shutdown(client.socket, SHUT_WR);

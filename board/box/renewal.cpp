@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The network's offer first, then a stick. Whatever is offered is judged here, by init itself.
+// Processes the network's offer first, then a stick. init itself verifies every offer.
 #include "board/box/renewal.hpp"
 
 #include "board/box/service.hpp"
@@ -22,11 +22,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double says_what_it_is_s = 1.0; // a stick that was plugged in just now
+constexpr double says_what_it_is_s = 1.0; // for a stick that was just plugged in
 constexpr double stick_patience_s = 5.0;
 constexpr const char* measured_s = "60";
 
-/// A file, and not what else nobody could have put there: he may be a stranger by now. Empty: there is none.
+/// Returns the path when it is a regular file, and not anything else that the service could have created: it
+/// may be taken over by a stranger. Empty: there is none.
 std::string offered(const char* name) {
     const std::string path = std::string{service_folder} + "/" + name;
     struct stat facts{};
@@ -56,7 +57,7 @@ private:
     std::optional<std::string> await_stick() {
         const double begun_s = uptime_s();
         for (;;) {
-            static_cast<void>(modules_.load_what_fits(Modules::Which::all)); // of a stick that came later
+            static_cast<void>(modules_.load_what_fits(Modules::Which::all)); // of a stick plugged in later
             if (auto disk = find_update()) return disk;
             const double waited_s = uptime_s() - begun_s;
             if (waited_s >= says_what_it_is_s && !(has_usb_storage() && waited_s < stick_patience_s))
@@ -103,7 +104,7 @@ private:
         return true;
     }
 
-    /// The data partition is mounted for it, and goes with everything written.
+    /// Mounts the data partition for `act`, and unmounts it with everything written.
     init::Done on_data(init::Done (*act)(const std::string& folder)) {
         if (data_.empty()) return std::unexpected("there is no data partition");
         const std::string folder = "/run/data";
@@ -125,11 +126,11 @@ private:
         if (!started) return std::unexpected(started.error());
         int status = 0;
         ::waitpid(*started, &status, 0);
-        // That the box cannot hold them is an answer.
+        // A box that cannot meet them is a valid result.
         return init::to_exit_code(status) <= 1 ? init::Done{} : std::unexpected(init::read_text(path));
     }
 
-    /// All but what was said.
+    /// Deletes everything but the logs.
     static init::Done forget_settings(const std::string& folder) {
         init::Done done{};
         for (const std::string& name : init::names_in(folder)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changes a box: an update or an order that came over the network, or an update on a stick. The machine
-// stands, and who pressed the button is at it.
+// Changes to a box: an update or an order that came over the network, or an update on a stick. The machine is
+// stopped, and the person who pressed the button is at it.
 #pragma once
 
 #include "board/box/disk.hpp"
@@ -12,14 +12,14 @@
 
 namespace tappet::box {
 
-/// The box's own, as its image says.
+/// Returns the box's own manifest, from its image.
 [[nodiscard]] Manifest manifest_of(const Facts& facts);
 
-/// On the data partition: what the order "measure" found.
+/// File on the data partition with the result of the order "measure".
 inline constexpr const char* measured_file = "measured";
 
-/// Carries out what waits, and says what came of it. True when there is something to start anew for.
-/// `data`: the data partition, which is mounted nowhere.
+/// Processes pending updates and orders, and reports the result. Returns true when the box must restart.
+/// `data`: the data partition, which is not mounted.
 [[nodiscard]] bool renew(const Facts& facts, const std::string& nonce, const std::string& data, Slots& slots,
                          Modules& modules, const Voice& voice);
 

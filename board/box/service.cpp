@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Its socket, its folder and its rights.
+// The service's socket, its folder and its rights.
 #include "board/box/service.hpp"
 
 #include "board/box/reception.hpp"
@@ -24,7 +24,7 @@ namespace tappet::box {
 namespace {
 
 constexpr uid_t nobody = 65534;
-constexpr int most_waiting = 16; // to be greeted
+constexpr int most_waiting = 16; // connections not yet greeted
 
 [[noreturn]] void fail(const char* what) {
     std::fprintf(stderr, "service: %s: %s; the box takes updates from a stick only\n", what,
@@ -46,7 +46,7 @@ int listen_at(std::uint16_t port) {
 }
 
 void give_up_rights() {
-    const rlimit none{0, 0}; // of further processes
+    const rlimit none{0, 0}; // no more processes
     if (::chdir(service_folder) != 0 || ::chroot(".") != 0 || ::setgroups(0, nullptr) != 0 ||
         ::setresgid(nobody, nobody, nobody) != 0 || ::setresuid(nobody, nobody, nobody) != 0 ||
         ::setrlimit(RLIMIT_NPROC, &none) != 0 || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
@@ -71,7 +71,7 @@ std::string new_nonce() {
     std::string digits;
     ssize_t got = -1;
     do got = ::getrandom(bytes.data(), bytes.size(), 0);
-    while (got < 0 && errno == EINTR); // a child's end, while chance is gathered
+    while (got < 0 && errno == EINTR); // the end of a child can interrupt the wait for entropy
     if (got != static_cast<ssize_t>(bytes.size())) return digits;
     for (const unsigned char byte : bytes)
         digits += {"0123456789abcdef"[byte >> 4], "0123456789abcdef"[byte & 15]};
@@ -79,7 +79,7 @@ std::string new_nonce() {
 }
 
 void serve_network(const ServiceFacts& facts) {
-    // Whoever sends what fills the memory ends this process, and no other.
+    // When somebody fills the memory, this process is killed, and no other.
     static_cast<void>(init::write_text("/proc/self/oom_score_adj", "1000"));
     sched_param idle{};
     ::sched_setscheduler(0, SCHED_IDLE, &idle);
@@ -89,7 +89,7 @@ void serve_network(const ServiceFacts& facts) {
     std::fflush(stdout);
     Reception reception{facts};
     for (;;) {
-        // One in each turn: what others have said by then is heard before the next one takes a place.
+        // One new client per turn, so that the others are read before the next one takes a place.
         if (reception.wait(listener)) {
             sockaddr_in from{};
             socklen_t size = sizeof from;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a box says and takes over its network: who asks is told what runs; a signed update or order is kept
-// until somebody consents at the machine. It reads what strangers send, so it is a process of its own, which
-// may do nothing else: nobody's, in a folder of its own, and after everything that the machine does.
+// The box's network service: reports the running version on request, and keeps a signed update or order until
+// somebody consents at the machine. It reads data from strangers, so it is an unprivileged, sandboxed process
+// with a folder of its own and a lower priority than everything of the machine.
 #pragma once
 
 #include "board/box/update.hpp"
@@ -13,18 +13,18 @@
 
 namespace tappet::box {
 
-/// Where the process lives. In memory: nothing of it outlives the power. It is init's, which writes there
-/// what init alone may write; what was accepted lies in the folder below, which is nobody's.
+/// The process's folder, in memory, so that it does not survive a power-off. It belongs to init, which writes
+/// there what only init may write; accepted files are in the folder below, which belongs to `nobody`.
 inline constexpr const char* service_folder = "/run/service";
-inline constexpr const char* status_file = "status"; ///< init's text for who asks
+inline constexpr const char* status_file = "status"; ///< init's text for status requests
 inline constexpr const char* offers_folder = "offers";
 inline constexpr const char* offered_update = "offers/update";
-inline constexpr const char* offered_order = "offers/order"; ///< the verb and the signature, each in a line
+inline constexpr const char* offered_order = "offers/order"; ///< the verb and the signature, one line each
 
-/// Before the process is started for the first time.
+/// Called before the process is started for the first time.
 [[nodiscard]] init::Done make_service_folder();
 
-/// Of boards that do not say another.
+/// Port of boards that do not state another.
 inline constexpr std::uint16_t service_port = 4848;
 
 struct ServiceFacts {
@@ -34,18 +34,18 @@ struct ServiceFacts {
     std::string nonce{};
 };
 
-/// Drawn anew at each start of the box; empty when the kernel has no random numbers, and then no order fits.
+/// Returns a new random number for each start; empty without the kernel's, and then no order is valid.
 [[nodiscard]] std::string new_nonce();
 
-/// The whole life of the process, in the folder, which is there. Ends when it cannot listen.
+/// Runs the process in its folder, which must exist. Ends when it cannot listen.
 [[noreturn]] void serve_network(const ServiceFacts& facts);
 
-// Line by line, the client first:
+// The protocol, line by line, the client first:
 //     status                      -> ok, then the box's text
 //     update, then the file       -> ok or refused, then a sentence
 //     order VERB SIGNATURE        -> ok or refused, then a sentence
-// The box says "tappet-box 1 MACHINE BOARD NONCE" before that, and hangs up afterwards. reception.hpp has
-// what it promises to each.
+// Before that the box sends "tappet-box 1 MACHINE BOARD NONCE"; afterwards it closes the connection.
+// reception.hpp states the guarantees to each client.
 inline constexpr std::string_view service_greeting = "tappet-box 1 ";
 
 } // namespace tappet::box

@@ -45,7 +45,7 @@ std::string standing_of(const Slot& slot) {
     if (slot.record.standing == Standing::silent)
         return "given up: " + std::to_string(slot.record.cut_short + 1) +
                " starts in a row did not come to their end";
-    // One that has proven itself is on trial at each start, which concerns nobody but the loader.
+    // A proven version is on trial at each start, which matters only to the loader.
     if (slot.record.standing == Standing::proven && slot.state.state != init::SlotState::failed)
         return std::string{init::name_of(init::SlotState::good)};
     return std::string{init::name_of(slot.state.state)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a slot holds, and what became of it.
+// The contents of a slot, and its history.
 #pragma once
 
 #include "board/init/boot_state.hpp"
@@ -10,43 +10,43 @@
 
 namespace tappet::box {
 
-/// Of a version: whether it has proven itself, or why it is given up.
+/// State of a version: proven, or the reason why it was given up.
 enum class Standing : std::uint8_t { untried, proven, harmed, silent };
 
-/// In a file of one sector beside the kernel. The loader does not know it: it outlives a file of the loader's
-/// that a power cut tore, and tells a start that was cut short from a trial that failed.
+/// Stored in a file of one sector next to the kernel, unknown to the loader: it survives when a power cut
+/// tears the loader's file, and distinguishes an interrupted start from a failed trial.
 struct Record {
     Standing standing = Standing::untried;
-    unsigned cut_short = 0; ///< starts in a row that did not come to their end
+    unsigned cut_short = 0; ///< starts in a row that were interrupted
 
     friend bool operator==(const Record&, const Record&) = default;
 };
 inline constexpr std::string_view record_file = "RECORD";
-/// Of one length, so that it is written in its place.
+/// Returns the file's contents, of constant length, so that it is overwritten in place.
 [[nodiscard]] std::string encode(const Record& record);
-/// Untried, of anything else.
+/// Reads a record; anything invalid gives `untried`.
 [[nodiscard]] Record record_of(std::string_view bytes);
 
 struct Slot {
     std::string device{};
-    init::BootState state{}; ///< of revision 0, failed, when it cannot be read
-    std::string header{};    ///< of what lies in it; empty: it was written without
+    init::BootState state{}; ///< revision 0 and failed when it cannot be read
+    std::string header{};    ///< header of its contents; empty: it was written without one
     Record record{};
 
-    /// The loader would boot it when the other one fails.
+    /// Returns whether the loader would boot it when the other one fails.
     [[nodiscard]] bool is_good() const { return state.state == init::SlotState::good; }
     [[nodiscard]] bool is_on_trial() const;
 };
 
-/// For who asks.
+/// Returns the state as text for status requests.
 [[nodiscard]] std::string standing_of(const Slot& slot);
-/// "version 2, revision 3, good"
+/// Returns "version 2, revision 3, good".
 [[nodiscard]] std::string summary_of(const Slot& slot);
 
-/// Whether the loader runs `running` because a start of the other one, which had proven itself, did not come
-/// to its end. A slot that runs as the newest is marked by the loader; one to which it falls back is not.
+/// Returns whether the loader runs `running` because a start of the other, proven slot was interrupted. The
+/// loader marks a slot that it runs as the newest; it does not mark one that it falls back to.
 [[nodiscard]] bool is_fallback(const Slot& running, const Slot& other);
-/// Then: the other one starts once more, or is given up.
+/// Returns the other slot's record after that: it starts once more, or is given up.
 [[nodiscard]] Record after_cut_short(Record record, bool is_harmed);
 
 } // namespace tappet::box

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels against the sums in their headers, and what follows.
+// Compares kernels with the checksums in their headers, and acts on the result.
 #include "board/box/slot_check.hpp"
 
 #include "board/box/update.hpp"
@@ -22,7 +22,7 @@ std::string version_in(const Slot& slot) {
     return version == 0 ? "the version in the other slot" : "version " + std::to_string(version);
 }
 
-/// It could boot, or could if the loader's file were not torn.
+/// Returns whether it can boot, or could if the loader's file were not torn.
 bool is_of_use(const Slot& slot) {
     return slot.state.state != init::SlotState::failed || slot.record.standing == Standing::proven;
 }
@@ -55,13 +55,13 @@ Verdict judge_fallback(Slots& slots) {
 }
 
 init::Done SlotCheck::begin(const Slots& slots) {
-    if (child_ > 0) return {}; // it does
+    if (child_ > 0) return {}; // it is already running
     child_ = ::fork();
     if (child_ < 0) return init::failed("the slots are not compared with their sums");
     if (child_ != 0) return {};
     sched_param idle{};
     ::sched_setscheduler(0, SCHED_IDLE, &idle);
-    // What it mounts is its own, and goes with it.
+    // Its mounts are private, and end with it.
     if (::unshare(CLONE_NEWNS) != 0 || ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0)
         ::_exit(not_looked);
     ::_exit((is_harmed(slots.running()) ? running_is_harmed : 0) +
@@ -71,7 +71,7 @@ init::Done SlotCheck::begin(const Slots& slots) {
 std::string SlotCheck::end(pid_t pid, int code, Slots& slots) {
     if (pid != child_) return {};
     child_ = -1;
-    const int harm = code < not_looked ? code : 0; // else it was ended, and the slots are as they were
+    const int harm = code < not_looked ? code : 0; // else the child was killed: no result
     const bool gives_up = harm == running_is_harmed && slots.other().is_good();
     const auto done = gives_up ? slots.give_up_running() : slots.end_start((harm & other_is_harmed) == 0);
     return found(code, gives_up) + (done ? "" : "; what follows of it is not written: " + done.error());

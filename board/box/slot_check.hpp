@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the slots still hold what was written there, and boot it: a disk may lose a byte that nobody
-// touches.
+// Checks that the slots still hold what was written, and boot it: a disk may corrupt data that nobody
+// changes.
 #pragma once
 
 #include "board/box/slots.hpp"
@@ -11,21 +11,22 @@
 
 namespace tappet::box {
 
-/// Before the machine arms: the loader may have taken the slot that runs because a start of the other one did
-/// not come to its end. Then that one is given up, or runs at the next boot, which is to come at once.
+/// Result of the check before the machine arms: the loader may run this slot because a start of the other one
+/// was interrupted. The other one is then given up, or runs at the next boot, which must follow at once.
 struct Verdict {
-    std::string said{}; ///< empty: nothing of that kind
+    std::string said{}; ///< empty: no such case
     bool starts_anew = false;
 };
 [[nodiscard]] Verdict judge_fallback(Slots& slots);
 
-/// When it has armed, and is not on trial: both are compared with their sums, and the start is over.
+/// After the machine has armed, without a trial: compares both slots with their checksums and ends the start.
 class SlotCheck {
 public:
-    /// A child reads both, with what time the machine leaves.
+    /// Starts a child that reads both slots in the machine's idle time.
     [[nodiscard]] init::Done begin(const Slots& slots);
-    /// When that child has ended. A slot that runs and is harmed is given up if the other is whole: the next
-    /// start takes that. A sentence, or nothing: it was another child.
+    /// Called at the end of a child. When the running slot is corrupt and the other is intact, gives up the
+    /// running one, so that the next start uses the other. Returns a sentence; an empty one when it was
+    /// another child.
     [[nodiscard]] std::string end(pid_t pid, int code, Slots& slots);
 
 private:

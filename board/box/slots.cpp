@@ -44,7 +44,7 @@ private:
     bool is_there_ = false;
 };
 
-/// Neither is shortened first: each is of one length.
+/// Overwrites the file without truncation: each has constant length.
 init::Done write_in_place(const Slot& slot, std::string_view file, std::string_view bytes) {
     const MountedSlot mounted{slot.device, 0};
     if (!mounted.is_there()) return init::failed("mount " + slot.device);
@@ -70,7 +70,7 @@ init::Done write(Slot& slot, const Record& record) {
     return written;
 }
 
-/// The error: the loader's file is none. What else is there is told all the same.
+/// Reads a slot. The error: the loader's file is invalid; the other files are read all the same.
 init::Done read(Slot& slot) {
     const MountedSlot mounted{slot.device, MS_RDONLY};
     if (!mounted.is_there()) return init::failed("mount " + slot.device);
@@ -84,9 +84,9 @@ init::Done read(Slot& slot) {
     return {};
 }
 
-/// A file system without a file, whatever a power cut left of the one before: clusters of no file would fill
-/// the slot, and a torn table would refuse every version. Its first sector, which says how it is laid out, is
-/// nowhere written.
+/// Makes an empty file system, whatever a power cut left of the old one: lost clusters would fill the slot,
+/// and a torn table would refuse every version. Its first sector, with the geometry, is kept, because its
+/// contents are not stored anywhere else.
 init::Done empty_slot(const std::string& device) {
     const int disk = ::open(device.c_str(), O_RDWR | O_EXCL | O_CLOEXEC);
     std::array<unsigned char, sector_bytes> head{};
@@ -106,7 +106,7 @@ init::Done empty_slot(const std::string& device) {
     return done ? init::Done{} : init::failed("empty " + device);
 }
 
-/// Of the slot's file system, as the loader looks for it.
+/// The label of the slot's file system, by which the loader finds it.
 std::string label_of(std::size_t slot) { return slot == 0 ? "SLOTA" : "SLOTB"; }
 std::string kernel_of(std::size_t slot) { return "C:" + label_of(slot) + ":" + kernel_file; }
 
@@ -131,7 +131,7 @@ init::Done Slots::look() {
 }
 
 init::Done Slots::end_trial() {
-    // The record first: a trial that is cut short from here on is a start that was cut short.
+    // The record first: an interruption after this counts as an interrupted start.
     if (auto kept = write(slots_[running_], Record{Standing::proven}); !kept) return kept;
     return write(slots_[running_], init::SlotState::good);
 }
@@ -151,7 +151,7 @@ init::Done Slots::end_start(bool other_is_whole) {
     if (slot.state.state != wanted)
         if (auto kept = write(slot, wanted); !kept) return kept;
     if (!other_is_whole || !is_fallback(slot, other)) return {};
-    init::BootState next = slot.state; // older than what runs, but not older than any
+    init::BootState next = slot.state; // lower than the running one, but at least 1
     next.kernel = kernel_of(1 - running_);
     next.revision = std::max(slot.state.revision, 2U) - 1;
     return write(other, next);
@@ -203,7 +203,7 @@ init::Done Slots::install(std::string_view kernel, std::string_view header) {
             if (auto written = write_through(MountedSlot::file(name), O_CREAT, bytes); !written)
                 return written;
     }
-    { // mounted anew, it is read from the disk
+    { // mounted again, so that it is read from the disk
         const MountedSlot slot{other.device, MS_RDONLY};
         for (const auto& [name, bytes] : files)
             if (!slot.is_there() || init::read_text(MountedSlot::file(name)) != bytes)
@@ -229,7 +229,7 @@ init::Done Slots::give_up_running() {
     if (auto kept = write(slot, Record{Standing::harmed}); !kept) return kept;
     init::BootState state = slot.state;
     state.state = init::SlotState::failed;
-    state.revision = 0; // as the loader leaves one that failed: it looks at the revision alone
+    state.revision = 0; // as the loader leaves a failed one: it checks only the revision
     if (auto written = write(slot, state); !written) return written;
     running_ = 1 - running_;
     return {};

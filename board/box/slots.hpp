@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two slots of a box's disk, of which one is running, perhaps on trial.
+// The two slots of a box's disk; one is running, perhaps on trial.
 //
-// Every start of a version is a trial by the loader's rule, see init::SlotState: one that has proven itself
-// is `installed` again when it has started, so that a start that does not come so far ends in the other slot.
-// The other slot is `good` meanwhile, which the loader takes as often as it must. Of two files of the loader
+// Every start of a version is a trial by the loader's rule, see init::SlotState. A proven version is set to
+// `installed` again after its start, so that an interrupted start leads to the other slot. Meanwhile the
+// other slot is `good`, so the loader can use it as often as needed. One loader file is written only while
+// the other one boots a complete version.
 // one is written only while the other one boots a whole version.
 #pragma once
 
@@ -19,41 +20,41 @@ namespace tappet::box {
 
 inline constexpr const char* slot_partitions[] = {"tappet-a", "tappet-b"};
 
-/// As the loader's files and the records say. One runs, perhaps on trial; the other takes the next version.
+/// The slots by the loader's files and records. One runs, perhaps on trial; the other takes a new version.
 class Slots {
 public:
-    /// The error: a slot that cannot be read. The other is looked at all the same.
+    /// Reads the slots. The error: a slot that cannot be read; the other is read all the same.
     [[nodiscard]] init::Done look();
 
     [[nodiscard]] const Slot& running() const { return slots_[running_]; }
     [[nodiscard]] const Slot& other() const { return slots_[1 - running_]; }
     [[nodiscard]] bool on_trial() const { return running().is_on_trial(); }
-    /// It has done what was asked for. Whatever cuts this short, the version stays.
+    /// Ends the trial with success. The version stays even if this is interrupted.
     [[nodiscard]] init::Done end_trial();
-    /// The box ends in order: what has not come to its end begins once more at the next boot.
+    /// Keeps the trial for the next boot, at an orderly end of the box.
     [[nodiscard]] init::Done keep_trial();
 
-    /// The version that runs, not on trial, has started. The next start is a trial again if the other slot
-    /// could take over. A file of the loader's that is torn there is written anew.
+    /// Completes the start of the running version, without a trial. The next start is a trial again if the
+    /// other slot could take over. Rewrites a torn loader file of the other slot.
     [[nodiscard]] init::Done end_start(bool other_is_whole);
-    /// After is_fallback(): reads what lies in the other slot. What is decided is its record; `proven`: it
-    /// runs at the next boot. The error: that cannot be written, and is the same again at the next boot.
+    /// After is_fallback(): checks the other slot and writes the decision to its record; `proven`: it runs at
+    /// the next boot. The error: the record cannot be written, so the next boot finds the same state.
     [[nodiscard]] init::Done judge_other();
 
-    /// A kernel image and the header of its update into the slot that is not in use, which is emptied first
-    /// and boots nothing meanwhile; read back from the disk; then, last, on trial at the next boot. The
-    /// error, also when there is a trial: that must end first.
+    /// Writes a kernel image and its update's header into the unused slot, which is emptied first and cannot
+    /// boot meanwhile. Reads it back from the disk, and finally puts it on trial at the next boot. The error
+    /// includes an active trial, which must end first.
     [[nodiscard]] init::Done install(std::string_view kernel, std::string_view header);
-    /// What the other slot holds goes on trial at the next boot. The error: it failed, or see install().
+    /// Puts the other slot's version on trial at the next boot. The error: it failed, or as in install().
     [[nodiscard]] init::Done roll_back();
-    /// What runs is harmed: it boots no more, and takes the next version. From here on the other one counts
-    /// as the one that runs.
+    /// Gives up the running, corrupt version: it does not boot again, and its slot takes the next version.
+    /// From now on the other slot counts as the running one.
     [[nodiscard]] init::Done give_up_running();
 
 private:
-    /// That there is a slot beside the one that runs. The error: there is not, or there is a trial.
+    /// Checks that there is another slot. The error: there is none, or a trial is active.
     [[nodiscard]] init::Done need_other() const;
-    /// While the other slot still boots: the one that runs boots from here on whatever becomes of that.
+    /// While the other slot still boots: makes the running one boot from now on, whatever happens to it.
     [[nodiscard]] init::Done rely_on_running();
     [[nodiscard]] init::Done boot_other_next();
 
@@ -61,8 +62,8 @@ private:
     std::size_t running_ = 0;
 };
 
-/// Whether its kernel is another than its header says, or cannot be read. One whose header says nothing is
-/// not.
+/// Returns whether its kernel differs from its header's checksum, or cannot be read. False when the header
+/// has no checksum.
 [[nodiscard]] bool is_harmed(const Slot& slot);
 
 } // namespace tappet::box

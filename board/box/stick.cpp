@@ -12,7 +12,7 @@ namespace tappet::box {
 
 namespace {
 
-/// The first bytes of a disk; fewer when it has no more.
+/// Returns the first bytes of a disk; fewer when it has no more.
 std::string read_head(const std::string& disk, std::uint64_t count) {
     std::string bytes(count, '\0');
     const int file = ::open(disk.c_str(), O_RDONLY | O_CLOEXEC);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes an update from a stick that somebody plugged in, while the machine stands.
+// Reads an update from a USB stick while the machine is stopped.
 #pragma once
 
 #include "board/box/update.hpp"
@@ -10,13 +10,13 @@
 
 namespace tappet::box {
 
-/// The disk that holds an update; none when there is none. Nothing of it is judged.
+/// Returns the disk that holds an update; empty when there is none. Does not verify it.
 [[nodiscard]] std::optional<std::string> find_update();
-/// Whether a USB device calls itself a store of data: its disk may be about to come.
+/// Returns whether a USB mass-storage device is present, whose disk may be about to appear.
 [[nodiscard]] bool has_usb_storage();
 
-/// All of it into memory, then judged, then written from there: a stick that changes its mind changes
-/// nothing. The error: a sentence.
+/// Reads the update into memory, verifies it there, and returns that copy, so that a stick cannot change its
+/// contents after the check. The error is a sentence.
 [[nodiscard]] std::expected<Update, std::string> read_update(const std::string& disk, const PublicKey& key);
 
 } // namespace tappet::box

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A header of one page: a mark, lines, of which the last one is a signature over those before it, and a
-// signature over all but itself and over the kernel.
+// A header of one page: a magic word, lines, of which the last one is a signature over those before it, and a
+// signature over everything but itself, with the kernel.
 #include "board/box/update.hpp"
 
 #include "board/box/facts.hpp"
@@ -50,7 +50,7 @@ bool is_signed_text(std::string_view text, std::string_view digits, const Public
            crypto_sign_verify_detached(bytes.data(), bytes_of(text), text.size(), key.data()) == 0;
 }
 
-/// BLAKE2b.
+/// Returns the BLAKE2b checksum.
 std::string sum_of(std::string_view kernel) {
     std::array<unsigned char, crypto_generichash_BYTES> sum{};
     crypto_generichash(sum.data(), sum.size(), bytes_of(kernel), kernel.size(), nullptr, 0);
@@ -68,7 +68,7 @@ Facts lines_of(std::string_view header) {
 
 KeyPair new_keys() {
     KeyPair keys;
-    if (sodium_init() < 0) std::abort(); // a kernel without random numbers
+    if (sodium_init() < 0) std::abort(); // the kernel has no random numbers
     crypto_sign_keypair(keys.open.data(), keys.secret.data());
     return keys;
 }

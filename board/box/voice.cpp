@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text to consoles.
+// Writes text to consoles.
 #include "board/box/voice.hpp"
 
 #include <array>
@@ -19,7 +19,7 @@ namespace tappet::box {
 
 namespace {
 
-constexpr off_t most_kept_bytes = 64 * 1024; // twice that: the file before this one stays
+constexpr off_t most_kept_bytes = 64 * 1024; // limit of each of two files: the previous one is kept
 }
 
 std::string text_of_seconds(double seconds) {
@@ -36,12 +36,12 @@ double uptime_s() {
 
 namespace {
 
-/// In the writer: until the other end is closed. A disk that is full keeps no more of it.
+/// Runs in the writer until the other end is closed. A full disk loses the rest.
 [[noreturn]] void write_down(int from, int disk) {
     constexpr int in = 0, out = 1;
     ::dup2(from, in);
     ::dup2(disk, out);
-    ::close_range(out + 1, ~0U, 0); // what else init has open is none of its business
+    ::close_range(out + 1, ~0U, 0); // closes everything else that init has open
     ::prctl(PR_SET_NAME, "log");
     std::array<char, 4096> piece{};
     for (ssize_t count = 0; (count = ::read(in, piece.data(), piece.size())) > 0;) {
@@ -69,7 +69,7 @@ void Voice::say(std::string_view sentence) const {
 
 void Voice::keep(std::string_view line) const {
     if (file_ < 0 && said_before_.size() < most_kept_bytes) said_before_ += line;
-    // A writer whose disk does not answer has no room for it, and the machine goes on.
+    // A writer whose disk does not respond loses the line, so that the machine is not delayed.
     if (file_ >= 0) [[maybe_unused]]
         const auto sent = ::send(file_, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
 }
@@ -78,7 +78,7 @@ init::Done Voice::keep_in(const std::string& file) {
     struct stat facts{};
     if (::stat(file.c_str(), &facts) == 0 && facts.st_size > most_kept_bytes)
         ::rename(file.c_str(), (file + ".before").c_str());
-    // Through to the disk: the last line before a reset is the one that tells.
+    // Synchronous, because the last line before a reset is the important one.
     const int disk = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_DSYNC | O_CLOEXEC, 0644);
     if (disk < 0) return init::failed("open " + file);
     int ends[2] = {-1, -1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What init and firmware say, on every console of the board.
+// The messages of init and firmware, on every console of the board.
 #pragma once
 
 #include "board/init/system.hpp"
@@ -12,17 +12,17 @@ namespace tappet::box {
 
 class Voice {
 public:
-    /// "tty0", "ttyS0,115200". Of one that is not there nothing is heard.
+    /// Opens a console: "tty0", "ttyS0,115200". Ignores one that does not exist.
     void open(const std::string& console);
-    /// One line with the time since the power came.
+    /// Writes one line with the time since power-on.
     void say(std::string_view sentence) const;
-    /// Writes to that file what was said before and what is said from now on. A process of its own writes it
-    /// through to the disk, so that nobody waits for a disk that does not answer. Such a disk loses what does
-    /// not fit the socket to that process. The error: a sentence.
+    /// Writes earlier and later messages to that file. A separate process writes them through to the disk, so
+    /// that a disk that does not respond blocks nobody; messages that exceed the socket to that process are
+    /// then lost. The error is a sentence.
     [[nodiscard]] init::Done keep_in(const std::string& file);
-    /// The file's disk is about to go: what was said is there, or is given up after a second.
+    /// Stops writing to the file before its disk is unmounted; waits up to a second for pending messages.
     void let_go();
-    /// As it comes. A console that takes nothing more (Ctrl-S, a slow line) loses it: nobody waits for it.
+    /// Passes the text on unchanged. A blocked console (Ctrl-S, a slow line) loses it: nobody waits for it.
     void pass_on(std::string_view text) const;
 
 private:
@@ -31,12 +31,12 @@ private:
     std::vector<int> consoles_;
     int file_ = -1; ///< a socket to the writer
     pid_t writer_ = -1;
-    mutable std::string said_before_{}; ///< while there is no file
+    mutable std::string said_before_{}; ///< until there is a file
 };
 
-/// Since the kernel began.
+/// Returns the time since the kernel started.
 [[nodiscard]] double uptime_s();
-/// "1.250 s"
+/// Returns text such as "1.250 s".
 [[nodiscard]] std::string text_of_seconds(double seconds);
 
 } // namespace tappet::box

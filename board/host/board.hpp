@@ -1,4 +1,4 @@
-// The host: a developer's machine. Devices are in-process twins; nothing of it is fit for steel.
+// The host: a developer's machine. Devices are in-process twins; it must not control a real machine.
 #pragma once
 
 #include "kernel/machine/table/board.hpp"
@@ -13,7 +13,7 @@ inline constexpr Board host{
     .processors = 1,
     .highest_priority = 80,
     .simulated = true,
-    // A developer's kernel is rarely a real-time one, and its other work goes on.
+    // A developer's kernel is rarely a real-time one, and other programs run on it.
     .only_warned = warn_only("realtime-kernel", "clock-source", "rt-throttling", "cpu-governor",
                              "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap",
                              "fifo-priority", "clock-resolution"),

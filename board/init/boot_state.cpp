@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loader's file, field by field, least byte first.
+// The loader's file, field by field, little-endian.
 #include "board/init/boot_state.hpp"
 
 #include <array>
@@ -17,7 +17,7 @@ constexpr std::size_t at_watchdog = at_state + 1;
 constexpr std::size_t at_revision = at_watchdog + 2;
 constexpr std::size_t at_sum = all_bytes - 4;
 
-/// Of each byte, since a machine waits for two files of this size before it arms.
+/// A table by byte, because a machine waits for two files of this size before it arms.
 constexpr auto sums_of_bytes = [] {
     std::array<std::uint32_t, 256> sums{};
     for (std::uint32_t byte = 0; byte < sums.size(); ++byte) {
@@ -28,7 +28,7 @@ constexpr auto sums_of_bytes = [] {
     return sums;
 }();
 
-/// CRC-32 of ISO 3309, as zlib has it.
+/// CRC-32 of ISO 3309, the same as in zlib.
 std::uint32_t sum_of(std::string_view bytes) {
     std::uint32_t sum = ~0U;
     for (const char byte : bytes)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the box's loader, EFI Boot Guard, reads of each slot: the file BGENV.DAT of 132,104 bytes.
+// The file BGENV.DAT of a slot, 132,104 bytes, read by the box's loader, EFI Boot Guard.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace tappet::init {
 
-/// The loader boots the highest revision that has not failed. It makes `installed` `testing` before it boots
-/// it, and a slot that it finds in `testing` at the next boot has failed: it had one trial.
+/// The loader boots the highest revision that has not failed. Before it boots an `installed` one it sets
+/// `testing`. A slot found in `testing` at the next boot has failed: it has only one trial.
 enum class SlotState : std::uint8_t { good = 0, installed = 1, testing = 2, failed = 3 };
 
 constexpr std::string_view name_of(SlotState state) noexcept {
@@ -28,9 +28,10 @@ struct BootState {
 
 inline constexpr std::string_view boot_state_file = "BGENV.DAT";
 
-/// The file's bytes. Its loader's arguments are empty: the kernel's command line is a part of what it boots.
+/// Returns the file's contents. The loader's arguments are empty: the kernel's command line is part of the
+/// kernel image.
 [[nodiscard]] std::string encode(const BootState& state);
-/// The error: it is torn, or no such file.
+/// Reads the file. The error: it is torn, or another file.
 [[nodiscard]] std::expected<BootState, std::string> decode(std::string_view bytes);
 
 } // namespace tappet::init

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modules, interfaces and GPIO chips, by the kernel's own interfaces: there are no tools.
+// Modules, interfaces and GPIO chips, by the kernel's own interfaces, without tools.
 #include "board/init/devices.hpp"
 
 #include <cerrno>
@@ -24,8 +24,7 @@
 namespace tappet::init {
 namespace {
 
-// One rtnetlink request, laid out by hand: the alternative is an `ip` program and its libraries in every
-// image.
+// One rtnetlink request, built by hand, because an `ip` program would need its libraries in every image.
 template <class Body>
 class LinkRequest {
 public:
@@ -92,8 +91,7 @@ private:
 
 } // namespace
 
-// Behind the module stand the signature, a row of which the last four bytes are the signature's length, and a
-// mark.
+// After the module: the signature, a record that ends with the signature's length (4 bytes), a magic text.
 std::string_view without_signature(std::string_view module) {
     constexpr std::string_view mark = "~Module signature appended~\n";
     constexpr std::size_t row_bytes = 12, length_bytes = 4;
@@ -118,8 +116,8 @@ Done load_module(const std::string& path, const std::string& parameters, Signatu
     return done == 0 || errno == EEXIST ? Done{} : failed("load module " + path);
 }
 
-// A module fails as long as one that it needs is missing. Which needs which changes from kernel to kernel, so
-// it is tried again after the others.
+// A module fails while a dependency is missing. Dependencies change from kernel to kernel, so it is retried
+// after the others.
 Done load_modules(std::vector<std::string> paths) {
     while (!paths.empty()) {
         if (std::erase_if(paths, [](const std::string& path) { return load_module(path).has_value(); }) ==
@@ -169,7 +167,7 @@ Done set_bit_rates(const std::string& name, std::uint32_t bits_per_second, std::
     ifinfomsg body{};
     body.ifi_index = static_cast<int>(::if_nametoindex(name.c_str()));
     LinkRequest request{RTM_NEWLINK, body, 0};
-    const std::uint32_t room = 10; // frames that wait in the kernel: more would only be old
+    const std::uint32_t room = 10; // frames queued in the kernel: more would only become old
     request.bytes(IFLA_TXQLEN, &room, sizeof room);
     const std::size_t info = request.begin(IFLA_LINKINFO);
     request.text(IFLA_INFO_KIND, "can");
@@ -208,7 +206,7 @@ Done create_can(const std::string& name) {
 }
 
 Done create_gpio_chip(const std::string& name, const std::string& lines) {
-    ::mount("configfs", "/sys/kernel/config", "configfs", 0, nullptr); // it may be there
+    ::mount("configfs", "/sys/kernel/config", "configfs", 0, nullptr); // it may already be mounted
     const std::string chip = "/sys/kernel/config/gpio-sim/" + name;
     const std::string bank = chip + "/bank0";
     if (::mkdir(chip.c_str(), 0755) != 0 || ::mkdir(bank.c_str(), 0755) != 0) {

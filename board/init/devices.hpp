@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel is given before anything runs: modules, interfaces, CAN bit rates, simulated CAN and GPIO.
-// Nothing here waits for hardware.
+// Sets up the kernel before anything runs: modules, interfaces, CAN bit rates, simulated CAN and GPIO. Does
+// not wait for hardware.
 #pragma once
 
 #include "board/init/system.hpp"
@@ -12,30 +12,32 @@
 
 namespace tappet::init {
 
-/// Of a kernel that is locked down a module's signature must be right; any other judges it too, and takes its
-/// time, and then loads what has none. Where nobody has judged the kernel itself, that proves nothing.
+/// Whether a module keeps its signature. A kernel that is locked down requires a valid one. Any other kernel
+/// checks it too, which takes time, and loads modules without one; when the kernel itself was not verified,
+/// that check proves nothing.
 enum class Signature : std::uint8_t { on, off };
-/// One module's file, with its parameters; well when it is loaded already.
+/// Loads one module's file with its parameters; succeeds when it is already loaded.
 [[nodiscard]] Done load_module(const std::string& path, const std::string& parameters = {},
                                Signature signature = Signature::on);
-/// As it was before its maker signed it; one that has no signature stays as it is.
+/// Returns the module without its signature; unchanged when it has none.
 [[nodiscard]] std::string_view without_signature(std::string_view module);
-/// All of them, in whatever order they need each other.
+/// Loads all of them, whatever their dependencies.
 [[nodiscard]] Done load_modules(std::vector<std::string> paths);
 
 [[nodiscard]] bool has_interface(const std::string& name);
 [[nodiscard]] Done set_link(const std::string& name, bool up);
-/// "192.168.7.1/24".
+/// Sets an address: "192.168.7.1/24".
 [[nodiscard]] Done set_address(const std::string& name, const std::string& address);
-/// Of a CAN controller that is down, which is set to CAN FD when `in_data_phase` is not 0; a bus that goes
-/// off stays off, since that is a fault which its machine handles.
+/// Sets the bit rates of a CAN controller that is down, with CAN FD when `in_data_phase` is not 0. Disables
+/// automatic restart: bus-off is a fault that the machine handles.
 [[nodiscard]] Done set_bit_rates(const std::string& name, std::uint32_t bits_per_second,
                                  std::uint32_t in_data_phase);
 
-/// A virtual CAN interface, up; it takes CAN FD.
+/// Creates a virtual CAN interface with CAN FD, and brings it up.
 [[nodiscard]] Done create_can(const std::string& name);
-/// A chip is reached by its name on both sides: /dev/NAME is the character device a driver opens, /sim/NAME
-/// is the folder in which the outside world pulls inputs and reads outputs (sim_gpioN/pull, sim_gpioN/value).
+/// Creates a simulated GPIO chip with the same name on both sides: a driver opens the character device
+/// /dev/NAME; the outside world pulls inputs and reads outputs in the folder /sim/NAME (sim_gpioN/pull,
+/// sim_gpioN/value).
 [[nodiscard]] Done create_gpio_chip(const std::string& name, const std::string& lines);
 
 } // namespace tappet::init

@@ -108,7 +108,7 @@ std::expected<int, std::string> stop_throttling() {
     for (const std::string& processor : names_in(servers)) {
         if (write_text(servers + "/" + processor + "/runtime", "0"))
             ++stopped;
-        else if (errno != EBUSY) // it is offline
+        else if (errno != EBUSY) // the processor is offline
             return failed("write 0 to " + servers + "/" + processor + "/runtime");
     }
     if (stopped == 0 && mounted) ::umount(debug_files); // nobody else needs it
@@ -151,7 +151,7 @@ void reap(const std::function<void(pid_t, int)>& ended) {
     }
 }
 
-// Behind the name, which may hold anything, stand the state and the parent.
+// The name may contain anything; state and parent follow it.
 std::vector<pid_t> children_of(pid_t parent) {
     std::vector<pid_t> children;
     for (const std::string& name : names_in("/proc")) {

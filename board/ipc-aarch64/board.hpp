@@ -1,5 +1,5 @@
-// An industrial PC with an aarch64 processor: a fanless box with four cores that have the atomic instructions
-// of version 8.1, two CAN controllers, a GPIO chip of 32 lines, an Ethernet port and a serial port.
+// An industrial PC with an aarch64 processor: a fanless box with four cores (with the atomic instructions of
+// version 8.1), two CAN controllers, a GPIO chip of 32 lines, an Ethernet port and a serial port.
 #pragma once
 
 #include "drivers/can/kind.hpp"
@@ -14,14 +14,14 @@ inline constexpr Board ipc_aarch64{
     .memory_budget_bytes = 4 * 1024 * 1024,
     .heap_bytes = 160 * 1024,
     .processors = 4,
-    .highest_priority = 80, // interrupt threads of CAN and GPIO stand above every activity
-    // Processors 2 and 3 are isolated (see the command line): a machine runs on 2, what its binding says on 3
-    // or, with the interrupts, on 0 and 1.
+    .highest_priority = 80, // interrupt threads of CAN and GPIO have a higher priority than every activity
+    // Processors 2 and 3 are isolated (see the command line): a machine runs on 2; its binding may
+    // place parts on 3, or on 0 and 1 together with the interrupts.
     .default_processor = 2,
     .devices = board_devices(board_device("can0", "can", "can0", bit_rate(1'000'000)),
                              board_device("can1", "can", "can1", bit_rate(1'000'000)),
-                             // By the chip's label, as gpiodetect shows it: numbers follow the order in which
-                             // drivers load.
+                             // By the chip's label, as gpiodetect shows it, because numbers depend on the
+                             // order in which drivers load.
                              board_device("io", "gpio", "gpio0", lines(32)),
                              board_device("serial1", "serial", "/dev/ttyAMA0")),
     .only_warned = {},
@@ -32,7 +32,7 @@ inline constexpr Board ipc_aarch64{
         "cpuidle.off=1 nosoftlockup nowatchdog audit=0 cpufreq.default_governor=performance mitigations=auto "
         "sysctl.kernel.sched_rt_runtime_us=-1 quiet panic=5",
     .properties_directory = "/var/lib/tappet",
-    // Root, and nobody else, until the box has groups for its people: name them here.
+    // Only root, until the box has groups for its people: name them here.
     .browsing = {.directory = "/run/tappet", .mode = 0660},
     .black_box_directory = "/var/lib/tappet",
     .watchdog = "/dev/watchdog",

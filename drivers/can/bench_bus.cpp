@@ -1,4 +1,4 @@
-// Frames between a plant and SocketCAN.
+// Transfers frames between a plant and SocketCAN.
 #include "drivers/can/bench_bus.hpp"
 
 #include "drivers/can/signal_map.hpp"

@@ -7,7 +7,7 @@
 
 namespace tappet::can {
 
-/// Sends at once, whoever acknowledges. Not real-time.
+/// Sends at once, even without an acknowledgement. Not real-time.
 class BenchBus final : public BenchEnd, public Device {
 public:
     static constexpr const DeviceKind& kind = device_kind;
@@ -19,7 +19,7 @@ public:
     ProvidedDevice provided(std::string_view name) noexcept override {
         return {type_id<Device>, name, static_cast<Device*>(this)};
     }
-    /// Tells every listener of error frames.
+    /// Sends a bus-off error frame to every listener of error frames.
     void announce_bus_off() override;
     [[nodiscard]] std::uint64_t unsent() const noexcept override { return count_.refused; }
 
@@ -27,7 +27,7 @@ public:
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
     Send send(const Frame& frame, Keep keep) noexcept TAPPET_REALTIME override;
     void service(Time) noexcept TAPPET_REALTIME override {}
-    bool finish(Time) noexcept TAPPET_REALTIME override { return true; } // what is sent has left
+    bool finish(Time) noexcept TAPPET_REALTIME override { return true; } // frames sent have already left
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override { return never; }
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME override { return State::active; }
     [[nodiscard]] Counters counters() const noexcept TAPPET_REALTIME override { return count_; }

@@ -32,7 +32,7 @@ namespace tappet::can {
 /// force, but not when the force ends with a stop.
 /// A frame is not sent when an input was never written, is not a number, or is stale without a substitute;
 /// the receiver's own time-out detects this. A received value that is not a number is counted, and its output
-/// becomes stale. Of a multiplexed frame only the signals that its multiplexors select are written, read and
+/// becomes stale. In a multiplexed frame, only the signals that its multiplexors select are written, read and
 /// sent.
 ///
 /// After a fault or a stop the bus starts fresh: earlier arrivals, queued frames and demands are discarded.
@@ -64,11 +64,9 @@ struct Bus {
     static constexpr int max_frames_per_cycle = 64;
     static constexpr Duration look_while_faulted = 20ms; ///< period of polling for a restart
     static constexpr Duration retry_after = 1ms;         ///< when the kernel had no room for a frame
-    static constexpr Duration shortest_wait = 100us;     ///< lower limit of a device's request, so that the
-                                                         ///< cycle cannot spin
+    static constexpr Duration shortest_wait = 100us;     ///< lower limit of a request: the cycle cannot spin
 
-    // One port of each sort for each signal; those that do not fit the signal's direction and type stay
-    // unused.
+    // One port of each sort for each signal; those that do not fit its direction and type stay unused.
     std::array<Output<double>, signal_count> physical_out{};
     std::array<Output<std::int64_t>, signal_count> integer_out{};
     std::array<Input<double>, signal_count> physical_in{};
@@ -236,8 +234,7 @@ private:
                                   : nth_output<&Bus::physical_out>(s, name, signal.unit, "received");
     }
 
-    /// Advances by absolute times: a late cycle does not shift later ones, and whole missed periods are
-    /// skipped.
+    /// Uses absolute times: a late cycle does not shift later ones, and whole missed periods are skipped.
     void next_period(std::size_t f, Time now) noexcept TAPPET_REALTIME {
         const Duration every = map.frames[f].every;
         due_[f] += ((now - due_[f]) / every + 1) * every;

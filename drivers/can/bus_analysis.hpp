@@ -1,6 +1,5 @@
-// Does every frame come through in time? Response times of the frames on one bus, in whole nanoseconds, so
-// that the compiler can answer: Davis, Burns, Bril and Lukkien 2007, with errors, and for the frames of this
-// machine with the queue that they really wait in.
+// Response-time analysis of the frames on one bus, in whole nanoseconds at compile time: Davis, Burns, Bril
+// and Lukkien 2007, with errors, and with the real send queue for this machine's frames.
 #pragma once
 
 #include "drivers/can/frame_time.hpp"
@@ -14,46 +13,46 @@
 
 namespace tappet::can {
 
-/// Of all frames of one identifier.
+/// Timing of all frames with one identifier.
 struct FrameTiming {
-    std::int64_t wire_ns = 0;     ///< the longest on the wire
-    std::int64_t period_ns = 0;   ///< the least time between two
-    std::int64_t jitter_ns = 0;   ///< the longest from its release to its node's queue
+    std::int64_t wire_ns = 0;     ///< longest time on the wire
+    std::int64_t period_ns = 0;   ///< least time between two frames
+    std::int64_t jitter_ns = 0;   ///< longest time from its release to its node's queue
     std::int64_t deadline_ns = 0; ///< from its release
-    bool own = false;             ///< it goes through this machine's queue
-    bool on_grid = false;         ///< and all such frames are released at multiples of their periods
+    bool own = false;             ///< it is sent by this machine's queue
+    bool on_grid = false;         ///< all such frames are released at multiples of their periods
 };
 
-/// The bus, and how this machine sends on it: by identifier out of a queue of its own, `in_flight` frames of
-/// which the controller holds in the order in which it got them and gives none back.
+/// The bus, and how this machine sends: from a queue ordered by identifier. The controller holds `in_flight`
+/// of the frames, in the order of their hand-over, and does not return them.
 struct BusTiming {
     std::int64_t bit_ns = 0;
     std::int64_t in_flight = 1;
     std::int64_t hand_over_ns = 0; ///< from the end of a frame until the next one is handed over
-    std::int64_t errors = 0;       ///< so many at once, at the worst moment,
-    std::int64_t errors_every_ns = analysis_max_ns; ///< and one more after each of these times
+    std::int64_t errors = 0;       ///< at the worst moment, this many errors at once ..
+    std::int64_t errors_every_ns = analysis_max_ns; ///< .. and one more after each such time
 };
 
-/// What a worst case consists of.
+/// The parts of a worst case.
 enum class Part : std::uint8_t { jitter, own_time, blocking, in_flight, handing_over, others, errors };
 
 struct FrameResponse {
     Response response{};
     Part largest = Part::own_time;
-    std::size_t of = 0; ///< the frame that makes it, where the part is `others` or `blocking`
+    std::size_t of = 0; ///< the frame that causes it, for the parts `others` and `blocking`
     std::int64_t largest_ns = 0;
 };
 
-/// Of one bus. Frames stand in the order in which they win it: by identifier, a base frame before an extended
-/// one with the same first 11 bits.
+/// Analysis of one bus. Frames are in the order of arbitration: by identifier, a base frame before an
+/// extended one with the same first 11 bits.
 ///
-/// A frame of another node is held up by one of lower priority that has just begun, and by all of higher
-/// priority; its node is believed to send the most urgent of its own first. A frame of this machine's waits
-/// as well for up to `in_flight` less urgent ones that the controller holds already, and while these wait to
-/// win the bus, every frame of others passes that is more urgent than the least urgent of ours (after Davis,
-/// Kollmann, Pollex and Slomka 2011, on FIFO queues; here only what is in flight is one). Of two on the grid
-/// the less urgent one is not among those when it is through before the other can be released. To everybody
-/// else the time behind those is one more jitter of this frame.
+/// A frame of another node is delayed by one frame of lower priority that has just started, and by all of
+/// higher priority; its node is assumed to send the most urgent of its own first. A frame of this machine
+/// also waits for up to `in_flight` less urgent ones that the controller already holds. While these wait for
+/// arbitration, every frame of other nodes passes that is more urgent than the least urgent of them (after
+/// Davis, Kollmann, Pollex and Slomka 2011, on FIFO queues; here only the frames in flight form one). When
+/// both frames are on the grid, the less urgent one does not count if it is sent before the other can be
+/// released. For all other frames, the wait behind the frames in flight is one more jitter of this frame.
 class BusAnalysis {
 public:
     /// A bus with more identifiers is not analysed.
@@ -72,8 +71,8 @@ public:
         for (std::size_t i = 0; i < std::min(frames_.size(), most_frames); ++i) set_late(i, Span{0});
         sensible_ &= frames_.size() <= most_frames && bus_.bit_ns > 0 && bus_.in_flight >= 1 &&
                      Span{bus_.hand_over_ns}.exists() && bus_.errors >= 0 && bus_.errors_every_ns > 0;
-        // Begins with none in flight but those on demand, and takes in what is found not to be through in
-        // time, until nothing more is: no frame can be the first one that is late.
+        // Starts with only frames on demand in flight, and adds those that are not sent in time, until there
+        // are no more: then no frame can be the first late one.
         for (bool again = sensible_; again;) {
             again = false;
             for (std::size_t o = 0; o < own_count_; ++o) set_late(own_[o], behind_those_in_flight(own_[o]));
@@ -88,14 +87,14 @@ public:
         }
     }
 
-    /// From the release of a frame to its end on the wire.
+    /// Returns the response of a frame, from its release to its end on the wire.
     [[nodiscard]] constexpr FrameResponse of(std::size_t index) const noexcept {
         if (index >= frames_.size() || !sensible_) return {};
         return frames_[index].own ? of_own_[index] : of_another_node(index);
     }
 
-    /// Of one of ours: how much later than its queue says it may come to the wire, behind less urgent ones in
-    /// flight. To other nodes it is one more jitter.
+    /// Returns how much later a frame of this machine may reach the wire, because of less urgent ones in
+    /// flight. For other nodes it is one more jitter.
     [[nodiscard]] constexpr std::int64_t late_ns(std::size_t index) const noexcept { return late_ns_[index]; }
 
 private:
@@ -110,7 +109,7 @@ private:
         }
         return longest;
     }
-    /// A less urgent one of ours that was released before the other.
+    /// Returns whether a less urgent frame of this machine is sent before the other one can be released.
     [[nodiscard]] constexpr bool is_through_before(std::size_t less_urgent,
                                                    std::size_t index) const noexcept {
         const FrameTiming& first = frames_[less_urgent];
@@ -118,14 +117,13 @@ private:
         return first.on_grid && then.on_grid &&
                worst_ns_[less_urgent] <= std::gcd(first.period_ns, then.period_ns);
     }
-    /// How many of ours that are less urgent may be in flight, and how long the longest of them take
-    /// together.
+    /// The most less urgent frames of this machine in flight, and the time of the longest of them together.
     struct InFlight {
         std::int64_t count = 0, ns = 0;
     };
     [[nodiscard]] constexpr InFlight in_flight_below(std::size_t index) const noexcept {
         InFlight found;
-        std::int64_t limit = analysis_max_ns; // the last one taken; of equals none is taken twice
+        std::int64_t limit = analysis_max_ns; // the last one counted; of equal ones none counts twice
         std::size_t taken = frames_.size();
         while (found.count < bus_.in_flight) {
             std::size_t next = frames_.size();
@@ -142,7 +140,7 @@ private:
         }
         return found;
     }
-    /// An error frame, and the frame that it spoils, again: of `index` and what is more urgent.
+    /// Returns the time of errors: an error frame and the longest destroyed frame, of `index` or more urgent.
     [[nodiscard]] constexpr Span spoilt(Span window, std::size_t index) const noexcept {
         if (bus_.errors == 0) return Span{0};
         std::int64_t longest = 0;
@@ -155,13 +153,13 @@ private:
         late_ns_[index] = late.ns;
         lead_ns_[index] = (Span{frames_[index].jitter_ns} + late + Span{bus_.bit_ns}).ns;
     }
-    /// The wire is lost to whoever is ready up to one bit after this frame would begin.
+    /// Returns the time of frame k in the window: it wins up to one bit after this frame would start.
     [[nodiscard]] constexpr Span passing(Span window, std::size_t k) const noexcept {
         return analysis::arrivals(window + Span{lead_ns_[k]}, frames_[k].period_ns) *
                Span{frames_[k].wire_ns};
     }
-    /// The same of all frames before `end`, of other nodes only or of ours too; how many of ours is added to
-    /// `ours`. Written out, since the compiler goes through it most of the time.
+    /// Returns the same for all frames before `end`, of other nodes only or of this machine, too; adds the
+    /// number of this machine's to `ours`. Written out, because the compiler spends most of its time here.
     [[nodiscard]] constexpr Span passing_before(std::size_t end, bool others_only, Span window,
                                                 std::int64_t& ours) const noexcept {
         if (!window.exists()) return Span{};
@@ -181,7 +179,7 @@ private:
         }
         return Span{sum};
     }
-    /// Until the less urgent ones in flight are through: what of ours waits meanwhile is late for everybody.
+    /// Returns the time until the less urgent ones in flight are sent: it delays this machine's frames.
     [[nodiscard]] constexpr Span behind_those_in_flight(std::size_t index) const noexcept {
         std::int64_t steps = analysis_max_steps;
         const InFlight before = in_flight_below(index);
@@ -197,15 +195,15 @@ private:
         const FrameTiming& own = frames_[index];
         std::int64_t steps = analysis_max_steps;
         const InFlight before = in_flight_below(index);
-        // The one before it of the same identifier may have held up what passes now (push-through).
+        // The previous frame of the same identifier may have delayed those that pass now (push-through).
         std::size_t blocker = index;
         const std::int64_t below = longest_below(last_own_, true, blocker);
         const std::int64_t blocking = std::max(below, own.wire_ns);
         if (below < own.wire_ns) blocker = index;
-        // When all that were in flight are through before more are handed over, somebody less urgent may
-        // begin in between; then as many as may be in flight are handed over together.
+        // When all frames in flight are sent before more are handed over, a less urgent frame may start in
+        // the gap; then as many as may be in flight are handed over together.
         std::size_t unused = 0;
-        // With all their stuffing or without it: what they take less of the bus they leave to that gap.
+        // With or without stuffing: the bus time that they save is added to that gap.
         const std::int64_t behind = (bus_.in_flight - 1) * shortest_own_ns_;
         const bool may_idle = bus_.hand_over_ns > least_time_ns(behind);
         const std::int64_t gap =
@@ -216,7 +214,7 @@ private:
             return (before.count + ours + bus_.in_flight - 1) / bus_.in_flight * Span{gap};
         };
         FrameResponse found;
-        Span less_urgent{0}; // of others, while ours in flight wait
+        Span less_urgent{0}; // of other nodes, while this machine's in flight wait
         for (std::size_t k = index + 1; before.count > 0 && k < last_own_; ++k)
             if (!frames_[k].own) {
                 const Span passed = passing(Span{late_ns_[index]}, k);
@@ -225,8 +223,8 @@ private:
             }
         const Span fixed = Span{blocking} + Span{before.ns} + less_urgent;
         const std::size_t spoils = before.count > 0 ? last_own_ : index; // up to the least urgent one ahead
-        std::int64_t ours = 0; // that are more urgent, in the window
-        // What was found before can only have grown.
+        std::int64_t ours = 0; // number of more urgent ones in the window
+        // The last result is a lower bound, because the wait only grows.
         const Span start{std::max(fixed.ns, wait_ns_[index])};
         const Span wait = analysis::fixed_point(fixed.exists() ? start : fixed, steps, [&](Span window) {
             ours = 0;
@@ -242,7 +240,7 @@ private:
         consider(found, Part::handing_over, index, gaps(ours));
         consider(found, blocker == index ? Part::own_time : Part::blocking, blocker, Span{blocking});
         consider(found, Part::errors, index, spoilt(wait + Span{own.wire_ns}, spoils));
-        // Longer than a period: then the one before it waits as well, and nothing is known.
+        // When it exceeds a period, the previous frame still waits, and there is no bound.
         const std::int64_t worst_ns = own.jitter_ns + wait.ns + own.wire_ns;
         if (worst_ns <= own.period_ns) found.response = {true, worst_ns};
         return found;
@@ -288,7 +286,7 @@ private:
         return found;
     }
 
-    /// What passing_before() has found to be a time.
+    /// Considers the times that passing_before() has shown to be finite.
     constexpr void consider_passing(FrameResponse& found, Span window, std::size_t end) const noexcept {
         for (std::size_t k = 0; k < end; ++k) {
             const FrameTiming& frame = frames_.data()[k];
@@ -304,15 +302,15 @@ private:
 
     std::span<const FrameTiming> frames_;
     BusTiming bus_;
-    std::array<std::size_t, most_frames> own_{}; // their places
+    std::array<std::size_t, most_frames> own_{}; // their indices
     std::size_t own_count_ = 0;
     std::size_t last_own_ = 0;
     std::int64_t shortest_own_ns_ = analysis_max_ns;
-    std::array<std::int64_t, most_frames> worst_ns_{}; // of ours, as far as it is known
-    std::array<std::int64_t, most_frames> late_ns_{};  // of ours, behind the less urgent ones in flight
+    std::array<std::int64_t, most_frames> worst_ns_{}; // of this machine's frames, as far as known
+    std::array<std::int64_t, most_frames> late_ns_{};  // of this machine's, behind less urgent ones in flight
     std::array<std::int64_t, most_frames>
-        lead_ns_{}; // how much sooner than a window begins one still comes into it
-    std::array<std::int64_t, most_frames> wait_ns_{}; // of ours, as found so far
+        lead_ns_{}; // how long before a window's start an arrival still counts
+    std::array<std::int64_t, most_frames> wait_ns_{}; // of this machine's, as found so far
     std::array<FrameResponse, most_frames> of_own_{};
     bool sensible_ = true;
 };

@@ -1,5 +1,5 @@
-// Whether a bus carries what its map says, at its bit rate and by the queue that its frames wait in: the
-// sentence of the table's check, and the rows of charts and summaries.
+// Checks whether a bus can carry its map at its bit rate and with its send queue: the message of the table's
+// check, and the rows of charts and summaries.
 #pragma once
 
 #include "drivers/can/bus_analysis.hpp"
@@ -48,7 +48,7 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
     return {};
 }
 
-/// Of a frame that may come too late. `of`: what delays it most.
+/// Returns the message about a frame that may be late. `of`: its largest delay.
 constexpr Sentence late_fault(const FrameRow& row, const FrameResponse& found, std::string_view of,
                               std::int64_t deadline_ns, std::int64_t load_ppm, std::uint32_t bit_rate) {
     if (!found.response.bounded && found.largest_ns > 0)
@@ -79,7 +79,7 @@ constexpr Sentence late_fault(const FrameRow& row, const FrameResponse& found, s
 
 } // namespace detail
 
-/// The rates that something on a bus was proven for; 0: any. Empty: those of the bus.
+/// The bit rates that frames of a bus were proven for; 0: any. Empty: those of the bus.
 struct ProvenRates {
     std::uint32_t nominal = 0, data = 0;
 };
@@ -100,8 +100,8 @@ constexpr Sentence bit_rate_fault(const ProvenRates& proven, const BusFacts& bus
     return {};
 }
 
-/// Of the frames of a map without a fault, and of what else crosses its bus. `response`: of the activity that
-/// drives it.
+/// Analyses the frames of a map without a fault, and the others on its bus. `response`: that of the activity
+/// that drives the bus.
 template <std::size_t F>
 constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const BusFacts& bus,
                                Duration response, std::span<TrafficRow> rows) {

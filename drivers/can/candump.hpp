@@ -1,9 +1,8 @@
-// A line of a candump log (can-utils: candump -L or -l): one frame, when it was on the bus, and on which
-// interface.
-//     (1700000000.123456) can0 123#DEADBEEF    8 digits in place of 3 are an identifier of 29 bits
-//     (1700000000.123456) can0 123#R2          a remote frame that asks for so many bytes
-//     (1700000000.123456) can0 123##1DEADBEEF  CAN FD; of its flags 1 is the second bit rate, 2 an error
-//                                              passive sender, 4 is CAN FD once more
+// A line of a candump log (can-utils: candump -L or -l): one frame with its time and interface.
+//     (1700000000.123456) can0 123#DEADBEEF    8 digits instead of 3 are an identifier of 29 bits
+//     (1700000000.123456) can0 123#R2          a remote frame that requests this many bytes
+//     (1700000000.123456) can0 123##1DEADBEEF  CAN FD; flag 1 is the second bit rate, 2 an error
+//                                              passive sender, 4 is CAN FD again
 #pragma once
 
 #include "drivers/can/frame.hpp"
@@ -18,13 +17,13 @@ namespace tappet::can::candump {
 
 struct Logged {
     std::string_view interface{}; ///< in the line
-    Frame frame{};                ///< its stamp is of the log's clock: wall clock as a rule
-    bool is_error = false;        ///< an error frame: its contents are the kernel's, not decoded here
+    Frame frame{};                ///< its stamp is of the log's clock, usually wall clock
+    bool is_error = false;        ///< an error frame: its contents are the kernel's and are not decoded here
 };
 
-/// What is wrong, and the cure.
+/// An error and its cure.
 struct Fault {
-    std::size_t column = 0; ///< from 1 on
+    std::size_t column = 0; ///< counted from 1
     std::string_view what{};
 };
 
@@ -36,7 +35,7 @@ constexpr int hex_digit(char c) noexcept {
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-/// A view of the line that gets shorter.
+/// The rest of the line.
 struct Rest {
     std::string_view text;
     std::size_t begins = text.size();
@@ -48,7 +47,7 @@ struct Rest {
         text.remove_prefix(1);
         return true;
     }
-    /// Digits of the kind, up to so many.
+    /// Takes up to `most` characters of this kind.
     template <class Value>
     constexpr std::string_view take_while(Value is_wanted, std::size_t most) noexcept {
         std::size_t n = 0;
@@ -62,7 +61,7 @@ struct Rest {
     }
 };
 
-/// SECONDS.FRACTION, which may be left out: candump writes six digits of it, or nine.
+/// Takes SECONDS.FRACTION; the fraction is optional: candump writes six or nine digits.
 constexpr std::expected<Duration, Fault> take_seconds(Rest& rest) noexcept {
     const Rest before = rest;
     std::int64_t ns = 0;
@@ -89,7 +88,7 @@ constexpr std::expected<void, Fault> take_identifier(Rest& rest, Logged& logged)
     const std::string_view digits = rest.take_while([](char c) { return hex_digit(c) >= 0; }, 9);
     std::uint64_t id = 0;
     for (const char c : digits) id = 16 * id + static_cast<unsigned>(hex_digit(c));
-    constexpr std::uint64_t error_flag = 0x2000'0000; // as <linux/can.h> has it
+    constexpr std::uint64_t error_flag = 0x2000'0000; // as in <linux/can.h>
     if (digits.size() == 8 && (id & error_flag) != 0 && id < 2 * error_flag) {
         logged.is_error = true;
         logged.frame.id = static_cast<std::uint32_t>(id - error_flag);
@@ -118,7 +117,7 @@ constexpr std::expected<void, Fault> take_data(Rest& rest, Frame& frame) noexcep
 
 } // namespace detail
 
-/// A number of seconds and nothing else.
+/// Reads a number of seconds and nothing else.
 constexpr std::expected<Duration, Fault> read_seconds(std::string_view text) noexcept {
     detail::Rest rest{text};
     const auto time = detail::take_seconds(rest);
@@ -126,7 +125,7 @@ constexpr std::expected<Duration, Fault> read_seconds(std::string_view text) noe
     return time;
 }
 
-/// Without the line's end.
+/// Reads a line without its end.
 constexpr std::expected<Logged, Fault> read(std::string_view line) noexcept {
     detail::Rest rest{line};
     Logged logged;
@@ -163,7 +162,7 @@ constexpr std::expected<Logged, Fault> read(std::string_view line) noexcept {
     if (!frame.remote)
         if (auto taken = detail::take_data(rest, frame); !taken) return std::unexpected(taken.error());
     if (!valid(frame)) return contents.refuse("CAN FD knows no frame of this length");
-    // Eight bytes whose length code says more than eight.
+    // Eight bytes with a length code above eight.
     if (!frame.fd && frame.length == 8 && rest.take('_') &&
         (detail::hex_digit(rest.front()) < 9 || !rest.take(rest.front())))
         return rest.refuse("behind _ stands a length code from 9 to F");
@@ -172,9 +171,9 @@ constexpr std::expected<Logged, Fault> read(std::string_view line) noexcept {
     return logged;
 }
 
-/// The line, without its end. What no interface of Linux is called becomes '_', and what is too long for one
-/// is cut, so that canplayer takes it; a time before 0 becomes 0, and one between two microseconds the later
-/// one: nothing happens before it happened.
+/// Returns the line, without its end. Characters that Linux does not allow in an interface name become '_',
+/// and a name too long is cut, so that canplayer accepts it. A time before 0 becomes 0, and one between two
+/// microseconds is rounded up, so that no frame is logged before it happened.
 constexpr Sentence write(const Frame& frame, std::string_view interface) noexcept {
     constexpr std::string_view digits = "0123456789ABCDEF";
     Sentence line{"("};

@@ -1,5 +1,5 @@
-// One time over the nodes of a bus: one tells its clock, the others know how far it is ahead of theirs, and
-// how surely.
+// One time for the nodes of a bus: one node sends its clock, the others know how far it is ahead of theirs,
+// and with what error.
 #pragma once
 
 #include "drivers/can/clock_frames.hpp"
@@ -9,13 +9,15 @@
 
 namespace tappet::can {
 
-/// Tells the machine's time to its bus. Rows of the table:
+/// Sends the machine's time to its bus. Rows of the table:
 ///     component<can::Bus<signals, can::clock_frames<row, can::Direction::transmit>>>("can", device("can")),
 ///     component<can::ClockTeller<row>>("clock", device("can")),
 ///     activity("can", on_device("can"), ..., runs("can", "clock"), ...)
-/// In the activity of its bus, behind it: so the confirmation of a SYNC is followed up at once. Real-time.
+/// Runs in the activity of its bus, after it, so that the FUP follows the confirmation of a SYNC at once.
+/// Real-time.
 ///
-/// The first SYNC comes one period after its start, when nobody waits any more for a FUP of its last start.
+/// The first SYNC comes one period after its start, when no receiver waits for a FUP of its last start any
+/// more.
 template <const auto& row> struct ClockTeller {
     TAPPET_ACCEPTED(clock_fault(row));
     static constexpr const DeviceKind& device_kind = can::device_kind;
@@ -43,7 +45,7 @@ template <const auto& row> struct ClockTeller {
         if (cycle.now >= next_sync_) synchronise(cycle.now);
         const State before = device_->state();
         device_->service(cycle.now);
-        if (device_->state() != before) waiter_->wake(); // the bus tells it
+        if (device_->state() != before) waiter_->wake(); // the bus reports it
         next.arm(std::min(next_sync_, device_->next_service()));
     }
     void fire(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
@@ -91,25 +93,25 @@ private:
     Time next_sync_{}, sent_{};
     std::uint32_t seconds_ = 0;
     std::uint8_t sequence_ = 0;
-    bool is_open_ = false; ///< SYNC waits to be through
+    bool is_open_ = false; ///< SYNC is not confirmed yet
 };
 
-/// Knows how far the teller's clock is ahead. In a periodic activity; rows of the table:
+/// Knows how far the sender's clock is ahead. In a periodic activity; rows of the table:
 ///     component<can::Bus<signals, can::clock_frames<row, can::Direction::receive>>>("can", device("can")),
 ///     component<can::ToldClock<row>>("clock"),
 ///     buffer<8>("can.services", "clock.received")
 /// Real-time.
 ///
-/// `error` is certain as far as stamps are no later, and none is too early, as they can be by up to 1 ms
-/// while a wall clock is set: half of both stamps' lateness, and what the clocks may have drifted since the
-/// last exchange, P at most while all is well. Only that one counts: a teller that began anew has another
-/// clock, and a small jump of it shows nowhere else. What is spoilt, comes twice, out of order or without its
-/// other half is not used. Between a restart and its first exchange, it is still the clock of before that is
-/// told; `rate` is of one start of the teller, and a jump too small to be seen is in it.
+/// `error` is guaranteed if no stamp is later than stated and none is too early; stamps can be early by up to
+/// 1 ms while a wall clock is set. It is half of both stamps' lateness, plus the possible drift of the clocks
+/// since the last exchange, P at most in normal operation. Only the last exchange counts, because a restarted
+/// sender has another clock, and a small jump of it shows nowhere else. Frames that are damaged, duplicated,
+/// out of order or incomplete are not used. Between a restart and its first exchange, the output is still the
+/// previous clock. `rate` is measured over one start of the sender and includes jumps too small to detect.
 template <const auto& row> struct ToldClock {
     TAPPET_ACCEPTED(clock_fault(row));
     static constexpr int max_frames_per_cycle = 64;
-    /// Steps of the sequence that are taken for losses; more are out of order.
+    /// Largest step of the sequence that counts as losses; a larger one is out of order.
     static constexpr unsigned most_steps = 4;
 
     BufferInput<Frame> received{};
@@ -192,7 +194,7 @@ private:
     }
     void take_sync(const ClockFrame& told, Time stamp) noexcept TAPPET_REALTIME {
         const unsigned steps = (told.sequence + 16U - sequence_) & 15U;
-        // Of one that comes twice nobody knows which time is the teller's: its exchange is given up.
+        // A duplicated SYNC does not show which time the sender means: the exchange is abandoned.
         const bool usable = !has_sequence_ || (steps != 0 && steps <= most_steps);
         if (is_open_ || !usable) discard();
         is_open_ = usable;
@@ -209,7 +211,8 @@ private:
         const std::int64_t seconds = std::int64_t{seconds_} + told.seconds_more;
         exchange(Time{Duration{seconds * 1'000'000'000 + told.number}}, now);
     }
-    /// The teller's stamp of the SYNC; the own one is `through_`. Both are late, if anything.
+    /// Processes an exchange: `theirs` is the sender's stamp of the SYNC, `through_` the own; both can be
+    /// late.
     void exchange(Time theirs, Time now) noexcept TAPPET_REALTIME {
         const Duration ahead_now = theirs - through_;
         const Duration parted = ClockBounds::parted(now - through_ + own_late.get(), drift.get());
@@ -223,7 +226,7 @@ private:
             const Duration over = through_ - anchor_;
             if (over < rate_over.get() + own_late.get()) return;
             rate.write(to_seconds(ahead_now - ahead_then_) / to_seconds(over));
-            // Over a time that is itself known to the lateness of a stamp.
+            // The length of time is itself only known to the lateness of a stamp.
             rate_error.write((to_seconds(teller_late.get() + own_late.get()) +
                               drift.get() * to_seconds(own_late.get()) + 2e-9) /
                              to_seconds(over - own_late.get()));

@@ -1,5 +1,5 @@
-// The two frames by which one node of a bus tells the others its time, as AUTOSAR has them (CanTSyn): SYNC,
-// of which both ends note when it is through, and FUP, which tells when that was by the teller's clock.
+// The two frames by which one node of a bus sends its time, as in AUTOSAR (CanTSyn): SYNC, whose time on the
+// bus both ends stamp, and FUP, which states that time by the sender's clock.
 #pragma once
 
 #include "drivers/can/services.hpp"
@@ -10,12 +10,12 @@
 
 namespace tappet::can {
 
-/// Who tells its time by which frames; one constant, which both ends have.
+/// The clock of a bus and its frames; both ends use the same constant.
 struct ClockRow {
     Identifier identifier{};                                  ///< of both frames
     Duration every{};                                         ///< from SYNC to SYNC
-    Duration jitter{};                                        ///< by how much its teller may be late with it
-    std::uint8_t domain = 0;                                  ///< 0 to 15: several may share an identifier
+    Duration jitter{};                                        ///< by how much its sender may be late
+    std::uint8_t domain = 0;                                  ///< 0..15: several may share an identifier
     std::array<std::uint8_t, 16> sync_ids{}, follow_up_ids{}; ///< by sequence number, in the checksum
 };
 /// clock(standard(0x090), every(100ms))
@@ -23,10 +23,10 @@ constexpr ClockRow clock(Identifier identifier, Rate rate, std::uint8_t domain =
     return {identifier, rate.every, rate.jitter, domain, {}, {}};
 }
 
-/// FUP leaves so long after its SYNC, or not at all.
+/// Latest time of a FUP after its SYNC; otherwise it is not sent.
 constexpr Duration follow_up_within(const ClockRow& row) noexcept { return row.every / 4; }
 
-/// Empty: it is right.
+/// Returns what is wrong with the row; empty: nothing.
 constexpr Sentence clock_fault(const ClockRow& row) noexcept {
     if (!valid(row.identifier))
         return Sentence{"the clock's identifier ", row.identifier.id, " is out of range: give it another"};
@@ -41,12 +41,12 @@ constexpr Sentence clock_fault(const ClockRow& row) noexcept {
     return {};
 }
 
-/// For can::Bus<signals, clock_frames<row, transmit>>: of who tells; of the others, receive.
+/// Services for can::Bus<signals, clock_frames<row, transmit>>; the sender uses transmit, the others receive.
 template <const auto& row, Direction direction>
 inline constexpr auto clock_frames = [] {
     TAPPET_ACCEPTED(clock_fault(row));
     Services<2, 0> both{};
-    both.sends_itself = true; // the teller; who is told sends nothing
+    both.sends_itself = true; // the sender; receivers send nothing
     both.frames[0].name = "clock.sync";
     both.frames[1].name = "clock.follow_up";
     for (FrameRow& frame : both.frames) {
@@ -54,29 +54,29 @@ inline constexpr auto clock_frames = [] {
         frame.direction = direction;
         frame.length = 8;
     }
-    // On no grid of the bus's own. Two FUP are nearer to each other than two SYNC.
+    // Not on the bus's own time grid. Two FUP can be closer together than two SYNC.
     both.frames[0].apart = row.every;
     both.frames[0].jitter = direction == Direction::transmit ? Duration{} : row.jitter;
     both.frames[1].apart = row.every - row.jitter - follow_up_within(row);
     return both;
 }();
 
-/// What a frame tells.
+/// The contents of a frame.
 struct ClockFrame {
     enum class Kind : std::uint8_t { sync, follow_up };
     Kind kind = Kind::sync;
-    std::uint8_t sequence = 0; ///< 0 to 15
-    /// Of SYNC: whole seconds of the teller's clock when it was made. Of FUP: ns from then until it was
-    /// through, and of that in `seconds_more` the whole seconds.
+    std::uint8_t sequence = 0; ///< 0..15
+    /// SYNC: whole seconds of the sender's clock when the frame was made. FUP: ns from then until the SYNC
+    /// was on the bus; whole seconds of that are in `seconds_more`.
     std::uint32_t number = 0;
-    std::uint8_t seconds_more = 0; ///< 0 to 3
+    std::uint8_t seconds_more = 0; ///< 0..3
 
     constexpr bool operator==(const ClockFrame&) const = default;
 };
 
 namespace detail {
 
-/// Over all behind itself, and the id last.
+/// Returns the checksum over all bytes after it, with the id last.
 constexpr std::uint8_t clock_checksum(const ClockRow& row, const Payload& data) noexcept TAPPET_REALTIME {
     const std::size_t sequence = data[2] & 15U;
     const bool is_sync = (data[0] & 8U) == 0;
@@ -107,9 +107,9 @@ constexpr Frame encode(const ClockRow& row, const ClockFrame& told) noexcept TAP
 }
 
 enum class ClockRead : std::uint8_t {
-    told,    ///< it is one
-    foreign, ///< of another identifier, domain or kind of message
-    wrong,   ///< spoilt, or without a checksum
+    told,    ///< a clock frame
+    foreign, ///< another identifier, domain or kind of message
+    wrong,   ///< damaged, or without a checksum
 };
 constexpr ClockRead decode(const ClockRow& row, const Frame& frame, ClockFrame& told) noexcept
     TAPPET_REALTIME {
@@ -118,7 +118,7 @@ constexpr ClockRead decode(const ClockRow& row, const Frame& frame, ClockFrame& 
     if (frame.length != 8) return ClockRead::wrong;
     if (frame.data[2] >> 4 != row.domain) return ClockRead::foreign;
     const std::uint8_t kind = frame.data[0];
-    if (kind == 0x10 || kind == 0x18) return ClockRead::wrong; // SYNC and FUP that nothing secures
+    if (kind == 0x10 || kind == 0x18) return ClockRead::wrong; // SYNC and FUP without a checksum
     if (kind != detail::secured_sync && kind != detail::secured_follow_up) return ClockRead::foreign;
     if (frame.data[1] != detail::clock_checksum(row, frame.data)) return ClockRead::wrong;
     told = {};

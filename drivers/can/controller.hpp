@@ -1,5 +1,5 @@
-// What a controller of either world knows of its bus: state, faults, restarts, and through them what may be
-// sent.
+// The state of a controller, common to both worlds: state of the bus, faults, restarts, and the frames that
+// may be sent.
 #pragma once
 
 #include "drivers/can/recovery.hpp"
@@ -10,7 +10,7 @@ namespace tappet::can {
 /// The owner's calls are real-time; `recovery` is also used by restart().
 class Controller {
 public:
-    /// Not real-time. Begins anew, whatever was before; `state` is what the bus is in now, without a fault.
+    /// Resets everything. Not real-time. `state` is the present state of the bus, without a fault.
     void configure(const Settings& settings, State state = State::active) noexcept {
         transmitter_ = {};
         transmitter_.configure(settings);
@@ -27,9 +27,9 @@ public:
         if (!ours(frame) || (frame.fd && !takes_fd_)) return refuse(Send::refused_invalid);
         return transmitter_.push(frame, keep, count);
     }
-    /// Takes a finished restart into use, notices missing acknowledgements, drops what is too old.
-    /// True when a restart was taken into use. `more_waits`: confirmations that nobody read yet, perhaps;
-    /// then one has twice the time.
+    /// Takes a finished restart into use, detects missing acknowledgements, drops frames that are too old.
+    /// Returns true when a restart was taken into use. `more_waits`: there may be unread confirmations; then
+    /// the time-out is doubled.
     bool tick(Time now, bool more_waits = false) noexcept TAPPET_REALTIME {
         const bool restarted = recovery.taken_up();
         if (restarted) {
@@ -41,16 +41,17 @@ public:
             fault(State::unacknowledged);
         return restarted;
     }
-    /// The frame to hand over now, or nothing.
+    /// Returns the frame to hand over now, or null.
     const Frame* next(Time now) noexcept TAPPET_REALTIME {
         return faulted(state_) ? nullptr : transmitter_.next(now, count);
     }
-    /// The frame that is next, whatever is in flight; nobody waits for its confirmation. False: none waits.
+    /// Takes the next frame regardless of those in flight; its confirmation is not awaited. Returns false
+    /// when there is none.
     bool take_waiting(Frame& frame) noexcept TAPPET_REALTIME {
         return !faulted(state_) && transmitter_.take_waiting(frame);
     }
     void handed_over(Time now) noexcept TAPPET_REALTIME { transmitter_.handed_over(now); }
-    /// `is_exact`: the time is the confirmation's, not that of its reading.
+    /// `is_exact`: the time is that of the confirmation, not of its reading.
     void confirmed(Time now, bool is_exact = true) noexcept TAPPET_REALTIME {
         const Transmitter::Flight sent = transmitter_.confirmed(now, count);
         const std::size_t which = index_of(sent.identifier);
@@ -73,11 +74,11 @@ public:
         if (faulted(error.state))
             fault(error.state);
         else if (!faulted(state_))
-            state_ = error.state; // out of a fault only by a restart
+            state_ = error.state; // only a restart ends a fault
     }
     void fault(State kind) noexcept TAPPET_REALTIME {
         if (faulted(state_)) {
-            if (kind > state_) state_ = kind; // unacknowledged may end in bus-off
+            if (kind > state_) state_ = kind; // unacknowledged may become bus-off
             return;
         }
         state_ = kind;
@@ -87,16 +88,16 @@ public:
     }
     void purge() noexcept TAPPET_REALTIME { transmitter_.purge(count); }
 
-    /// Whether the frame's identifier is one of those that this device sends.
+    /// Returns whether this device sends the frame's identifier.
     [[nodiscard]] bool ours(const Frame& frame) const noexcept TAPPET_REALTIME {
         return index_of({frame.id, frame.extended}) < transmit_.size();
     }
-    /// Nothing waits to be handed over, or to be confirmed.
+    /// Returns true when no frame is queued or unconfirmed.
     [[nodiscard]] bool all_is_sent() const noexcept TAPPET_REALTIME {
         return !faulted(state_) && transmitter_.waiting() == 0 && transmitter_.in_flight() == 0;
     }
     [[nodiscard]] std::size_t waiting() const noexcept TAPPET_REALTIME { return transmitter_.waiting(); }
-    /// At least one of `parts` equal parts of the limit is in flight: 1 means all, 2 means half.
+    /// Returns whether at least one of `parts` equal parts of the limit is in flight: 1 means all, 2 half.
     [[nodiscard]] bool is_filled(std::size_t parts) const noexcept TAPPET_REALTIME {
         return transmitter_.is_filled(parts);
     }
@@ -117,7 +118,7 @@ private:
         ++count.refused;
         return why;
     }
-    /// Behind the last: it is none of ours.
+    /// Returns the identifier's index; the size when this device does not send it.
     [[nodiscard]] std::size_t index_of(Identifier of) const noexcept TAPPET_REALTIME {
         std::size_t at = 0;
         while (at < transmit_.size() && transmit_[at] != of) ++at;
@@ -131,7 +132,7 @@ private:
     State state_ = State::active;
 };
 
-/// A real device and a simulated one answer these calls by their controller.
+/// Common part of real and simulated devices: the calls that their controller answers.
 class ControlledDevice : public Device {
 public:
     using Device::send;

@@ -30,7 +30,7 @@ enum class Send : std::uint8_t {
     refused_invalid, ///< identifier or length out of range, or CAN FD on a bus without it
 };
 
-/// What to do with an older frame of the same identifier that is still queued.
+/// How to treat an older frame of the same identifier that is still queued.
 enum class Keep : std::uint8_t {
     latest, ///< cyclic contents: the newer frame replaces the older
     every,  ///< commands: every frame is sent, in order
@@ -73,15 +73,12 @@ struct Settings {
     std::string_view interface{};           ///< named by the board
     std::span<const Identifier> receive{};  ///< only these are received
     std::span<const Identifier> transmit{}; ///< only these may be sent
-    std::uint32_t in_flight = 4;            ///< most frames handed over and not yet confirmed; see
-                                            ///< frames_in_flight()
+    std::uint32_t in_flight = 4;            ///< most unconfirmed frames; see frames_in_flight()
     Duration max_age = 20ms;                ///< an older frame is not sent any more
     Duration confirm_within = 50ms;         ///< a frame unconfirmed for longer is a fault
     std::uint32_t restarts_allowed = 3;
-    std::uint32_t bit_rate = 0;         ///< the controller must be set to this rate, in bit/s, as the board
-                                        ///< states
-    std::uint32_t data_bit_rate = 0;    ///< the same for CAN FD's data phase; 0: the board has classical CAN
-                                        ///< only
+    std::uint32_t bit_rate = 0;         ///< the controller's required rate, as the board states
+    std::uint32_t data_bit_rate = 0;    ///< the same for CAN FD's data phase; 0: classical CAN only
     bool takes_fd = false;              ///< receives and sends CAN FD frames: the map has at least one
     int receive_buffer_bytes = 1 << 20; ///< Linux's default holds 278 frames
 };
@@ -137,9 +134,9 @@ public:
     /// Not real-time. Brings a faulted controller back and drops everything it still held.
     virtual Restart restart() noexcept = 0;
 
-    /// Lets each arrival wake `waiter` from now on; it must outlive the device. A confirmation that somebody
-    /// waits for wakes it too; other confirmations are reported with the next event. Not real-time. Returns
-    /// false when the waiter already watches too many devices.
+    /// Lets each arrival wake `waiter` from now on; it must outlive the device. A confirmation that is waited
+    /// for wakes it too; other confirmations are reported with the next event. Not real-time. Returns false
+    /// when the waiter already watches too many devices.
     [[nodiscard]] virtual bool wakes(os::Waiter& waiter) noexcept = 0;
     /// Lets each confirmation wake the waiter, too. Not real-time.
     virtual void wake_when_confirmed() noexcept {}

@@ -1,4 +1,4 @@
-// What a signal map's facets are called, and of which type their values are.
+// The names of a signal map's facets, and the types of their values.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"

@@ -50,9 +50,9 @@ private:
 
 /// Access by the names of the map, which the compiler checks:
 ///     can.get("drive_command.speed")      the last value the machine sent, in the signal's unit; 0 before
-///     can.came("drive_command")           whether it arrived since the plant's last step
+///     can.came("drive_command")           whether it arrived since the plant's last move()
 ///     can.set("drive.speed", 12.5)        is sent with the next frame "drive"
-///     can.send("drive")                   sends it in this step
+///     can.send("drive")                   sends it in this move()
 ///     can.send_every("encoder", 1ms)      sends it periodically; 0: stops
 template <const auto& map>
 class FarEnd final : public RawFarEnd, public NodeSignals<map> {

@@ -4,7 +4,7 @@
 //         can::transmit("drive_command", can::signal("controlword").safe(2), can::signal("speed").safe(0)));
 //     inline constexpr auto can_signals = can::from_dbc<files::press_dbc, controller>;
 //
-// The same type of map as of can::signal_map(..), faults included: they name line and column of the file.
+// The map has the same type as one of can::signal_map(..), and its faults name line and column of the file.
 #pragma once
 
 #include "drivers/can/dbc/reader.hpp"
@@ -25,7 +25,7 @@ template <const auto& file> inline constexpr auto network_of = [] {
     return store;
 }();
 
-/// The network with what the node takes of it marked, and the room that this needs.
+/// The network with the node's part of it marked, and the sizes that this part needs.
 template <const auto& file, const auto& node> struct Marked {
     std::remove_cvref_t<decltype(network_of<file>)> store = network_of<file>;
     Sizes sizes{};
@@ -39,7 +39,7 @@ template <const auto& file, const auto& node> struct Marked {
 };
 template <const auto& file, const auto& node> inline constexpr Marked<file, node> marked{};
 
-/// The node's map, and what it points to.
+/// The node's map, and the data it points to.
 template <const auto& file, const auto& node> struct Taken {
     static constexpr const Sizes& sizes = marked<file, node>.sizes;
 
@@ -58,7 +58,7 @@ template <const auto& file, const auto& node> inline constexpr Taken<file, node>
 
 } // namespace dbc
 
-/// `file` is a SourceText, `node` what can::node(..) made: constexpr variables at namespace scope.
+/// `file` is a SourceText, `node` the result of can::node(..): constexpr variables at namespace scope.
 template <const auto& file, const auto& node>
 inline constexpr const auto& from_dbc = dbc::taken<file, node>.map;
 

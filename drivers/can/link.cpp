@@ -1,4 +1,4 @@
-// What an interface's answer over rtnetlink says of it, attribute by attribute.
+// Reads an interface's answer over rtnetlink, attribute by attribute.
 #include "drivers/can/link.hpp"
 
 #include "drivers/can/netlink.hpp"
@@ -12,7 +12,7 @@
 namespace tappet::can {
 namespace {
 
-/// Calls visit(type, payload, length) for each attribute; stops at the first that does not fit.
+/// Calls visit(type, payload, length) for each attribute; stops at the first invalid one.
 template <class Visit> void each_attribute(const std::byte* at, std::size_t left, Visit visit) {
     rtattr attribute{};
     while (left >= sizeof attribute) {

@@ -1,4 +1,4 @@
-// Multiplexed signals: which of a frame's signals are in it, told by the values of others in the same frame.
+// Multiplexed signals: the values of other signals in the same frame select which signals the frame holds.
 #pragma once
 
 #include "drivers/can/signal.hpp"
@@ -9,20 +9,19 @@ namespace tappet::can {
 
 inline constexpr std::size_t no_such = ~std::size_t{0};
 
-/// The signals of a map and the place of each one's multiplexor, which stands before it: so every way up
-/// ends.
+/// The signals of a map, each with the index of its multiplexor, which is lower, so that every chain ends.
 struct Multiplexing {
     std::span<const Signal> signals{};
-    std::span<const std::size_t> multiplexor_of{}; ///< no_such: it always is in its frame
+    std::span<const std::size_t> multiplexor_of{}; ///< no_such: it is in every frame
 
-    /// Whether a frame holds the signal; raw_of(m) is the value there of a multiplexor. Real-time.
+    /// Returns whether a frame holds the signal; raw_of(m) is the value of multiplexor m in it. Real-time.
     template <class RawOf>
     [[nodiscard]] constexpr bool holds(std::size_t s, const RawOf& raw_of) const noexcept TAPPET_REALTIME {
         for (std::size_t at = s, up = multiplexor_of[s]; up != no_such; at = up, up = multiplexor_of[at])
             if (!signals[at].is_selected_by(raw_of(up))) return false;
         return true;
     }
-    /// No frame holds both: somewhere above them the same multiplexor selects either.
+    /// Returns whether no frame holds both: some common multiplexor selects one or the other.
     [[nodiscard]] constexpr bool exclude_each_other(std::size_t a, std::size_t b) const noexcept {
         for (std::size_t x = a; multiplexor_of[x] != no_such; x = multiplexor_of[x])
             for (std::size_t y = b; multiplexor_of[y] != no_such; y = multiplexor_of[y])

@@ -1,4 +1,4 @@
-// What is no answer is left unread: only the kernel answers, only to the number asked, and only whole.
+// Ignores packets that are not the answer: only the kernel's, complete, and with the request's number counts.
 #include "drivers/can/netlink.hpp"
 
 #include <cerrno>
@@ -11,7 +11,7 @@ namespace tappet::can {
 
 namespace {
 
-constexpr int packets_at_most = 64; // that are no answer, before one that is
+constexpr int packets_at_most = 64; // most packets ignored before the answer
 
 } // namespace
 
@@ -63,7 +63,7 @@ int Netlink::ask(const ifinfomsg& what, std::uint16_t type, std::uint16_t flags)
                                      reinterpret_cast<sockaddr*>(&sender), &size);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) return errno == EAGAIN ? ETIMEDOUT : errno;
-        const auto there = static_cast<std::size_t>(n); // with MSG_TRUNC: all of the packet's
+        const auto there = static_cast<std::size_t>(n); // with MSG_TRUNC: the packet's full length
         const bool cut = there > buffer_.size();
         length_ = cut ? buffer_.size() : there;
         if (const NetlinkAnswer answer = judge(data(), sender.nl_pid, cut, sequence_); answer.ours)

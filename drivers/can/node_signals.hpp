@@ -1,4 +1,5 @@
-// A bus's signals as the nodes see them, by the names of the machine's map: what it receives they send.
+// A bus's signals as the nodes see them, by the names of the machine's map: they send what the machine
+// receives.
 #pragma once
 
 #include "drivers/can/signal_store.hpp"
@@ -9,8 +10,8 @@
 
 namespace tappet::can {
 
-/// A machine's map as the nodes see it. What they send has no range: a node may send what its description
-/// forbids.
+/// Returns a machine's map from the nodes' side. The signals they send have no range, because a node may send
+/// values that its description forbids.
 template <std::size_t F, std::size_t S>
 constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
     for (FrameRow& row : map.frames)
@@ -21,8 +22,9 @@ constexpr SignalMap<F, S> seen_from_the_nodes(SignalMap<F, S> map) noexcept {
     return map;
 }
 
-/// Their values, without a wire: of nodes that make and take their frames themselves. The compiler checks the
-/// names. Real-time; who is that, too, has the names as constants outside of its functions.
+/// The values of the nodes' signals without a wire, for nodes that send and receive frames themselves. The
+/// compiler checks the names. Real-time; real-time code must have the names as constants outside of its
+/// functions.
 template <const auto& map>
 class NodeSignals {
     TAPPET_ACCEPTED(map.fault);
@@ -70,7 +72,7 @@ public:
     [[nodiscard]] double get(ReceivedSignal signal) const noexcept TAPPET_REALTIME {
         return store_.physical(signal.index);
     }
-    /// A set of bits, or a counter: before factor and offset.
+    /// Returns the value before factor and offset: a set of bits, or a counter.
     [[nodiscard]] std::int64_t integer(ReceivedSignal signal) const noexcept TAPPET_REALTIME {
         return store_.integer(signal.index);
     }
@@ -80,11 +82,11 @@ public:
     void set_integer(SentSignal signal, std::uint64_t bits) noexcept TAPPET_REALTIME {
         store_.set_bits(signal.index, bits);
     }
-    /// With the values as they are; `at` becomes its stamp.
+    /// Returns the frame with the present values; `at` becomes its stamp.
     [[nodiscard]] Frame encode(Sent frame, Time at) const noexcept TAPPET_REALTIME {
         return store_.encode(frame.index, at);
     }
-    /// Takes the values of a frame of the machine's in, whole or not at all; `which` becomes its row.
+    /// Takes the values of a frame from the machine, all or none; `which` becomes its row.
     [[nodiscard]] Decoded decode(const Frame& frame, std::size_t& which) noexcept TAPPET_REALTIME {
         return store_.decode(frame, which);
     }

@@ -1,4 +1,4 @@
-// The settings of a bus: from its board, its map and what is proven of it.
+// The settings of a bus: from its board, its map and its timing proof.
 #include "drivers/can/real_bus.hpp"
 
 #include "drivers/can/transmitter.hpp"

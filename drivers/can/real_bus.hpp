@@ -24,7 +24,7 @@ public:
 
 private:
     SocketCan bus_{};
-    SafeSender safe_{}; // open in the guardian's process only
+    SafeSender safe_{}; // opened in the guardian's process only
     std::string_view address_{};
     std::span<const Frame> safe_frames_{};
 };

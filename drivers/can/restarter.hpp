@@ -1,4 +1,4 @@
-// Brings a faulted CAN bus back: deliberately, after a pause, and only so many times.
+// Restarts a faulted CAN bus: deliberately, after a pause, and only a limited number of times.
 #pragma once
 
 #include "drivers/can/device.hpp"
@@ -9,10 +9,10 @@
 
 namespace tappet::can {
 
-/// Stands beside the Bus on the same device, in a background activity that is not_real_time: a restart
-/// blocks. Connect its input to the bus' `faulted`. Attempts count from its start and are never given back: a
-/// bus that fails again and again needs hands, not restarts, and whoever starts it again had a look.
-/// The device's own bound holds as well, from the machine's start.
+/// Shares the Bus's device, in a background activity that is not_real_time, because a restart blocks. Connect
+/// its input to the bus' `faulted`. Attempts count from its start and are never restored: a bus that fails
+/// again and again needs service, and whoever starts it again is assumed to have checked it. The device's own
+/// limit applies as well, from the machine's start.
 struct Restarter {
     static constexpr const DeviceKind& device_kind = can::device_kind;
     static constexpr bool shares_device = true;
@@ -46,7 +46,7 @@ struct Restarter {
         }
         if (cycle.now < next_attempt_) return;
         if (tried_ >= attempts.get()) return give_up();
-        // What the last attempt brought is seen after a pause: the bus has taken it up by then, or it failed.
+        // Waits a pause for the result of the last attempt: by then the bus has taken it up, or it failed.
         next_attempt_ = cycle.now + pause.get();
         switch (device_->restart()) {
         case Restart::done:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A raw socket that hears nothing but the confirmations of its own frames.
+// A raw socket that receives only the confirmations of its own frames.
 #include "drivers/can/safe_sender.hpp"
 
 #include "drivers/can/link.hpp"
@@ -22,7 +22,7 @@ namespace tappet::can {
 
 namespace {
 
-/// -1 and errno: the kernel gave none.
+/// Returns the socket, or -1 with errno.
 int socket_for(int interface, std::span<const Frame> frames) noexcept {
     can_filter filters[SafeSender::most_frames];
     for (std::size_t i = 0; i < frames.size(); ++i)
@@ -47,7 +47,7 @@ int socket_for(int interface, std::span<const Frame> frames) noexcept {
     return -1;
 }
 
-/// Whether frames of this socket wait in the interface's queue. A controller keeps the few that it holds.
+/// Returns whether frames of this socket are in the interface's queue; not those in the controller.
 bool waits_in_queue(int fd) noexcept {
     std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
     socklen_t size = sizeof memory;
@@ -108,7 +108,7 @@ void SafeSender::send(Purpose purpose) noexcept {
             static_cast<void>(::write(fd_, &raw, 0));
             continue;
         }
-        // The kernel takes no more now. The rest waits for the next call: frames keep their order.
+        // The kernel's queue is full. The rest waits for the next call: frames keep their order.
         if (::write(fd_, &raw, wire::bytes_of(frames_[i])) < 0) return;
         accepted_ |= bit;
         progress_ = os::Clock::monotonic();
@@ -116,8 +116,8 @@ void SafeSender::send(Purpose purpose) noexcept {
 }
 
 std::size_t SafeSender::left() noexcept {
-    // Frames of the machine come first, as many as the socket's buffer holds; an interface that was down in
-    // between is told once.
+    // The machine's frames come first, as many as the socket's buffer holds. An interface that was down in
+    // between reports this once.
     bool was_down = false;
     for (int n = 0; n < 65536; ++n) {
         canfd_frame raw{};
@@ -128,7 +128,7 @@ std::size_t SafeSender::left() noexcept {
         const ssize_t got = ::recvmsg(fd_, &message, MSG_DONTWAIT);
         if (got < 0 && errno == ENETDOWN && !std::exchange(was_down, true)) continue;
         if (got != CAN_MTU && got != CANFD_MTU) break;
-        if ((message.msg_flags & MSG_CONFIRM) == 0 || !tells_) continue; // of the machine, or of before
+        if ((message.msg_flags & MSG_CONFIRM) == 0 || !tells_) continue; // of the machine, or from before
         Frame sent;
         if (!wire::decode(raw, static_cast<std::size_t>(got), State::active, sent)) continue;
         for (std::size_t i = 0; i < frames_.size(); ++i)

@@ -16,7 +16,7 @@ template <std::size_t N, std::size_t S, std::size_t G = 0> struct Services {
     std::array<Frame, S> safe{};
     std::uint32_t bit_rate = 0;         ///< bit rate of their proof, in bit/s; 0: any rate of the board
     std::uint32_t data_bit_rate = 0;    ///< the same for CAN FD's data phase
-    std::uint32_t restarts_allowed = 0; ///< of a faulted controller; 0: the least that any bus allows
+    std::uint32_t restarts_allowed = 0; ///< of a faulted controller; 0: the default of Settings
     bool sends_itself = false;          ///< uses the device next to the bus; else by the bus's to_send
     static constexpr bool any = N + S != 0;
 

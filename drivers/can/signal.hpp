@@ -104,8 +104,7 @@ struct Signal {
     constexpr Signal range(double new_least, double new_most) const noexcept {
         return copy_with(*this, &Signal::least, new_least, &Signal::most, new_most, &Signal::has_range, true);
     }
-    /// The signal is in the frame only while signal `of` has one of these values: when("page", 1, between(4,
-    /// 7)).
+    /// In a frame only while its signal `of` has one of these values: when("page", 1, between(4, 7)).
     template <std::convertible_to<Selection>... S>
         requires(sizeof...(S) > 0 && sizeof...(S) <= most_selections)
     constexpr Signal when(std::string_view of, const S&... values) const noexcept {
@@ -165,8 +164,7 @@ constexpr unsigned bit_place(const Signal& s, unsigned i) noexcept TAPPET_REALTI
 struct Place {
     std::uint8_t byte = 0;  ///< the first of the eight, which end within the longest frame
     std::uint8_t shift = 0; ///< position of its lowest bit in the eight
-    std::uint8_t over = 0;  ///< number of bits in the ninth: the highest ones, or the lowest of a Motorola
-                            ///< signal
+    std::uint8_t over = 0;  ///< bits in the ninth: the highest, or a Motorola signal's lowest
     std::uint8_t bits = 1;
     Order order = Order::intel;
 };
@@ -272,16 +270,14 @@ constexpr double to_physical(const Signal& s, std::uint64_t raw) noexcept TAPPET
 
 struct Raw {
     std::uint64_t bits = 0;
-    bool saturated =
-        false; ///< the value was out of range, and its nearest end was taken: never a wrapped value
-    bool refused = false; ///< not a number, or infinite
+    bool saturated = false; ///< the value was out of range and became the nearest limit; it never wraps
+    bool refused = false;   ///< not a number, or infinite
 };
 
 namespace detail {
 constexpr Raw to_any_raw(const Signal& s, double physical) noexcept TAPPET_REALTIME {
     if (!is_number(physical)) return {.refused = true};
-    const double number = (physical - s.offset) / s.factor; // infinite for a large number: becomes the
-                                                            // nearest limit
+    const double number = (physical - s.offset) / s.factor; // infinite for a large one: the nearest limit
     if (s.kind == Kind::float64) {
         constexpr double most = 1.7976931348623157e308;
         const double kept = number > most ? most : number < -most ? -most : number;

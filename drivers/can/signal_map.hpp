@@ -134,7 +134,7 @@ struct Identifiers {
     std::span<const Frame> safe{};      ///< see SignalMap::safe_frames
     std::span<const FrameRow> frames{}; ///< of a machine's end; read by tools
     std::span<const Signal> signals{};
-    std::uint32_t restarts_allowed = 0; ///< of its controller; 0: the least that any bus allows
+    std::uint32_t restarts_allowed = 0; ///< of its controller; 0: the default of Settings
 };
 
 /// Most safe frames of all multiplexed frames of a map together, beyond one frame each.

@@ -1,4 +1,4 @@
-// The values of a bus's signals: decoded from frames that fit the map, encoded into frames that go out.
+// The values of a bus's signals: decoded from frames that match the map, encoded into frames to send.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
@@ -12,17 +12,17 @@ struct DecodeCounters {
     std::uint64_t unknown_identifiers = 0; ///< never decoded
     std::uint64_t wrong_lengths = 0;       ///< or of another format than the row's; never decoded
     std::uint64_t saturated = 0;           ///< values to send that were out of their signal's range
-    std::uint64_t refused = 0;             ///< values to send that were no numbers; the value before stays
+    std::uint64_t refused = 0;             ///< values to send that were not numbers; the previous value stays
     bool operator==(const DecodeCounters&) const = default;
 };
 
-/// All calls but the constructor are real-time. `map` outlives the store; its signals are meant by their
+/// All calls but the constructor are real-time. `map` must outlive the store; signals are given by their
 /// index.
 template <std::size_t F, std::size_t S> class SignalStore {
 public:
     explicit constexpr SignalStore(const SignalMap<F, S>& map) noexcept : map_{&map} {}
 
-    /// Takes a received frame in, whole or not at all. `which` becomes its row.
+    /// Decodes a received frame, completely or not at all. `which` becomes its row.
     constexpr Decoded decode(const Frame& frame, std::size_t& which) noexcept TAPPET_REALTIME {
         const std::size_t f = map_->frame(Identifier{frame.id, frame.extended});
         if (f == no_such || map_->frames[f].direction != Direction::receive || frame.remote) {
@@ -44,15 +44,15 @@ public:
         std::size_t which = no_such;
         return decode(frame, which);
     }
-    /// Whether a received frame of the row holds the signal.
+    /// Returns whether a received frame of the row holds the signal.
     [[nodiscard]] constexpr bool is_in(const FrameRow& row, std::size_t s, const Frame& frame) const noexcept
         TAPPET_REALTIME {
         return map_->holds(row, s, [&](std::size_t m) noexcept TAPPET_REALTIME {
             return extract(frame.data, map_->places[m]);
         });
     }
-    /// The frame of a row with the values as they are, of a multiplexed one those that they select; its stamp
-    /// is `now`.
+    /// Returns the frame of a row with the present values; of a multiplexed frame, the signals that these
+    /// select. Its stamp is `now`.
     [[nodiscard]] constexpr Frame encode(std::size_t f, Time now) const noexcept TAPPET_REALTIME {
         const FrameRow& row = map_->frames[f];
         Frame frame = frame_of(row);
@@ -65,18 +65,18 @@ public:
     [[nodiscard]] constexpr double physical(std::size_t s) const noexcept TAPPET_REALTIME {
         return to_physical(map_->signals[s], raw_[s]);
     }
-    /// The whole number before factor and offset: status words and counters.
+    /// Returns the whole number before factor and offset, for status words and counters.
     [[nodiscard]] constexpr std::int64_t integer(std::size_t s) const noexcept TAPPET_REALTIME {
         return to_integer(map_->signals[s], raw_[s]);
     }
     constexpr void set_physical(std::size_t s, double value) noexcept TAPPET_REALTIME {
         set(s, to_raw(map_->signals[s], value));
     }
-    /// Of a signal without factor and offset: a number within its range if it says one, otherwise bits.
+    /// Sets a signal without factor and offset: a number limited to the signal's range, if any, else bits.
     constexpr void set_integer(std::size_t s, std::int64_t value) noexcept TAPPET_REALTIME {
         set(s, to_raw_integer(map_->signals[s], value));
     }
-    /// Bits beyond the signal's width are cut: for control words, which are sets of bits.
+    /// Sets a set of bits, such as a control word; bits beyond the signal's width are cut.
     constexpr void set_bits(std::size_t s, std::uint64_t bits) noexcept TAPPET_REALTIME {
         raw_[s] = bits & detail::mask_of(map_->signals[s]);
     }

@@ -1,4 +1,4 @@
-// Both controllers are opened by the machine's map: what one sends the other receives.
+// Opens both controllers by the machine's map, the plant's with sent and received frames exchanged.
 #include "drivers/can/simulated_bus.hpp"
 
 #include <utility>
@@ -16,7 +16,7 @@ std::expected<void, Sentence> SimulatedBus::open(const void* device_map) {
     if (auto opened = machine.open(settings); !opened) return opened;
     Settings others = settings;
     std::swap(others.receive, others.transmit);
-    others.restarts_allowed = ~0u; // nodes try again for ever
+    others.restarts_allowed = ~0u; // nodes retry without limit
     if (auto opened = plant.open(others); !opened) return opened;
     if (!wire.attach(machine) || !wire.attach(plant))
         return std::unexpected(Sentence{"twin bus: no room for two ends"});

@@ -1,4 +1,4 @@
-// A CAN bus of the host: a machine's controller and its plant's, with the wire between them.
+// A CAN bus of the host: the machine's controller and the plant's, with the wire between them.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"

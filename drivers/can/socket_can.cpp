@@ -1,5 +1,5 @@
-// SocketCAN without blocking: as many frames as wait in one recvmmsg, a bounded number of frames handed over,
-// faults taken as values.
+// SocketCAN without blocking: one recvmmsg reads all queued frames, a limited number is handed over, and
+// faults are returned as values.
 #include "drivers/can/socket_can.hpp"
 
 #include "drivers/can/wire.hpp"
@@ -51,7 +51,7 @@ void SocketCan::Batch::read_from(int fd) noexcept {
     is_last = filled < size;
 }
 
-/// A frame, and what the kernel says of it.
+/// A frame with the kernel's data about it.
 struct SocketCan::Raw {
     const canfd_frame& frame;
     std::size_t bytes = 0;
@@ -134,21 +134,20 @@ std::expected<void, Sentence> SocketCan::open(Socket& socket, const Settings& se
         if (sends || std::ranges::find(settings.transmit, one) == settings.transmit.end()) // ours come there
             filters[used++] = wire::exactly(one);
     }
-    // No filter at all would mean "everything" to no filter call, and "nothing" to an empty one: the latter
-    // is wanted.
+    // Without a filter call the socket would receive everything, with an empty filter nothing, as wanted.
     bool ok =
         set(SOL_CAN_RAW, CAN_RAW_FILTER, used == 0 ? nullptr : filters.data(), used * sizeof(can_filter));
     ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, sends ? 0 : static_cast<int>(wire::error_mask));
     ok = ok && set_int(SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, sends ? 1 : 0); // as confirmations
     ok = ok && (!settings.takes_fd || set_int(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1));
     ok = ok && set_int(SOL_SOCKET, SO_RXQ_OVFL, 1);
-    ok = ok &&
-         set_int(SOL_SOCKET, SO_SNDBUF, 0); // the kernel raises it to its least: EAGAIN comes before ENOBUFS
+    ok = ok && set_int(SOL_SOCKET, SO_SNDBUF, 0); // raised to the kernel's minimum: EAGAIN precedes ENOBUFS
     if (!ok)
         return std::unexpected{failure(name, "a socket option is refused", "is the kernel 5.10 or newer?")};
-    // Without these the machine still works: frames count as arrived when read, and the buffer is Linux's
-    // default. Stamps are the kernel's, not the controller's: what CAN drivers count by has no clock that
-    // Linux relates to its own (none has a PTP clock), and runs away from it with the controller's crystal.
+    // The machine works without these: frames then count as arrived when read, and the buffer has Linux's
+    // default size. Stamps are the kernel's, not the controller's: Linux does not relate a CAN controller's
+    // counter to its own clock (no CAN driver has a PTP clock), and the two drift apart with the controller's
+    // crystal.
     set_int(SOL_SOCKET, SO_TIMESTAMPING, SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE);
     if (!set_int(SOL_SOCKET, SO_RCVBUFFORCE, settings.receive_buffer_bytes))
         set_int(SOL_SOCKET, SO_RCVBUF, settings.receive_buffer_bytes);
@@ -178,9 +177,9 @@ bool SocketCan::wakes(os::Waiter& waiter) noexcept {
 bool SocketCan::read(Socket& from) noexcept TAPPET_REALTIME {
     Batch& batch = from.batch;
     if (!batch.is_empty()) return true;
-    // The kernel had no more: that is known without asking it again.
+    // The last read emptied the socket, so there is no need to ask again.
     if (std::exchange(batch.is_last, false)) return false;
-    // An error is told once, in place of what waits behind it.
+    // The kernel reports an error once, ahead of queued frames.
     for (int tries = 0; tries < 2; ++tries) {
         TAPPET_ESCAPE("the driver's own read, which does not block", batch.read_from(from.fd));
         if (!batch.is_empty()) return true;
@@ -197,8 +196,8 @@ bool SocketCan::read(Socket& from) noexcept TAPPET_REALTIME {
 Receive SocketCan::receive(Frame& frame) noexcept TAPPET_REALTIME {
     belongs_to_.used();
     if (!is_open()) return {};
-    // A malformed frame is no answer, so reading goes on; the bound keeps a flood of them from holding the
-    // caller. Nothing stays in the batch then: no descriptor would tell of it.
+    // A malformed frame is not returned, so reading continues. The limit keeps a flood of them from blocking
+    // the caller. The batch is always emptied, because no descriptor would signal its rest.
     for (std::uint32_t i = 0; i <= most_in_flight || !arrives_.batch.is_empty(); ++i) {
         if (!read(arrives_)) return {.lost = std::exchange(lost_there_, 0)};
         const std::size_t at = arrives_.batch.next++;
@@ -209,8 +208,8 @@ Receive SocketCan::receive(Frame& frame) noexcept TAPPET_REALTIME {
     return {};
 }
 
-// What is said of the bus is heard all the same, and what is sent was confirmed. Both sockets, because others
-// may have filled that of what is sent meanwhile, and then no confirmation finds room.
+// Error frames and confirmations are still evaluated. Both sockets are emptied, because other senders' frames
+// may have filled the one for sending, and then confirmations would have no room.
 void SocketCan::drop_arrivals() noexcept TAPPET_REALTIME {
     belongs_to_.used();
     constexpr int most = 1024; // batches: the kernel's buffer holds fewer
@@ -220,7 +219,7 @@ void SocketCan::drop_arrivals() noexcept TAPPET_REALTIME {
             const std::size_t at = batch.next++;
             static_cast<void>(judge(Raw{batch.frames[at], batch.messages[at]}, arrives_, ignored));
         }
-        if (n == 0) arrives_.batch.is_last = false; // it was when that was read
+        if (n == 0) arrives_.batch.is_last = false; // it was empty when it was last read
         if (!read(arrives_)) break;
     }
     if (is_open()) sends_.batch.is_last = false;
@@ -263,7 +262,7 @@ Receive SocketCan::judge(const Raw& raw, Socket& from, Frame& frame) noexcept TA
         answer.what = Received::error_frame;
     } else if ((raw.flags & MSG_CONFIRM) != 0) {
         controller_.confirmed(arrived, !from.arrivals.was_set());
-        hand_over(now); // what leaves now has the time of now, whenever its room was made
+        hand_over(now); // a frame sent now has the present time, whenever room for it was made
         return answer;
     } else if (controller_.ours(candidate)) {
         ++controller_.count.impostors;
@@ -279,26 +278,26 @@ Receive SocketCan::judge(const Raw& raw, Socket& from, Frame& frame) noexcept TA
 void SocketCan::service(Time now) noexcept TAPPET_REALTIME {
     belongs_to_.used();
     if (!is_open()) return;
-    // Several confirmations are read in one call. They are read in any case before one counts as missing.
+    // One call reads several confirmations. They are always read before one counts as missing.
     const bool looks = nothing_arrives_ || more_confirmed_ || now >= next_look_ || controller_.is_filled(2) ||
                        (wakes_when_confirmed_ && controller_.in_flight() != 0);
     const bool is_due = controller_.next_timeout() <= now;
     if (is_due) take_confirmations();
     if (controller_.tick(now, more_confirmed_)) {
         for (const Socket* each : {&arrives_, &sends_}) {
-            int told = 0; // the interface was down in between, and the socket remembers it as an error
+            int told = 0; // the interface was down in between, which the socket keeps as an error
             socklen_t size = sizeof told;
             TAPPET_ESCAPE("reads a field of the socket",
                           ::getsockopt(each->fd, SOL_SOCKET, SO_ERROR, &told, &size));
         }
     }
     hand_over(now);
-    if ((looks || controller_.waiting() != 0) && !is_due) take_confirmations(); // what may be sent has left
+    if ((looks || controller_.waiting() != 0) && !is_due) take_confirmations(); // after the hand-over
     next_look_ = controller_.in_flight() == 0 || faulted(controller_.state()) ? never
                  : looks || is_due || next_look_ == never ? now + controller_.confirm_within() / looks_at_one
                                                           : next_look_;
     if (waiter_ == nullptr) return;
-    // While nothing is in flight, what comes there is none of ours, and would fill the socket.
+    // While nothing is in flight, frames that arrive there are not this device's, and would fill the socket.
     const bool waits = more_confirmed_ || controller_.in_flight() == 0 || controller_.waiting() != 0 ||
                        controller_.is_filled(1);
     waiter_->heed(sends_.fd, waits || wakes_when_confirmed_);

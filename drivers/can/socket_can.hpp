@@ -1,5 +1,5 @@
-// The CAN controller behind a Linux network interface (SocketCAN): a raw socket for what arrives, and one for
-// what is sent and its confirmations, which wake nobody who does not wait for them.
+// The CAN controller behind a Linux network interface (SocketCAN): one raw socket for arrivals, and one for
+// sending and confirmations, which wake only an activity that waits for them.
 #pragma once
 
 #include "drivers/can/arrival.hpp"
@@ -19,21 +19,21 @@ public:
     SocketCan() = default;
     ~SocketCan() override { close(); }
 
-    /// Not real-time. The spans in `settings` must outlive the device. On failure nothing stays open, and the
-    /// error says what is wrong and how to cure it.
+    /// Opens the device. Not real-time. The spans in `settings` must outlive the device. On failure nothing
+    /// stays open, and the error states cause and cure.
     std::expected<void, Sentence> open(const Settings& settings);
-    /// The same, on an interface that was found already.
+    /// Opens the device on an interface that was already found.
     std::expected<void, Sentence> open(const Settings& settings, const Link& link);
-    /// What open() saw of the interface and its bus, for the report of arming.
+    /// Returns the state of the interface and its bus at open(), for the arming report.
     [[nodiscard]] const Sentence& found() const noexcept { return found_; }
-    /// Not real-time. Drops what waits and leaves the bus.
+    /// Drops queued frames and leaves the bus. Not real-time.
     void close() noexcept;
     [[nodiscard]] bool is_open() const noexcept { return arrives_.fd >= 0; }
 
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
     void drop_arrivals() noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
-    /// While frames are confirmed at least every 20 ms, and for 200 ms at most.
+    /// Continues while frames are confirmed at least every 20 ms, and for 200 ms at most.
     bool finish(Time now) noexcept TAPPET_REALTIME override;
     [[nodiscard]] Time next_service() const noexcept TAPPET_REALTIME override {
         return std::min(controller_.next_timeout(), next_look_);
@@ -43,14 +43,14 @@ public:
     void wake_when_confirmed() noexcept override { wakes_when_confirmed_ = true; }
 
 private:
-    /// How many times it looks for a confirmation before that is late. At 1 Mbit/s at most 120 frames of
-    /// others arrive between two looks. They fit into the socket's buffer even if nobody may enlarge it.
+    /// Checks for a confirmation this many times before it is late. At 1 Mbit/s at most 120 frames of other
+    /// nodes arrive between two checks. They fit into the socket's buffer even if it could not be enlarged.
     static constexpr int looks_at_one = 4;
 
-    /// What one system call brought, in its order; read by receive() one after the other.
+    /// Result of one system call, in order; receive() returns the frames one by one.
     struct Batch {
         static constexpr std::size_t size = 8;
-        union Told { // by the kernel, of one frame
+        union Told { // the kernel's data of one frame
             cmsghdr aligned;
             char bytes[192];
         };
@@ -60,7 +60,7 @@ private:
         std::array<mmsghdr, size> messages{};
         std::size_t next = 0, filled = 0;
         int error = 0;
-        bool is_last = false; ///< nothing waited behind it
+        bool is_last = false; ///< nothing was queued after it
 
         void read_from(int fd) noexcept;
         [[nodiscard]] bool is_empty() const noexcept TAPPET_REALTIME { return next == filled; }
@@ -72,7 +72,7 @@ private:
         Batch batch{};
     };
     struct Raw;
-    /// False: nothing waits there.
+    /// Returns false when nothing is queued there.
     bool read(Socket& from) noexcept TAPPET_REALTIME;
     Receive judge(const Raw& raw, Socket& from, Frame& frame) noexcept TAPPET_REALTIME;
     void take_confirmations() noexcept TAPPET_REALTIME;
@@ -83,9 +83,9 @@ private:
     Socket arrives_{}, sends_{};
     os::Waiter* waiter_ = nullptr;
     bool wakes_when_confirmed_ = false;
-    bool nothing_arrives_ = false; ///< who was woken was so by what is sent, or by an impostor
-    bool more_confirmed_ = false;  ///< behind what was read there
-    std::uint32_t lost_there_ = 0; ///< not told yet
+    bool nothing_arrives_ = false; ///< the wake-up came from a sent frame, or from an impostor
+    bool more_confirmed_ = false;  ///< more are queued after those read
+    std::uint32_t lost_there_ = 0; ///< not reported yet
     Time next_look_ = never;
     Link link_{};
     Sentence found_{};

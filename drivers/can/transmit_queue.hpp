@@ -1,4 +1,4 @@
-// What waits to be sent: bounded, in the order of arbitration, and nothing in it grows old unnoticed.
+// Frames queued for sending: bounded, in the order of arbitration, and old ones are detected.
 #pragma once
 
 #include "drivers/can/device.hpp"
@@ -9,8 +9,8 @@
 
 namespace tappet::can {
 
-/// Real-time: every call takes at most `capacity` steps. A frame stays where it was put; what moves is its
-/// place in the order.
+/// Real-time: every call takes at most `capacity` steps. A frame does not move in memory; only its place in
+/// the order changes.
 class TransmitQueue {
 public:
     static constexpr std::size_t capacity = 64;
@@ -44,7 +44,7 @@ public:
         for (std::size_t i = 0; i < size_; ++i) order_[i] = order_[i + 1];
         order_[size_] = gone;
     }
-    /// Drops the frames made before `oldest`; says how many.
+    /// Drops the frames made before `oldest`; returns how many.
     constexpr std::size_t drop_older(Time oldest) noexcept TAPPET_REALTIME {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < size_; ++i) {
@@ -77,7 +77,7 @@ private:
     }
 
     std::array<Frame, capacity> frames_{};
-    std::array<Waiting, capacity> order_{}; // behind the first size_: whose slots are free
+    std::array<Waiting, capacity> order_{}; // behind the first size_: the free slots
     std::size_t size_ = 0;
 };
 

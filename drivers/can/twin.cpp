@@ -1,4 +1,4 @@
-// The end's two sides: the owner's calls, and what the bus does with it.
+// The two sides of an end: the owner's calls, and the bus's.
 #include "drivers/can/twin.hpp"
 
 namespace tappet::can {
@@ -10,7 +10,7 @@ std::expected<void, Sentence> Twin::open(const Settings& settings) noexcept {
                 return std::unexpected{Sentence{"CAN twin \"", settings.interface, "\": identifier ", one.id,
                                                 " is out of range; correct the signal map"}};
     settings_ = settings;
-    // Opened again, by a new process: what the one before left is not its own.
+    // On a new open by a new process, what its predecessor left is discarded.
     generation_.fetch_add(1, std::memory_order_acq_rel);
     for (Arrival left; inbox_.pop(left);) lost_seen_ = left.lost;
     off_bus_.store(false, std::memory_order_release);
@@ -28,7 +28,7 @@ bool Twin::wants(const Frame& frame) const noexcept TAPPET_REALTIME {
 
 Receive Twin::receive(Frame& frame) noexcept TAPPET_REALTIME {
     belongs_to_.used();
-    for (std::size_t i = 0; i < inbox; ++i) { // confirmations and what is not for us are no answers
+    for (std::size_t i = 0; i < inbox; ++i) { // confirmations and frames for others are not returned
         const Arrival* arrival = inbox_.front();
         if (arrival == nullptr) return {};
         const Receive answer = judge(*arrival, frame);
@@ -99,7 +99,7 @@ bool Twin::put_out(const Frame& frame, Time now) noexcept TAPPET_REALTIME {
 
 bool Twin::finish(Time now) noexcept TAPPET_REALTIME {
     Frame frame;
-    // The owner first learns of the faults that came since it looked last.
+    // The owner first receives the faults since its last call.
     for (std::size_t n = 0; n < inbox && inbox_.front() != nullptr; ++n) static_cast<void>(receive(frame));
     service(now);
     while (controller_.take_waiting(frame))

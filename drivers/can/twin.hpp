@@ -23,8 +23,7 @@ public:
 
     Receive receive(Frame& frame) noexcept TAPPET_REALTIME override;
     void service(Time now) noexcept TAPPET_REALTIME override;
-    /// Sends everything at once, ignoring the limit in flight: under virtual time a stop cannot wait for
-    /// confirmations.
+    /// Sends everything at once, beyond the limit in flight: in virtual time a stop gets no confirmations.
     bool finish(Time now) noexcept TAPPET_REALTIME override;
     Restart restart() noexcept override;
     /// Called by the bus's thread.
@@ -33,8 +32,7 @@ public:
         return true;
     }
 
-    /// Returns true when an arrival waits for the owner; a confirmation counts, since it lets the owner send
-    /// more.
+    /// Returns whether an arrival waits for the owner; a confirmation counts, as it permits more sending.
     [[nodiscard]] bool has_arrivals() const noexcept TAPPET_REALTIME { return inbox_.front() != nullptr; }
     /// Fault injection: restart() fails from now on (or works again).
     void make_restarts_fail(bool fail) noexcept { restart_fails_.store(fail, std::memory_order_relaxed); }
@@ -67,7 +65,7 @@ private:
     twin::Ring<Arrival, inbox> inbox_{};
     twin::Ring<Departure, outbox> outbox_{};
     std::atomic<std::uint32_t> generation_{
-        0}; // rises with each restart: what was handed over before is forgotten
+        0}; // rises with each restart: frames handed over before are forgotten
     std::atomic<bool> off_bus_{false};
     std::atomic<bool> restart_fails_{false};
     std::uint32_t lost_ = 0; // the bus's: arrivals that found the inbox full

@@ -1,10 +1,10 @@
-// The bus of the host world, frame by frame: who wins, when it arrives, and what goes wrong on the way.
+// The bus of the host world, frame by frame: arbitration, delivery and faults.
 #include "drivers/can/twin_bus.hpp"
 
 namespace tappet::can {
 namespace {
 
-/// The length below it that a frame can have; above the lowest one.
+/// Returns the next shorter valid length; for 0 it returns 1.
 std::uint8_t next_to(std::uint8_t length) noexcept TAPPET_REALTIME {
     if (length == 0) return 1;
     do --length;
@@ -19,8 +19,7 @@ void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     if (is_silent()) return;
     for (Twin* end : ends_)
         if (end->muted_) swallow(*end);
-    // Each end has at most `outbox` frames to give before its owner runs again; the babbler is cut off the
-    // same way.
+    // Each end can send at most `outbox` frames before its owner runs again; so does the babbling node.
     for (std::size_t i = 0; acknowledged_ && i < 4 * most_ends * Twin::outbox; ++i) {
         const auto winner = arbitrate(now);
         if (!winner) break;
@@ -35,7 +34,7 @@ void TwinBus::deliver_until(Time now) noexcept TAPPET_REALTIME {
     }
     release_delayed(now);
     for (Twin* end : ends_) {
-        // What a restart left behind is forgotten here, and then a new frame starves anew.
+        // A restart leaves frames that are discarded here; a new frame then starves again.
         const bool waits = !acknowledged_ && end->head() != nullptr;
         if (!acknowledged_ && !waits) end->starved_ = false;
         if (waits && !end->starved_) {
@@ -77,7 +76,7 @@ void TwinBus::transmit(const Contender& winner, Time finish) noexcept TAPPET_REA
         if (winner.end->starved_) tell(*winner.end, {.state = State::active}, finish);
         winner.end->starved_ = false;
     }
-    // One draw per fault in a fixed order, so that one seed gives one run whatever strikes.
+    // One draw per fault in a fixed order, so that a seed always gives the same run.
     const bool lost = strikes(faults.lose, frame);
     const bool doubled = strikes(faults.duplicate, frame);
     const bool corrupted = strikes(faults.corrupt_length, frame);

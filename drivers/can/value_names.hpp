@@ -1,5 +1,5 @@
-// A signal's values by the names that its DBC file (VAL_), or the list behind named(), gives them: constants,
-// of which a machine makes its enumerations.
+// A signal's values by their names in the DBC file (VAL_) or in the list of named(): constants from which a
+// machine makes its enumerations.
 //
 //     enum class Gear : std::int64_t {
 //         neutral = can::value_of<gearbox_signals, "gearbox.gear", "Neutral">,
@@ -62,12 +62,12 @@ template <const auto& map, text path> struct CalledValues {
 
 } // namespace detail
 
-/// The value that the signal "frame.signal" calls so, as its facet has it: an std::int64_t, or a double where
-/// it has a factor, an offset or is a float. A name that it has not stops the compiler.
+/// The value with this name of signal "frame.signal", as in its facet: an std::int64_t, or a double where the
+/// signal has a factor, an offset or is a float. An unknown name does not compile.
 template <const auto& map, text path, text name>
 inline constexpr auto value_of = detail::CalledValue<map, path, name>::get();
 
-/// How many of its values have a name.
+/// Number of its values that have a name.
 template <const auto& map, text path>
 inline constexpr std::size_t values_called = detail::CalledValues<map, path>::count;
 

@@ -10,9 +10,9 @@
 
 namespace tappet::canopen {
 
-/// Effector: Axis<"mm">; velocities are in that unit each second. All real-time, each cycle of a periodic
-/// activity. The rows of its four inputs from the drive say stale_after(...): a silent drive is an error
-/// stop.
+/// Effector: Axis<"mm">; velocities are in that unit per second. All real-time, each cycle of a periodic
+/// activity. The rows of its four inputs from the drive must state stale_after(...): a silent drive causes an
+/// error stop.
 template <text unit> struct Axis {
     using AxisMode = motion::AxisMode;
     static constexpr auto speed_unit = [] {
@@ -69,7 +69,7 @@ template <text unit> struct Axis {
     void power_off() noexcept TAPPET_REALTIME { motion_.power(false); }
     void reset() noexcept TAPPET_REALTIME { motion_.reset(); }
     void release() noexcept TAPPET_REALTIME { motion_.release(); }
-    /// 8 positions, 9 velocities, 10 torques.
+    /// Starts cyclic set points: 8 positions, 9 velocities, 10 torques.
     bool synchronize(std::int64_t cyclic) noexcept TAPPET_REALTIME {
         if (cyclic < 8 || cyclic > 10 ||
             !motion_.synchronize(OperationMode{static_cast<std::int8_t>(cyclic)}))
@@ -98,7 +98,7 @@ template <text unit> struct Axis {
         return progress_of(superimpose_, {distance, at, acceleration});
     }
     [[nodiscard]] CommandProgress halted() noexcept TAPPET_REALTIME { return progress_of(halt_, {}); }
-    /// It stands, and is still held.
+    /// Done when the axis stands; it is still held then.
     [[nodiscard]] CommandProgress is_stopped() noexcept TAPPET_REALTIME {
         if (motion_.state() != AxisMode::stopping) return CommandProgress::failed;
         return motion_.stands() ? CommandProgress::done : CommandProgress::executing;
@@ -139,24 +139,24 @@ template <text unit> struct Axis {
     // clang-format on
 
 private:
-    /// It is led by what was written since it was told to follow, and by nothing of before.
+    /// Follows set points written since synchronize(), and none from before.
     void follow(Time now) noexcept TAPPET_REALTIME {
         const std::int64_t ordered = mode.last();
-        // Until the mode is ordered, its writer still writes in the unit of the mode before.
+        // Until the mode is ordered, the writer still uses the unit of the previous mode.
         if (begins_ && ordered != follows_in_) return;
         double wanted = 0;
         const Flow flow = set_point.read(wanted);
         if (std::exchange(begins_, false)) is_led_ = false, led_at_ = now;
         const bool is_place = ordered == static_cast<std::int64_t>(OperationMode::cyclic_position);
         if (flow == Flow::never_written && std::exchange(is_led_, false) && !is_place) motion_.follow(0);
-        // A stale velocity or torque is what the row gives in its place. A stale place is not followed.
+        // A stale velocity or torque is replaced by the row's substitute. A stale position is not followed.
         if (flow != Flow::fresh && (flow != Flow::stale || is_place || !is_led_)) return;
-        // One that stood behind a force, is of before, or is no number.
+        // A value hidden by a force, from before synchronize(), or not a number.
         if (set_point.stamp() < led_at_ || !motion::is_number(wanted)) {
             if (!is_place) motion_.follow(0);
             return;
         }
-        led_at_ = std::min(set_point.stamp(), now); // a time ahead keeps nothing out that is written since
+        led_at_ = std::min(set_point.stamp(), now); // a stamp in the future must not block later values
         is_led_ = true;
         motion_.follow(wanted);
     }
@@ -172,8 +172,7 @@ private:
         lags_.write(lags, motion_.lags());
         limited_.write(limited, motion_.is_limited());
     }
-    /// The last motion that a command began, and with which arguments: who asked for others has been
-    /// replaced.
+    /// The last motion started by a command, with its arguments: a command with other arguments was replaced.
     struct Begun {
         std::uint32_t number = 0;
         std::array<double, 3> with{};
@@ -183,7 +182,7 @@ private:
         if (asked) begun = {motion_.number(), with};
         return asked.has_value();
     }
-    /// Done only if this motion came to its end: the axis may stand since it was halted, or at another's.
+    /// Done only when this motion itself was completed: the axis may stand because of a halt or another one.
     [[nodiscard]] CommandProgress progress_of(const Begun& begun, std::array<double, 3> with) const noexcept
         TAPPET_REALTIME {
         if (with != begun.with) return CommandProgress::failed;
@@ -192,9 +191,9 @@ private:
     }
 
     DriveMotion motion_{};
-    Time led_at_{}; ///< when the set point that it follows was true
+    Time led_at_{}; ///< time stamp of the set point that it follows
     bool begins_ = false, is_led_ = false;
-    std::int64_t follows_in_ = 0; ///< the mode
+    std::int64_t follows_in_ = 0; ///< as a mode
     Begun home_{}, move_to_{}, superimpose_{}, halt_{};
     Changed<AxisMode> state_{};
     Changed<bool> follows_{}, lags_{}, limited_{};

@@ -1,5 +1,5 @@
-// The controller's side of a CiA 402 drive: what the statusword says, and the controlword that leads where it
-// is wanted.
+// The controller's side of a CiA 402 drive: decodes the statusword, and computes the controlword that leads
+// to the goal.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -48,17 +48,17 @@ inline constexpr std::uint16_t enable_operation = 0x0F;
 inline constexpr std::uint16_t fault_reset = 0x80; ///< acts on its rising edge
 } // namespace controlword
 
-/// What is wanted of a drive.
+/// The wanted state of a drive.
 enum class DriveGoal : std::uint8_t { off, enabled, quick_stop };
 
-/// Leads a drive to its goal, one controlword a cycle. A fault is reset only as often as it was asked for;
-/// the goal stays what it was, so a drive whose goal is `enabled` is enabled again after the reset.
+/// Leads a drive to its goal, one controlword per cycle. Each acknowledgement resets one fault. The goal does
+/// not change, so a drive whose goal is `enabled` is enabled again after the reset.
 class DriveControl {
 public:
     void want(DriveGoal goal) noexcept TAPPET_REALTIME { goal_ = goal; }
     [[nodiscard]] DriveGoal goal() const noexcept TAPPET_REALTIME { return goal_; }
-    /// Lets one fault be reset; without effect when there is none. Again, when the fault outlived the last
-    /// one: the bit comes down and rises once more.
+    /// Permits the reset of one fault; no effect without a fault. When the fault outlived the last reset, a
+    /// new call lowers the bit and raises it again.
     void acknowledge() noexcept TAPPET_REALTIME {
         if (reset_ == Reset::raised) low_cycles_left_ = low_cycles;
         reset_ = Reset::asked;
@@ -67,8 +67,7 @@ public:
     [[nodiscard]] std::uint16_t controlword(std::uint16_t statusword) noexcept TAPPET_REALTIME {
         const DriveState state = drive_state(statusword);
         if (state == DriveState::fault) return controlword_in_fault();
-        // An acknowledgement during the reaction is meant for the fault after it; one that acted before is
-        // not.
+        // An acknowledgement during the reaction is for the fault that follows; one that acted before is not.
         if (state != DriveState::fault_reaction_active || reset_ == Reset::raised) reset_ = Reset::none;
         low_cycles_left_ = 0;
         if (goal_ == DriveGoal::off) return controlword::disable_voltage;
@@ -86,8 +85,8 @@ public:
         }
     }
 
-    /// How long the reset bit stays down before it rises again: the drive must see it down, and frames leave
-    /// every few cycles only, and may be lost.
+    /// Cycles that the reset bit stays low before it rises again: the drive must see it low, although frames
+    /// leave only every few cycles and may be lost.
     static constexpr int low_cycles = 20;
 
 private:
@@ -99,7 +98,7 @@ private:
             --low_cycles_left_;
             return controlword::disable_voltage;
         }
-        // The bit stays up until the fault is gone: a frame that is lost does not lose the edge.
+        // The bit stays set until the fault is gone, so that a lost frame does not lose the edge.
         reset_ = Reset::raised;
         return controlword::fault_reset;
     }

@@ -1,4 +1,4 @@
-// Names in EDS files are of the code page 1252; newer ones of UTF-8. Messages are of UTF-8.
+// Names in EDS files are in code page 1252, newer ones in UTF-8. Messages are in UTF-8.
 #pragma once
 
 #include "kernel/base/code_page.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet::canopen {
 
-/// What is valid UTF-8 stays; any other byte is a character of the code page.
+/// Adds a text: valid UTF-8 unchanged, any other byte as a character of the code page.
 constexpr void add_readable(Sentence& to, std::string_view text) noexcept {
     while (!text.empty()) {
         if (const std::size_t length = utf8_length(text); length != 0) {

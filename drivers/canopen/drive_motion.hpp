@@ -1,5 +1,4 @@
-// A CiA 402 drive as an axis: its modes of operation, the handshakes of each, and the states that PLCopen
-// gives to an axis.
+// A CiA 402 drive as an axis: its modes of operation, their handshakes, and PLCopen's axis states.
 #pragma once
 
 #include "drivers/canopen/set_point_gate.hpp"
@@ -11,43 +10,42 @@
 
 namespace tappet::canopen {
 
-/// Real-time; one step each cycle. A command is refused when PLCopen's diagram has none from the present
-/// state.
+/// Real-time; one step each cycle. A command without a transition in PLCopen's state diagram is refused.
 class DriveMotion {
 public:
     using AxisMode = motion::AxisMode;
     using AxisCommand = motion::AxisCommand;
     using Asked = std::expected<void, motion::Refused>;
 
-    /// Where it is, before the drive was heard: one that still follows positions is sent to no other.
+    /// Sets the position to send until the drive was heard: one that still follows positions must not move.
     void begin_at(double place) noexcept TAPPET_REALTIME { gate_.begin_at(place); }
-    /// Slower than this it stands.
+    /// Sets the velocity below which the axis stands.
     void set_standing(double velocity) noexcept TAPPET_REALTIME { gate_.set_standing(velocity); }
 
     [[nodiscard]] AxisMode state() const noexcept TAPPET_REALTIME { return axis_; }
-    /// It was told to come to rest, and has.
+    /// Returns true when the axis was told to come to rest and stands.
     [[nodiscard]] bool stands() const noexcept TAPPET_REALTIME { return gate_.stands(); }
-    /// In a cyclic mode: the drive follows its set points.
+    /// Returns true when the drive follows its set points in a cyclic mode.
     [[nodiscard]] bool follows() const noexcept TAPPET_REALTIME {
         return axis_ == AxisMode::synchronized_motion && leads_cyclic() && says(Status::acknowledged);
     }
-    /// It says that it lags behind its set point by more than it may.
+    /// Returns true when the drive reports a following error.
     [[nodiscard]] bool lags() const noexcept TAPPET_REALTIME {
         return says(Status::error) &&
                (gate_.leads(OperationMode::profile_position) || gate_.leads(OperationMode::cyclic_position));
     }
-    /// Its own limits hold it: a limit switch, a torque that is not enough.
+    /// Returns true when the drive's own limits hold it: a limit switch, insufficient torque.
     [[nodiscard]] bool is_limited() const noexcept TAPPET_REALTIME {
         return seen_.heard && says(Status::internal_limit);
     }
-    /// A superimposed motion is under way.
+    /// Returns true while a superimposed motion is active.
     [[nodiscard]] bool superimposes() const noexcept TAPPET_REALTIME {
         return gate_.leads(OperationMode::cyclic_position) && gate_.superimposes();
     }
 
-    /// Each motion and each halt has a number. A failure and the end of power take the next one, too.
+    /// Returns the number of the last motion or halt. A failure and the end of power take a number, too.
     [[nodiscard]] std::uint32_t number() const noexcept TAPPET_REALTIME { return number_; }
-    /// The last one that came to its own end.
+    /// Returns the number of the last motion that was completed.
     [[nodiscard]] std::uint32_t reached() const noexcept TAPPET_REALTIME { return reached_; }
 
     /// MC_Power.
@@ -59,15 +57,15 @@ public:
         gate_.rest();
         static_cast<void>(ask(AxisCommand::power_off));
     }
-    /// MC_Reset: of one fault.
+    /// MC_Reset: resets one fault.
     void reset() noexcept TAPPET_REALTIME {
         if (axis_ != AxisMode::error_stop) return;
         resets_ = true;
         control_.acknowledge();
     }
-    /// MC_Home, as the drive's own objects describe it.
+    /// MC_Home, as configured in the drive's own objects.
     Asked home() noexcept TAPPET_REALTIME { return begin(AxisCommand::home, OperationMode::homing, 0); }
-    /// MC_MoveAbsolute. A new one takes the place of one that is under way.
+    /// MC_MoveAbsolute. A new one replaces an active one.
     Asked move_to(double position, double velocity) noexcept TAPPET_REALTIME {
         return begin(AxisCommand::move, OperationMode::profile_position, position, velocity);
     }
@@ -75,9 +73,9 @@ public:
     Asked move_at(double velocity) noexcept TAPPET_REALTIME {
         return begin(AxisCommand::move_on, OperationMode::profile_velocity, velocity);
     }
-    /// MC_MoveSuperimposed: adds `distance` to the positions that it follows, which go on. From standstill it
-    /// is a MC_MoveRelative. Refused in the other modes: there the drive makes the motion, and adds none to
-    /// it.
+    /// MC_MoveSuperimposed: adds `distance` to the positions that it follows, which continue. From standstill
+    /// it is a MC_MoveRelative. Refused in other modes, because there the drive makes the motion and cannot
+    /// add to it.
     Asked superimpose(double distance, double velocity, double acceleration) noexcept TAPPET_REALTIME {
         const bool stands = axis_ == AxisMode::standstill;
         if (!stands && (!follows() || !gate_.leads(OperationMode::cyclic_position)))
@@ -92,22 +90,23 @@ public:
         gate_.superimpose(*planned);
         return asked;
     }
-    /// Its set points come each cycle from now on, by follow(). Into cyclic position it comes to a stand
-    /// first. Refused while it follows positions with a superimposed distance: whether the new ones have it
-    /// in them nobody knows. It halts first.
+    /// Starts a cyclic mode: follow() provides a set point each cycle. Before cyclic position it comes to a
+    /// stand first. Refused while it follows positions with a superimposed distance, because the new
+    /// positions may or may not include it; halt first.
     Asked synchronize(OperationMode cyclic) noexcept TAPPET_REALTIME {
         if (cyclic < OperationMode::cyclic_position) return std::unexpected(wrong_state);
         if (cyclic == OperationMode::cyclic_position && gate_.leads(cyclic) && gate_.has_offset())
             return std::unexpected(wrong_state);
         return begin(AxisCommand::synchronize, cyclic, 0);
     }
-    /// Of the quantity of the mode that it is in. Dropped: what is no number, and positions before follows().
+    /// Sets the next set point in the unit of the present mode. Drops values that are not numbers, and
+    /// positions before follows().
     void follow(double set_point) noexcept TAPPET_REALTIME {
         if (axis_ == AxisMode::synchronized_motion && motion::is_number(set_point)) gate_.follow(set_point);
     }
-    /// MC_Halt: comes to rest, and takes a new motion meanwhile.
+    /// MC_Halt: comes to rest; accepts a new motion in the meantime.
     Asked halt() noexcept TAPPET_REALTIME { return rest(AxisCommand::halt); }
-    /// MC_Stop: comes to rest, and takes none before release(), also when it was without power meanwhile.
+    /// MC_Stop: comes to rest; accepts no motion before release(), even after a loss of power.
     Asked stop() noexcept TAPPET_REALTIME {
         const Asked asked = rest(AxisCommand::stop);
         if (asked) is_held_ = true;
@@ -173,20 +172,20 @@ private:
         return asked;
     }
 
-    /// Where the drive's automaton shall go. Power comes back only to a drive that was seen without it: what
-    /// it says until then may be older than what took the power away.
+    /// Returns the goal for the drive's automaton. Power is given again only to a drive that was seen without
+    /// it: until then its status may be older than the removal of power.
     [[nodiscard]] DriveGoal goal() const noexcept TAPPET_REALTIME {
         if (!wants_power_) return DriveGoal::off;
         return axis_ == AxisMode::error_stop || !off_seen_ ? DriveGoal::quick_stop : DriveGoal::enabled;
     }
-    /// What the drive's own state makes of the axis.
+    /// Derives the axis state from the drive's state.
     void judge(DriveState drive) noexcept TAPPET_REALTIME {
         const bool faulty =
             !seen_.heard || drive == DriveState::fault || drive == DriveState::fault_reaction_active;
         const bool enabled = seen_.heard && drive == DriveState::operation_enabled;
         if (axis_ == AxisMode::error_stop) {
             if (faulty || !resets_) return;
-            axis_ = AxisMode::disabled; // from where power leads on
+            axis_ = AxisMode::disabled; // the state in which power can be given
             resets_ = false;
         }
         if (faulty && (axis_ != AxisMode::disabled || wants_power_ || seen_.heard)) return fail();
@@ -195,10 +194,10 @@ private:
                 static_cast<void>(ask(AxisCommand::power_on));
             return;
         }
-        if (!enabled) fail(); // it took its power away itself: a quick stop, a limit switch, an open relay
+        if (!enabled) fail(); // it removed its power itself: a quick stop, a limit switch, an open relay
     }
-    /// A word of a few cycles ago may still take the power away: the drive has it for good when "enable" was
-    /// sent without a break for as long as the drive took to follow the first one.
+    /// Counts how long the power is ordered. An order from a few cycles ago may still remove it: power is
+    /// certain once "enable" was sent without a break for as long as the drive took to follow the first one.
     void count_power(DriveState drive, unsigned word) noexcept TAPPET_REALTIME {
         if (control_.goal() != DriveGoal::enabled) {
             enable_cycles_ = steady_cycles_ = 0;
@@ -216,7 +215,7 @@ private:
         gate_.rest();
         off_seen_ = resets_ = false;
     }
-    /// What the drive has done makes of the axis.
+    /// Updates the axis state from the drive's progress.
     void go_on() noexcept TAPPET_REALTIME {
         if (gate_.is_lost() || gate_.progress() == Progress::failed) return fail();
         if (gate_.progress() == Progress::done) {
@@ -237,8 +236,8 @@ private:
     bool wants_power_ = false, resets_ = false, is_held_ = false;
     int enable_cycles_ = 0, steady_cycles_ = 0;
     std::uint32_t number_ = 0, reached_ = 0;
-    bool adds_ = false;     ///< that of number_ is a superimposed one
-    bool off_seen_ = false; ///< the drive was seen without power since that was last asked for
+    bool adds_ = false;     ///< motion number_ is a superimposed one
+    bool off_seen_ = false; ///< the drive was seen without power since the last request for its removal
 };
 
 } // namespace tappet::canopen

@@ -1,5 +1,5 @@
 // An object dictionary read from an EDS or DCF file (CiA 306) in a constant expression; a fault in the file
-// is an error of the build that says the file's own line.
+// is a build error that names the file's own line.
 //
 //     tappet_file(<target> servo.eds)                                       in CMakeLists.txt
 //     #include "<path>/servo.eds.hpp"                                      tappet::files::servo_eds, the text
@@ -18,7 +18,7 @@ namespace tappet::canopen {
 
 namespace detail {
 
-/// What a section's name means.
+/// The meaning of a section's name.
 struct SectionName {
     enum class Kind : std::uint8_t { other, object, sub_object, values, device, commissioning, list };
     Kind kind = Kind::other;
@@ -51,7 +51,7 @@ constexpr SectionName section_name(std::string_view name) noexcept {
     return sub ? SectionName{Kind::sub_object, {*index, static_cast<std::uint8_t>(*sub)}} : SectionName{};
 }
 
-/// How many objects a text can hold at most.
+/// Returns the largest number of objects that a text can contain.
 constexpr std::size_t eds_room(std::string_view text) noexcept {
     std::size_t room = 1;
     IniLines lines{text};
@@ -63,7 +63,7 @@ constexpr std::size_t eds_room(std::string_view text) noexcept {
     return room;
 }
 
-/// Reads once through the text, and once more for what refers to other sections.
+/// Reads the text once, and a second time for references to other sections.
 template <std::size_t N> class EdsReader {
 public:
     constexpr explicit EdsReader(const SourceText& source) : source_{source} {
@@ -108,7 +108,7 @@ private:
         std::string_view text{};
         std::uint32_t line = 0;
     };
-    /// A section as it is written.
+    /// A section as it is in the file.
     struct Section {
         SectionName meant{};
         std::string_view name{};
@@ -121,14 +121,14 @@ private:
         std::uint32_t line = 0;
         Entry sub_number{};
         bool compact = false;
-        bool plain = false; ///< a variable: it has none
+        bool plain = false; ///< a variable: it has no sub-indices
         bool operator==(const Record&) const = default;
     };
 
     template <class... Pieces> constexpr void refuse(std::uint32_t line, const Pieces&... pieces) {
         if (fault.empty()) fault = Sentence{source_.name, ":", line, ": ", shown(pieces)...};
     }
-    /// Quotes 60 characters at most: a name or value in the file may be longer than a sentence.
+    /// Quotes at most 60 characters: a name or value in the file may be longer than a sentence.
     template <class Piece> static constexpr auto shown(const Piece& piece) {
         if constexpr (std::is_same_v<Piece, std::string_view>) {
             Sentence text;
@@ -176,7 +176,7 @@ private:
         }
     }
 
-    /// A number of an entry that is no value of the device.
+    /// Returns a number of an entry that is not a value of the device.
     constexpr std::uint32_t count_of(const Section& section, Key key, std::uint32_t otherwise,
                                      std::uint32_t most = ~0u) {
         const Entry& entry = section.entries[key];
@@ -342,7 +342,7 @@ private:
         return nullptr;
     }
 
-    /// Lists name objects, and values of a compact array name its sub-indices.
+    /// Checks references: lists name objects, and values of a compact array name its sub-indices.
     constexpr void read_references() {
         SectionName in{};
         IniLines lines{source_.text};
@@ -353,7 +353,7 @@ private:
                 continue;
             }
             const auto place = to_whole(line.name);
-            if (!place || place->size == 0 || place->size > 0xFFFF) continue; // how many there are
+            if (!place || place->size == 0 || place->size > 0xFFFF) continue; // the number of entries
             if (in.kind == SectionName::Kind::list) {
                 const auto index = to_whole(line.value);
                 if (!index ||
@@ -425,7 +425,7 @@ private:
 
 template <const auto& Source> inline constexpr EdsReader<eds_room(Source.text)> eds_read{Source};
 
-/// In exactly its room, as a part of the program that uses it.
+/// Copies the objects to an array of exact size, as part of the program that uses it.
 template <const auto& Source> struct CheckedDictionary {
     TAPPET_ACCEPTED(eds_read<Source>.fault);
     static constexpr auto objects =
@@ -436,7 +436,7 @@ template <const auto& Source> struct CheckedDictionary {
 
 } // namespace detail
 
-/// Of a constant SourceText at namespace scope.
+/// The dictionary of a constant SourceText at namespace scope.
 template <const auto& Source>
 inline constexpr const Dictionary& dictionary = detail::CheckedDictionary<Source>::dictionary;
 

@@ -1,4 +1,4 @@
-// What a network's manager takes from the bus and sends to it beside the process data.
+// The frames of a network's manager other than process data.
 #pragma once
 
 #include "drivers/can/services.hpp"
@@ -15,20 +15,20 @@ constexpr can::Frame heartbeat_frame(std::uint8_t node, NmtState state) noexcept
     return {.id = cob::heartbeat + node, .length = 1, .data = {static_cast<std::uint8_t>(state)}};
 }
 
-/// `counter` stands in it when `overflow` says that it is counted.
+/// Returns a SYNC frame, with `counter` in it unless `overflow` is 0.
 constexpr can::Frame sync_frame(std::uint8_t overflow, std::uint8_t counter) noexcept TAPPET_REALTIME {
     if (overflow == 0) return {.id = cob::sync};
     return {.id = cob::sync, .length = 1, .data = {counter}};
 }
 
-/// The least time between two SDO requests to one node, and between two NMT commands: the manager keeps both,
-/// and the bus is proven for the commands.
+/// Least time between two SDO requests to one node, and between two NMT commands. The manager observes both;
+/// the bus is proven for the commands.
 inline constexpr Duration requests_apart = 1ms;
 inline constexpr Duration commands_apart = 10ms;
 
 namespace detail {
 
-/// "NODE.heartbeat" and the like, as charts and summaries name the services' frames.
+/// "NODE.heartbeat" and similar names of the services' frames in charts and summaries.
 template <const auto& map> struct ServiceNames {
     static constexpr std::array<std::string_view, 4> kinds{".emergency", ".sdo_answer", ".heartbeat",
                                                            ".sdo_request"};
@@ -38,10 +38,10 @@ template <const auto& map> struct ServiceNames {
 
 } // namespace detail
 
-/// For can::Bus<signals, frames<network>>. When the bus stops, or the machine's process is no more, the
-/// nodes take the safe values and leave their operational state. Emergency messages and SDO transfers have no
-/// rate, and the bus is not proven for them: they come before the network is operational, or after a node's
-/// fault.
+/// Services for can::Bus<signals, frames<network>>. When the bus stops, or the machine's process has ended,
+/// the nodes take the safe values and leave their operational state. Emergency messages and SDO transfers
+/// have no rate and are not part of the bus's proof: they occur before the network is operational, or after a
+/// node's fault.
 template <const auto& map>
 inline constexpr auto frames = [] {
     constexpr std::size_t n = map.nodes.size();
@@ -52,7 +52,7 @@ inline constexpr auto frames = [] {
                   1u + (synchronises ? 1u : 0u)>
         all;
     std::size_t used = 0;
-    // What is sent by the manager is on no grid of the bus's own: it has a rate, and no period there.
+    // The manager's frames are not on the bus's own time grid: they have a rate, but no period there.
     const auto add = [&](std::uint32_t id, std::string_view name, can::Direction direction,
                          std::uint8_t length, Duration every, Duration apart) {
         can::FrameRow& row = all.frames[used++];

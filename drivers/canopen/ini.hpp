@@ -11,12 +11,12 @@ struct IniLine {
     enum class Kind : std::uint8_t { end, section, entry, nonsense };
     Kind kind = Kind::end;
     std::uint32_t line = 0;
-    std::string_view name{}; ///< of the section, or of the entry; of nonsense the line
+    std::string_view name{}; ///< of the section or of the entry; of an invalid line, the line itself
     std::string_view value{};
 };
 
 constexpr char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-/// Capitals are of no account.
+/// Compares without regard to upper and lower case.
 constexpr bool same(std::string_view a, std::string_view b) noexcept {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -30,8 +30,7 @@ constexpr std::string_view trimmed(std::string_view text) noexcept {
     return text;
 }
 
-/// Gives the lines that say something, one after the other; comments begin with a semicolon. Lines end in LF,
-/// with a CR before it or none.
+/// Returns the lines with contents, one by one; comments begin with a semicolon. Lines end in LF or CR LF.
 class IniLines {
 public:
     explicit constexpr IniLines(std::string_view text) noexcept : rest_{text} {}

@@ -1,5 +1,5 @@
-// The manager of a CANopen network (CiA 302-2) as a component: it starts the nodes that are what the table
-// says, watches them, and produces SYNC, TIME and a heartbeat.
+// The manager of a CANopen network (CiA 302-2) as a component: starts the nodes that match the table,
+// monitors them, and produces SYNC, TIME and a heartbeat.
 #pragma once
 
 #include "drivers/canopen/network.hpp"
@@ -12,7 +12,7 @@
 
 namespace tappet::canopen {
 
-/// An emergency message (CiA 301, 7.2.7). Code 0: the errors are gone.
+/// An emergency message (CiA 301, 7.2.7). Code 0: the errors are reset.
 struct Emergency {
     std::int64_t node = 0;
     std::int64_t code = 0;
@@ -26,15 +26,15 @@ struct Emergency {
 ///     component<canopen::Manager<network>>("network"),
 ///     buffer<64>("can.services", "network.received"), buffer<32>("network.to_send", "can.to_send", wakes),
 ///
-/// At its start it resets the communication of all nodes. Each is then checked, configured and started by
-/// itself when it boots, when its heartbeat comes, or when it answers at all; so it is after a loss, a
-/// reboot, or when it left its operational state. One that is not what the table says is refused until it
-/// boots anew.
+/// At its start it resets the communication of all nodes. Each node is then checked, configured and started
+/// separately: when it boots, when its heartbeat arrives, or when it answers at all; and again after a loss,
+/// a reboot, or when it left its operational state. A node that does not match the table is refused until it
+/// boots again.
 template <const auto& map> struct Manager {
     TAPPET_ACCEPTED(map.fault);
     static constexpr std::size_t node_count = map.nodes.size();
     static constexpr int max_frames_per_cycle = 64;
-    /// SDO requests that leave in one cycle: configuring must not fill the bus.
+    /// SDO requests sent in one cycle: the configuration must not fill the bus.
     static constexpr int max_requests_per_cycle = 1;
 
     BufferInput<can::Frame> received{};
@@ -84,13 +84,13 @@ template <const auto& map> struct Manager {
         tell();
     }
 
-    /// NMT reset node, of a person's: it boots and is configured anew.
+    /// NMT reset node, requested by a person: the node boots and is configured again.
     void reset(std::int64_t node) noexcept TAPPET_REALTIME {
         for (const WatchedNode& each : nodes)
             if (each.id == node) to_reset_ = each.id;
     }
 
-    /// The last sixteen, the oldest first.
+    /// Returns the last sixteen emergency messages, oldest first.
     [[nodiscard]] std::span<const Emergency> emergencies() const noexcept {
         return {emergencies_.begin(), emergencies_.size()};
     }
@@ -128,7 +128,7 @@ template <const auto& map> struct Manager {
 private:
     static constexpr std::uint16_t no_step = 0xFFFF;
 
-    // What of the table a program holds.
+    // The parts of the table that a program needs.
     static constexpr auto nodes = array_of<node_count>([](std::size_t i) {
         const NodeRow& row = map.nodes[i];
         return WatchedNode{row.id,    row.name,       row.dictionary.product, row.dictionary.file,
@@ -182,7 +182,7 @@ private:
         emergency.emit(nodes[i].id, code, frame.data[2]);
     }
 
-    /// Absolute times: a late cycle moves none after it, and what was missed is left out.
+    /// Advances by absolute times: a late cycle does not shift later ones, and missed ones are skipped.
     static bool is_due(Time& next, Duration every, Time now) noexcept TAPPET_REALTIME {
         if (next > now) return false;
         next += ((now - next) / every + 1) * every;
@@ -205,7 +205,7 @@ private:
         send_command(NmtCommand::reset_node, to_reset_, now);
         to_reset_ = 0;
     }
-    /// TIME_OF_DAY: milliseconds of the day in 28 bits, days since 1984 in 16. Nobody knows the time: none.
+    /// Sends TIME_OF_DAY: milliseconds of the day in 28 bits, days since 1984 in 16. Time unknown: nothing.
     void send_time(Time now) noexcept TAPPET_REALTIME {
         if (!time_of_day.good()) return;
         const Duration since = time_of_day.get() + (now - time_of_day.stamp());
@@ -216,7 +216,7 @@ private:
         send(time, now);
     }
 
-    /// In turn, so that no node waits for another one.
+    /// Serves the nodes in turn, so that no node waits for another one.
     void send_requests(Time now) noexcept TAPPET_REALTIME {
         int left = max_requests_per_cycle;
         for (std::size_t k = 0; k < node_count && left > 0; ++k) {

@@ -1,4 +1,4 @@
-// A CANopen network as one constexpr table: its nodes, what they must be and how they are configured.
+// A CANopen network as one constexpr table: its nodes, their identity and their configuration.
 //
 //     inline constexpr auto press_network = canopen::network(press_signals,
 //         canopen::manager(127).sync(10ms),
@@ -14,7 +14,7 @@
 
 namespace tappet::canopen {
 
-/// `signals` is the bus's map. static_assert(map.fault.empty(), map.fault) is the component's.
+/// `signals` is the bus's map. The component has the static_assert(map.fault.empty(), map.fault).
 template <std::size_t F, std::size_t S, class... Nodes>
 constexpr NetworkMap<sizeof...(Nodes)> network(const can::SignalMap<F, S>& signals, ManagerRow manager,
                                                const Nodes&... nodes) noexcept {

@@ -1,4 +1,4 @@
-// What the compiler finds wrong with a network's table: what contradicts itself, the signal map or the
+// Checks a network's table at compile time: contradictions in itself, with the signal map and with the
 // devices' dictionaries.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace tappet::canopen::detail {
 
-/// Which of a node's predefined PDOs a frame is.
+/// The predefined PDO of a node that a frame is.
 struct PdoPlace {
     bool known = false;
     bool sent_by_node = false; ///< a TPDO
@@ -32,7 +32,7 @@ constexpr Sentence who(const NodeRow& node) noexcept {
     return Sentence{"node ", unsigned{node.id}, " \"", node.name, "\""};
 }
 
-/// An object in a PDO, against the dictionary.
+/// Checks an object in a PDO against the dictionary.
 constexpr Sentence mapping_fault(const NodeRow& node, const PdoRow& row, const PdoPlace& place,
                                  Address at) noexcept {
     const Object* const object = node.dictionary.find(at);
@@ -61,7 +61,7 @@ constexpr Sentence mapping_fault(const NodeRow& node, const PdoRow& row, const P
     return {};
 }
 
-/// The signals of a frame, against the objects in it.
+/// Checks the signals of a frame against the objects in it.
 template <std::size_t F, std::size_t S>
 constexpr Sentence signals_fault(const can::SignalMap<F, S>& signals, const NodeRow& node, const PdoRow& row,
                                  const can::FrameRow& frame) noexcept {
@@ -186,8 +186,9 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
     return signals_fault(signals, node, row, frame);
 }
 
-/// The bits of a drive's word are those of the mode that it shows (CiA 402): in two frames that do not come
-/// at each SYNC together the bits of the mode before would count as this one's.
+/// Checks that a drive's statusword and mode display are received together. The meaning of the word's bits
+/// depends on the displayed mode (CiA 402): in two frames that do not both come at each SYNC, bits of the
+/// previous mode would be taken for bits of the new one.
 constexpr Sentence moment_fault(const NodeRow& node) noexcept {
     const auto has = [](const PdoRow& row, std::uint16_t index) {
         return std::ranges::find(row.objects, Address{index, 0}) != row.objects.end();
@@ -232,7 +233,7 @@ constexpr Sentence parameter_fault(const NodeRow& node, const ParameterRow& row)
     return {};
 }
 
-/// Object 1016h, by which a node waits for three and a half heartbeats of the manager, has 16 bits of ms.
+/// Object 1016h, in which a node stores 3.5 heartbeat periods of the manager, has 16 bits in ms.
 inline constexpr std::int64_t most_beats_ms = 65535 * 2 / 7;
 
 constexpr Sentence node_fault(const ManagerRow& manager, const NodeRow& node) noexcept {

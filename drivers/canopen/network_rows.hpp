@@ -1,4 +1,4 @@
-// The rows of a CANopen network's table, as they are written; network.hpp puts them together.
+// The rows of a CANopen network's table, as the user writes them; network.hpp combines them.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
@@ -11,17 +11,17 @@
 
 namespace tappet::canopen {
 
-/// When a PDO is sent, or acted upon (CiA 301, 7.5.2.36).
+/// When a PDO is sent, or takes effect (CiA 301, 7.5.2.36).
 struct Transmission {
     std::uint8_t type = 255;
     Duration event_timer{}; ///< 0: none
     Duration inhibit_time{};
 };
-/// At events of the device's own, and by a timer besides; no more often than the inhibit time allows.
+/// At the device's own events, and by a timer; no more often than the inhibit time allows.
 constexpr Transmission on_event(Duration timer = {}, Duration inhibit_time = {}) noexcept {
     return {255, timer, inhibit_time};
 }
-/// At each n-th SYNC, n up to 240; 0: at the next SYNC after it changed.
+/// At each n-th SYNC, n = 1..240; 0: at the next SYNC after a change.
 constexpr Transmission synchronous(std::uint8_t every = 1) noexcept { return {every, {}, {}}; }
 
 struct PdoRow {
@@ -43,18 +43,18 @@ struct NodeRow {
     Dictionary dictionary{};
     Duration beats{};
     Duration lost_after{};
-    Duration answers_within = 100ms; ///< each request of an SDO transfer
+    Duration answers_within = 100ms; ///< time-out of each request of an SDO transfer
     bool any_revision = false;
     Bounded<PdoRow, most_pdos> pdos{};
     Bounded<ParameterRow, most_parameters> parameters{};
     bool too_many = false;
 
-    /// It is lost when nothing was heard for so long; when it is not said, three periods and a half.
+    /// Sets the heartbeat period. Without a heartbeat for `lost` (default 3.5 periods) the node is lost.
     constexpr NodeRow heartbeat(Duration every, Duration lost = {}) const noexcept {
         return copy_with(*this, &NodeRow::beats, every, &NodeRow::lost_after,
                          lost != Duration{} ? lost : every * 7 / 2);
     }
-    /// The frame of the signal map holds these objects, in their order.
+    /// Maps these objects, in this order, to the frame of the signal map.
     constexpr NodeRow pdo(std::string_view frame, Transmission how,
                           std::initializer_list<Address> objects) const noexcept {
         NodeRow copy = *this;
@@ -66,13 +66,13 @@ struct NodeRow {
     constexpr NodeRow pdo(std::string_view frame, std::initializer_list<Address> objects) const noexcept {
         return pdo(frame, on_event(), objects);
     }
-    /// Before the network is started.
+    /// Writes the value before the network is started.
     constexpr NodeRow write(Address at, std::int64_t value) const noexcept {
         NodeRow copy = *this;
         copy.too_many |= !copy.parameters.push({at, value});
         return copy;
     }
-    /// One of another revision is taken, too.
+    /// Accepts a node of another revision, too.
     constexpr NodeRow of_any_revision() const noexcept {
         return copy_with(*this, &NodeRow::any_revision, true);
     }
@@ -91,9 +91,9 @@ constexpr NodeRow node(std::uint8_t id, std::string_view name, const Dictionary&
 /// The machine's own part in the network.
 struct ManagerRow {
     std::uint8_t id = 127;
-    Duration beats{};               ///< 0: it produces no heartbeat
+    Duration beats{};               ///< 0: produces no heartbeat
     Duration sync_every{};          ///< 0: no SYNC
-    std::uint8_t sync_overflow = 0; ///< 1019h: the counter runs from 1 to this; 0: there is none
+    std::uint8_t sync_overflow = 0; ///< 1019h: the counter runs from 1 to this; 0: no counter
     Duration time_every{};          ///< 0: no TIME
 
     constexpr ManagerRow heartbeat(Duration every) const noexcept {
@@ -108,12 +108,12 @@ struct ManagerRow {
 };
 constexpr ManagerRow manager(std::uint8_t id) noexcept { return {.id = id}; }
 
-/// One transfer of a node's start.
+/// One transfer during a node's start-up.
 struct ConfigurationStep {
     enum class Kind : std::uint8_t {
-        identity, ///< it must read so, or it is another device
+        identity, ///< must read this value; otherwise it is another device
         write,
-        confirm, ///< what was written must read so
+        confirm, ///< the written object must read this value
     };
     Kind kind = Kind::write;
     std::uint8_t bytes = 0;
@@ -122,15 +122,15 @@ struct ConfigurationStep {
     bool operator==(const ConfigurationStep&) const = default;
 };
 
-/// The rows of a network, checked and worked out.
+/// The rows of a network, checked and processed.
 template <std::size_t N> struct NetworkMap {
     static constexpr std::size_t most_steps = 96 * N;
 
     ManagerRow manager{};
     std::array<NodeRow, N> nodes{};
     Bounded<ConfigurationStep, most_steps> steps{};
-    std::array<std::size_t, N + 1> first_step{}; ///< of a node; the last is where all end
-    Sentence fault{};                            ///< empty when the table is right
+    std::array<std::size_t, N + 1> first_step{}; ///< first step of each node; the last entry is the end
+    Sentence fault{};                            ///< empty when the table is correct
 };
 
 } // namespace tappet::canopen

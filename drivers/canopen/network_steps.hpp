@@ -1,12 +1,12 @@
-// What a network's table makes a node do at its start: its identity is read, its values and PDOs are written
-// in the order of CiA 301, and what was written is read back.
+// The start-up steps of a node from a network's table: reads its identity, writes its values and PDOs in the
+// order of CiA 301, and reads them back.
 #pragma once
 
 #include "drivers/canopen/network_check.hpp"
 
 namespace tappet::canopen::detail {
 
-/// Gathers the steps of one node.
+/// Collects the steps of one node.
 template <std::size_t M> class StepWriter {
 public:
     constexpr StepWriter(Bounded<ConfigurationStep, M>& steps, const NodeRow& node) noexcept
@@ -16,13 +16,13 @@ public:
         if (value != 0 && node_.dictionary.find(at) != nullptr)
             push(ConfigurationStep::Kind::identity, at, value, 4);
     }
-    /// What the dictionary does not have, or does not let be written, stays as it is.
+    /// Writes an object; skips one that the dictionary lacks or that is not writable.
     constexpr void write(Address at, std::uint64_t value) noexcept {
         const Object* const object = node_.dictionary.find(at);
         if (object != nullptr && writable(object->access))
             push(ConfigurationStep::Kind::write, at, value, bytes_of(object->type));
     }
-    /// What was written last to each place, and what must be there although nobody could write it.
+    /// Checks the last value written to an object, or the value required of a read-only one.
     constexpr void confirm(Address at, std::uint64_t value) noexcept {
         const Object* const object = node_.dictionary.find(at);
         if (object != nullptr && readable(object->access))
@@ -51,7 +51,7 @@ private:
     bool has_room_ = true;
 };
 
-/// A PDO's COB-ID as 1400h:1 and 1800h:1 hold it: bit 30 as the device has it by itself.
+/// Returns a PDO's COB-ID as in 1400h:1 and 1800h:1, with the device's own bit 30.
 constexpr std::uint32_t cob_entry(const NodeRow& node, const PdoPlace& place,
                                   std::uint32_t identifier) noexcept {
     constexpr std::uint64_t no_remote_frames = 0x4000'0000;
@@ -59,7 +59,7 @@ constexpr std::uint32_t cob_entry(const NodeRow& node, const PdoPlace& place,
     return static_cast<std::uint32_t>(identifier | (own->value.of(node.id) & no_remote_frames));
 }
 
-/// Disabled, without objects, filled, counted, enabled.
+/// Writes a PDO: disables it, clears its objects, fills it, sets their number, enables it.
 template <std::size_t M>
 constexpr void write_pdo(StepWriter<M>& to, const NodeRow& node, const PdoRow& row, const PdoPlace& place,
                          std::uint32_t identifier) noexcept {

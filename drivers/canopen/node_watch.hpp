@@ -1,5 +1,5 @@
-// One node as the manager knows it: from its boot-up over its configuration to its work, and back when it is
-// lost (CiA 301, 7.3.2; CiA 302-2, boot NMT slave).
+// The manager's state of one node: from boot-up through configuration to operation, and back when it is lost
+// (CiA 301, 7.3.2; CiA 302-2, boot NMT slave).
 #pragma once
 
 #include "drivers/canopen/frames.hpp"
@@ -8,15 +8,15 @@
 namespace tappet::canopen {
 
 enum class NodePhase : std::uint8_t {
-    absent,      ///< not heard of yet
-    configuring, ///< its identity is read, its configuration written and read back
-    starting,    ///< told to start
+    absent,      ///< not heard yet
+    configuring, ///< its identity is checked, its configuration written and read back
+    starting,    ///< has been sent the start command
     operational,
-    lost,    ///< its heartbeat is missing, it answers no request, or cannot do so now: it is asked again
-    refused, ///< another device, or one that does not take its configuration: until it boots again
+    lost,    ///< its heartbeat is missing, it answers no request, or cannot do so now: it is polled
+    refused, ///< another device, or it rejects its configuration: until it boots again
 };
 
-/// Why a node does not work.
+/// The reason why a node does not work.
 struct NodeTrouble {
     enum class Kind : std::uint8_t {
         none,
@@ -29,26 +29,26 @@ struct NodeTrouble {
         not_kept
     };
     Kind kind = Kind::none;
-    std::uint16_t step = 0; ///< of the network's, where there is one
+    std::uint16_t step = 0; ///< index in the network's steps, if any
     SdoAbort why = SdoAbort::none;
     std::uint64_t found = 0;
     bool operator==(const NodeTrouble&) const = default;
 };
 
-/// What the manager must know of a node while it runs.
+/// The facts about a node that the manager needs at run time.
 struct WatchedNode {
     std::uint8_t id = 0;
     std::string_view name{}, product{}, file{};
     Duration beats{}, lost_after{}, answers_within{};
 };
 
-/// Real-time; each call takes a bounded number of steps.
+/// Real-time; each call takes bounded time.
 class NodeWatch {
 public:
-    static constexpr Duration poll_every = 1s; ///< a node that is not heard of
-    static constexpr int most_tries = 3;       ///< of a transfer that is not answered, or whose abort passes
+    static constexpr Duration poll_every = 1s; ///< for a node that is not heard
+    static constexpr int most_tries = 3;       ///< of an unanswered or temporarily aborted transfer
 
-    /// Forgets all; `steps` are those of this node, the first of them number `first`.
+    /// Resets everything; `steps` are those of this node, the first of them has number `first`.
     void start(const WatchedNode& row, std::span<const ConfigurationStep> steps, std::size_t first,
                Time now) noexcept TAPPET_REALTIME {
         row_ = &row;
@@ -68,7 +68,7 @@ public:
     [[nodiscard]] std::uint64_t reboots() const noexcept TAPPET_REALTIME { return reboots_; }
 
     void take_heartbeat(std::uint8_t byte, Time now) noexcept TAPPET_REALTIME {
-        const auto state = static_cast<NmtState>(byte & 0x7Fu); // the highest bit is node guarding's
+        const auto state = static_cast<NmtState>(byte & 0x7Fu); // the highest bit belongs to node guarding
         heard_ = state;
         heard_at_ = now;
         if (state == NmtState::boot_up) {
@@ -80,7 +80,7 @@ public:
         }
         switch (phase_) {
         case NodePhase::absent:
-        case NodePhase::lost: // one that could not be configured is asked again after a while
+        case NodePhase::lost: // one that could not be configured is retried later
             if (trouble_.kind != NodeTrouble::Kind::aborted) configure();
             break;
         case NodePhase::starting:
@@ -125,14 +125,15 @@ public:
         }
     }
 
-    /// An NMT command for this node that is to leave before anything else.
+    /// Returns the NMT command for this node that must be sent before anything else.
     [[nodiscard]] bool next_command(NmtCommand& command) noexcept TAPPET_REALTIME {
         if (!command_.wanted) return false;
         command_.wanted = false;
         command = command_.what;
         return true;
     }
-    /// Not while a command waits, and not sooner after the last one than the bus is proven for.
+    /// Returns the next request: not while a command is pending, and not sooner after the last one than the
+    /// bus is proven for.
     [[nodiscard]] bool next_request(sdo::Payload& request, Time now) noexcept TAPPET_REALTIME {
         if (command_.wanted || now < may_request_ || !client_.next(request, now)) return false;
         may_request_ = now + requests_apart;
@@ -148,7 +149,7 @@ private:
     void command(NmtCommand what) noexcept TAPPET_REALTIME { command_ = {true, what}; }
     void configure() noexcept TAPPET_REALTIME {
         if (heard_ == NmtState::operational || heard_ == NmtState::stopped)
-            command(NmtCommand::enter_pre_operational); // what it sends may not be what the map reads
+            command(NmtCommand::enter_pre_operational); // its PDOs may differ from the map
         client_.forget();
         phase_ = NodePhase::configuring;
         step_ = 0;

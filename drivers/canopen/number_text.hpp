@@ -1,4 +1,4 @@
-// Numbers as EDS files write them: hexadecimal, octal, decimal, relative to the node's identifier, and reals.
+// Numbers in EDS files: hexadecimal, octal, decimal, relative to the node's identifier, and reals.
 #pragma once
 
 #include "drivers/canopen/ini.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet::canopen {
 
-/// 0x1F, 037, -31; nothing: it is none, or does not fit 64 bits.
+/// A whole number: 0x1F, 037, -31. Empty: not a number, or it does not fit 64 bits.
 struct Whole {
     std::uint64_t size = 0;
     bool negative = false;
@@ -40,7 +40,7 @@ constexpr std::optional<Whole> to_whole(std::string_view text) noexcept {
     return number;
 }
 
-/// The bits of a real: up to 15 digits and a power of ten up to 22, so that the result is exactly rounded.
+/// Returns a real: up to 15 digits and a power of ten up to 22, so that the result is exactly rounded.
 constexpr std::optional<double> to_real(std::string_view text) noexcept {
     bool negative = false;
     if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
@@ -86,7 +86,7 @@ struct NumberRead {
     NumberFault fault = NumberFault::none;
 };
 
-/// A value, a limit: $NODEID+0x180, 0x180+$NODEID, or a number that fits the type. An empty text is none
+/// Reads a value or a limit: $NODEID+0x180, 0x180+$NODEID, or a number that fits the type. An empty text: not
 /// given.
 constexpr NumberRead to_number(std::string_view text, DataType type) noexcept {
     if (text.empty()) return {};

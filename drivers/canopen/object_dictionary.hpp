@@ -1,5 +1,5 @@
-// The object dictionary of a CANopen device (CiA 301, 7.4): what can be read and written by index and
-// sub-index, and within which bounds.
+// The object dictionary of a CANopen device (CiA 301, 7.4): the objects that can be read and written by index
+// and sub-index, with their limits.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -13,7 +13,7 @@
 
 namespace tappet::canopen {
 
-/// By its number in the standard (CiA 301, table 44).
+/// Data types, by their number in the standard (CiA 301, table 44).
 enum class DataType : std::uint16_t {
     boolean = 0x01,
     integer8,
@@ -42,7 +42,7 @@ enum class DataType : std::uint16_t {
     unsigned64,
 };
 
-/// How many bits a value takes in a frame; 0: as many as it has, or none that is known.
+/// Returns the bits of a value in a frame; 0: a type of variable length, or an unknown one.
 constexpr unsigned bits_of(DataType type) noexcept TAPPET_REALTIME {
     switch (type) {
     case DataType::boolean: return 1;
@@ -73,7 +73,7 @@ constexpr unsigned bits_of(DataType type) noexcept TAPPET_REALTIME {
     }
     return 0;
 }
-/// How many bytes it takes in a transfer: a boolean takes one.
+/// Returns the bytes of a value in a transfer; a boolean takes one.
 constexpr unsigned bytes_of(DataType type) noexcept TAPPET_REALTIME { return (bits_of(type) + 7) / 8; }
 constexpr bool is_signed(DataType type) noexcept TAPPET_REALTIME {
     return (type >= DataType::integer8 && type <= DataType::integer32) || type == DataType::integer24 ||
@@ -90,7 +90,7 @@ enum class Access : std::uint8_t {
     read_only,
     write_only,
     read_write,
-    read_write_read, ///< rwr: in a PDO it is sent by the device
+    read_write_read, ///< rwr: the device sends it in a PDO
     read_write_write,
     constant,
 };
@@ -99,7 +99,7 @@ constexpr bool writable(Access access) noexcept TAPPET_REALTIME {
     return access != Access::read_only && access != Access::constant;
 }
 
-/// A place in a dictionary.
+/// The address of an object in a dictionary.
 struct Address {
     std::uint16_t index = 0;
     std::uint8_t sub = 0;
@@ -111,7 +111,7 @@ struct Address {
 
 /// A number that may depend on the node's identifier: $NODEID+0x180.
 struct Number {
-    std::uint64_t bits = 0; ///< of the object's type, the higher ones 0
+    std::uint64_t bits = 0; ///< of the object's type, higher bits 0
     bool given = false;
     bool plus_node = false;
     [[nodiscard]] constexpr std::uint64_t of(std::uint8_t node) const noexcept TAPPET_REALTIME {
@@ -124,14 +124,14 @@ struct Object {
     DataType type = DataType::unsigned32;
     Access access = Access::read_only;
     bool mappable = false;
-    bool is_parameter = false; ///< the value is the one that a DCF asks for, not the device's own
+    bool is_parameter = false; ///< the value comes from a DCF, instead of the device's default
     Number value{}, low{}, high{};
     std::string_view name{};
-    std::string_view text{}; ///< the value as it is written: what strings are
+    std::string_view text{}; ///< the value as the file writes it; strings are kept here
     std::uint32_t line = 0;
 };
 
-/// Whether a value of that type lies within the object's limits.
+/// Returns whether a value of the object's type lies within its limits.
 constexpr bool within_limits(const Object& object, std::uint64_t bits, std::uint8_t node) noexcept
     TAPPET_REALTIME {
     if (is_real(object.type)) return true;
@@ -149,7 +149,7 @@ constexpr bool within_limits(const Object& object, std::uint64_t bits, std::uint
            (!object.high.given || !less(object.high.of(node), bits));
 }
 
-/// What tells a device from another one (1000h and 1018h). 0: anything.
+/// The objects that identify a device type (1000h and 1018h). 0: any.
 struct Identity {
     std::uint32_t device_type = 0;
     std::uint32_t vendor = 0;
@@ -158,15 +158,15 @@ struct Identity {
     bool operator==(const Identity&) const = default;
 };
 
-/// A device's dictionary as its file describes it. What it refers to is a constant.
+/// A device's dictionary from its file. The data it refers to are constants.
 struct Dictionary {
     std::string_view file{};
     std::string_view product{};
-    std::uint8_t node = 0; ///< the only one that a DCF is meant for; 0: any
+    std::uint8_t node = 0; ///< the only node that a DCF is for; 0: any
     Identity identity{};
     std::span<const Object> objects{}; ///< in the order of their addresses
 
-    /// Null: the device has none there. Real-time: as many steps as halve the dictionary.
+    /// Finds an object; null when the device has none there. Real-time: binary search.
     [[nodiscard]] constexpr const Object* find(Address at) const noexcept TAPPET_REALTIME {
         std::size_t first = 0, last = objects.size();
         while (first < last) {
@@ -180,7 +180,7 @@ struct Dictionary {
     }
 };
 
-/// As the standard writes a number: "1018h".
+/// Adds a number as the standard writes it: "1018h".
 constexpr void add_hex(Sentence& to, std::uint64_t number, unsigned digits) noexcept TAPPET_REALTIME {
     while (digits < 16 && number >> (4 * digits) != 0) ++digits;
     for (unsigned i = digits; i-- > 0;) {
@@ -194,7 +194,7 @@ constexpr Sentence hex(std::uint64_t number, unsigned digits) noexcept {
     add_hex(text, number, digits);
     return text;
 }
-/// "1018h:2"
+/// Returns an address as the standard writes it: "1018h:2".
 constexpr Sentence to_text(Address at) noexcept { return hex(at.index, 4).add(":").add(unsigned{at.sub}); }
 
 } // namespace tappet::canopen

@@ -1,4 +1,4 @@
-// The identifiers and states that CiA 301 gives to every network.
+// The identifiers and states that CiA 301 defines for every network.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,14 +9,14 @@
 
 namespace tappet::canopen {
 
-/// COB-IDs of the predefined connection set; + node where it says so.
+/// COB-IDs of the predefined connection set; `+ node` where stated.
 namespace cob {
 inline constexpr std::uint32_t nmt = 0x000;
 inline constexpr std::uint32_t sync = 0x080;
 inline constexpr std::uint32_t emergency = 0x080; ///< + node
 inline constexpr std::uint32_t time = 0x100;
-inline constexpr std::uint32_t tpdo = 0x180;       ///< + node, 100h further for each PDO
-inline constexpr std::uint32_t rpdo = 0x200;       ///< likewise
+inline constexpr std::uint32_t tpdo = 0x180;       ///< + node, and 100h more for each further PDO
+inline constexpr std::uint32_t rpdo = 0x200;       ///< the same
 inline constexpr std::uint32_t sdo_answer = 0x580; ///< + node
 inline constexpr std::uint32_t sdo_request = 0x600;
 inline constexpr std::uint32_t heartbeat = 0x700;
@@ -42,7 +42,7 @@ enum class NmtState : std::uint8_t {
     pre_operational = 0x7F,
 };
 
-/// Emergency error codes (CiA 301, table 26), those that the stack itself sends.
+/// Emergency error codes (CiA 301, table 26) that the protocol stack itself sends.
 namespace emergency_code {
 inline constexpr std::uint16_t error_reset = 0x0000;
 inline constexpr std::uint16_t heartbeat = 0x8130;

@@ -1,4 +1,4 @@
-// Service data objects (CiA 301, 7.2.4): why a transfer is aborted, and how values lie in frames.
+// Service data objects (CiA 301, 7.2.4): abort codes, and the layout of values in frames.
 #pragma once
 
 #include "drivers/can/signal.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::canopen {
 
-/// By the standard's code (CiA 301, table 22).
+/// Abort codes of the standard (CiA 301, table 22).
 enum class SdoAbort : std::uint32_t {
     none = 0,
     toggle_bit = 0x0503'0000,
@@ -41,8 +41,8 @@ enum class SdoAbort : std::uint32_t {
     no_data = 0x0800'0024,
 };
 
-/// The same request may succeed later: the transfer was disturbed, or the device cannot serve it now. The
-/// rest says that the device has no such object, or does not take this value.
+/// Returns true when the same request may succeed later: the transfer was disturbed, or the device cannot
+/// serve it now. The other codes mean that the device lacks the object or rejects the value.
 constexpr bool passes(SdoAbort code) noexcept TAPPET_REALTIME {
     switch (code) {
     case SdoAbort::toggle_bit:
@@ -96,7 +96,7 @@ constexpr std::string_view to_text(SdoAbort code) noexcept TAPPET_REALTIME {
     return "a code of the device's maker";
 }
 
-/// Little-endian, as everything in CANopen.
+/// Reads a little-endian number, as always in CANopen.
 constexpr std::uint64_t from_bytes(std::span<const std::uint8_t> bytes) noexcept TAPPET_REALTIME {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < bytes.size() && i < 8; ++i) value |= std::uint64_t{bytes[i]} << (8 * i);
@@ -111,7 +111,7 @@ namespace sdo {
 
 using can::Payload;
 
-/// The longest value that a transfer of ours carries; a longer one is aborted.
+/// Longest value of a transfer; a longer one is aborted.
 inline constexpr std::size_t most_bytes = 64;
 inline constexpr std::size_t in_segment = 7;
 

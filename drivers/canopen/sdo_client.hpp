@@ -6,21 +6,21 @@
 
 namespace tappet::canopen {
 
-/// Real-time; each call takes a bounded number of steps. It has no wire: next() gives what is to be sent to
-/// the server, take() what came from it.
+/// Real-time; each call takes bounded time. It has no wire of its own: next() returns what to send to the
+/// server, take() receives its answers.
 class SdoClient {
 public:
     enum class State : std::uint8_t { idle, busy, done, aborted };
 
-    /// The server must answer each request within this time.
+    /// Sets the time-out of the server's answer to each request.
     void set_time_out(Duration time_out) noexcept TAPPET_REALTIME { time_out_ = time_out; }
 
-    /// Begins a transfer; one that is under way is forgotten.
+    /// Starts a transfer and forgets an active one.
     void read(Address at) noexcept TAPPET_REALTIME {
         begin(at, Step::initiate_read);
         size_ = 0;
     }
-    /// Of 1 to sdo::most_bytes bytes.
+    /// Writes a value of 1..sdo::most_bytes bytes.
     void write(Address at, std::span<const std::uint8_t> value) noexcept TAPPET_REALTIME {
         begin(at, Step::initiate_write);
         size_ = value.size() < sdo::most_bytes ? value.size() : sdo::most_bytes;
@@ -32,19 +32,18 @@ public:
     }
 
     [[nodiscard]] State state() const noexcept TAPPET_REALTIME { return state_; }
-    /// Why it was aborted, by whom ever.
+    /// Returns why the transfer was aborted, by either side.
     [[nodiscard]] SdoAbort why() const noexcept TAPPET_REALTIME { return why_; }
-    /// The server was not told yet that it was aborted: the next transfer would begin in the middle of this
-    /// one.
+    /// Returns whether the server does not know of the abort yet: the next transfer would start in this one.
     [[nodiscard]] bool has_abort_to_send() const noexcept TAPPET_REALTIME {
         return state_ == State::aborted && to_send_;
     }
-    /// What was read.
+    /// Returns the value that was read.
     [[nodiscard]] std::span<const std::uint8_t> value() const noexcept TAPPET_REALTIME {
         return std::span{bytes_}.first(size_);
     }
 
-    /// The next request, which leaves now; false: none.
+    /// Writes the next request, which must be sent at once; returns false when there is none.
     [[nodiscard]] bool next(sdo::Payload& request, Time now) noexcept TAPPET_REALTIME {
         if (!to_send_) return false;
         to_send_ = false;
@@ -73,8 +72,7 @@ public:
         return true;
     }
 
-    /// A frame of the server's. What answers no request of ours, or an earlier one that was given up, is of
-    /// no account.
+    /// Takes a frame from the server. Ignores one that answers no request, or one that was given up.
     void take(const sdo::Payload& answer) noexcept TAPPET_REALTIME {
         if (state_ != State::busy || to_send_) return;
         const unsigned command = answer[0] >> 5;
@@ -126,13 +124,13 @@ private:
         why_ = why;
         to_send_ = false;
     }
-    /// Ours to end: the server is told.
+    /// Aborts the transfer from this side, and tells the server.
     void fail(SdoAbort why) noexcept TAPPET_REALTIME {
         end(State::aborted, why);
         to_send_ = true;
     }
-    /// The beginning of a transfer is confirmed with its object, and in another way when it is read than when
-    /// it is written: by that a confirmation which comes late, of what was asked before, is known.
+    /// Returns true for a late confirmation of an earlier request. The confirmation of a new transfer states
+    /// its object, and differs for read and write.
     [[nodiscard]] bool is_of_before(const sdo::Payload& answer, unsigned command) const noexcept
         TAPPET_REALTIME {
         const bool is_initiate = command == 2 || command == 3;
@@ -164,7 +162,7 @@ private:
         for (std::size_t i = 0; i < count; ++i) bytes_[size_ + i] = answer[1 + i];
         size_ += count;
         const bool is_last = (answer[0] & 1u) != 0;
-        // Without a byte it could go on for ever.
+        // A segment without a byte could repeat for ever.
         if (is_last ? announced_ != unsaid && announced_ != size_ : count == 0)
             return fail(SdoAbort::unknown_command);
         if (is_last) return end(State::done, SdoAbort::none);
@@ -188,7 +186,7 @@ private:
     SdoAbort why_ = SdoAbort::none;
     std::size_t size_ = 0;
     std::size_t moved_ = 0;
-    std::size_t announced_ = unsaid; ///< of what is read in segments
+    std::size_t announced_ = unsaid; ///< of a segmented read
     Duration time_out_ = 100ms;
     Time sent_at_{};
     std::array<std::uint8_t, sdo::most_bytes> bytes_{};

@@ -5,26 +5,26 @@
 
 namespace tappet::canopen {
 
-/// What a server gives access to. Real-time.
+/// The objects that a server gives access to. Real-time.
 class ObjectAccess {
 public:
     ObjectAccess() = default;
     ObjectAccess(const ObjectAccess&) = default;
     ObjectAccess& operator=(const ObjectAccess&) = default;
     virtual ~ObjectAccess() = default;
-    /// `size` becomes the bytes written to `into`.
+    /// Reads an object; `size` becomes the number of bytes written to `into`.
     [[nodiscard]] virtual SdoAbort read_object(Address at, std::span<std::uint8_t> into,
                                                std::size_t& size) noexcept TAPPET_REALTIME = 0;
     [[nodiscard]] virtual SdoAbort write_object(Address at, std::span<const std::uint8_t> value) noexcept
         TAPPET_REALTIME = 0;
 };
 
-/// Real-time; each call takes a bounded number of steps. Block transfers are refused, as the standard allows.
+/// Real-time; each call takes bounded time. Refuses block transfers, as the standard allows.
 class SdoServer {
 public:
     void forget() noexcept TAPPET_REALTIME { transfer_ = Transfer::none; }
 
-    /// A request of the client's. False: nothing is to be answered.
+    /// Serves a request of the client. Returns false when there is no answer to send.
     [[nodiscard]] bool serve(const sdo::Payload& request, ObjectAccess& objects,
                              sdo::Payload& answer) noexcept TAPPET_REALTIME {
         switch (request[0] >> 5) {

@@ -1,5 +1,5 @@
-// The one place that decides which set points a CiA 402 drive is sent: those of a motion only while the drive
-// shows that motion's mode, those of rest otherwise.
+// Decides, as the only place, which set points a CiA 402 drive gets: those of a motion only while the drive
+// shows that motion's mode, otherwise those of rest.
 #pragma once
 
 #include "drivers/canopen/cia402.hpp"
@@ -10,50 +10,50 @@
 
 namespace tappet::canopen {
 
-/// Numbers of object 6060h.
+/// Values of object 6060h.
 enum class OperationMode : std::int8_t {
     none = 0,
     profile_position = 1,
     profile_velocity = 3,
     profile_torque = 4,
     homing = 6,
-    cyclic_position = 8, ///< the set points are ours, one each cycle
+    cyclic_position = 8, ///< the machine provides a set point each cycle
     cyclic_velocity = 9,
     cyclic_torque = 10,
 };
 
-/// What the drive says; units are those of its signals.
+/// Feedback from the drive, in the units of its signals.
 struct DriveFeedback {
-    bool heard = false; ///< false: its values are old
+    bool heard = false; ///< false: the values are stale
     std::uint16_t statusword = 0;
     std::int64_t mode = 0; ///< 6061h, modes of operation display
     double position = 0, velocity = 0;
-    Duration passed{}; ///< since the step before; a superimposed motion needs it
+    Duration passed{}; ///< time since the previous step, for superimposed motions
 };
-/// What it is told. One order is taken as a whole: its objects travel together, or are latched by one SYNC.
+/// Orders to the drive, which takes them as a whole: the objects are sent together, or latched by one SYNC.
 struct DriveOrder {
     std::uint16_t controlword = 0;
     std::int64_t mode = 0;       ///< 6060h
     double position = 0;         ///< 607Ah
-    double profile_velocity = 0; ///< 6081h, of a motion to a place
+    double profile_velocity = 0; ///< 6081h, of a motion to a position
     double velocity = 0;         ///< 60FFh
     double torque = 0;           ///< 6071h
 };
 
-/// Real-time; one step each cycle. An order of rest is safe in each mode, also in one that does not know the
-/// halt bit: velocity and torque are nought, the position is the actual one (in cyclic position: the last set
-/// point), no start bit, and the halt bit. The axis rests in profile position, where each drive knows the
-/// halt bit. The mode is ordered anew only when the drive shows the one ordered before: what it shows is
-/// never the echo of an older order, whatever the frames' round trip is.
+/// Real-time; one step each cycle. An order of rest is safe in each mode, even in one without the halt bit:
+/// velocity and torque are 0, the position is the actual one (in cyclic position: the last set point), there
+/// is no start bit, and the halt bit is set. The axis rests in profile position, where each drive supports
+/// the halt bit. A new mode is ordered only when the drive shows the previous one, so its display is never
+/// the echo of an older order, whatever the round-trip time of the frames.
 class SetPointGate {
 public:
     static constexpr OperationMode rest_mode = OperationMode::profile_position;
-    /// So long it must be slow at rest until it stands: its speed may cross nought.
+    /// Cycles that it must be slow at rest before it counts as standing: its velocity may only cross zero.
     static constexpr int settling_cycles = DriveControl::low_cycles;
-    /// A drive that shows no mode, or begins no homing, for so long is lost.
+    /// A drive that shows no mode, or starts no homing, for so many cycles is lost.
     static constexpr int patience_cycles = 3000;
-    /// A hand-over between velocity and torque goes on with the old set point for so long at most; at rest,
-    /// the bit of a set point that the drive does not acknowledge stays up for so long.
+    /// Most cycles that a hand-over between velocity and torque continues with the old set point. At rest:
+    /// most cycles that the set-point bit stays set without an acknowledgement.
     static constexpr int hand_over_cycles = 250;
 
     enum class Progress : std::uint8_t { under_way, done, failed };
@@ -66,35 +66,35 @@ public:
         rests_ = true;
         leads_ = false;
     }
-    /// Asks for a motion; `target` is the first set point, a place, a velocity or a torque.
+    /// Requests a motion; `target` is the first set point: a position, a velocity or a torque.
     void lead(OperationMode mode, double target, double profile_velocity = 0) noexcept TAPPET_REALTIME {
         leads_ = leads_ && mode == asked_;
         const bool is_place = mode == OperationMode::cyclic_position;
-        if (leads_ && is_place) return; // what it follows goes on
+        if (leads_ && is_place) return; // it continues to follow positions
         rests_ = false;
         is_new_ = true;
         began_ = false;
         start_cycles_ = 0;
-        stands_first_ = is_place; // whatever was led before, and however far it had gone
+        stands_first_ = is_place; // whatever was active before, and however far it was
         asked_ = mode;
         target_ = target;
         profile_velocity_ = profile_velocity;
         offset_ = {};
     }
-    /// The next set point of a cyclic mode. Positions count only once the drive shows the mode and says that
-    /// it follows: until then it stands, and would jump to what was meant for earlier.
+    /// Sets the next set point of a cyclic mode. Positions count only once the drive shows the mode and
+    /// reports that it follows: until then it stands, and would jump to an outdated position.
     void follow(double set_point) noexcept TAPPET_REALTIME {
         if (rests_ || asked_ < OperationMode::cyclic_position) return;
         if (asked_ == OperationMode::cyclic_position && (!leads_ || is_new_)) return;
         target_ = set_point;
         is_new_ = false;
     }
-    /// Adds a motion to the positions that it follows.
+    /// Adds a motion to the followed positions.
     void superimpose(const motion::Profile& offset) noexcept TAPPET_REALTIME {
         offset_ = offset;
         offset_age_ = {};
     }
-    /// A superimposed motion is under way, or has left a distance behind.
+    /// Returns true when a superimposed motion is active, or has left a distance.
     [[nodiscard]] bool has_offset() const noexcept TAPPET_REALTIME {
         return superimposes() || offset().position != 0;
     }
@@ -102,21 +102,22 @@ public:
         return offset_.at(offset_age_);
     }
 
-    /// It was told to come to rest, and has.
+    /// Returns true when it was told to come to rest and stands.
     [[nodiscard]] bool stands() const noexcept TAPPET_REALTIME { return rests_ && is_still(); }
-    /// The drive shows the mode of the motion, and has its set points.
+    /// Returns true when the drive shows the motion's mode and receives its set points.
     [[nodiscard]] bool leads(OperationMode mode) const noexcept TAPPET_REALTIME {
         return leads_ && asked_ == mode;
     }
     [[nodiscard]] bool superimposes() const noexcept TAPPET_REALTIME {
         return to_seconds(offset_age_) < offset_.duration_s();
     }
-    /// Of the motion to a place, or of the homing.
+    /// Returns the progress of a motion to a position, or of a homing.
     [[nodiscard]] Progress progress() const noexcept TAPPET_REALTIME { return progress_; }
-    /// The drive does not do what it was told for longer than a drive may take.
+    /// Returns true when the drive has not followed its orders for longer than permitted.
     [[nodiscard]] bool is_lost() const noexcept TAPPET_REALTIME { return waits_ > patience_cycles; }
 
-    /// `word`: where the automaton of the drive is led. Only enable_operation lets a motion through.
+    /// Computes the orders of a cycle. `word`: the controlword for the drive's automaton. Only
+    /// enable_operation permits a motion.
     [[nodiscard]] const DriveOrder& step(const DriveFeedback& seen, std::uint16_t word) noexcept
         TAPPET_REALTIME {
         const OperationMode shown = shown_by(seen);
@@ -143,7 +144,7 @@ public:
         return order_;
     }
 
-    /// Bits of the statusword that mean something of their own in each mode.
+    /// Bits of the statusword whose meaning depends on the mode.
     struct status {
         static constexpr unsigned target_reached = 0x0400, internal_limit = 0x0800;
         static constexpr unsigned acknowledged = 0x1000; ///< pp: set point; hm: attained; cyclic: follows
@@ -153,11 +154,12 @@ public:
 private:
     struct order_bit {
         static constexpr unsigned new_set_point = 0x10; ///< hm: homing operation start
-        static constexpr unsigned at_once = 0x20;       ///< a new set point ends the one before
+        static constexpr unsigned at_once = 0x20;       ///< a new set point replaces the previous one
         static constexpr unsigned halt = 0x100;
     };
-    /// Of a set point in pp: the bit rises, is acknowledged, falls, and the acknowledgement falls. A halt or
-    /// a new place waits for the end of it: a bit that rises again too soon has no edge for the drive.
+    /// Handshake of a set point in pp: the bit rises, is acknowledged, falls, and the acknowledgement falls.
+    /// A halt or a new position waits for its end, because the drive sees no edge in a bit that rises again
+    /// too soon.
     enum class HandShake : std::uint8_t { over, raised, lowered };
 
     [[nodiscard]] static OperationMode shown_by(const DriveFeedback& seen) noexcept TAPPET_REALTIME {
@@ -165,7 +167,7 @@ private:
     }
     [[nodiscard]] bool is_still() const noexcept TAPPET_REALTIME { return slow_cycles_ > settling_cycles; }
 
-    /// Nothing of a motion outlives the power.
+    /// Ends any motion when power is lost.
     void without_power(const DriveFeedback& seen, OperationMode shown, bool enabled) noexcept
         TAPPET_REALTIME {
         const bool may_follow = enabled && (shown == OperationMode::cyclic_position ||
@@ -183,14 +185,15 @@ private:
         }
         order_.controlword |= order_bit::halt;
         if (shown != OperationMode::cyclic_position) return;
-        // It would go where the axis was some cycles ago, whatever the halt bit says.
+        // It would move to its position of some cycles ago, regardless of the halt bit.
         order_.controlword = controlword::switch_on;
         ++waits_;
     }
-    /// A drive that shows the mode ordered before may be ordered the next one.
+    /// Returns the mode to order next, once the drive shows the previous one.
     [[nodiscard]] OperationMode next_mode() const noexcept TAPPET_REALTIME {
         if (rests_) return rest_mode;
-        // Into cyclic position only from a stand: there alone the place of some cycles ago is that of now.
+        // Cyclic position starts only at standstill: only there is the position of some cycles ago still
+        // true.
         if (asked_ == OperationMode::cyclic_position && (ordered_ != asked_ || stands_first_) &&
             !(ordered_ == rest_mode && is_still()))
             return rest_mode;
@@ -199,11 +202,11 @@ private:
     void order_mode(OperationMode mode) noexcept TAPPET_REALTIME {
         if (mode == ordered_) return;
         ordered_ = mode;
-        stands_first_ = false; // into rest, or from it
+        stands_first_ = false; // at the change to or from rest
         hand_shake_ = HandShake::over;
         slow_cycles_ = 0;
     }
-    /// Between velocity and torque, which are different objects, and neither knows the halt bit.
+    /// Returns whether it changes between velocity and torque: different objects, without a halt bit.
     [[nodiscard]] bool hands_over(OperationMode shown) const noexcept TAPPET_REALTIME {
         return !rests_ && ordered_ == asked_ && asked_ >= OperationMode::cyclic_velocity &&
                shown >= OperationMode::cyclic_velocity && waits_ <= hand_over_cycles;
@@ -219,7 +222,7 @@ private:
             shown == OperationMode::cyclic_position || ordered_ == OperationMode::cyclic_position;
         const bool is_quiet = hand_shake_ == HandShake::over;
         if (!is_cyclic && is_quiet) order_.position = seen.position;
-        // While the drive shows another mode, it has not yet heard of the rest.
+        // While the drive shows another mode, it has not yet received the order of rest.
         const bool is_slow = seen.velocity <= standing_ && -seen.velocity <= standing_;
         slow_cycles_ = is_slow && is_quiet && shown == ordered_ ? slow_cycles_ + 1 : 0;
         if (slow_cycles_ > settling_cycles) slow_cycles_ = settling_cycles + 1;
@@ -234,9 +237,9 @@ private:
             break;
         case OperationMode::homing: home(seen); break;
         case OperationMode::cyclic_position:
-            if (is_new_) target_ = order_.position; // here it stands
+            if (is_new_) target_ = order_.position; // where it stands
             offset_age_ += seen.passed;
-            // A sum of two numbers may be none.
+            // The sum of two numbers may overflow.
             if (const double sum = target_ + offset().position; motion::is_number(sum)) order_.position = sum;
             break;
         case OperationMode::profile_velocity:
@@ -245,14 +248,14 @@ private:
         case OperationMode::profile_torque:
         case OperationMode::none: break;
         }
-        // Positions begin when the drive says that it follows them: who leads it begins where it stands then.
+        // Positions start when the drive reports that it follows; their source starts from its position then.
         if (asked_ != OperationMode::profile_position &&
             (asked_ != OperationMode::cyclic_position || (seen.statusword & status::acknowledged) != 0))
             is_new_ = false;
     }
-    /// The bits of the drive may be those of a homing before: they count when they were seen clear since this
-    /// one was about to start. It starts late enough that they are of this mode, should they travel apart
-    /// from it.
+    /// Runs a homing. The drive's bits may be from an earlier homing: they count only after they were seen
+    /// clear since this one was requested. It starts late enough that they belong to this mode, even if they
+    /// are sent apart from it.
     void home(const DriveFeedback& seen) noexcept TAPPET_REALTIME {
         const bool attained = (seen.statusword & status::acknowledged) != 0;
         const bool failed = (seen.statusword & status::error) != 0;
@@ -270,8 +273,8 @@ private:
         else if (attained && (seen.statusword & status::target_reached) != 0)
             progress_ = Progress::done;
     }
-    /// The halt bit falls together with the edge that brings the new place, never before: the drive would go
-    /// on to the place that it has.
+    /// Runs the handshake. The halt bit falls together with the edge of the new position, never before,
+    /// because the drive would then continue to the old position.
     void shake_hands(const DriveFeedback& seen) noexcept TAPPET_REALTIME {
         const bool acknowledged = (seen.statusword & status::acknowledged) != 0;
         switch (hand_shake_) {
@@ -305,10 +308,10 @@ private:
     motion::Profile offset_{};
     Duration offset_age_{};
     bool rests_ = true, leads_ = false;
-    bool stands_first_ = false; ///< it comes to a stand before it follows positions
+    bool stands_first_ = false; ///< must come to a stand before it follows positions
     bool is_new_ = false;       ///< its target has not been sent
-    bool is_released_ = false;  ///< in pp: the halt bit fell with a new place
-    bool began_ = false;        ///< a homing
+    bool is_released_ = false;  ///< in pp: the halt bit fell with a new position
+    bool began_ = false;        ///< the homing has started
     int slow_cycles_ = 0, waits_ = 0, start_cycles_ = 0, raised_cycles_ = 0;
 };
 

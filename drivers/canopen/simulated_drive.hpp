@@ -1,4 +1,4 @@
-// A CiA 402 drive at the other end of the wires: its automaton, with its faults, for plants.
+// A CiA 402 drive at the other end of the wires: its automaton with its faults, for plants.
 #pragma once
 
 #include "drivers/canopen/cia402.hpp"
@@ -7,11 +7,11 @@
 
 namespace tappet::canopen {
 
-/// The transitions' numbers are the standard's. Quick stop option code (605Ah) 2: brake, then switch on
-/// disabled; fault reaction: brake, then fault. Real-time.
+/// The numbers at transitions are the standard's. Quick stop option code (605Ah) 2: brake, then switch on
+/// disabled. Fault reaction: brake, then fault. Real-time.
 class SimulatedDrive {
 public:
-    /// What the power stage does with the motor.
+    /// The effect of the power stage on the motor.
     enum class Power : std::uint8_t { off, follow, stop };
 
     [[nodiscard]] constexpr DriveState state() const noexcept TAPPET_REALTIME { return state_; }
@@ -28,7 +28,7 @@ public:
         return word_of(state_);
     }
 
-    /// A controlword arrives.
+    /// Takes a controlword.
     constexpr void control(std::uint16_t word) noexcept TAPPET_REALTIME {
         const bool reset = (word & controlword::fault_reset) != 0 && (word_ & controlword::fault_reset) == 0;
         word_ = word;
@@ -63,21 +63,21 @@ public:
         default: break;
         }
     }
-    /// It has power, and its motor stands or does not: what it does by itself then.
+    /// Makes the drive's own transitions, for a motor that stands or not.
     constexpr void settle(bool stands) noexcept TAPPET_REALTIME {
         if (state_ == DriveState::not_ready) state_ = DriveState::switch_on_disabled; // 1
         if (!stands) return;
         if (state_ == DriveState::quick_stop_active) state_ = DriveState::switch_on_disabled; // 12
         if (state_ == DriveState::fault_reaction_active) state_ = DriveState::fault;          // 14
     }
-    /// A fault; false: it is faulty already.
+    /// Causes a fault; returns false when there is one already.
     constexpr bool trip() noexcept TAPPET_REALTIME {
         if (state_ == DriveState::fault_reaction_active || state_ == DriveState::fault) return false;
         state_ = DriveState::fault_reaction_active; // 13
         return true;
     }
-    /// For plants whose drive needs no more: each controlword leads to its state at once, as of a motor that
-    /// is braked in no time; the answer is the statusword of that.
+    /// For simple plants: each controlword leads to its state at once, as if the motor stopped in no time;
+    /// returns the resulting statusword.
     constexpr std::uint16_t follow(std::int64_t word) noexcept TAPPET_REALTIME {
         settle(true);
         control(static_cast<std::uint16_t>(word));

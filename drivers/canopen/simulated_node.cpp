@@ -1,4 +1,4 @@
-// What a simulated node makes of the frames and of the time.
+// A simulated node's reaction to frames and time.
 #include "drivers/canopen/simulated_node.hpp"
 
 #include "drivers/canopen/frames.hpp"
@@ -37,7 +37,7 @@ void SimulatedNode::start_work(Time now) noexcept TAPPET_REALTIME {
     }
 }
 
-/// From the objects, as they were configured.
+/// Reads the PDO's configuration from the objects.
 void SimulatedNode::read_pdo(Pdo& pdo, std::uint16_t communication, Time now) noexcept TAPPET_REALTIME {
     pdo = {};
     const auto mapping = static_cast<std::uint16_t>(communication + to_mapping);
@@ -83,7 +83,7 @@ bool SimulatedNode::tick(Time now, FrameSink& out) noexcept TAPPET_REALTIME {
         const Time at = master_lost_at_;
         master_lost_at_ = never;
         send_emergency(emergency_code::heartbeat, 0x11, at, out);
-        if (operational()) stop_work(NmtState::pre_operational); // 1029h as it is by itself
+        if (operational()) stop_work(NmtState::pre_operational); // by 1029h's default
     }
     bool any = false;
     for (Pdo& pdo : sent_) {

@@ -1,5 +1,5 @@
-// A CANopen node at the other end of the wires, for plants: NMT slave, heartbeat, SDO server and PDOs as its
-// dictionary describes them and as the machine configures them, with every fault on demand (CiA 301).
+// A CANopen node at the other end of the wires, for plants: NMT slave, heartbeat, SDO server and PDOs by its
+// dictionary and the machine's configuration, with injection of every fault (CiA 301).
 #pragma once
 
 #include "drivers/can/frame.hpp"
@@ -10,38 +10,38 @@
 
 namespace tappet::canopen {
 
-/// Where a node's frames go. Real-time.
+/// The receiver of a node's frames. Real-time.
 class FrameSink {
 public:
     FrameSink() = default;
     FrameSink(const FrameSink&) = default;
     FrameSink& operator=(const FrameSink&) = default;
     virtual ~FrameSink() = default;
-    /// Its stamp is when the node asks for the bus.
+    /// Sends a frame; its stamp is the time at which the node requests the bus.
     virtual void send(const can::Frame& frame) noexcept TAPPET_REALTIME = 0;
 };
 
-/// Without power at first. Real-time; each call takes a bounded number of steps.
+/// Starts without power. Real-time; each call takes bounded time.
 class SimulatedNode : public SimulatedObjects {
 public:
     static constexpr Duration boot_time = 100ms;
-    /// What a frame of the machine's was to it.
+    /// The effect of a frame from the machine on the node.
     enum class Heard : std::uint8_t { nothing, process_data, started, reset };
 
     SimulatedNode(std::uint8_t node, const Dictionary& dictionary, std::span<std::uint64_t> values) noexcept
         TAPPET_REALTIME : SimulatedObjects{node, dictionary, values} {}
 
     using SimulatedObjects::id;
-    /// Its clock runs so much too fast.
+    /// Lets its clock run fast by this error.
     void set_clock_error(std::int64_t parts_per_million) noexcept TAPPET_REALTIME {
         ppm_ = parts_per_million;
     }
-    /// Everything that was configured is forgotten; it sends its boot-up message at that time.
+    /// Forgets its whole configuration; sends its boot-up message at that time.
     void power_on(Time boots_at) noexcept TAPPET_REALTIME {
         reset(0x1000, 0xFFFF);
         begin(boots_at);
     }
-    /// Fault: it falls silent.
+    /// Fault: the node becomes silent.
     void power_off() noexcept TAPPET_REALTIME {
         stop_work(NmtState::boot_up);
         boots_at_ = never;
@@ -60,25 +60,25 @@ public:
         return state_ == NmtState::operational;
     }
 
-    /// When tick() has something to do.
+    /// Returns when tick() is due.
     [[nodiscard]] Time next() const noexcept TAPPET_REALTIME {
         Time next = std::min({boots_at_, beat_at_, master_lost_at_});
         for (const Pdo& pdo : sent_) next = std::min({next, pdo.timer_at, pdo.due});
         return next;
     }
-    /// Boots, beats. True when process data is due: set the objects, then send_due().
+    /// Boots and sends heartbeats. Returns true when process data are due: set the objects, then send_due().
     bool tick(Time now, FrameSink& out) noexcept TAPPET_REALTIME;
     void send_due(FrameSink& out) noexcept TAPPET_REALTIME;
-    /// Something of that TPDO changed: it goes out if it does so at events. Numbers are from 0.
+    /// Reports a change in that TPDO (numbers from 0): it is sent if its type sends at events.
     void send_pdo(std::size_t number, Time due, FrameSink& out) noexcept TAPPET_REALTIME;
 
-    /// That TPDO as it would go out now; without data while the node does not work.
+    /// Returns that TPDO as it would be sent now; without data while the node is not operational.
     [[nodiscard]] can::Frame pdo(std::size_t number) noexcept TAPPET_REALTIME {
         return number < sent_.size() ? pack(sent_[number]) : can::Frame{};
     }
 
     Heard receive(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
-    /// Code 0: no error is left.
+    /// Sends an emergency message. Code 0: no error is left.
     void send_emergency(std::uint16_t code, std::uint8_t error_register, Time due, FrameSink& out) noexcept
         TAPPET_REALTIME;
 
@@ -87,14 +87,14 @@ private:
         bool valid = false;
         std::uint32_t identifier = 0;
         std::uint8_t type = 255;
-        std::uint8_t syncs = 0; ///< since it was sent last
+        std::uint8_t syncs = 0; ///< since it was last sent
         bool changed = false;   ///< for the next SYNC
-        std::uint64_t held = 0; ///< taken, and of no effect before it
+        std::uint64_t held = 0; ///< received, without effect before the next SYNC
         Time timer_at = never;
         Duration timer{};
         Time due = never;
         unsigned bits = 0;
-        Bounded<std::uint16_t, 8> objects{}; ///< places in the dictionary
+        Bounded<std::uint16_t, 8> objects{}; ///< indices in the dictionary
         bool operator==(const Pdo&) const = default;
     };
     using Pdos = std::array<Pdo, predefined_pdos>;
@@ -107,7 +107,7 @@ private:
     void start_work(Time now) noexcept TAPPET_REALTIME;
     Heard manage(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME;
     void serve(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
-    /// True when commands that waited for it came into effect.
+    /// Returns true when commands that waited for SYNC took effect.
     bool synchronise(Time now) noexcept TAPPET_REALTIME;
     void unpack(const Pdo& pdo, std::uint64_t whole) noexcept TAPPET_REALTIME;
     bool take_pdo(const can::Frame& frame, Time now, FrameSink& out) noexcept TAPPET_REALTIME;
@@ -123,7 +123,7 @@ private:
     bool is_mute_ = false;
     std::int64_t ppm_ = 0;
     NmtState state_ = NmtState::boot_up;
-    Time now_{}; ///< of the request that is served
+    Time now_{}; ///< of the request being served
     Time boots_at_ = never;
     Time beat_at_ = never;
     Time master_lost_at_ = never;
@@ -131,7 +131,7 @@ private:
     Pdos sent_{}, taken_{};
 };
 
-/// With its own values.
+/// A simulated node with its own values.
 template <const Dictionary& device> class SimulatedDevice : public SimulatedNode {
 public:
     explicit SimulatedDevice(std::uint8_t node) noexcept TAPPET_REALTIME

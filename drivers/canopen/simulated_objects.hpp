@@ -1,5 +1,5 @@
-// The object dictionary of a simulated device, alive: values that are read and written over SDO as the
-// device's file allows, with refusals on demand.
+// The object dictionary of a simulated device at run time: values are read and written over SDO as the
+// device's file allows, with injected refusals.
 #pragma once
 
 #include "drivers/canopen/protocol.hpp"
@@ -8,8 +8,8 @@
 
 namespace tappet::canopen {
 
-/// `values` has one place for each object of the dictionary, and is first used by reset(); both outlive this.
-/// Real-time.
+/// `values` has one entry for each object of the dictionary, and is first used by reset(); dictionary and
+/// values must outlive this. Real-time.
 class SimulatedObjects : public ObjectAccess {
 public:
     SimulatedObjects(std::uint8_t node, const Dictionary& dictionary,
@@ -18,7 +18,7 @@ public:
                                                                                  values_{values} {}
 
     [[nodiscard]] const Dictionary& dictionary() const noexcept TAPPET_REALTIME { return *dictionary_; }
-    /// As the file has them, from one index to another.
+    /// Sets the objects from one index to another to the values of the file.
     void reset(std::uint16_t first, std::uint16_t last) noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < values_.size(); ++i) {
             const Object& object = dictionary_->objects[i];
@@ -29,21 +29,21 @@ public:
             if (is_replaced_) set(at, identity_part(at));
         texts_.clear();
     }
-    /// Fault: it is another device than its file says.
+    /// Fault: it identifies as another device than in its file.
     void replace(const Identity& by) noexcept TAPPET_REALTIME {
         is_replaced_ = true;
         identity_ = by;
         reset(0x1000, 0x1018);
     }
-    /// Fault: what is written or read there is answered so; none ends it.
+    /// Fault: reads and writes of that object are answered with this code; `none` ends it.
     void refuse(Address at, SdoAbort why) noexcept TAPPET_REALTIME { refused_ = {at, why}; }
-    /// Fault: what is written there is confirmed and not kept; an object that is not there ends it.
+    /// Fault: writes to that object are confirmed but lost; an address without an object ends it.
     void lose_writes(Address at) noexcept TAPPET_REALTIME { lost_ = at; }
 
     [[nodiscard]] bool has(Address at) const noexcept TAPPET_REALTIME {
         return dictionary_->find(at) != nullptr;
     }
-    /// 0 where there is none.
+    /// Returns the value; 0 where there is no object.
     [[nodiscard]] std::uint64_t get(Address at) const noexcept TAPPET_REALTIME {
         const Object* const object = dictionary_->find(at);
         return object == nullptr ? 0 : values_[index_of(*object)];
@@ -57,7 +57,7 @@ public:
             return static_cast<std::int64_t>(value);
         return static_cast<std::int64_t>(value | ~low_bits(~std::uint64_t{0}, wide));
     }
-    /// By the device itself, whatever the access; bits beyond the object's are cut.
+    /// Sets a value from the device's side, regardless of access; bits beyond the object's are cut.
     void set(Address at, std::uint64_t value) noexcept TAPPET_REALTIME {
         if (const Object* const object = dictionary_->find(at))
             values_[index_of(*object)] = low_bits(value, bits_of(object->type));
@@ -101,7 +101,7 @@ public:
     }
 
 protected:
-    /// What a device of this sort says to a value that the file allows.
+    /// Lets a device of this kind refuse a value that the file allows.
     virtual SdoAbort may_write(const Object&, std::uint64_t) noexcept TAPPET_REALTIME {
         return SdoAbort::none;
     }

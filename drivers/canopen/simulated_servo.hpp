@@ -1,5 +1,5 @@
-// A positioning drive at the other end of the wires: the automaton of CiA 402, its modes of operation and
-// their handshakes, a motor with an inertia, and every fault on demand.
+// A positioning drive at the other end of the wires: the CiA 402 automaton, its modes of operation with their
+// handshakes, a motor with inertia, and injection of every fault.
 #pragma once
 
 #include "drivers/canopen/drive_motion.hpp"
@@ -9,42 +9,42 @@
 
 namespace tappet::canopen {
 
-/// Real-time. Units are those of the signals; times are seconds.
+/// Real-time. Units are those of the signals; times are in seconds.
 class SimulatedServo {
 public:
     struct Limits {
         double velocity = 100, acceleration = 1000, quick = 5000, torque_to_acceleration = 1;
     };
-    /// What goes wrong, until it is set back.
+    /// Injected faults, until they are cleared.
     struct Faults {
         bool ignores_set_points = false;    ///< no acknowledgement in pp
-        bool keeps_acknowledgement = false; ///< in pp, although the bit fell
+        bool keeps_acknowledgement = false; ///< in pp, although the set-point bit fell
         bool fails_homing = false;
-        bool ignores_homing = false; ///< begins none
-        bool refuses_mode = false;   ///< 6061h stays as it was
+        bool ignores_homing = false; ///< starts no homing
+        bool refuses_mode = false;   ///< 6061h does not change
         bool is_blocked = false;     ///< the motor does not turn
         bool is_at_limit = false;
         bool is_remote = true;
         bool knows_no_halt_in_cyclic = false; ///< CiA 402 leaves the bit open in csp, csv and cst
-        bool remembers_home = false; ///< hm: shows the bits of the homing before until it starts anew
-        int mode_steps = 0;          ///< steps until it takes a new mode
+        bool remembers_home = false; ///< hm: shows the bits of the previous homing until a new one starts
+        int mode_steps = 0;          ///< steps until it accepts a new mode
     };
 
     SimulatedServo() noexcept TAPPET_REALTIME : SimulatedServo{Limits{}} {}
     explicit SimulatedServo(const Limits& limits) noexcept TAPPET_REALTIME : limits_{limits} {}
 
     Faults faults{};
-    /// False: it is faulty already.
+    /// Causes a fault. Returns false when there is one already.
     bool trip() noexcept TAPPET_REALTIME { return drive_.trip(); }
-    /// The relay of its power opens; or a quick stop of its own.
+    /// Opens the relay of its power; or starts a quick stop of its own.
     void lose_power() noexcept TAPPET_REALTIME { drive_.control(controlword::disable_voltage); }
     void stop_quickly() noexcept TAPPET_REALTIME { drive_.control(controlword::quick_stop); }
-    /// By hand, or by what hangs on it.
+    /// Turns the shaft from outside, by hand or by its load.
     void turn_shaft(double by) noexcept TAPPET_REALTIME { position_ += by; }
-    /// Where its home switch is.
+    /// Sets the position of its home switch.
     void set_home(double position) noexcept TAPPET_REALTIME { home_ = position; }
 
-    /// Somebody turns the motor; false: it has power.
+    /// Turns the motor by hand; returns false when it has power.
     bool turn(double by) noexcept TAPPET_REALTIME {
         if (drive_.power() != SimulatedDrive::Power::off) return false;
         position_ += by;
@@ -57,9 +57,9 @@ public:
         return static_cast<std::int64_t>(mode_);
     }
     [[nodiscard]] DriveState state() const noexcept TAPPET_REALTIME { return drive_.state(); }
-    /// Set points that it took in pp.
+    /// Returns the number of set points taken in pp.
     [[nodiscard]] int set_points() const noexcept TAPPET_REALTIME { return set_points_; }
-    /// Homings that it has made.
+    /// Returns the number of completed homings.
     [[nodiscard]] int homings() const noexcept TAPPET_REALTIME { return homings_; }
 
     [[nodiscard]] std::uint16_t statusword() const noexcept TAPPET_REALTIME {
@@ -72,7 +72,7 @@ public:
         return static_cast<std::uint16_t>(word);
     }
 
-    /// Orders arrive.
+    /// Takes the orders of a frame.
     void take(const DriveOrder& order) noexcept TAPPET_REALTIME {
         drive_.control(order.controlword);
         const bool rises = (order.controlword & ~word_ & 0x10u) != 0;
@@ -102,7 +102,7 @@ public:
         if (mode_steps_ > 0 && --mode_steps_ == 0) take_mode();
         drive_.settle(velocity_ == 0);
         switch (drive_.power()) {
-        case SimulatedDrive::Power::off: velocity_ = 0; break; // its brake falls
+        case SimulatedDrive::Power::off: velocity_ = 0; break; // its brake closes
         case SimulatedDrive::Power::stop: approach(0, limits_.quick, dt); break;
         case SimulatedDrive::Power::follow: follow(dt); break;
         }
@@ -125,17 +125,17 @@ private:
         const double most = acceleration * dt;
         velocity_ += std::clamp(wanted - velocity_, -most, most);
     }
-    /// To a place, so that it comes to stand there. True: it stands there.
+    /// Moves to a position and stops there. Returns true when it stands there.
     bool go(double place, double at_most, double dt) noexcept TAPPET_REALTIME {
         const double left = place - position();
         const double size = left < 0 ? -left : left;
         if (size <= limits_.acceleration * dt * dt &&
             (velocity_ < 0 ? -velocity_ : velocity_) <= limits_.acceleration * dt) {
-            velocity_ = left / dt; // the last bit of the way
+            velocity_ = left / dt; // the last part of the way
             if (size == 0) return true;
             return false;
         }
-        // The fastest from which it can still stop: v^2 = 2 a s, by steps of Newton's method.
+        // The highest velocity from which it can still stop: v^2 = 2 a s, by Newton's method.
         double v = at_most;
         for (int i = 0; i < 20; ++i) v = 0.5 * (v + 2 * 0.9 * limits_.acceleration * size / v);
         v = std::min(v, at_most);

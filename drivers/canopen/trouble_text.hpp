@@ -1,5 +1,5 @@
-// Why a node keeps its machine from working, as people read it: node, object, what was expected and found,
-// and the cure.
+// Messages about a node that keeps its machine from working: node, object, expected and found value, and the
+// cure.
 #pragma once
 
 #include "drivers/canopen/node_watch.hpp"
@@ -20,7 +20,7 @@ inline void add_object(Sentence& to, Address at) noexcept TAPPET_REALTIME {
 
 } // namespace detail
 
-/// `step` is the one that the trouble names. Real-time.
+/// Returns the message; `step` is the one that the trouble names. Real-time.
 inline Sentence to_text(const WatchedNode& node, const NodeTrouble& trouble,
                         const ConfigurationStep& step) noexcept TAPPET_REALTIME {
     Sentence text;

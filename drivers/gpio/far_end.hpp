@@ -16,8 +16,7 @@ public:
     Wires& operator=(const Wires&) = delete;
     virtual ~Wires() = default;
 
-    /// Changes an input of the machine at `at`. Returns false when it is no input or the wire refuses the
-    /// change.
+    /// Changes an input of the machine at `at`. Returns false when it is no input or the wire refuses.
     virtual bool drive(std::size_t line, bool active, Time at) noexcept = 0;
     /// Returns the outputs as the machine drives them, one bit per line.
     [[nodiscard]] virtual Mask outputs() const noexcept = 0;
@@ -27,7 +26,7 @@ public:
 
 /// Access by the names of the map, which the compiler checks:
 ///     io.get("valve")                     as the machine drives it
-///     io.set("bottle_present", true)      in this step, or at a given time not before it
+///     io.set("bottle_present", true)      in this move(), or at a given time not before it
 template <const auto& map>
 class FarEnd final : public tappet::FarEnd {
     TAPPET_ACCEPTED(map.fault);
@@ -54,7 +53,7 @@ public:
     FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "gpio"} {}
 
     [[nodiscard]] bool get(Output line) const noexcept { return (outputs_ >> line.index & 1u) != 0; }
-    /// Returns true when the machine changed it since the plant's last step.
+    /// Returns true when the machine changed it since the plant's last move().
     [[nodiscard]] bool changed(Output line) const noexcept {
         return ((outputs_ ^ before_) >> line.index & 1u) != 0;
     }

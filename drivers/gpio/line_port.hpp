@@ -44,7 +44,7 @@ template <const auto& map> struct LineNames {
 /// value requested of an output is written as soon as the chip accepts it; a faulted port polls for that and
 /// rests in between.
 ///
-/// At the start and after stop() every output has its safe value.
+/// At the start and after stop() every output has its safe value; after stop() it keeps it.
 template <const auto& map> struct LinePort {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.rows.size();

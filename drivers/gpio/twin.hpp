@@ -102,7 +102,7 @@ private:
     std::atomic<Mask> driven_{0};
     std::atomic<std::uint32_t> refusals_{0};
     std::atomic<bool> removed_{false};
-    // Of the plant's thread.
+    // Used by the plant's thread only.
     Random random_;
     std::array<LineFaults, most_lines> faults_{};
     std::array<Time, most_lines> raw_since_{}; // when the undebounced level last changed

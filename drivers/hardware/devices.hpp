@@ -1,4 +1,4 @@
-// The devices of one machine, whatever world they are of: opened together, given to its drivers, counted.
+// The devices of one machine in any world: opened together, provided to its drivers, counted.
 #pragma once
 
 #include "kernel/component/real_device.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet {
 
-/// Not real-time but for the devices themselves.
+/// Not real-time, except the devices themselves.
 class Devices {
 public:
     Devices() = default;
@@ -18,36 +18,36 @@ public:
     Devices& operator=(const Devices&) = delete;
     virtual ~Devices() = default;
 
-    /// Opens all that the machine's drivers name. An error names the device, where it stands, and the cure.
+    /// Opens all devices that the machine's drivers name. An error names the device, its place and the cure.
     virtual std::expected<void, Sentence> open(const AcceptedMachine& machine) = 0;
-    /// For MachineInstance::configure.
+    /// Returns the devices for MachineInstance::configure.
     [[nodiscard]] virtual std::span<const ProvidedDevice> provided() const noexcept = 0;
-    /// What open() found and who answers, for the report of arming. It may take each server's time-out.
+    /// Adds the results of open() and of a test request to the arming report. May take a time-out per server.
     virtual void report(os::ArmingReport& report) = 0;
     [[nodiscard]] virtual WireCounters counters() const noexcept = 0;
 };
 
-/// Devices whose wires lead to a machine of steel: what makes them safe when the machine's process is no
-/// more. All of it is the guardian's, whose process is a copy of the machine's from before it armed. Not
-/// real-time.
+/// Devices with real wires, made safe by the guardian when the machine's process has ended. All calls belong
+/// to the guardian, whose process is a copy of the machine's from before it armed. Not real-time.
 class GuardedDevices : public Devices {
 public:
-    /// Descriptors that the guardian needs of those that were opened.
+    /// Returns the descriptors of opened devices that the guardian needs.
     [[nodiscard]] virtual Bounded<int, 16> kept_by_guardian() const noexcept = 0;
-    /// Opens what the guardian needs for itself, and rehearses: nothing has moved, and every line has its
-    /// safe value. No frame and no request leaves. The error names the device and the cure.
+    /// Opens the guardian's own connections, and rehearses: nothing moves, and every line already has its
+    /// safe value. Sends no frame and no request. The error names the device and the cure.
     virtual std::expected<void, Sentence> prepare_safe_ending() = 0;
-    /// Writes the safe values of all output lines. Chips that did not take them.
+    /// Writes the safe values of all output lines. Returns the number of chips that refused.
     virtual std::size_t write_safe_lines() noexcept = 0;
-    /// Sends the safe frames of all buses until each is confirmed, for so long at most. Frames that are not.
+    /// Sends the safe frames of all buses until each is confirmed, for at most `within`. Returns the number
+    /// of unconfirmed frames.
     virtual std::size_t send_safe_frames(Duration within) noexcept = 0;
-    /// Each server gets its safe values over a connection of its own, all at the same time, for so long at
-    /// most. Servers that did not confirm them.
+    /// Writes each server's safe values over a connection of its own, to all at the same time, for at most
+    /// `within`. Returns the number of servers that did not confirm.
     virtual std::size_t write_safe_registers(Duration within, const Meanwhile& meanwhile) noexcept = 0;
 };
 
-/// Whether a row's driver has a map of what stands on its device, by which that can be opened. A component
-/// that shares the device of another has none, nor has a driver of the machine's own kind.
+/// Returns whether a row's driver has a map by which its device can be opened. A component that shares
+/// another's device has none, nor has a driver of the machine's own kind.
 constexpr bool drives(const ComponentRow& row, std::string_view kind) noexcept {
     return row.type->device_kind != nullptr && row.type->device_kind->name == kind &&
            row.type->device_map != nullptr;

@@ -1,5 +1,5 @@
-// Room for the real devices of one machine. Kinds of devices that its table does not name cost nothing:
-// neither memory nor their library.
+// Storage for the real devices of one machine. Device kinds that its table does not use cost neither memory
+// nor their library.
 #pragma once
 
 #include "drivers/hardware/kinds.hpp"
@@ -15,7 +15,7 @@ constexpr std::size_t count_devices(const MachineView& m, std::string_view kind)
     return count;
 }
 
-/// Of the machine's own kinds, those that no driver here knows, it opens none.
+/// Does not open devices of the machine's own kinds, which the drivers here do not know.
 template <const auto& table>
 class Hardware final : public OpenedDevices {
 public:

@@ -1,5 +1,5 @@
-// The kinds of real devices: an include and a name each are all that speaks of a driver outside of its folder
-// and its tests.
+// The list of kinds of real devices: outside of its folder and its tests, a driver appears only here, by an
+// include and a name.
 #pragma once
 
 #include "drivers/can/real_bus.hpp"

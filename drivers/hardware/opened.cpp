@@ -1,4 +1,4 @@
-// The same for each device, whatever kind it is of.
+// Opens and makes safe devices of all kinds in the same way.
 #include "drivers/hardware/opened.hpp"
 
 #include "kernel/machine/check/traffic.hpp"
@@ -11,7 +11,7 @@ namespace tappet {
 
 namespace {
 
-constexpr Duration look_every = 5ms; // for confirmations
+constexpr Duration look_every = 5ms; // period of polling for confirmations
 
 } // namespace
 
@@ -28,8 +28,8 @@ std::size_t send_safe_frames(std::span<OpenedDevice> devices, Duration within) n
     }
 }
 
-// A thread for each, because a request waits for its answer: a dead device would take the time of all behind
-// it.
+// One thread per device, because a request blocks until its answer: a dead device would otherwise delay all
+// devices after it.
 std::size_t make_safe_requests(std::span<OpenedDevice> devices, Duration within,
                                const Meanwhile& meanwhile) noexcept {
     const Time end = os::Clock::monotonic() + within;
@@ -48,7 +48,7 @@ std::size_t make_safe_requests(std::span<OpenedDevice> devices, Duration within,
                      .context = &each};
         static_cast<void>(each.thread.start(each.plan).has_value());
     }
-    // The box refuses threads: these share the time that there is, until it is over.
+    // When the box refuses threads, these devices share the remaining time.
     while (os::Clock::monotonic() < end && std::ranges::any_of(devices, waits)) {
         std::int64_t left = std::ranges::count_if(devices, waits);
         for (OpenedDevice& each : devices) {
@@ -117,7 +117,7 @@ Bounded<int, 16> OpenedDevices::kept_by_guardian() const noexcept {
     Bounded<int, 16> kept;
     for (const OpenedDevice& each : opened())
         if (const int descriptor = each.device->kept_by_guardian(); descriptor >= 0)
-            static_cast<void>(kept.push(descriptor)); // as many as a binding has devices
+            static_cast<void>(kept.push(descriptor)); // has room for all devices of a binding
     return kept;
 }
 

@@ -1,4 +1,4 @@
-// The real devices of one machine: opened where its binding says, and made safe together by its guardian.
+// The real devices of one machine: opened at the binding's places, and made safe together by its guardian.
 #pragma once
 
 #include "drivers/hardware/devices.hpp"
@@ -9,26 +9,27 @@
 
 namespace tappet {
 
-/// Where the device of a driver's row stands, by a binding that was accepted.
+/// Returns the place of a driver row's device, by an accepted binding.
 [[nodiscard]] DevicePlace place_of(const ComponentRow& row, const Board& board,
                                    const Binding& binding) noexcept;
 
-/// One of them, in the order of the table.
+/// One opened device, in the order of the table.
 struct OpenedDevice {
     RealDevice* device = nullptr;
-    std::string_view name{}; ///< as the table has it
-    // Of one with safe requests: who asks it.
+    std::string_view name{}; ///< its name in the table
+    // For a device with safe requests: the thread that sends them.
     bool is_safe = false;
     Time end{};
     os::ThreadPlan plan{};
     os::Thread thread{};
 };
 
-/// Sends the frames of all devices until all are confirmed, for so long at most; how many are not.
+/// Sends the frames of all devices until all are confirmed, at most for `within`; returns how many are not.
 std::size_t send_safe_frames(std::span<OpenedDevice> devices, Duration within) noexcept;
-/// Asks all devices with safe requests at the same time, each until it is safe or so long has passed. Those
-/// that are not. A dead one takes nobody's time, but where the box refuses a thread: such devices share the
-/// time between them. `meanwhile` is called at least every 50 ms, without a thread between two requests.
+/// Sends the safe requests of all devices at the same time, each until it is safe or `within` has passed.
+/// Returns the number of devices not safe. A dead device delays no other one, unless the box refuses a
+/// thread: such devices share the time. Calls `meanwhile` at least every 50 ms; without a thread, between two
+/// requests.
 std::size_t make_safe_requests(std::span<OpenedDevice> devices, Duration within,
                                const Meanwhile& meanwhile) noexcept;
 
@@ -53,10 +54,10 @@ public:
     }
 
 protected:
-    /// Room for as many as the table names.
+    /// The rooms have an entry for each device of the table.
     OpenedDevices(std::span<OpenedDevice> room, std::span<ProvidedDevice> provided) noexcept
         : room_{room}, provided_{provided} {}
-    /// One of that kind which is not taken yet; null: the machine's own kinds, which no driver here knows.
+    /// Returns an unused device of that kind; null for the machine's own kinds, which are unknown here.
     [[nodiscard]] virtual RealDevice* take(const DeviceKind& kind) noexcept = 0;
     virtual void give_back_all() noexcept = 0;
 

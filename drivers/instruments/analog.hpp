@@ -1,4 +1,4 @@
-// Analog inputs and outputs: what a converter counts, or a transmitter sends, becomes a quantity and back.
+// Analog inputs and outputs: convert between a converter's counts or a transmitter's current and a quantity.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -21,17 +21,17 @@ struct AnalogScale {
     [[nodiscard]] constexpr double raw(double value) const noexcept TAPPET_REALTIME {
         return raw_low + (value - low) / (high - low) * (raw_high - raw_low);
     }
-    /// Of a signal with a live zero: below 3.6 mA the wire is broken, above 21 mA the sensor has failed
-    /// (NAMUR NE 43). Of others the same share of the range.
+    /// Returns whether the signal is plausible. For a live zero: below 3.6 mA the wire is broken, above 21 mA
+    /// the sensor has failed (NAMUR NE 43). For other signals the same share of the range.
     [[nodiscard]] constexpr bool is_alive(double raw) const noexcept TAPPET_REALTIME {
         const double share = (raw - raw_low) / (raw_high - raw_low);
-        return share >= -0.4 / 16.0 && share <= 17.0 / 16.0; // false of what is no number
+        return share >= -0.4 / 16.0 && share <= 17.0 / 16.0; // false when it is not a number
     }
 };
 
 namespace detail {
 
-/// Properties of both, and what is wrong with them.
+/// Checks the properties that both have; returns what is wrong with them.
 template <class Analog>
 constexpr Sentence check_scale(const Analog& self, const Proposal& proposal) noexcept TAPPET_REALTIME {
     if (proposal.of(self.raw_low) != proposal.of(self.raw_high) &&
@@ -47,7 +47,7 @@ inline constexpr std::string_view of_low = "at raw_low", of_high = "at raw_high"
 
 } // namespace detail
 
-/// Sensor of a quantity: AnalogInput<"bar">. While the signal is stale, or the wire is broken, the last value
+/// Sensor of a quantity: AnalogInput<"bar">. While the signal is stale or the wire is broken, the last value
 /// stays and `good` is false. Real-time.
 template <text unit>
 struct AnalogInput {
@@ -82,8 +82,8 @@ struct AnalogInput {
     }
 };
 
-/// Effector of a quantity, within its range. What is no number is `low`, and so is what a force hid when its
-/// writer stopped, and what it leaves when it stops itself. Real-time.
+/// Effector of a quantity, limited to its range. Sends `low` in place of a value that is not a number, or
+/// that a force hid while its writer stopped, and when it stops itself. Real-time.
 template <text unit>
 struct AnalogOutput {
     Input<double> value;

@@ -1,4 +1,4 @@
-// Encoders: counts of a register that wraps become a way, in units.
+// Encoders: convert the counts of a register that wraps to a position in units.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -11,9 +11,9 @@
 
 namespace tappet::instruments {
 
-/// Sensor of a position: Encoder<"m">, Encoder<"rad", 16>. Of an absolute encoder it has its zero; of
-/// one that counts from its power-on, that place. While the counts are stale, or mean no number, the last
-/// position stays and `good` is false; after stale ones it counts on from the register. Real-time.
+/// Sensor of a position: Encoder<"m">, Encoder<"rad", 16>. An absolute encoder provides its zero; with one
+/// that counts from power-on, zero is the position at power-on. While the counts are stale or give no number,
+/// the last position stays and `good` is false; after stale counts it continues from the register. Real-time.
 template <text unit, int bits = 32>
 struct Encoder {
     static_assert(bits >= 2 && bits <= 63);
@@ -49,7 +49,7 @@ struct Encoder {
                                                           "way round",
                                                           range(-1e12, 1e12)));
     }
-    /// With nearly no counts for a unit a position would have no end.
+    /// With almost no counts per unit a position would have no limit.
     Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
         if (std::abs(proposal.of(counts_per_unit)) >= 1e-9) return {};
         return Sentence{"less than 1e-9 counts for a unit: no encoder is so coarse; write how many there "

@@ -1,4 +1,4 @@
-// A force sensor of one axis: what it shows with nothing on it is taken off, and an overload is told.
+// A force sensor of one axis: subtracts the tare, and reports an overload.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::instruments {
 
-/// Sensor of a force, N. While what is measured is stale, or is no number, with the tare or without it, the
+/// Sensor of a force, N. While the measured value is stale or not a number, with or without the tare, the
 /// last force stays and `good` is false. Real-time.
 struct ForceSensor {
     Input<double> measured;
@@ -32,9 +32,9 @@ struct ForceSensor {
         if (too_much && !is_overloaded_) overloaded.emit(now);
         is_overloaded_ = too_much;
     }
-    /// Others are not to push on with a force that nobody measures.
+    /// Writes 0 N, so that no controller continues to act on a force that is no longer measured.
     void stop(const Cycle&) noexcept TAPPET_REALTIME { force.write(0.0); }
-    /// What lies on it now is no load.
+    /// Takes the present force as zero load.
     void tare() noexcept TAPPET_REALTIME {
         if (good.last()) tare_ = measured_;
     }

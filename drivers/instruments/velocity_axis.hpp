@@ -1,4 +1,4 @@
-// An axis with a drive that takes velocities: only what it may do goes to the wire.
+// An axis with a drive that takes velocities: limits the velocity that is sent.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -9,9 +9,9 @@
 
 namespace tappet::instruments {
 
-/// Effector of a velocity: VelocityAxis<"m/s">. Within `most` either way; what is no number is none, and
-/// neither is what a force hid when its writer stopped.
-/// Controllers read what was sent from `velocity`. Real-time.
+/// Effector of a velocity: VelocityAxis<"m/s">. Limits it to `most` in both directions. Sends 0 in place of a
+/// value that is not a number, or that a force hid while its writer stopped. Controllers read the sent value
+/// from `velocity`. Real-time.
 template <text unit>
 struct VelocityAxis {
     Input<double> wanted;

@@ -1,4 +1,4 @@
-// The server's thread: sockets, requests, and the answers that libmodbus cannot know.
+// The server's thread: sockets, requests, and the answers that libmodbus cannot give.
 #include "drivers/modbus/bench_server.hpp"
 
 #include "kernel/base/address.hpp"
@@ -16,13 +16,13 @@ namespace tappet::modbus {
 
 namespace {
 
-constexpr int poll_ms = 20; // how fast power and the end are noticed
+constexpr int poll_ms = 20; // reaction time to power and to the end
 
 unsigned word_at(const std::uint8_t* bytes, int offset) {
     return (static_cast<unsigned>(bytes[offset]) << 8) | bytes[offset + 1];
 }
 
-/// What a request writes; `count` 0: nothing. `body` begins at the function code.
+/// The values that a request writes; `count` 0: none. `body` begins at the function code.
 struct Writes {
     Table table = Table::holding_registers;
     unsigned first = 0;
@@ -134,7 +134,7 @@ void BenchServer::answer(int client) {
     const int header = modbus_get_header_length(context_.get());
     if (length <= header) return;
     const int unit = query[header - 1];
-    if (unit != unit_ && unit != MODBUS_TCP_SLAVE) return; // another unit behind the same address
+    if (unit != unit_ && unit != MODBUS_TCP_SLAVE) return; // meant for another unit behind the same address
     const auto all = whole();
     to_mapping();
     // It would answer these and change a copy only.

@@ -28,9 +28,9 @@ public:
     ProvidedDevice provided(std::string_view name) noexcept override {
         return {type_id<ServerTables>, name, static_cast<ServerTables*>(this)};
     }
-    /// Answers from now on, for the addresses that it was said to have.
+    /// Starts to answer, for the addresses stated by have().
     std::expected<void, Sentence> listen() override;
-    /// While it is off its sockets are closed: a client sees connections reset and refused.
+    /// Switches the server. While it is off its sockets are closed: connections are reset and refused.
     void set_power(bool on) override { powered_.store(on); }
 
 private:

@@ -22,11 +22,11 @@ template <const auto& map> struct RegisterNames {
         [](std::size_t v) { return FacetName{map.rows[map.row_of[v]].name, ".", map.registers[v].name}; });
 };
 
-/// For each register read an output, stamped when the answer came and written only then, so that its age
-/// tells of an outage; for each register written a required input. It blocks for the requests that are due,
-/// until one is not answered or a period has gone by: it runs in an activity of its own, one server each,
-/// that is not_real_time. When it stops, values written since go out, and behind them the safe values of its
-/// map, as its guardian would write them; it calls its server lost.
+/// Each register read has an output, stamped with the time of the answer and written only then, so its age
+/// shows an outage. Each register written has a required input. The client blocks for the requests that are
+/// due, until one gets no answer or a period has passed: it runs in an activity of its own, one server each,
+/// that is not_real_time. When it stops, it sends the values written since, then the safe values of its map,
+/// as its guardian would, and reports its server as lost.
 template <const auto& map> struct Client {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.registers.size();
@@ -51,7 +51,7 @@ template <const auto& map> struct Client {
         return {};
     }
 
-    /// Begins anew: with its own connection, and what is wanted is written again unless it grew too old.
+    /// Starts fresh: opens its own connection and writes the wanted values again unless they became too old.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("this activity is not real-time", session_.emplace(map, *transport_));
         is_set_ = {};
@@ -67,7 +67,7 @@ template <const auto& map> struct Client {
             const Value value = session_->value(v);
             if (is_written(v) || value.stamp == seen_[v] || value.quality != Quality::good) continue;
             seen_[v] = value.stamp;
-            // A server may take longer than a time stamp may lie ahead of the cycle.
+            // A slow server's stamp can be further ahead of the cycle than an output allows.
             read[v].write(value.value, std::min(value.stamp, cycle.now + ahead_at_most));
         }
         tell_counts();
@@ -147,19 +147,19 @@ private:
                 static_cast<void>(session_->set(v, map.registers[v].safe_value, cycle.now)); // it is in range
         const bool was_asked = session_->counters().requests != 0;
         const bool is_safe = session_->finish(cycle.now);
-        stopped_safely_ = is_safe || (!was_asked && stopped_safely_); // who was never asked was not driven
+        stopped_safely_ = is_safe || (!was_asked && stopped_safely_); // one never asked was not driven
     }
     void take_wanted(Time now) noexcept {
         for (std::size_t v = 0; v < count; ++v) {
             if (!is_written(v)) continue;
             double value = 0;
             const Flow flow = wanted[v].read(value);
-            // One that is forced, and what the row gives for a stale one, is true now, in each cycle.
+            // A forced value and a row's substitute for a stale one are current in each cycle.
             const bool is_given = flow == Flow::stale && wanted[v].has_substitute();
             const Time stamp = is_given ? now : wanted[v].stamp();
             const bool is_left = stamp == before_all && session_->value(v).stamp != before_all;
             const bool is_newer = stamp > session_->value(v).stamp || is_left;
-            const bool is_other = !is_set_[v] || value != taken_[v]; // it stood behind a force
+            const bool is_other = !is_set_[v] || value != taken_[v]; // it changed behind a force
             if (flow == Flow::never_written || (flow != Flow::fresh && !is_newer && !is_other)) continue;
             taken_[v] = value;
             is_set_[v] = session_->set(v, value, stamp);
@@ -167,7 +167,7 @@ private:
     }
     void exchange(const Cycle& cycle) noexcept {
         take_wanted(cycle.now);
-        // The client says when a request ended; the next one begins then.
+        // The session returns the end of a request; the next request starts then.
         Time at = cycle.now;
         for (std::size_t n = 0; n <= map.rows.size(); ++n) {
             const std::uint64_t before = tried();
@@ -185,8 +185,8 @@ private:
     Transport* transport_ = nullptr;
     std::optional<Session<map.rows.size(), map.registers.size()>> session_{};
     std::array<Time, count> seen_ = array_of<count>([](std::size_t) { return Time::min(); });
-    std::array<bool, count> is_set_{};  ///< in the client, since start
-    std::array<double, count> taken_{}; ///< so
+    std::array<bool, count> is_set_{};  ///< in the session, since start()
+    std::array<double, count> taken_{}; ///< the last values set there
     bool was_lost_ = false, was_stopped_ = false, stopped_safely_ = true;
     Trouble told_{};
 };

@@ -1,4 +1,4 @@
-// The other end of a Modbus client: the server that a machine's register map speaks of.
+// The other end of a Modbus client: the server in a machine's register map.
 #pragma once
 
 #include "drivers/modbus/register_map.hpp"
@@ -10,32 +10,30 @@
 
 namespace tappet::modbus {
 
-/// The tables of a server from inside it. A client's requests may come from another thread; none of them is
-/// real-time.
+/// The tables of a server, seen from inside. A client's requests may come from another thread. Not real-time.
 class ServerTables {
 public:
-    static constexpr std::size_t size = 1024; ///< addresses 0 to 1023 have room in each table
-    /// Whether the server takes a value that a client writes.
+    static constexpr std::size_t size = 1024; ///< each table has addresses 0..1023
+    /// Returns whether the server accepts a value that a client writes.
     using Accepts = bool (*)(Table table, std::size_t address, std::uint16_t value) noexcept;
 
     ServerTables() = default;
     ServerTables(const ServerTables&) = delete;
     ServerTables& operator=(const ServerTables&) = delete;
 
-    /// Held by who answers a request, and by a plant that sets a value of two words: neither sees half of it.
+    /// Locks the tables for a request, or for a plant's value of two words, so that nobody sees half of it.
     [[nodiscard]] std::unique_lock<std::mutex> whole() const { return std::unique_lock{requests_}; }
-    /// Addresses are below `size`.
+    /// Sets a value; addresses are below `size`.
     void set(Table table, std::size_t address, std::uint16_t value) noexcept {
         words_[static_cast<std::size_t>(table)][address].store(value, std::memory_order_relaxed);
         changes_.fetch_add(1, std::memory_order_release);
     }
-    /// Counts what was set, by whichever side.
+    /// Returns a counter that rises with each value set, by either side.
     [[nodiscard]] std::uint32_t changes() const noexcept { return changes_.load(std::memory_order_acquire); }
     [[nodiscard]] std::uint16_t get(Table table, std::size_t address) const noexcept {
         return words_[static_cast<std::size_t>(table)][address].load(std::memory_order_relaxed);
     }
-    /// Before the server is asked: it has that many addresses of a table, at least; a map says what it has of
-    /// its own.
+    /// States that a table has at least this many addresses; a map states its own. Before the first request.
     void have(Table table, std::size_t count) noexcept {
         std::size_t& of = counts_[static_cast<std::size_t>(table)];
         of = count > of ? count : of;
@@ -43,7 +41,7 @@ public:
     [[nodiscard]] std::size_t count(Table table) const noexcept {
         return counts_[static_cast<std::size_t>(table)];
     }
-    /// Before the server is asked. Another value is answered with the exception "illegal data value".
+    /// Lets the server answer other values with the exception "illegal data value". Before the first request.
     void accept_only(Accepts check) noexcept { accepts_ = check; }
     [[nodiscard]] bool accepts(Table table, std::size_t address, std::uint16_t value) const noexcept {
         return accepts_ == nullptr || accepts_(table, address, value);
@@ -57,8 +55,8 @@ private:
     mutable std::mutex requests_{};
 };
 
-/// By the names of the map, which the compiler checks:
-///     server.get("pump.on")               as the machine wrote it last
+/// Access by the names of the map, which the compiler checks:
+///     server.get("pump.on")               the last value the machine wrote
 ///     server.set("unit.oil_pressure", 2.5)
 template <const auto& map>
 class FarEnd final : public tappet::FarEnd {
@@ -109,7 +107,7 @@ public:
     void set(Read path, double value) noexcept {
         const Place place{path.index};
         const Encoded encoded = to_words(place.of, value);
-        if (encoded.refused) return; // not a number: the value before stays
+        if (encoded.refused) return; // not a number: the previous value stays
         const auto whole = tables_->whole();
         for (std::size_t i = 0; i < place.of.width(); ++i)
             tables_->set(place.table, place.address + i, encoded.words[i]);

@@ -1,4 +1,4 @@
-// A Modbus server in the rows of a binding, and what the table's check asks of them.
+// A Modbus server in the rows of a binding, and the checks of the table.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -12,7 +12,7 @@ inline constexpr Word unit_word{.name = "unit", .kind = "modbus"};
 inline constexpr Word answer_within_word{.name = "answer_within", .kind = "modbus"};
 inline constexpr Word serial_line_word{.name = "serial_line", .kind = "modbus"};
 
-/// What a binding says of a server.
+/// A binding's facts about a server.
 struct ServerFacts {
     int unit = 1; ///< 1 to 247, over TCP also 255
     Duration answer_within = 300ms;
@@ -55,9 +55,9 @@ inline constexpr DeviceKind device_kind{
 
 } // namespace modbus
 
-/// The address of a Modbus server: 1 to 247, over TCP also 255.
+/// The unit address of a Modbus server: 1..247, over TCP also 255.
 constexpr Fact unit(int number) noexcept { return {&modbus::unit_word, {}, {number}}; }
-/// How long a Modbus client waits for an answer; 300 ms unless stated.
+/// The time-out of a Modbus client for an answer; 300 ms unless stated.
 constexpr Fact answer_within(Duration time) noexcept {
     return {&modbus::answer_within_word, {}, {time.count()}};
 }

@@ -1,4 +1,4 @@
-// libmodbus's calls, its time-outs and its errors as values.
+// libmodbus's calls, with its time-outs and errors returned as values.
 #include "drivers/modbus/libmodbus_transport.hpp"
 
 #include "kernel/os/sleep.hpp"
@@ -58,7 +58,7 @@ std::expected<modbus_t*, Sentence> prepare(const Serial& serial) {
                           serial.stop_bits);
 }
 
-/// Characters of 11 bits; beyond 19200 baud 1.75 ms, whatever the rate.
+/// Returns the time of 3.5 characters of 11 bits; above 19200 baud always 1.75 ms.
 Duration silence_of(const Serial& serial) noexcept {
     return serial.baud > 19200 ? Duration{1750us} : Duration{1s} * 77 / 2 / serial.baud;
 }
@@ -68,8 +68,8 @@ bool set_answer_time(modbus_t* context, Duration time) noexcept {
                                        static_cast<std::uint32_t>(time % 1s / 1us)) == 0;
 }
 
-/// As modbus_write_bits() and modbus_write_registers(), which take it for good when another place is
-/// confirmed. On a serial line nothing else tells which question that belongs to.
+/// Replaces modbus_write_bits() and modbus_write_registers(), which accept a confirmation of another address.
+/// On a serial line only the address shows which request an answer belongs to.
 int write_on_serial(modbus_t* m, Table table, std::uint16_t address,
                     std::span<const std::uint16_t> values) noexcept {
     const std::size_t bytes = table == Table::coils ? (values.size() + 7) / 8 : 2 * values.size();
@@ -123,8 +123,8 @@ std::expected<void, Sentence> LibmodbusTransport::open(const TransportSettings& 
     const bool ok = m != nullptr && modbus_set_slave(m, settings.unit) == 0 &&
                     modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE) == 0 &&
                     set_answer_time(m, answer_within_) &&
-                    // Without one between bytes, which would begin anew with each of them, libmodbus takes
-                    // the time for the whole answer out of the one above.
+                    // A byte time-out would restart with each byte. Without one, libmodbus applies the time
+                    // above to the whole answer.
                     modbus_set_byte_timeout(m, 0, 0) == 0;
     if (ok) return {};
     close();
@@ -155,8 +155,8 @@ Answer LibmodbusTransport::connect() noexcept {
     return {.outcome = connected_ ? Outcome::ok : Outcome::refused, .took = now() - begin};
 }
 
-/// A request that got no answer ends with its connection, also with this process. Not in order: the kernel
-/// would go on sending it, and it came behind what is asked since.
+/// Makes the close of a connection discard an unanswered request, also at the end of this process. An orderly
+/// close is wrong here: the kernel would still deliver the request, after newer ones.
 bool LibmodbusTransport::forgets_what_is_lost() const noexcept {
     const linger at_once{.l_onoff = 1, .l_linger = 0};
     return is_serial_ || ::setsockopt(modbus_get_socket(context_.get()), SOL_SOCKET, SO_LINGER, &at_once,
@@ -170,7 +170,7 @@ void LibmodbusTransport::disconnect() noexcept {
 
 bool LibmodbusTransport::recover() noexcept {
     belongs_to_.used();
-    // A late answer on TCP would be taken for the next one's; a serial line only has to be emptied.
+    // On TCP a late answer would be taken for the next request's; a serial line only needs to be emptied.
     if (is_serial_ && connected_ && modbus_flush(context_.get()) >= 0) return true;
     disconnect();
     return false;
@@ -183,7 +183,7 @@ bool LibmodbusTransport::settle() noexcept {
     if (until < quiet_until_) return false;
     if (ends_ != never)
         static_cast<void>(set_answer_time(context_.get(), std::clamp<Duration>(ends_ - now(), 1ms, limit_)));
-    static_cast<void>(modbus_flush(context_.get())); // what is left there belongs to an old question
+    static_cast<void>(modbus_flush(context_.get())); // drops bytes of an earlier request
     return true;
 }
 

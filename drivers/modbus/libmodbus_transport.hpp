@@ -1,4 +1,4 @@
-// Modbus TCP and RTU by libmodbus, with its own recovery off: what goes wrong is for the client to decide.
+// Modbus TCP and RTU by libmodbus, with its own error recovery off, because the client decides about errors.
 #pragma once
 
 #include "drivers/modbus/transport.hpp"
@@ -16,7 +16,7 @@ namespace tappet::modbus {
 
 struct Tcp {
     std::string_view
-        address{}; ///< numeric IPv4: a name would be looked up, for as long as that takes, at each connect
+        address{}; ///< numeric IPv4: a name would need a look-up, of unknown duration, at each connect
     std::uint16_t port = 502;
 };
 struct Serial {
@@ -29,24 +29,24 @@ struct Serial {
 struct TransportSettings {
     std::variant<Tcp, Serial> line{};
     int unit = 1; ///< the server's address: 1 to 247; TCP also 255
-    /// To connect, and from a request to the end of its answer, however its bytes come. A serial line needs
-    /// the time of the longest answer too: 255 bytes take 150 ms at 19200 baud.
+    /// Time-out to connect, and from a request to the end of its answer, even if its bytes come slowly. On a
+    /// serial line it must include the time of the longest answer: 255 bytes take 150 ms at 19200 baud.
     Duration answer_within = 300ms;
 };
 
-/// On a serial line nothing in an answer tells which question it belongs to. So each request waits for the
-/// silence of 3.5 characters (Modbus over serial line V1.02, 2.5.1.1), and after an answer that did not come,
-/// or was garbled, for once more the time that it had; what arrives meanwhile is thrown away. A server that
-/// answers later still, twice as late as `answer_within`, is not told apart.
+/// On a serial line an answer does not identify its request. So each request waits for the silence of 3.5
+/// characters (Modbus over serial line V1.02, 2.5.1.1). After a missing or garbled answer the next request
+/// waits for another `answer_within`; bytes that arrive in that time are discarded. An even later answer,
+/// after more than twice `answer_within`, cannot be recognised.
 class LibmodbusTransport final : public Transport {
 public:
     LibmodbusTransport() = default;
     ~LibmodbusTransport() override { close(); }
 
-    /// Checks and prepares; does not connect. The error says what is wrong and how to cure it.
+    /// Checks and prepares; does not connect. The error states cause and cure.
     std::expected<void, Sentence> open(const TransportSettings& settings);
     void close() noexcept;
-    /// The next call holds its caller no longer, nor longer than the settings say.
+    /// Limits the next call to this time, and to the time-out of the settings.
     void wait_at_most(Duration limit) noexcept;
     [[nodiscard]] bool is_serial() const noexcept { return is_serial_; }
 
@@ -58,7 +58,7 @@ public:
 
 private:
     [[nodiscard]] bool forgets_what_is_lost() const noexcept;
-    /// Before each request. False: the time is over before the line may be asked.
+    /// Waits until the line is free, before each request. Returns false when the call's time is over first.
     [[nodiscard]] bool settle() noexcept;
     Answer end(int result, int expected, int error, Time began) noexcept;
     struct Free {
@@ -66,10 +66,10 @@ private:
     };
     std::unique_ptr<_modbus, Free> context_{};
     Duration answer_within_{};
-    Duration limit_{};   ///< of a call, at most answer_within_
-    Duration silence_{}; ///< of 3.5 characters; none: no serial line
+    Duration limit_{};   ///< of one call, at most answer_within_
+    Duration silence_{}; ///< of 3.5 characters; 0: not a serial line
     Time quiet_until_{};
-    Time ends_ = never; ///< the next call, when wait_at_most said so
+    Time ends_ = never; ///< end of the next call, as set by wait_at_most
     bool is_serial_ = false;
     bool connected_ = false;
 };

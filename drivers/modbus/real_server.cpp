@@ -1,4 +1,4 @@
-// How a server is reached by what its binding says, and how its registers are made safe.
+// Opens a server by its binding, and writes its safe registers.
 #include "drivers/modbus/real_server.hpp"
 
 #include "kernel/base/address.hpp"
@@ -22,10 +22,10 @@ void pause(Duration length, Time end, const Meanwhile& meanwhile) noexcept {
 }
 
 // A server is safe when it confirmed all requests on one connection: a server that lost its connection may
-// have restarted. The request that was lost is sent first on the next connection, and the earlier ones
-// follow. A refused request holds up no other one. Who does not answer may be about to start, may still be
-// answering the machine's last request, or hold its connection: it is asked until the time is over. The
-// first request of a connection has half of that: it may be lost.
+// have restarted. The lost request is sent first on the next connection, and the earlier ones follow. A
+// refused request does not stop the others. A server that does not answer may be starting, may still be
+// answering the machine's last request, or may hold its connection: it is retried until the time is over. The
+// first request of a connection gets half of that time, because it may be lost.
 bool make_safe(LibmodbusTransport& server, const SafeWrites& writes, Time end,
                const Meanwhile& meanwhile) noexcept {
     constexpr Duration longest_rest = 400ms;
@@ -88,7 +88,7 @@ ProvidedDevice RealServer::provided(std::string_view name) noexcept {
 }
 
 void RealServer::report(os::ArmingReport& report, std::string_view name) {
-    if (is_serial_) return; // a line opens, whoever is at its end
+    if (is_serial_) return; // a serial line opens even without a server
     const Sentence who{"Modbus server \"", name, "\" at \"", address_, "\""};
     if (server_.connect().outcome == Outcome::ok)
         report.passed("modbus-server", Sentence{who, " answers"});

@@ -1,4 +1,4 @@
-// A Modbus server, reached by Ethernet or by a serial port of the box.
+// A Modbus server, reached over Ethernet or a serial port of the box.
 #pragma once
 
 #include "drivers/modbus/libmodbus_transport.hpp"

@@ -1,5 +1,4 @@
-// What is read from and written to one Modbus server, as one constexpr table, and what the compiler finds
-// wrong with it.
+// The values read from and written to one Modbus server as one constexpr table, checked by the compiler.
 #pragma once
 
 #include "drivers/modbus/registers.hpp"
@@ -11,27 +10,27 @@
 
 namespace tappet::modbus {
 
-/// The longest run of a table that one request carries (Modbus application protocol 1.1b3, section 6).
+/// Returns the most values of a table in one request (Modbus application protocol 1.1b3, section 6).
 constexpr unsigned most_in_request(Table table, bool write) noexcept {
     if (holds_bits(table)) return write ? 1968 : 2000;
     return write ? 123 : 125;
 }
-inline constexpr unsigned most_words = 125; ///< what the client's buffers hold; rows of bits are as short
+inline constexpr unsigned most_words = 125; ///< size of the client's buffers; bits have the same limit
 
 struct Run {
     Table table = Table::holding_registers;
     std::uint32_t address = 0; ///< counted from 0, as on the wire
     std::uint32_t count = 0;
 };
-/// Bits that are read and written, from an address that counts from 0.
+/// Bits that are read and written, from this address (counted from 0).
 constexpr Run coils(std::uint32_t address, std::uint32_t count) noexcept {
     return {Table::coils, address, count};
 }
-/// Bits that are read.
+/// Bits that are only read.
 constexpr Run discrete_inputs(std::uint32_t address, std::uint32_t count) noexcept {
     return {Table::discrete_inputs, address, count};
 }
-/// Words that are read.
+/// Words that are only read.
 constexpr Run input_registers(std::uint32_t address, std::uint32_t count) noexcept {
     return {Table::input_registers, address, count};
 }
@@ -40,14 +39,14 @@ constexpr Run holding_registers(std::uint32_t address, std::uint32_t count) noex
     return {Table::holding_registers, address, count};
 }
 
-/// One request, sent periodically. A written row also goes out at once when one of its values changed.
+/// One request, sent periodically. A written row is also sent at once when one of its values changed.
 struct Row {
     std::string_view name{};
     Run run{};
     bool write = false;
     Duration every{};
-    Duration stale_after{}; ///< write: of older values what is safe is sent, if anything; 0: none is older
-    std::size_t first = 0;  ///< its registers in the map's array
+    Duration stale_after{}; ///< write: older values are replaced by their safe values, if any; 0: no limit
+    std::size_t first = 0;  ///< index of its first register in the map's array
     std::size_t registers = 0;
     bool silence_is_safe = false; ///< write: no safe values are sent
 };
@@ -56,7 +55,7 @@ template <std::size_t N> struct RowWithRegisters {
     Row row{};
     std::array<Register, N> registers{};
 
-    /// Instead of safe values: the server is safe without this row, by a time-out of its own.
+    /// Sends no safe values: the server's own time-out makes it safe when this row stays away.
     constexpr RowWithRegisters safe_by_silence() const noexcept {
         return {copy_with(row, &Row::silence_is_safe, true), registers};
     }
@@ -70,12 +69,12 @@ constexpr Every every(Duration period) noexcept { return {period}; }
 struct StaleAfter {
     Duration age{};
 };
-/// A value that is older is sent no more. One that the server never got is replaced by its safe value, or, in
-/// a row that is safe by silence, by nothing.
+/// Values older than this are not sent any more. A value that the server never got is replaced by its safe
+/// value; in a row that is safe by silence, nothing is sent.
 constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 
 /// read("climate", input_registers(0, 4), every(250ms), word("temperature", 0).as_signed().times(0.1), ...)
-/// How old a value may grow is said by the connection's row that reads it.
+/// The connection's row that reads a value states its maximum age.
 template <class... Registers>
 constexpr auto read(std::string_view name, Run run, Every period, const Registers&... registers) noexcept {
     return RowWithRegisters<sizeof...(Registers)>{
@@ -92,7 +91,7 @@ constexpr auto write(std::string_view name, Run run, Every period, StaleAfter ag
 
 inline constexpr std::size_t no_such = ~std::size_t{0};
 
-/// One request that makes what it writes safe: `count` words, from `first` on in the map's.
+/// One request that writes safe values: `count` words, from index `first` of the map's words.
 struct SafeWrite {
     Run run{};
     std::size_t first = 0;
@@ -100,7 +99,7 @@ struct SafeWrite {
 struct SafeWrites {
     std::span<const SafeWrite> requests{};
     std::span<const std::uint16_t> words{};
-    std::span<const Row> rows{}; ///< of the map, for tools
+    std::span<const Row> rows{}; ///< of the map; read by tools
     std::span<const Register> registers{};
 };
 
@@ -111,7 +110,7 @@ template <std::size_t R, std::size_t V> struct RegisterMap {
     std::array<SafeWrite, R> safe{};
     std::array<std::uint16_t, 2 * V> safe_words{};
     std::size_t safe_count = 0;
-    Sentence fault{}; ///< empty when the table is right
+    Sentence fault{}; ///< empty when the map is correct
 
     /// The client sends these when it stops; the guardian sends them when the machine's process has ended.
     [[nodiscard]] constexpr SafeWrites safe_writes() const noexcept {
@@ -123,7 +122,7 @@ template <std::size_t R, std::size_t V> struct RegisterMap {
             if (rows[r].name == name) return r;
         return no_such;
     }
-    /// By "row.register".
+    /// Finds a register by "row.register".
     [[nodiscard]] constexpr std::size_t value(std::string_view path) const noexcept {
         for (std::size_t v = 0; v < V; ++v) {
             const std::string_view owner = rows[row_of[v]].name;

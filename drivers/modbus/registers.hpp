@@ -1,4 +1,4 @@
-// One value in a Modbus server's tables: which words or bit it takes, and what they mean.
+// One value in a Modbus server's tables: its words or bit, and their meaning.
 #pragma once
 
 #include "kernel/base/copy_with.hpp"
@@ -33,9 +33,9 @@ enum class Kind : std::uint8_t {
     float_double
 };
 
-/// physical = raw * factor + offset. Double words come with the higher word first, words with the higher byte
-/// first (Modbus application protocol 1.1b3, section 4.2), unless said otherwise, which devices often do: of
-/// the four bytes ABCD swapped() takes CDAB, bytes_swapped() BADC, both DCBA.
+/// physical = raw * factor + offset. By default a double word has its high word first, and a word its high
+/// byte first (Modbus application protocol 1.1b3, section 4.2). Many devices differ: for the bytes ABCD,
+/// swapped() reads CDAB, bytes_swapped() BADC, and both DCBA.
 struct Register {
     std::string_view name{};
     std::uint16_t at = 0; ///< counted from the row's address
@@ -45,8 +45,7 @@ struct Register {
     double factor = 1;
     double offset = 0;
     std::string_view unit{};
-    double safe_value =
-        0; ///< of what is written: sent when the client stops or the machine's process is no more
+    double safe_value = 0; ///< written values: sent when the client stops or the machine's process has ended
     bool says_safe = false;
 
     [[nodiscard]] constexpr unsigned width() const noexcept { return kind >= Kind::unsigned_double ? 2 : 1; }
@@ -93,7 +92,7 @@ constexpr Register float_word(std::string_view name, std::uint16_t at) noexcept 
     return of_kind(Kind::float_double, name, at);
 }
 
-/// The words as they stand in the server; a bit is one word of 0 or 1.
+/// The words as the server stores them; a bit is one word of 0 or 1.
 using Words = std::array<std::uint16_t, 2>;
 
 constexpr std::uint16_t in_order(const Register& r, std::uint16_t word) noexcept {
@@ -119,13 +118,13 @@ constexpr double to_physical(const Register& r, Words words) noexcept {
 
 struct Encoded {
     Words words{};
-    bool saturated = false; ///< out of range: the nearest end was taken
+    bool saturated = false; ///< out of range: became the nearest limit
     bool refused = false;   ///< not a number
 };
 
 constexpr Encoded to_words(const Register& r, double physical) noexcept {
     if (!is_number(physical)) return {.refused = true};
-    const double number = (physical - r.offset) / r.factor; // infinite, of a large one: its nearest end
+    const double number = (physical - r.offset) / r.factor; // infinite for a large one: the nearest limit
     double low = 0, high = 1;
     switch (r.kind) {
     case Kind::bit: break;

@@ -16,7 +16,7 @@ enum class Quality : std::uint8_t {
     never, ///< nothing was read yet
     good,
     exception, ///< the server refuses this row; the value is the last good one
-    no_number, ///< the server's answer is none; the value is the last good one
+    no_number, ///< the answer is not a number; the value is the last good one
 };
 
 struct Value {
@@ -35,14 +35,14 @@ struct Counters {
     std::uint64_t connects = 0;
     std::uint64_t refused = 0;
     std::uint64_t outages = 0;          ///< times the server was lost
-    std::uint64_t outages_survived = 0; ///< and answered again
-    std::uint64_t dropped_stale = 0;    ///< values to write that grew too old before they could be sent
-    std::uint64_t saturated = 0;        ///< values to write that their register does not hold
-    std::uint64_t no_numbers = 0;       ///< registers that were read
+    std::uint64_t outages_survived = 0; ///< times the server answered again after that
+    std::uint64_t dropped_stale = 0;    ///< values to write that became too old before they could be sent
+    std::uint64_t saturated = 0;        ///< values to write that are out of their register's range
+    std::uint64_t no_numbers = 0;       ///< registers read whose value is not a number
     bool operator==(const Counters&) const = default;
 };
 
-/// A request that did not work, and how. `outcome` is ok when there is none.
+/// A failed request and its failure. `outcome` is ok when there is none.
 struct Trouble {
     std::size_t row = 0;
     Outcome outcome = Outcome::ok;
@@ -52,12 +52,13 @@ struct Trouble {
 
 struct Backoff {
     Duration first = 100ms;
-    /// Each failure doubles the wait, up to this. Its users wait as much longer for a server that is back.
+    /// Each failure doubles the wait, up to this limit. It also limits the delay until a returned server is
+    /// noticed.
     Duration most = 2s;
 };
 
-/// Belongs to one activity of its own, not a real-time one: a step holds its caller for one request at most.
-/// `map` and `transport` outlive the client.
+/// Belongs to one activity of its own, not real-time: a step blocks for at most one request. `map` and
+/// `transport` must outlive the client.
 template <std::size_t R, std::size_t V> class Session {
 public:
     Session(const RegisterMap<R, V>& map, Transport& transport, Backoff backoff = {}) noexcept
@@ -66,7 +67,7 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// Does what is due, one request at most, and says when to call again.
+    /// Processes what is due, at most one request, and returns when to call again.
     Time step(Time now) noexcept {
         if (now < busy_until_) return busy_until_;
         if (!connected_) return connect(now);
@@ -74,25 +75,26 @@ public:
         if (due(r) > now) return due(r);
         const Duration every = map_->rows[r].every;
         if (due_at_[r] <= now)
-            due_at_[r] = std::max(due_at_[r] + every, now + 1ns); // keeps its grid, misses no turn twice
+            due_at_[r] = std::max(due_at_[r] + every, now + 1ns); // keeps its grid, skips missed turns
         return request(r, now);
     }
 
-    /// The last writing: each written row whose values were set, due or not, one after the other, and once
-    /// more what gets no answer or an exception. A server that was lost just now is asked again; one that is
-    /// silent for longer would only hold its caller up. False: not each safe value of the map was confirmed.
+    /// The last write: sends each written row whose values were set, due or not, one after the other, and
+    /// repeats once a request that gets no answer or an exception. A server lost just now is tried again; one
+    /// silent for longer is skipped, because it would only block the caller. Returns false when not every
+    /// safe value of the map was confirmed.
     bool finish(Time now) noexcept {
         if (outage_ && wait_ > 2 * backoff_.first) return map_->safe_count == 0;
         bool all = true;
         Time at = outage_ ? now : std::max(now, busy_until_);
-        int unanswered = outage_ ? 1 : 0; // two time-outs in all, with that of the cycle before
+        int unanswered = outage_ ? 1 : 0; // two time-outs at most, including that of the cycle before
         for (std::size_t r = 0; r < R; ++r) {
             const Row& row = map_->rows[r];
             const std::uint64_t answers = count_.answers;
             Time stamp = now;
             for (int tries = 0; row.write && tries < 2 && unanswered < 2; ++tries) {
                 if (!connected_) at = connect(at);
-                // None grows old while the ones before it are written, or this one in vain.
+                // Renews the stamps: none becomes too old while earlier rows or a failed attempt take time.
                 for (std::size_t v = row.first; v < row.first + row.registers; ++v)
                     if (values_[v].stamp == stamp) values_[v].stamp = at;
                 stamp = at;
@@ -106,13 +108,13 @@ public:
         return all;
     }
 
-    /// The value by its index in the map; its stamp tells its age.
+    /// Returns the value by its index in the map; its stamp shows its age.
     [[nodiscard]] const Value& value(std::size_t v) const noexcept {
         TAPPET_CONTRACT(v < V, Contract::index_out_of_range, v, V);
         return values_[v];
     }
-    /// Sets a value of a written row, which is sent once all its values were set; false when it is no number,
-    /// or the row is only read.
+    /// Sets a value of a written row; the row is sent once all its values were set. Returns false when the
+    /// value is not a number or the row is only read.
     bool set(std::size_t v, double physical, Time now) noexcept {
         TAPPET_CONTRACT(v < V, Contract::index_out_of_range, v, V);
         const std::size_t r = map_->row_of[v];
@@ -120,7 +122,7 @@ public:
         if (encoded.refused) ++count_.saturated;
         if (encoded.refused || !map_->rows[r].write) return false;
         if (encoded.saturated) ++count_.saturated;
-        // A value that nobody wants any longer is replaced even if the server has it already.
+        // An abandoned value (stamp before_all) is replaced by its safe value even if the server has it.
         if (values_[v].stamp == Time::min() || words_[v] != encoded.words || at_server_[v] == AtServer::was ||
             now == before_all) {
             changed_at_[r] = std::min(changed_at_[r], now);
@@ -131,9 +133,9 @@ public:
         return true;
     }
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return connected_; }
-    /// Whether the server is lost: it answered once, or was tried, and does not answer now.
+    /// Returns whether the server is lost: it answered once or was tried, and does not answer now.
     [[nodiscard]] bool outage() const noexcept { return outage_; }
-    /// What is wrong now: why the server is lost, or else the first row that it refuses.
+    /// Returns what is wrong now: why the server is lost, or else the first row that it refuses.
     [[nodiscard]] Trouble trouble() const noexcept {
         if (outage_) return lost_by_;
         for (std::size_t r = 0; r < R; ++r)
@@ -141,7 +143,7 @@ public:
         return {};
     }
     [[nodiscard]] const Counters& counters() const noexcept TAPPET_REALTIME { return count_; }
-    /// Rises with every answer: what stands for "something arrived".
+    /// Rises with every answer: serves as "something arrived".
     [[nodiscard]] std::uint64_t generation() const noexcept { return count_.answers; }
 
 private:
@@ -154,11 +156,11 @@ private:
         }
         ++count_.connects;
         connected_ = true;
-        // Rows that fell due meanwhile are read once each, not as often as they were missed.
+        // Rows that became due during the outage are read once, not once for each missed period.
         for (Time& due : due_at_) due = std::max(due, now);
         return busy_until_;
     }
-    /// A changed row is due when it was changed: soon, but not before rows that were due earlier still.
+    /// A changed row is due at the time of its change: soon, but after rows that were due earlier.
     [[nodiscard]] Time due(std::size_t r) const noexcept { return std::min(due_at_[r], changed_at_[r]); }
     [[nodiscard]] std::size_t most_urgent() const noexcept {
         std::size_t best = 0;
@@ -193,7 +195,7 @@ private:
                 values_[v].exception = answer.exception;
             }
             ++count_.exceptions;
-            changed_at_[r] = never; // it would refuse again; the period is soon enough
+            changed_at_[r] = never; // it would refuse again; the next period is early enough
             answered();
             return done;
         case Outcome::timeout: ++count_.timeouts; break;
@@ -208,14 +210,14 @@ private:
         return std::ranges::any_of(std::span{map_->registers}.subspan(row.first, row.registers),
                                    &Register::says_safe);
     }
-    /// Each of its values; else it was never sent.
+    /// Returns true when all values of the row were set; otherwise it was never sent.
     [[nodiscard]] bool was_set(const Row& row) const noexcept {
         return std::ranges::none_of(std::span{values_}.subspan(row.first, row.registers),
                                     [](const Value& each) { return each.stamp == Time::min(); });
     }
-    /// Whether the row goes out. Of what grew too old before the server had it, what is safe goes out; what
-    /// the server has is repeated beside a newer value only, and what it had before an outage is made safe
-    /// then.
+    /// Returns whether the row is sent. Values that became too old before the server had them are replaced by
+    /// safe values. A value that the server has is repeated only next to a newer one. A value that it had
+    /// before an outage is then replaced by the safe value.
     bool is_to_be_sent(std::size_t r, Time now) noexcept {
         const Row& row = map_->rows[r];
         if (!was_set(row)) {
@@ -240,7 +242,7 @@ private:
         for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
             if (!is_old(v) || at_server_[v] == AtServer::is) continue;
             const Words before = words_[v];
-            static_cast<void>(set(v, map_->registers[v].safe_value, now)); // the map says that it is in range
+            static_cast<void>(set(v, map_->registers[v].safe_value, now)); // in range, by the map's check
             if (words_[v] != before) ++count_.dropped_stale;
         }
         return true;
@@ -286,12 +288,12 @@ private:
     bool connected_ = false;
     bool outage_ = false;
     Trouble lost_by_{};
-    std::array<std::uint8_t, R> exception_{}; ///< of each row's last answer; 0: none
+    std::array<std::uint8_t, R> exception_{}; ///< exception code of each row's last answer; 0: none
     std::array<Time, R> due_at_{};
     std::array<Time, R> changed_at_ = array_of<R>([](std::size_t) { return never; });
     std::array<Value, V> values_{};
     std::array<Words, V> words_{};
-    /// Whether the server has a value. After an outage nobody knows: it may have restarted (`was`).
+    /// Whether the server has a value. After an outage this is unknown, since it may have restarted (`was`).
     enum class AtServer : std::uint8_t { not_yet, was, is };
     std::array<AtServer, V> at_server_{};
     std::array<std::uint16_t, most_words> buffer_{};

@@ -1,4 +1,4 @@
-// Why a server's values do not come, as people read it: the row of the map, what happened, and the cure.
+// Messages about a server whose values do not arrive: the row of the map, what happened, and the cure.
 #pragma once
 
 #include "drivers/modbus/session.hpp"
@@ -21,7 +21,7 @@ constexpr std::string_view exception_text(std::uint8_t code) noexcept {
     }
 }
 
-/// Of a trouble that is one.
+/// Returns the text of a trouble whose outcome is not ok.
 inline Sentence to_text(std::string_view row, const Trouble& trouble) noexcept {
     Sentence text{"row \"", row, "\": "};
     switch (trouble.outcome) {

@@ -1,4 +1,4 @@
-// The server's answers, right and wrong.
+// The server's answers, correct and faulty.
 #include "drivers/modbus/twin.hpp"
 
 namespace tappet::modbus {

@@ -10,16 +10,16 @@ namespace tappet::modbus {
 
 enum class Fault : std::uint8_t {
     none,
-    silent,    ///< takes requests and never answers
-    slow,      ///< answers after `slow_by`; later than the time-out, the answer meets the next request
-    exception, ///< answers with an exception code
+    silent,            ///< accepts requests and never answers
+    slow,              ///< answers after `slow_by`; after the time-out, the answer meets the next request
+    exception,         ///< answers with an exception code
     wrong_transaction, ///< answers another request
     garbage_length,    ///< answers too much or too little
     down,              ///< closes the connection and refuses new ones
 };
 
-/// All of its tables' addresses exist. The transport's calls belong to the client's thread, the rest to the
-/// plant's. It holds nobody: an answer says how long the caller would have waited, so that it works under
+/// All addresses of its tables exist. The transport's calls belong to the client's thread, the others to the
+/// plant's. It never blocks: an answer states how long the caller would have waited, so it works under
 /// virtual time.
 class Twin final : public Transport, public ServerTables {
 public:
@@ -33,14 +33,15 @@ public:
     Answer write(Table table, std::uint16_t address, std::span<const std::uint16_t> values) noexcept override;
 
     // The plant's side; wait-free.
-    /// Strikes the next `requests`, or all until told otherwise; `down` counts connects, too.
+    /// Applies the fault to the next `requests` requests, or to all until the next call; `down` counts
+    /// connects, too.
     void inject(Fault fault, std::uint32_t requests = ~0u) noexcept;
     void set_exception(std::uint8_t code) noexcept { exception_.store(code, std::memory_order_relaxed); }
     void set_slow_by(Duration by) noexcept { slow_by_ns_.store(by.count(), std::memory_order_relaxed); }
 
 private:
     [[nodiscard]] Fault strike() noexcept;
-    /// What a request comes to before any register is touched.
+    /// Returns the result of a request before any register is accessed.
     [[nodiscard]] Answer admit(std::uint16_t address, std::size_t count) noexcept;
 
     std::atomic<Fault> fault_{Fault::none};
@@ -50,7 +51,7 @@ private:
     Duration answer_within_;
     Duration turnaround_;
     bool connected_ = false;
-    bool late_answer_ = false; ///< on its way, and would be taken for the next request's
+    bool late_answer_ = false; ///< a late answer is pending and would meet the next request
 };
 
 } // namespace tappet::modbus

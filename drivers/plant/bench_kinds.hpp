@@ -1,4 +1,4 @@
-// The kinds of devices that a bench has the plant's ends of: an include and a name each.
+// The list of device kinds with a plant's end on the bench: an include and a name each.
 #pragma once
 
 #include "drivers/can/bench_bus.hpp"

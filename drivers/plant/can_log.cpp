@@ -1,4 +1,4 @@
-// Writes candump logs of simulated buses, and plays them.
+// Writes candump logs of simulated buses, and replays them.
 #include "drivers/plant/can_log.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace tappet {
 
 namespace {
 
-/// candump counts in microseconds: what is so near may be the same moment.
+/// candump counts in microseconds: times this close may be the same moment.
 constexpr Duration tick = 1us;
 
 constexpr std::uint32_t key_of(const can::Frame& frame) {
@@ -17,7 +17,7 @@ constexpr std::uint32_t key_of(const can::Frame& frame) {
 bool has(std::span<const can::Identifier> list, const can::Frame& frame) {
     return std::ranges::find(list, can::Identifier{frame.id, frame.extended}) != list.end();
 }
-/// To the microsecond, as candump counts.
+/// Returns seconds with microseconds, as candump writes them.
 Sentence seconds(Duration since) {
     const std::int64_t us = since / tick;
     const Sentence fraction{1'000'000 + us % 1'000'000};
@@ -134,7 +134,7 @@ void CanReplay::count(Kind kind) {
 
 void CanReplay::meet(const can::Frame& frame, bool is_logged) {
     const auto found = own_.find(key_of(frame));
-    if (found == own_.end()) return; // the log has none of it
+    if (found == own_.end()) return; // the log has no frame with this identifier
     Waiting& waiting = found->second;
     if (waiting.frames.empty() || waiting.are_logged == is_logged) {
         waiting.are_logged = is_logged;

@@ -1,5 +1,5 @@
-// What is on a simulated CAN bus as a candump log; and such a log, as it was recorded at a machine, in place
-// of the nodes of a bus.
+// Records a simulated CAN bus as a candump log, and replays such a log, recorded at a machine, in place of a
+// bus's nodes.
 #pragma once
 
 #include "drivers/can/candump.hpp"
@@ -13,16 +13,16 @@
 
 namespace tappet {
 
-/// Not real-time; one thread, the plant's.
+/// Not real-time; only the plant's thread.
 class CanRecorder {
 public:
-    /// `bus` as the machine's table names it: the file is that name's in the folder. The error says what to
-    /// do.
+    /// Opens the file, named after `bus` (as in the machine's table), in the folder. The error states the
+    /// cure.
     [[nodiscard]] Sentence open(std::string_view bus, const std::string& folder);
-    /// Times are written from here on.
+    /// Sets the start of the recorded times.
     void begin(Time now) { begun_ = std::min(begun_, now); }
     void record(const can::Frame& frame);
-    /// How much was written, and how it is replayed; or what could not be written. Once, at the end.
+    /// Returns how much was written and how to replay it, or what could not be written. Once, at the end.
     [[nodiscard]] Sentence close(bool& good);
 
 private:
@@ -32,58 +32,58 @@ private:
     Time begun_ = never, first_{};
 };
 
-/// Plays the frames that the machine receives, each at its time since the log's first frame. Those that the
-/// machine sends itself are compared with what it sends, the n-th of an identifier with its n-th. Not
-/// real-time; one thread, the plant's.
+/// Replays the frames that the machine receives, each at its time since the log's first frame. Compares the
+/// frames that the machine sends with those of the log: the n-th of an identifier with the n-th. Not
+/// real-time; only the plant's thread.
 class CanReplay {
 public:
-    /// Reads all of the file. The error names file, line and column, and the cure.
+    /// Reads and checks the whole file. The error names file, line and column, and the cure.
     [[nodiscard]] Sentence open(std::string_view bus, const std::string& path, Duration begins_at,
                                 std::span<const can::Identifier> received,
                                 std::span<const can::Identifier> sent);
-    /// What the machine has put on the wire.
+    /// Takes a frame that the machine has put on the wire.
     void heard(const can::Frame& frame);
-    /// Puts on the bus what is due.
+    /// Puts the frames that are due on the bus.
     void play(can::TwinBus& bus, Time now);
     [[nodiscard]] Time next() const noexcept { return next_; }
     [[nodiscard]] bool is_over() const noexcept { return is_over_; }
-    /// What stopped it before the end: the file is another one than it was. Empty: nothing did.
+    /// Returns what stopped the replay before the end: the file has changed. Empty: nothing.
     [[nodiscard]] const Sentence& fault() const noexcept { return fault_; }
 
-    /// Frames of the log.
+    /// Number of frames of the log.
     struct Counts {
         std::uint64_t played = 0, unknown = 0, remote = 0, errors = 0;
-        std::uint64_t equal = 0, different = 0; ///< of the machine's own
+        std::uint64_t equal = 0, different = 0; ///< of the machine's own frames
         Time first_different = never;           ///< when the machine sent it
-        /// The machine has not sent them; nor does the log have these of the identifiers that it has.
+        /// Frames not sent by the machine; and sent frames not in the log, though their identifier is.
         std::uint64_t only_in_log = 0, only_sent = 0;
-        bool is_cut = false; ///< its last line has no end: whoever wrote it was ended there
+        bool is_cut = false; ///< its last line is incomplete: the recording was interrupted
     };
     [[nodiscard]] Counts counts() const;
-    /// The counts, for people.
+    /// Returns the counts as text.
     [[nodiscard]] Sentence report() const;
 
 private:
     enum class Kind : std::uint8_t { played, own, unknown, remote, error };
-    /// Of one identifier: frames that one side has and the other not yet.
+    /// For one identifier: frames of one side that still lack their counterpart.
     struct Waiting {
         bool are_logged = false;
         std::deque<can::Frame> frames{};
     };
-    /// False at the end of the file, and when it is bad: see fault_.
+    /// Reads a line. Returns false at the end of the file, and on an error: see fault_.
     bool read_line();
     [[nodiscard]] Kind kind_of(const can::candump::Logged& logged) const;
     void count(Kind kind);
     void meet(const can::Frame& frame, bool is_logged);
-    /// The frame that was read last is the machine's own, of this very moment, and not sent yet: what came
-    /// after it may be the answer.
+    /// Returns whether the last frame read is the machine's own, due now and not sent yet: the frames after
+    /// it may be answers to it.
     [[nodiscard]] bool waits_for_machine(Time now) const;
 
     std::string bus_{}, path_{}, text_{}, interface_{};
     std::ifstream file_{};
     std::size_t line_ = 0;
     std::span<const can::Identifier> received_{}, sent_{};
-    std::map<std::uint32_t, Waiting> own_{}; // of each identifier of the log that the machine sends
+    std::map<std::uint32_t, Waiting> own_{}; // by identifier: frames of the log that the machine sends
     can::candump::Logged read_{};
     Duration begins_at_{};
     Time first_{}, last_{}, begun_ = never, next_ = Time::min();

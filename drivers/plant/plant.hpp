@@ -1,4 +1,4 @@
-// A plant: the process that a machine controls, simulated at the other end of its wires. One source for
+// A plant: the simulated process that a machine controls, at the other end of its wires. One source for
 // virtual time, real time and the bench.
 #pragma once
 
@@ -27,47 +27,47 @@ public:
     Plant& operator=(const Plant&) = delete;
     virtual ~Plant() = default;
 
-    /// Moves what it simulates to `now`; the ends have taken what the machine sent, and give afterwards what
-    /// was set. The answer: when it wants to move again at the latest; on the bench it is moved every so
-    /// often anyway. The clock is the machine's.
+    /// Advances the simulation to `now`. The far ends have received what the machine sent, and send
+    /// afterwards what was set. Returns the latest time of the next move(); on the bench it is also called
+    /// periodically. `now` is of the machine's clock.
     virtual Time move(Time now) = 0;
 
-    /// On the bench, where lines take one edge at a time: when it has the next one, of a contact that
-    /// bounces, faster than it is moved anyway.
+    /// Returns when the plant has its next edge, for a contact that bounces faster than move() is called. On
+    /// the bench only, where lines take one edge at a time.
     [[nodiscard]] virtual Time next_edge() const { return never; }
 
-    /// Under virtual time: nothing comes in and nobody looks before `until`. It may move on by itself as far
-    /// as nothing leaves it; the answer is as that of move(). Nothing: it does not know how.
+    /// Virtual time only: nothing arrives, and the plant is not observed, before `until`. The plant may skip
+    /// ahead until it next sends something; returns the same as move(). Empty: not supported.
     [[nodiscard]] virtual std::optional<Time> leap(Time /*until*/) { return {}; }
 
-    /// Options of its own, each with a value: a line each, for --help.
+    /// Returns the plant's own options, each with a value, one line each, for --help.
     [[nodiscard]] virtual std::string_view usage() const { return {}; }
-    /// False: it has no such option. An error says what is wrong with the value.
+    /// Takes an option; returns false when it does not exist. An error states what is wrong with the value.
     virtual bool take_option(std::string_view, std::string_view, Sentence&) { return false; }
-    /// True when it has seen enough: the run ends well.
+    /// Returns true when the plant has seen enough: the run ends successfully.
     [[nodiscard]] virtual bool is_done() const { return false; }
-    /// How long a run takes when nobody says it and it is not done before.
+    /// Returns the length of a run when it is not stated and the plant is not done before.
     [[nodiscard]] virtual Duration usual_time() const { return 10s; }
-    /// What was wrong with the run, asked at its end; empty: nothing.
+    /// Returns what was wrong with the run, at its end; empty: nothing.
     [[nodiscard]] virtual Sentence fault() const { return {}; }
-    /// Of all that happened in it: equal for two runs that were the same.
+    /// Returns a digest of everything that happened: equal for two identical runs.
     [[nodiscard]] virtual std::uint64_t digest() const { return 0; }
-    /// What it measured, as more fields of an object that is open.
+    /// Adds its measurements as fields of the open object.
     virtual void report(JsonText&) const {}
-    /// Devices of the machine's own kinds, which the plant simulates itself.
+    /// Returns devices of the machine's own kinds, which the plant simulates itself.
     [[nodiscard]] virtual std::span<const ProvidedDevice> devices() { return {}; }
 
-    /// Somebody outside told it so by the signal USR1: for whoever runs it on the bench.
+    /// Called on the signal USR1, which a person at the bench can send.
     virtual void told() {}
 
-    // ---- for the worlds
+    // ---- called by the worlds
 
     [[nodiscard]] Sentence connect(std::span<const ProvidedDevice> wires) {
         for (FarEnd* end : ends)
             if (Sentence fault = end->connect(wires); !fault.empty()) return fault;
         return {};
     }
-    /// Takes, moves, gives; when the next time is due.
+    /// Receives, moves and sends; returns when the next call is due.
     Time advance(Time now) {
         if (begun_ == never) begun_ = now_ = now;
         before_ = now_;
@@ -80,7 +80,7 @@ public:
         }
         return next;
     }
-    /// Leaps; when the next time is due, if that has changed.
+    /// Skips ahead; returns when the next call is due, if that has changed.
     std::optional<Time> leap_ahead(Time until) {
         Time of_wires = never;
         for (const FarEnd* end : ends) of_wires = std::min(of_wires, end->next());
@@ -89,11 +89,11 @@ public:
     }
 
 protected:
-    FarEnds ends; ///< its own are members of it: can::FarEnd<map> can{ends, "device"}
+    FarEnds ends; ///< a plant's far ends are its members: can::FarEnd<map> can{ends, "device"}
 
-    /// Of this move, since the first one.
+    /// Returns the time from the first move() to this one.
     [[nodiscard]] Duration elapsed() const { return now_ - begun_; }
-    /// Of this move, since the one before; 0 at the first.
+    /// Returns the time from the previous move() to this one; 0 at the first.
     [[nodiscard]] Duration step() const { return now_ - before_; }
 
 private:

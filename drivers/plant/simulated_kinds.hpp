@@ -1,4 +1,4 @@
-// The kinds of devices that a host has twins of: an include and a name each.
+// The list of device kinds with a twin on the host: an include and a name each.
 #pragma once
 
 #include "drivers/can/simulated_bus.hpp"

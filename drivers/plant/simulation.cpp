@@ -1,4 +1,4 @@
-// Makes the twins that a table asks for, and carries frames, levels and registers between them and the plant.
+// Makes the twins that a table needs, and transfers frames, levels and registers between them and the plant.
 #include "drivers/plant/simulation.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@ namespace tappet {
 
 namespace {
 
-/// Each device, of whatever kind.
+/// Visits each device of every kind.
 template <class Kinds, class Visit>
 void for_each(Kinds& kinds, const Visit& visit) {
     std::apply([&](auto&... list) { (std::ranges::for_each(list, [&](auto& each) { visit(*each); }), ...); },
@@ -178,7 +178,7 @@ WireCounters SimulatedDevices::counters() const noexcept {
 void SimulatedDevices::advance(Time now) {
     for_each(kinds_, [now](auto& each) { each.bring_to_plant(now); });
     for (Log& log : logs_) log.drain(now, look_);
-    next_ = std::max(plant_.advance(now), now + 1ns); // a plant that wants the past would stop the time
+    next_ = std::max(plant_.advance(now), now + 1ns); // a plant that returns a past time would stop the clock
     for (Log& log : logs_)
         if (log.replay) log.replay->play(log.bus.wire, now);
     for_each(kinds_, [now](auto& each) { each.bring_to_machine(now); });
@@ -186,7 +186,7 @@ void SimulatedDevices::advance(Time now) {
     next_ = std::min(next_, next_on_wires());
 }
 
-// What a twin puts off may be due: it comes with the plant's next move, whatever brings that about.
+// An event that a twin holds back may be due: it is delivered with the plant's next move().
 bool SimulatedDevices::are_driven() const noexcept {
     return any_of(kinds_, [](const auto& each) { return each.is_driven(); });
 }

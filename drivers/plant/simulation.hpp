@@ -1,5 +1,5 @@
-// The devices of one machine in the host world: a twin for each that its table names, and the wires between
-// it and the plant.
+// The devices of one machine in the host world: a twin for each device of its table, and the wires between it
+// and the plant.
 #pragma once
 
 #include "drivers/hardware/devices.hpp"
@@ -15,37 +15,37 @@
 
 namespace tappet {
 
-/// Not real-time. The machine's threads and the plant's meet in the twins only.
+/// Not real-time. The machine's threads and the plant's share only the twins.
 class SimulatedDevices final : public Devices {
 public:
-    /// `seed` decides what the faults of the twins strike.
+    /// `seed` selects what the faults of the twins strike.
     explicit SimulatedDevices(Plant& plant, std::uint64_t seed) : plant_{plant}, seed_{seed} {}
 
-    /// Before open(): frames take their time on the wire; 0: none.
+    /// Before open(): sets the bit rates, by which frames take time on the wire; 0: no time.
     void set_bit_rates(can::BitRates rates) noexcept { bit_rates_ = rates; }
     std::expected<void, Sentence> open(const AcceptedMachine& machine) override;
-    /// Before open(): a device that somebody else simulates, as a wire to other machines.
+    /// Before open(): adds a device that is simulated elsewhere, such as a wire to other machines.
     void lend(const ProvidedDevice& device) { lent_.push_back(device); }
-    /// Before open(): what is on each CAN bus goes to a candump log in that folder.
+    /// Before open(): records each CAN bus as a candump log in that folder.
     void record_can(std::string folder) { recorded_in_ = std::move(folder); }
-    /// Before open(): that candump log in place of what the plant sends on the bus. Its first frame comes so
-    /// long after the beginning.
+    /// Before open(): replays that candump log in place of the plant's frames on the bus. Its first frame
+    /// comes `begins_at` after the start.
     void replay_can(std::string bus, std::string file, Duration begins_at = {}) {
         replays_.push_back({std::move(bus), std::move(file), begins_at});
     }
-    /// Each log that is replayed is at its end; without any, the plant says it.
+    /// Returns whether each replayed log is at its end; without replays, whether the plant is done.
     [[nodiscard]] bool is_done() const;
-    /// After open(): told each frame that was on a CAN bus. For who judges what a machine sends.
+    /// After open(): calls `look` for each frame on a CAN bus, to judge what a machine sends.
     using Look = std::function<void(std::string_view bus, const can::Frame& frame)>;
     void look_at_frames(Look look);
-    /// At the end, once: what became of each log. False: one of them could not be written, or read.
+    /// At the end, once: reports the result of each log. Returns false when one was not written or read.
     [[nodiscard]] bool close_logs(const std::function<void(const Sentence& what, bool good)>& tell);
     [[nodiscard]] CanReplay::Counts replayed(std::string_view bus);
-    /// The machine's ends of the buses anew, as a new process has them: a bus that was off is on again. Lines
-    /// stay as they were left.
+    /// Opens the machine's ends of the buses again, as for a new process: a bus that was off is on again.
+    /// Lines keep their state.
     std::expected<void, Sentence> open_again();
-    /// What the guardian of a machine does whose process is gone: lines at once, frames and registers once it
-    /// has ended. The machine's ends of the wires are nobody's then.
+    /// The guardian's work for a machine whose process has ended: lines at once, frames and registers after
+    /// the process's end. The machine's ends of the wires are then unused.
     void write_safe_lines() noexcept;
     void send_safe_frames(Time now) noexcept;
     void write_safe_registers() noexcept;
@@ -53,26 +53,26 @@ public:
     void report(os::ArmingReport&) override {}
     [[nodiscard]] WireCounters counters() const noexcept override;
 
-    /// Moves plant and wires to `now`. One thread, the plant's.
+    /// Advances plant and wires to `now`. Only the plant's thread.
     void advance(Time now);
-    /// Whether the machine has put anything on its wires since advance(), or a twin holds something back.
+    /// Returns whether the machine used its wires since advance(), or a twin holds something back.
     [[nodiscard]] bool are_driven() const noexcept;
-    /// After advance(): nothing comes from the machine before `until`.
+    /// After advance(): skips ahead; nothing comes from the machine before `until`.
     void leap(Time until);
-    /// When advance() has something to do.
+    /// Returns when advance() is due.
     [[nodiscard]] Time next() const noexcept { return next_; }
 
-    // ---- for tests: what goes wrong at one device. A name that the table has not is a broken contract.
+    // ---- for tests: fault injection at one device. A name that is not in the table is a broken contract.
     [[nodiscard]] can::TwinBus& bus(std::string_view device);
     [[nodiscard]] can::Twin& controller(std::string_view device);
     [[nodiscard]] gpio::Twin& lines(std::string_view device);
     [[nodiscard]] modbus::Twin& server(std::string_view device);
 
 private:
-    // What a twin is given stays where it is.
+    // A twin's addresses must not change, hence the pointers.
     template <class... Kind>
     using Lists = std::tuple<std::vector<std::unique_ptr<Kind>>...>;
-    /// What is recorded of a bus, and replayed on it.
+    /// The recording and the replay of a bus.
     struct Log {
         explicit Log(can::SimulatedBus& of) : bus{of} {}
         can::SimulatedBus& bus;

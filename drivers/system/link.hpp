@@ -1,5 +1,5 @@
-// A node's end of the wire: the stand-ins for what its machine tells others and hears of them. They have the
-// types of the two ends and the meaning that a row inside the machine has; the machine knows nothing else.
+// A node's end of the wire: stand-ins for other nodes' facets that its machine writes to or reads from. They
+// have the types of both ends and behave like a row inside the machine, which knows nothing else.
 #pragma once
 
 #include "drivers/can/device.hpp"
@@ -13,10 +13,10 @@
 
 namespace tappet::systems {
 
-/// All real-time, in the activity of its bus, and behind it. A node is there once its rows are known, and
-/// gone when no beat came for silent_after, or when it says so. A row works once both ends have heard from
-/// the other that it looks the same there, in this start of it: another version's row of the same name that
-/// does not is refused, by name, and the others go on.
+/// All real-time, in the activity of its bus, and after it. A node is present once its rows are known, and
+/// gone when no beat came for silent_after or when it announces its stop. A row works once each end has heard
+/// from the other that the row has the same layout there, in the other's present start. A row of the same
+/// name with another layout, in another version, is refused by name; the others work.
 template <const auto& system, std::size_t n>
 struct Link {
     using Rows = NodeRows<system, n>;
@@ -68,7 +68,7 @@ struct Link {
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {
         can::Frame forgotten;
         for (int k = 0; k < max_frames_per_cycle && received.pop(forgotten);) ++k;
-        // In nanoseconds: two starts of a box are alike in milliseconds.
+        // In nanoseconds, because two starts of a box can be equal in milliseconds.
         epoch_ = static_cast<std::uint16_t>(
             static_cast<std::uint64_t>(to_ns(cycle.now)) * 0x9E37'79B9'7F4A'7C15u >> 48);
         peers_ = {};
@@ -92,14 +92,14 @@ struct Link {
         serve(cycle.now);
     }
     void fire(const Cycle& cycle) noexcept TAPPET_REALTIME { serve(cycle.now); }
-    /// The others need not wait for its silence, and here nobody hears them any longer.
+    /// Announces the stop: the others need not wait for silence, and this end stops listening to them.
     void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         for (std::size_t node = 0; node < node_count; ++node)
             if (peers_[node].there) lose(node);
         Room payload{};
         put_beat(shape, payload, {.runs = false, .epoch = epoch_});
         send(Rows::beat_frame, payload, cycle.now);
-        device_->service(cycle.now); // the bus goes on, and what arrives is its own
+        device_->service(cycle.now); // the bus continues, and handles arrivals itself
     }
 
     /// For tests and summaries.
@@ -122,20 +122,20 @@ private:
     using Peer = LinkPeer;
     using Call = LinkCall;
     using RowState = LinkRow<Rows::command_bytes>;
-    /// What stands in a frame.
+    /// The contents of a frame.
     using Room = std::array<std::uint8_t, shape.most_bits / 8>;
-    static constexpr std::size_t contents = shape.channel_bits() / 8; ///< of a channel's frame
+    static constexpr std::size_t contents = shape.channel_bits() / 8; ///< bytes of a channel's frame
 
-    // ---- what comes
+    // ---- received frames
 
     void take(const can::Frame& frame, Time now) noexcept TAPPET_REALTIME {
         if (frame.remote || frame.extended != system.wire.fixed_identifiers) return;
         const std::size_t f = Rows::frame_of(frame.id);
         if (f == plan.frames.size()) return;
         const WireFrame& what = plan.frames[f];
-        // Somebody else sends what is ours: the bus counts it. The clock is another component's.
+        // Another sender of this node's frames is counted by the bus. The clock belongs to another component.
         if (what.node == n || what.is_of_clock()) return;
-        // Values may be fewer in another version, or more.
+        // Another version may have fewer values, or more.
         const bool is_whole = what.kind == WireFrameKind::data || frame.length >= what.bytes;
         if (can::format_of(frame) != format_of(system.wire, what) || !is_whole || !is_good(f, frame)) {
             frames_refused.write(++refused_frames_);
@@ -152,7 +152,7 @@ private:
 
     bool is_good(std::size_t f, const can::Frame& frame) noexcept TAPPET_REALTIME {
         const ProtectionVerdict verdict = checks_[f].check(std::span{frame.data}.first(frame.length));
-        // Channels and beats know themselves what is old; of values the last one counts.
+        // Channels and beats detect old frames themselves; for values the last one counts.
         return verdict.kind != ProtectionVerdict::Kind::wrong_crc;
     }
 
@@ -182,17 +182,17 @@ private:
         if (std::exchange(state_[i].is_refused, true)) return;
         refused.write(Rows::refusal(i, has_it));
     }
-    /// A row that another version does not have is never told of. Twice: a beat may be lost.
+    /// A row missing in the other version is never announced; known after two rounds, as a beat may be lost.
     static constexpr std::uint8_t told_twice = 2;
     [[nodiscard]] bool knows_rows_of(std::size_t node) const noexcept TAPPET_REALTIME {
         for (std::size_t i = 0; i < row_count; ++i)
             if (Rows::other(i) == node && !state_[i].agreed && !state_[i].is_refused) return false;
         return true;
     }
-    /// The other node is heard, again or in a new start of it; then whatever was under way to the one before
-    /// is over. After a silence of the same start both ends go on where they were.
+    /// Starts a node that is heard again, or after a restart. After a restart, everything pending with its
+    /// previous start is over. After a silence within the same start both ends continue where they were.
     void begin(std::size_t node, std::uint16_t epoch, Time now) noexcept TAPPET_REALTIME {
-        if (peers_[node].there) lose(node); // it began anew before its silence told
+        if (peers_[node].there) lose(node); // it restarted before its silence was detected
         const bool is_new = peers_[node].epoch != epoch;
         const Time begun = is_new ? now : peers_[node].begun;
         peers_[node] = {.there = true, .epoch = epoch, .begun = begun};
@@ -200,8 +200,7 @@ private:
             if (Rows::other(i) != node) continue;
             state_[i].sender.begin();
             state_[i].receiver.begin();
-            state_[i].serves = state_[i].refuses =
-                false; // what it executes goes on; nobody waits for its end
+            state_[i].serves = state_[i].refuses = false; // it still executes; its end is not reported
         }
     }
     void lose(std::size_t node) noexcept TAPPET_REALTIME {
@@ -258,7 +257,7 @@ private:
     void begin_command(std::size_t i, std::uint8_t number, Contents payload) noexcept TAPPET_REALTIME {
         CommandCallSlot& call = calls[i];
         RowState& row = state_[i];
-        if (row.serves || !call.slot.is_mine()) { // one of before is still executed
+        if (row.serves || !call.slot.is_mine()) { // an earlier one still executes
             row.refuses = true, row.refused = number;
             return;
         }
@@ -268,11 +267,11 @@ private:
                      call.slot.send();
         if (!row.serves) row.refuses = true, row.refused = number;
     }
-    /// Of a command that was sent from here.
+    /// Takes the reply to a command sent from here.
     void take_reply(std::size_t i, bool serves, Contents payload) noexcept TAPPET_REALTIME {
         RowState& row = state_[i];
         if (row.call != Call::offered) return;
-        // A reply that is lost may have been this one's.
+        // It may be the reply to an earlier command whose reply was lost.
         if (serves && (payload[contents] >> 3) != (row.asked & 31u)) return;
         const auto how = static_cast<CommandState>(payload[contents] & 7u);
         const bool is_done = serves && how == CommandState::done &&
@@ -281,10 +280,10 @@ private:
         row.call = is_done ? Call::done : Call::failed; // rejected, failed, or the reply was lost
     }
 
-    // ---- what goes
+    // ---- sent frames
 
     void serve(Time now) noexcept TAPPET_REALTIME {
-        // Who hears and is not heard must not believe that all is well.
+        // On a faulted bus this end may receive without being heard, so it treats the others as lost.
         if (can::faulted(device_->state()))
             for (std::size_t node = 0; node < node_count; ++node)
                 if (peers_[node].there) lose(node);
@@ -303,7 +302,7 @@ private:
         }
         const can::State before = device_->state();
         device_->service(now);
-        if (device_->state() != before) waiter_->wake(); // the bus tells it
+        if (device_->state() != before) waiter_->wake(); // the bus reports it
         arm(now);
     }
     void arm(Time now) noexcept TAPPET_REALTIME {
@@ -349,14 +348,14 @@ private:
             offer(i, packed, now);
         }
     }
-    /// The wire is proven for what rows say: what comes sooner waits, and is counted.
+    /// Holds back and counts an offer sooner than its row allows: the wire's proof relies on the rows.
     void hold(RowState& row) noexcept TAPPET_REALTIME {
         if (!row.is_held) held_back.write(++held_back_);
         row.is_held = true;
     }
     void offer(std::size_t i, const std::byte* packed, Time now) noexcept TAPPET_REALTIME {
         Room arguments{};
-        // On its own grid: that this activity is late does not push what comes in time.
+        // Keeps its own time grid: a late activity does not delay an offer that comes in time.
         Time& may_offer = state_[i].may_offer;
         may_offer = std::max(may_offer, now - system.wire.service.deadline) + Rows::crossing(i).at_most_per;
         const WireValue& as = Rows::index(i).value;
@@ -373,7 +372,7 @@ private:
         events_lost.write(++lost_events_);
         lost[i].emit();
     }
-    /// Commands of another node, here.
+    /// Processes commands of another node that execute here.
     void follow_command(std::size_t i, Time now) noexcept TAPPET_REALTIME {
         RowState& row = state_[i];
         if (!row.sender.is_free()) return;
@@ -442,12 +441,12 @@ private:
         frame.stamp = now;
         static_cast<void>(
             protectors_[f].protect(std::span{frame.data}.first(frame.length))); // it fits: see protected_by
-        // A faulted bus sends nothing; what is told next is new.
+        // A faulted bus sends nothing; the next frame has newer contents.
         const can::Send sent = device_->send(frame, can::Keep::every);
         if (sent != can::Send::queued && sent != can::Send::replaced) not_sent.write(++not_sent_);
     }
 
-    // ---- commands that are sent from here
+    // ---- commands sent from here
 
     template <std::size_t i>
     static bool begin_call(void* self, std::byte* values) noexcept TAPPET_REALTIME {
@@ -456,7 +455,7 @@ private:
         if (!row.agreed || !row.sender.is_free()) return false;
         row.call = Call::wanted;
         std::copy_n(values, Rows::index(i).value.bytes, row.values.data());
-        link.next.arm(Time{}); // at the engine's next look
+        link.next.arm(Time{}); // as soon as the engine checks
         return true;
     }
     template <std::size_t i>
@@ -471,7 +470,7 @@ private:
         return CommandProgress::done;
     }
 
-    /// Of 8 bytes by AUTOSAR's E2E P11, of up to 64 by P05.
+    /// Returns the protection: AUTOSAR's E2E P11 for frames of 8 bytes, P05 for up to 64.
     static constexpr Protection protected_by(std::size_t f) {
         return {.form = system.wire.is_fd() ? Protection::Form::wide : Protection::Form::id_both,
                 .id = plan.frames[f].data_id};

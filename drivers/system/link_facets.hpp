@@ -1,4 +1,4 @@
-// The facets of a node's end of the wire: each has the type of what it stands in for.
+// The facets of a node's end of the wire: each has the type of the facet that it stands in for.
 #pragma once
 
 #include "drivers/system/node_rows.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet::systems {
 
-/// A command call of whatever signature.
+/// A command call with any signature.
 template <std::size_t most_bytes>
 struct PackedCommandCall {
     CommandSlot slot{};
@@ -18,14 +18,14 @@ struct PackedCommandCall {
         [](void* call) { return static_cast<PackedCommandCall*>(call)->values.data(); }};
 };
 
-/// Of a Link.
+/// The facets of a Link.
 template <class Link>
 struct LinkFacets {
     using Rows = typename Link::Rows;
     static constexpr std::size_t row_count = Rows::row_count;
 
     template <std::size_t i>
-    struct Call { // ordinary functions: clang 22 drops the effects of a template's when it is an argument
+    struct Call { // ordinary functions: clang 22 drops the effects of a template's as an argument
         static bool begin(void* link, std::byte* values) noexcept TAPPET_REALTIME {
             return Link::template begin_call<i>(link, values);
         }

@@ -1,5 +1,5 @@
 // The values of a node's end of the wire: from its inputs into frames, and from frames to its outputs, with
-// the time at which they were true.
+// their time stamps.
 #pragma once
 
 #include "drivers/can/frame.hpp"
@@ -7,7 +7,7 @@
 
 namespace tappet::systems {
 
-/// Of a Link. All real-time, in its activity.
+/// The value transfer of a Link. All real-time, in its activity.
 template <class Link>
 struct LinkValues {
     using Rows = typename Link::Rows;
@@ -25,7 +25,7 @@ struct LinkValues {
             if (!is_valid && (!was_valid || port.max_age == Duration::zero())) continue;
             Duration age = is_valid ? Duration::zero() : port.max_age + 1ns;
             if (is_valid && port.value.has_time && !has_age(link, port, frame, age)) continue;
-            if (!is_valid) // what was old when it was told is so here
+            if (!is_valid) // a value that was old when sent is old here, too
                 static_cast<void>(port.facet->port->read(output, false, false, value.data()));
             port.facet->port->write_at(output, value.data(), frame.stamp - age);
             was_valid = is_valid;
@@ -55,7 +55,7 @@ private:
     static constexpr std::size_t time_bit(const PortPlace& port) noexcept TAPPET_REALTIME {
         return port.bit + 1u + port.value.bits;
     }
-    /// Of a value, when its frame came. False: nobody knows.
+    /// Computes the age of a value at the arrival of its frame. Returns false when it is unknown.
     static bool has_age(Link& link, const PortPlace& port, const can::Frame& frame, Duration& age) noexcept
         TAPPET_REALTIME {
         return knows_common(link) &&
@@ -64,7 +64,7 @@ private:
     }
     static bool knows_common([[maybe_unused]] Link& link) noexcept TAPPET_REALTIME {
         if constexpr (Rows::is_told_time) {
-            // Until it has told it anew, what is known is the clock of its last start.
+            // Until the clock's node has sent its time again, the known clock is of its previous start.
             static_cast<void>(link.exchanges.get());
             return link.knows_time.get() && link.exchanges.stamp() > link.peers_[Rows::teller].begun;
         }

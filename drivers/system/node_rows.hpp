@@ -1,4 +1,4 @@
-// The rows of a system that one node has a part in, and where their stand-ins stand in its end of the wire.
+// The rows of a system that involve one node, and the places of their stand-ins in its end of the wire.
 #pragma once
 
 #include "drivers/system/wire_analysis.hpp"
@@ -8,11 +8,11 @@
 
 namespace tappet::systems {
 
-/// Of a system at namespace scope: computed once.
+/// The plan of a system at namespace scope: computed once.
 template <const auto& system>
 inline constexpr auto plan_of = plan_system(system, &analyse_can);
 
-/// What each promise of the system was proven to take; or the first that is not kept.
+/// The proven time of each promise of the system, or the first promise that is not kept.
 template <const auto& system>
 inline constexpr auto promises_of = [] {
     struct {
@@ -26,25 +26,24 @@ inline constexpr auto promises_of = [] {
     return all;
 }();
 
-/// A port of the node's end: an input for what its machine tells, an output for what it hears.
+/// A port of the node's end: an input for a value that its machine sends, an output for one that it receives.
 struct PortPlace {
     const Facet* facet = nullptr; ///< the port that it stands in for
     bool is_input = false;
-    std::size_t crossing = nowhere; ///< the first of those that share it
+    std::size_t crossing = nowhere; ///< the first of those that share the port
     std::size_t row = nowhere;
     std::size_t frame = nowhere;
-    std::uint16_t bit = 0; ///< of the bit that says whether it is valid; the value stands behind it
+    std::uint16_t bit = 0; ///< position of its valid bit; the value follows it
     WireValue value{};
-    Duration
-        max_age{}; ///< that a reader allows: the shortest where it is told, the longest where it is heard
-    std::size_t at = 0; ///< in the storage
+    Duration max_age{}; ///< of the readers: the shortest if sent, the longest if received
+    std::size_t at = 0; ///< offset in the storage
 };
 
 /// An event, a command, or a value; presences need none.
 struct RowPlace {
     std::size_t crossing = nowhere;
     std::uint16_t name = 0, layout = 0;
-    std::size_t event_at = nowhere; ///< in the storage, of an event that comes
+    std::size_t event_at = nowhere; ///< offset in the storage, of a received event
 };
 
 template <const auto& system, std::size_t n>
@@ -63,7 +62,7 @@ struct NodeRows {
         for (std::size_t x = 0; x < crossing_count; ++x) count += has_part(x) ? 1u : 0u;
         return count;
     }();
-    /// Readers of one value share its port.
+    /// Returns whether it is the first row of its port; readers of one value share a port.
     static constexpr bool is_first_port(std::size_t x) {
         for (std::size_t before = 0; before < x; ++before)
             if (system.crossings[before].kind == CrossingKind::data && has_part(before) &&
@@ -84,9 +83,10 @@ private:
         std::array<PortPlace, port_count> ports{};
         std::array<RowPlace, row_count> rows{};
         std::array<std::size_t, crossing_count> row_of{};
-        std::size_t bytes = 64; // none is of no size
+        std::size_t bytes = 64; // the storage must not be empty
     };
-    /// Who tells goes by the strictest of its readers; who hears tells an old value to the most patient, too.
+    /// The sender applies the strictest maximum age of the readers; the receiver passes an old value on to
+    /// the most patient.
     static constexpr Duration stricter(Duration a, Duration b, bool is_told) {
         if (a == Duration::zero() || b == Duration::zero()) return std::max(a, b);
         return is_told ? std::min(a, b) : std::max(a, b);
@@ -143,14 +143,14 @@ public:
     static constexpr bool is_told_time = system.wire.has_clock() && !tells_time;
     static constexpr std::size_t teller = find_node(system.view(), system.wire.clock.node);
 
-    /// Of a command its arguments and results; the longest.
+    /// Bytes of a command's arguments and results; the largest.
     static constexpr std::size_t command_bytes = [] {
         std::size_t most = 1;
         for (const CrossingIndex& each : plan.index)
             most = std::max(most, std::size_t{each.value.bytes} + each.result.bytes);
         return most;
     }();
-    /// The frame of that identifier; where there is none, how many there are.
+    /// Returns the index of the frame with that identifier; the number of frames when there is none.
     static constexpr std::size_t frame_of(std::uint32_t id) noexcept TAPPET_REALTIME {
         std::size_t first = 0, past = plan.frames.size();
         while (first < past) {
@@ -189,13 +189,13 @@ public:
     static constexpr bool serves_command(std::size_t i) noexcept TAPPET_REALTIME {
         return is_command(i) && !is_from_here(i);
     }
-    /// By which the row's messages leave this node.
+    /// Returns the frame in which the row's messages leave this node.
     static constexpr std::size_t message_frame(std::size_t i) noexcept TAPPET_REALTIME {
         const CrossingPlace& place = plan.place[rows[i].crossing];
         return is_from_here(i) ? place.frame : place.reply;
     }
-    /// Of each row: a message that is sent later could be served after its time. Of replies no time is
-    /// promised.
+    /// Time in which each row's message must be sent; a later one could be served after its deadline. Replies
+    /// have no promised time.
     static constexpr std::array<Duration, row_count> sent_by = [] {
         std::array<Duration, row_count> all{};
         for (std::size_t i = 0; i < row_count; ++i) {
@@ -216,14 +216,14 @@ public:
         return found;
     }();
 
-    // ---- names: what is told by its path in the machine, what comes by the other node's
+    // ---- names: a sent facet has its path in the machine, a received one its path in the other node
 
     static constexpr auto port_names = array_of<port_count>([](std::size_t p) {
         const std::string_view path = system.crossings[ports[p].crossing].data.from;
         return FacetName{ports[p].is_input ? in_node(path) : path};
     });
-    /// Of an event or a command: "station.out>drill.station.in" where it leaves, "saw.station.out>station.in"
-    /// where it comes.
+    /// Name of an event or a command: "station.out>drill.station.in" where it leaves,
+    /// "saw.station.out>station.in" where it arrives.
     static constexpr FacetName row_name(std::size_t i, std::string_view end) {
         const Crossing& row = crossing(i);
         if (row.kind == CrossingKind::data) return {};
@@ -235,7 +235,7 @@ public:
         array_of<row_count>([](std::size_t i) { return row_name(i, " lost"); });
     static constexpr auto presence_names = array_of<system.nodes.size()>(
         [](std::size_t node) { return FacetName{system.nodes[node].name, ".is_there"}; });
-    /// How many facets the events and commands have.
+    /// Number of facets of the events and commands.
     static constexpr std::size_t facet_count = [] {
         std::size_t count = 0;
         for (std::size_t i = 0; i < row_count; ++i)

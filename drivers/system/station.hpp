@@ -1,5 +1,5 @@
-// The machine of one node: its own table, and behind it the wire with its end. And the same system without a
-// wire, in one machine: what is local and what is cut behaves alike.
+// The machine of one node: its own table followed by its end of the wire. Also the same system without a
+// wire, in one machine: local and distributed rows behave alike.
 #pragma once
 
 #include "drivers/can/bus.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet::systems {
 
-/// A bus that carries the system's frames only.
+/// A bus that carries only the system's frames.
 inline constexpr auto no_signals = can::signal_map();
 
 template <const auto& system, std::size_t n>
@@ -19,7 +19,7 @@ struct StationRows {
     static constexpr auto& plan = Rows::plan;
     static constexpr std::size_t frame_count = plan.frames.size();
 
-    // ---- the frames, for the bus and what proves it
+    // ---- the frames, for the bus and its proof
 
     static constexpr bool is_heard(const WireFrame& frame) {
         if (frame.node == n) return false;
@@ -43,15 +43,15 @@ struct StationRows {
                                                         : system.crossings[frame.crossing].to());
         return name;
     });
-    /// A node that is alone on the wire has nobody who acknowledges: it tries again until somebody is there,
-    /// some half an hour; then it needs hands.
+    /// A node that is alone on the wire gets no acknowledgement: it retries for about half an hour, until
+    /// another node is present; after that it needs service.
     static constexpr std::uint32_t restarts = 1000;
     static constexpr Duration restart_pause = 2s;
 
-    // ---- what stands in them, for tools
+    // ---- contents of the frames, for tools
 
     using SignalName = Text<64>;
-    /// Of a value as its path, with '_'.
+    /// The name of a value is its path, with '_' for '.'.
     static constexpr auto value_names = array_of<system.crossings.size()>([](std::size_t x) {
         SignalName name;
         for (const char each : system.crossings[x].from())
@@ -61,7 +61,7 @@ struct StationRows {
     static constexpr can::Signal field(std::string_view name, std::size_t start, std::size_t bits) {
         return can::signal(name, static_cast<std::uint16_t>(start), static_cast<std::uint8_t>(bits));
     }
-    /// Empty where no signal of a DBC file says what it is.
+    /// Returns a signal without bits where a DBC file cannot describe the value.
     static constexpr can::Signal value_field(std::size_t x, const WireValue& value, std::size_t start,
                                              std::string_view name) {
         const Facet* facet = plan.index[x].from.facet;
@@ -76,7 +76,7 @@ struct StationRows {
             signal = signal.as_signed();
         return signal.times(value.step).in(system.crossings[x].kind == CrossingKind::data ? facet->unit : "");
     }
-    /// Calls take(frame, signal) for each.
+    /// Calls take(frame, signal) for each signal.
     static constexpr void each_signal(auto take) {
         for (std::size_t f = 0; f < frame_count; ++f) {
             const WireFrame& frame = plan.frames[f];
@@ -93,7 +93,7 @@ struct StationRows {
             } else if (frame.kind == WireFrameKind::data) {
                 for (std::size_t p = 0; p < system.crossings.size(); ++p) {
                     if (system.crossings[p].kind != CrossingKind::data || plan.place[p].frame != f) continue;
-                    bool is_first = true; // of the readers of one value
+                    bool is_first = true; // one signal for all readers of a value
                     for (std::size_t q = 0; q < p; ++q)
                         is_first &= system.crossings[q].from() != system.crossings[p].from();
                     if (const can::Signal value =
@@ -147,8 +147,8 @@ struct StationRows {
         }
         return all;
     }();
-    /// How often its activity is woken at most within its own deadline: by each frame that is heard or
-    /// confirmed, as many as the wire has room for, by its timers and by what its machine emits.
+    /// Most wake-ups of its activity within its own deadline: by each frame received or confirmed, as many as
+    /// the wire has room for, by its timers and by its machine's events.
     static constexpr std::int64_t wakes = [] {
         const Duration window = system.wire.service.deadline;
         std::int64_t on_wire = 0, timers = 0;
@@ -164,7 +164,7 @@ struct StationRows {
         std::int64_t events = 1;
         for (std::size_t i = 0; i < Rows::row_count; ++i)
             if (Rows::is_command(i) || Rows::sends_events(i))
-                ++events; // a held one leaves by the timer of its frame
+                ++events; // a held one is sent by the timer of its frame
         return std::min(on_wire, window / shortest + 1) + timers + events;
     }();
 
@@ -288,7 +288,7 @@ struct StationRows {
         }
         return all;
     }();
-    // ---- the common clock, behind the bus and before the end that asks it
+    // ---- the common clock, after the bus and before the end that reads it
 
     static constexpr can::ClockRow clock_row = [] {
         can::ClockRow row{};
@@ -331,7 +331,7 @@ struct StationRows {
     }();
 };
 
-/// The number of a node; a name that the system has not does not compile.
+/// Returns the number of a node; an unknown name does not compile.
 template <const auto& system>
 constexpr std::size_t number_of(std::string_view name) {
     return find_node(system.view(), name);
@@ -341,7 +341,7 @@ constexpr std::size_t number_of(std::string_view name) {
 
 namespace tappet {
 
-/// What the node's firmware is made of: `table` is that which its row of the system names.
+/// The firmware of a node; `table` is the one that its row of the system names.
 template <const auto& system, text name, const auto& table>
 inline constexpr auto station = [] {
     constexpr std::size_t n = systems::number_of<system>(name.view());

@@ -1,6 +1,5 @@
-// Whether all frames of a system come through its CAN wire in time: each is proven as one of its own node's,
-// with the queue that it really waits in there, and the frames of other nodes come as late as theirs let
-// them.
+// Checks that all frames of a system cross its CAN wire in time: each is analysed with the real send queue of
+// its own node, and frames of other nodes with the delay that their own queues allow.
 #pragma once
 
 #include "drivers/can/bus_analysis.hpp"
@@ -10,7 +9,7 @@
 
 namespace tappet::systems {
 
-/// The clock is told in classical frames, whatever the wire is.
+/// Returns the format; the clock is sent in classical frames on every wire.
 constexpr can::Format format_of(const WireRow& wire, const WireFrame& frame) noexcept TAPPET_REALTIME {
     return wire.is_fd() && !frame.is_of_clock() ? can::Format::flexible_faster : can::Format::classical;
 }
@@ -19,15 +18,14 @@ constexpr can::Identifier identifier_of(const WireRow& wire, const WireFrame& fr
     return {frame.id, wire.fixed_identifiers};
 }
 
-/// A WireAnalysis.
+/// Implements WireAnalysis for CAN.
 constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> frames) {
     constexpr std::size_t most = can::BusAnalysis::most_frames;
     if (frames.size() > most) return 0;
     std::array<can::FrameTiming, most> timing{};
-    std::array<std::int64_t, most>
-        late{}; // behind less urgent ones of its own node that are in flight already
+    std::array<std::int64_t, most> late{}; // delay behind less urgent frames of its own node in flight
     const std::uint32_t rate = s.wire.rate.bits_per_second;
-    std::array<std::int64_t, most> brought{}; // of an answer: the jitter of what it answers
+    std::array<std::int64_t, most> brought{}; // of an answer: the jitter of its request
     std::array<std::size_t, most> answers{};
     for (std::size_t f = 0; f < frames.size(); ++f) {
         answers[f] = frames.size();
@@ -45,7 +43,7 @@ constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> fram
         timing[f].deadline_ns = frames[f].deadline.count();
     }
     const std::int64_t served = s.wire.service.deadline.count();
-    // What is late at one node is one more jitter for the others, until nothing grows any more.
+    // A frame's delay at one node adds to its jitter for the others; repeat until nothing grows.
     for (bool again = true; again;) {
         again = false;
         for (std::size_t n = 0; n < s.nodes.size(); ++n) {
@@ -62,7 +60,7 @@ constexpr std::size_t analyse_can(const SystemView& s, std::span<WireFrame> fram
             for (std::size_t f = 0; f < frames.size(); ++f) {
                 if (!timing[f].own) continue;
                 const can::FrameResponse found = bus.of(f);
-                // From its own release: that of an answer is the end of what it answers.
+                // Measured from its own release; an answer is released when its request ends.
                 frames[f].worst =
                     found.response.bounded ? Duration{found.response.worst_ns - brought[f]} : Duration::max();
                 if (!found.response.bounded) return f;

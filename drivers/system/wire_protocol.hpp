@@ -1,4 +1,4 @@
-// What stands in the frames between the nodes of a system, after their protection.
+// The contents of the frames between the nodes of a system, after their protection.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -10,10 +10,10 @@
 
 namespace tappet::systems {
 
-using Contents = std::span<const std::uint8_t>; ///< of a frame, as long as the wire's longest
-using Payload = std::span<std::uint8_t>;        ///< likewise, to be written
+using Contents = std::span<const std::uint8_t>; ///< of a frame, with the wire's maximum length
+using Payload = std::span<std::uint8_t>;        ///< the same, to be written
 
-/// Of a node: that it lives, which start of it this is, and how one of its rows stands on the wire there.
+/// A node's beat: that it runs, the number of its start, and the layout of one of its rows.
 struct Beat {
     bool runs = false; ///< false: it stops, and says so once
     std::uint16_t epoch = 0;
@@ -21,7 +21,7 @@ struct Beat {
     std::uint16_t layout = 0;
 };
 
-// Four bits behind the protection say what it is; the rest stands in bytes, the low one first. All real-time.
+// Four bits after the protection state the meaning; the rest is in bytes, the low one first. All real-time.
 constexpr void put_word(const WireShape& shape, Payload into, std::uint8_t word) noexcept TAPPET_REALTIME {
     on_wire::put_bits(into, shape.protection_bits, 4, word);
 }
@@ -43,7 +43,7 @@ constexpr Beat beat_of(const WireShape& shape, Contents from) noexcept TAPPET_RE
     return {word_of(shape, from) == 1, number(0), number(1), number(2)};
 }
 
-/// The head of a channel's frames, before their contents.
+/// The head of a channel's frames, ahead of their contents.
 struct ChannelHead {
     ChannelWord word{};
     std::uint8_t number = 0;

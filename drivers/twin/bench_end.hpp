@@ -1,5 +1,5 @@
-// What a bench has at the plant's end of a device's wires. The machine runs in a process of its own there, on
-// the real driver.
+// A bench's end of a device's wires on the plant's side. On a bench the machine runs in a process of its own,
+// with the real driver.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -10,9 +10,9 @@
 
 namespace tappet {
 
-/// A driver's own class derives from it for its kind, and has
+/// Base of a driver's own class for its kind, which must have
 ///     static constexpr const DeviceKind& kind
-/// Not real-time; one thread, the plant's.
+/// Not real-time; only the plant's thread.
 class BenchEnd {
 public:
     BenchEnd() = default;
@@ -20,23 +20,23 @@ public:
     BenchEnd& operator=(const BenchEnd&) = delete;
     virtual ~BenchEnd() = default;
 
-    /// The other end of what the machine's driver opens at that place. The error says what is wrong and how
-    /// to cure it, not which device it is.
+    /// Opens the other end of the device that the machine's driver opens at that place. The error states
+    /// cause and cure, without the device's name.
     virtual std::expected<void, Sentence> open(const DevicePlace& place) = 0;
-    /// For the plant's FarEnd.
+    /// Returns the interface for the plant's FarEnd.
     [[nodiscard]] virtual ProvidedDevice provided(std::string_view name) noexcept = 0;
-    /// Lets the machine come: the plant has set what it can read. The error as of open().
+    /// Lets the machine connect, after the plant set its first values. Errors as in open().
     virtual std::expected<void, Sentence> listen() { return {}; }
-    /// Takes in what the machine has done by `now`, where nothing tells of it.
+    /// Reads what the machine has done by `now`, for devices without notification.
     virtual void look(Time /*now*/) {}
 
-    // ---- what goes wrong with the wires
-    /// Of a bus: it is off.
+    // ---- faults of the wires
+    /// Puts a bus into bus-off.
     virtual void announce_bus_off() {}
-    /// Of a server: it is there.
+    /// Switches a server on or off.
     virtual void set_power(bool /*on*/) {}
 
-    // ---- what went wrong by itself
+    // ---- counted errors
     [[nodiscard]] virtual std::uint64_t unsent() const noexcept { return 0; }
     [[nodiscard]] virtual std::uint64_t failures() const noexcept { return 0; }
 };

@@ -1,5 +1,5 @@
-// The other end of one device's wires, as a plant holds it: what the machine sends comes in here, what the
-// plant sets goes out to it. The same plant stands behind twins and behind the real drivers.
+// The plant's end of one device's wires: receives what the machine sends, and sends what the plant sets. The
+// same plant works with twins and with the real drivers.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -16,13 +16,13 @@
 namespace tappet {
 
 class FarEnd;
-/// Those of one plant, in the order in which it declares them.
+/// The far ends of one plant, in the order of their declaration.
 using FarEnds = Bounded<FarEnd*, 16>;
 
-/// Not real-time; one thread, the plant's.
+/// Not real-time; only the plant's thread.
 class FarEnd {
 public:
-    /// `device` as the machine's table names it; the characters outlive the end.
+    /// `device`: its name in the machine's table; the characters must outlive the far end.
     FarEnd(FarEnds& of, std::string_view device, std::string_view kind) : device_{device}, kind_{kind} {
         const bool has_room = of.push(this);
         TAPPET_CONTRACT(has_room, Contract::index_out_of_range, 16, 16);
@@ -31,35 +31,34 @@ public:
     FarEnd& operator=(const FarEnd&) = delete;
     virtual ~FarEnd() = default;
 
-    /// Takes the wire of its device out of those that a world has. The error names the device.
+    /// Selects its device's wire from those of a world. The error names the device.
     Sentence connect(std::span<const ProvidedDevice> wires) {
         for (const ProvidedDevice& wire : wires)
             if (wire.name == device_ && take_wire(wire)) return {};
         return Sentence{"the plant stands at the other end of ", kind_, " device \"", device_,
                         "\", which the machine does not have; correct the name in the plant"};
     }
-    /// Takes in what the machine put on the wires by `now`.
+    /// Receives what the machine put on the wires by `now`.
     virtual void take(Time now) = 0;
-    /// Puts on the wires what the plant set.
+    /// Sends what the plant set.
     virtual void give(Time now) = 0;
-    /// When give() has something to do that nobody asks for: the next frame that goes out by itself.
+    /// Returns when give() has something to send by itself: the next periodic frame.
     [[nodiscard]] virtual Time next() const noexcept { return never; }
 
-    // ---- for what takes names
+    // ---- for names checked at compile time
 
-    /// Not defined and not a constant: the compiler's message names it when a plant names what its map has
-    /// not.
+    /// Neither defined nor constexpr: the compiler's message names it when a plant's name is not in the map.
     static void this_name_is_not_in_the_map_or_goes_the_other_way();
-    /// Its arguments stand in clang's message: the name that is nearest, of a signal its frame's before it.
+    /// Puts the nearest name into clang's message, by its arguments; for a signal, its frame's before it.
     template <class Character>
     static constexpr void did_you_mean(const Character* of, const Character* name) {
-        if (of != name || name == nullptr) // always: g++ says less of what may be a constant
+        if (of != name || name == nullptr) // always true: g++ reports less about a constant expression
             this_name_is_not_in_the_map_or_goes_the_other_way();
     }
     struct Meant {
         std::string_view of{}, name{};
     };
-    /// The nearest of those that `names(i)` gives; those without a name are left out.
+    /// Returns the nearest of the names that `names(i)` returns; skips empty ones.
     template <class Names>
     static constexpr Meant nearest_to(std::string_view written, std::size_t count, const Names& names) {
         Meant meant;

@@ -1,5 +1,4 @@
-// A ring between two threads of the host world: what stands in for a kernel's socket or event queue in a
-// twin.
+// A ring between two threads of the host world: a twin's replacement for a kernel's socket or event queue.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -16,7 +15,7 @@ template <class T, std::size_t N> class Ring {
     static_assert(N > 0 && (N & (N - 1)) == 0, "the free-running indices wrap only with a power of two");
 
 public:
-    /// Where the writer fills in the next item, which add() then hands over; nothing when it is full.
+    /// Returns where the writer fills in the next item, which add() then publishes; null when it is full.
     [[nodiscard]] T* room() noexcept TAPPET_REALTIME {
         const std::uint32_t end = end_.load(std::memory_order_relaxed);
         return end - begin_.load(std::memory_order_acquire) == N ? nullptr : &items_[end % N];
@@ -24,7 +23,7 @@ public:
     void add() noexcept TAPPET_REALTIME {
         end_.store(end_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
-    /// False, and nothing stored, when it is full.
+    /// Stores the item; returns false, and stores nothing, when it is full.
     [[nodiscard]] bool push(const T& item) noexcept TAPPET_REALTIME {
         T* const free = room();
         if (free == nullptr) return false;
@@ -32,7 +31,7 @@ public:
         add();
         return true;
     }
-    /// False, and `item` untouched, when it is empty.
+    /// Takes the next item; returns false, and leaves `item` unchanged, when it is empty.
     [[nodiscard]] bool pop(T& item) noexcept TAPPET_REALTIME {
         const std::uint32_t begin = begin_.load(std::memory_order_relaxed);
         if (begin == end_.load(std::memory_order_acquire)) return false;
@@ -40,11 +39,11 @@ public:
         begin_.store(begin + 1, std::memory_order_release);
         return true;
     }
-    /// The reader's next item, looked at by front(), is done with.
+    /// Removes the reader's next item, seen by front().
     void drop() noexcept TAPPET_REALTIME {
         begin_.store(begin_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
-    /// The reader's next item, or nothing; valid until the reader's next pop.
+    /// Returns the reader's next item, or null; valid until the reader's next pop().
     [[nodiscard]] const T* front() const noexcept TAPPET_REALTIME {
         const std::uint32_t begin = begin_.load(std::memory_order_relaxed);
         return begin == end_.load(std::memory_order_acquire) ? nullptr : &items_[begin % N];

@@ -1,4 +1,4 @@
-// What a host has in place of a device of the box: a twin at the machine's end, and the plant's end of its
+// The host's replacement for a device of the box: a twin at the machine's end, and the plant's end of its
 // wires.
 #pragma once
 
@@ -11,13 +11,12 @@
 
 namespace tappet {
 
-/// A driver's own class derives from it for its kind. It has
+/// Base of a driver's own class for its kind, which must have
 ///     static constexpr const DeviceKind& kind
-///     explicit ..(std::string_view name, std::uint64_t seed)         `seed` decides what its faults strike
+///     explicit ..(std::string_view name, std::uint64_t seed)         `seed` selects what its faults strike
 ///     std::expected<void, Sentence> open(const void* device_map)
 ///     ProvidedDevice machine_end(), plant_end()
-/// and hides those of the following that its kind has something to do in. Not real-time; one thread, the
-/// plant's.
+/// and hides those of the following members that its kind needs. Not real-time; only the plant's thread.
 class SimulatedDevice {
 public:
     explicit SimulatedDevice(std::string_view of) noexcept : name{of} {}
@@ -26,22 +25,21 @@ public:
 
     const std::string_view name;
 
-    /// The machine's end anew, as a new process has it.
+    /// Opens the machine's end again, as for a new process.
     std::expected<void, Sentence> open_again() { return {}; }
     void count(WireCounters&) const noexcept {}
 
-    // ---- time: what comes to the plant before it moves, and to the machine behind that
+    // ---- time: arrivals at the plant before its move(), and at the machine after it
     void bring_to_plant(Time) {}
     void bring_to_machine(Time) {}
-    /// When something that is on its way arrives by itself.
+    /// Returns when something pending arrives by itself.
     [[nodiscard]] Time next() const noexcept { return never; }
-    /// Whether the machine has done something at its end since bring_to_machine(), or the twin holds
-    /// something back.
+    /// Returns whether the machine used its end since bring_to_machine(), or the twin holds something back.
     [[nodiscard]] bool is_driven() const noexcept { return false; }
-    /// Whether nothing is on its way.
+    /// Returns whether nothing is pending.
     [[nodiscard]] bool is_still() const noexcept { return true; }
 
-    // ---- what the guardian of a machine does whose process is gone
+    // ---- the guardian's work for a machine whose process has ended
     void write_safe_lines() noexcept {}
     void send_safe_frames(Time) noexcept {}
     void write_safe_registers() noexcept {}

@@ -16,7 +16,7 @@ inline constexpr std::size_t most_bytes = 512; ///< of a datagram; each driver s
 class Device {
 public:
     virtual ~Device() = default;
-    /// Takes the next datagram; returns 0 when there is none. Of one longer than `into` it copies the
+    /// Takes the next datagram; returns 0 when there is none. When it is longer than `into`, copies the
     /// beginning and returns the whole size.
     virtual std::size_t receive(std::span<std::byte> into) noexcept TAPPET_REALTIME = 0;
     /// Sends to the address it asks, or else to the sender of the last received datagram. Returns false when

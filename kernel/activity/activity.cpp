@@ -98,7 +98,7 @@ bool Activity::sleep_until(Time time) noexcept TAPPET_REALTIME {
     engine_->sleeps_until(time);
     engine_->heed_devices_of_running();
     const bool woken = engine_->waiter().wait(time);
-    if (!woken) engine_->stamps().renew(); // a stamp that lags the clock would take the time for not come
+    if (!woken) engine_->stamps().renew(); // a stamp behind the clock would show the time as still ahead
     return woken;
 }
 
@@ -118,7 +118,7 @@ void Activity::cycles() noexcept TAPPET_REALTIME {
     }
 }
 
-// One that comes so late that the supervisor may lose its patience ends without further cycles.
+// Runs cycles until the behaviours have ended; none if asked so late that the supervisor may not wait.
 void Activity::end() noexcept TAPPET_REALTIME {
     const Time until = at_ns(ends_by_ns_.load(std::memory_order_relaxed));
     if (clock_->now() >= until) return;
@@ -147,8 +147,8 @@ void Activity::loop(const EnginePart& part) {
     part.type->loop(part.component_, control);
 }
 
-// Its own thread leaves the safe values, upon what broke the contract, which runs no more. A contract that
-// its stop breaks finds the stop claimed.
+// The activity's own thread leaves the safe values after it broke a contract; the code that broke it runs no
+// more. If the stop itself breaks a contract, it finds the stop claimed.
 void Activity::park() noexcept TAPPET_REALTIME {
     is_lost_.store(true, std::memory_order_release);
     state_.store(State::parked, std::memory_order_release);

@@ -1,11 +1,11 @@
-// Taking up commands, and what becomes of them when their component stops.
+// Acceptance of commands, and their end when their component stops.
 #include "kernel/activity/command_processor.hpp"
 
 namespace tappet {
 
 CommandState CommandProcessor::take_up(CommandSlot& slot) noexcept TAPPET_REALTIME {
     const bool planned = slot.route().planned;
-    // What a row plans always has a place; of the others there may be too many.
+    // A command that a row plans always has a place; there may be too many others.
     if (count_ == followed_.size() || (!planned && requests_at_work_ == requests_)) {
         slot.reject();
         return CommandState::rejected;
@@ -18,8 +18,7 @@ CommandState CommandProcessor::take_up(CommandSlot& slot) noexcept TAPPET_REALTI
 
 namespace detail {
 
-// A function of its own, with a name: inlined into the loop it hides that loop's counter from who looks at
-// the object code.
+// A named function of its own: inlined, it would hide the loop's counter from the check of the object code.
 void fail_one(CommandSlot& slot) noexcept TAPPET_REALTIME;
 [[gnu::noinline]] void fail_one(CommandSlot& slot) noexcept TAPPET_REALTIME { slot.fail(); }
 

@@ -1,5 +1,6 @@
-// The command processor of an engine (thesis 4.5.2, 5.3): takes up what peers sent, in the order of their
-// urgency, and follows each accepted command to its end. Room for every command is planned: none overflows.
+// The command processor of an engine (thesis 4.5.2, 5.3): accepts the commands that peers sent, the most
+// urgent senders' first, and follows each accepted command to its end. There is room for every planned
+// command, so none overflows.
 #pragma once
 
 #include "kernel/component/command.hpp"
@@ -8,11 +9,12 @@
 
 namespace tappet {
 
-/// The engine's thread only, but for inbox().post().
+/// Used only by the engine's thread, except inbox().post().
 class CommandProcessor {
 public:
-    /// Before the first cycle. `followed` has a place for each command that may be at work, `requests` of
-    /// them for those that no row of the table plans; both outlive the processor.
+    /// Sets up the processor, before the first cycle. `followed` has a place for each command that may be at
+    /// work; `requests` of these places are for commands that no row of the table plans. Both outlive the
+    /// processor.
     void place(std::span<CommandMailbox> mailboxes, std::span<CommandSlot*> followed,
                std::size_t requests) noexcept {
         inbox_.place(mailboxes);
@@ -23,29 +25,29 @@ public:
     }
     [[nodiscard]] CommandInbox& inbox() noexcept TAPPET_REALTIME { return inbox_; }
     [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME { return inbox_.pending(); }
-    /// Whether one was sent or is at work.
+    /// Returns whether a command was sent or is at work.
     [[nodiscard]] bool has_work() const noexcept TAPPET_REALTIME { return count_ != 0 || pending(); }
 
-    /// Hands each sent command, with the part it is for, to visit(part, slot), which calls take_up(). Returns
-    /// how many.
+    /// Gives each sent command, with the part that it is for, to visit(part, slot), which calls take_up().
+    /// Returns their number.
     template <class Visit>
     std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
         return inbox_.serve([&visit](const CommandNotice& sent) noexcept TAPPET_REALTIME {
             visit(static_cast<std::uint32_t>(sent.part), *static_cast<CommandSlot*>(sent.slot));
         });
     }
-    /// Runs the action; an accepted command is followed from now on. Returns how it stands.
+    /// Runs the action; an accepted command is followed from now on. Returns its state.
     CommandState take_up(CommandSlot& slot) noexcept TAPPET_REALTIME;
 
-    /// Hands each command at work to visit(part, slot), oldest first, which asks slot.follow() and returns
-    /// whether it has ended. Returns whether any has.
+    /// Gives each command at work, oldest first, to visit(part, slot), which calls slot.follow() and returns
+    /// whether the command has ended. Returns whether any has.
     template <class Visit>
     bool follow(Visit&& visit) noexcept TAPPET_REALTIME {
         std::size_t kept = 0;
-        const std::size_t count = count_; // a bound that no completion can move: a counted loop
+        const std::size_t count = count_; // no completion can change this bound: a counted loop
         for (std::size_t i = 0; i < count; ++i) {
             CommandSlot* const slot = followed_[i];
-            // Once it has ended its sender may send it elsewhere.
+            // Read before: when the command has ended, its sender may send it elsewhere.
             const std::uint32_t part = slot->route().part;
             const bool planned = slot->route().planned;
             if (!visit(part, *slot))
@@ -58,9 +60,9 @@ public:
         return ended;
     }
 
-    /// A component stops: what it has at work failed.
+    /// Fails the commands at work of a component that stops.
     void fail(std::uint32_t part) noexcept TAPPET_REALTIME;
-    /// The engine stops: what was sent and not taken up is rejected.
+    /// Rejects commands that were sent but not accepted, when the engine stops.
     void reject_sent() noexcept TAPPET_REALTIME;
 
     [[nodiscard]] std::size_t at_work() const noexcept TAPPET_REALTIME { return count_; }

@@ -1,6 +1,5 @@
-// The tape of one activity (thesis A.2.1): which functions ran in each of its last cycles, and when. The
-// engine writes it from the stamps that it takes anyway; whoever reads it, from whatever process, is noticed
-// by nobody.
+// The tape of one activity (thesis A.2.1): the functions that ran in each of its last cycles, with their
+// times. The engine writes it from stamps that it needs anyway. Readers, from any process, do not disturb it.
 #pragma once
 
 #include "kernel/exchange/word_tape.hpp"
@@ -10,9 +9,9 @@
 
 namespace tappet {
 
-/// A cycle on a tape is, in words of 64 bits: one mark for each function in the order in which they ran, then
-/// release, begin, and a word of the end and of how many marks there are. It is read from its end, so that
-/// the last cycles are found first. Times are those of the machine's clock, in ns.
+/// A cycle on a tape, in words of 64 bits: one mark for each function in the order in which they ran, then
+/// release, begin, and a word with the end and the number of marks. It is read from its end, so that the last
+/// cycles are found first. Times are those of the machine's clock, in ns.
 struct TapeCycle {
     static constexpr std::size_t words_beside_marks = 3;
 
@@ -29,13 +28,12 @@ struct TapeCycle {
     [[nodiscard]] std::size_t words() const noexcept { return static_cast<std::size_t>(after - at); }
 };
 
-/// A function of the engine that ended so long after its cycle's begin. It began when the mark before it
-/// ended.
+/// The end of an engine's function, after its cycle's begin. It began when the mark before it ended.
 struct TapeMark {
     static constexpr unsigned time_bits = 44; ///< nearly five hours
     static constexpr std::uint64_t time_mask = (std::uint64_t{1} << time_bits) - 1;
 
-    std::uint32_t function = 0; ///< as FunctionTiming is numbered
+    std::uint32_t function = 0; ///< number of the function, as for FunctionTiming
     std::int64_t end = 0;       ///< ns after the begin of the cycle
 
     [[nodiscard]] constexpr std::uint64_t word() const noexcept {
@@ -46,7 +44,7 @@ struct TapeMark {
     }
 };
 
-/// The cycle whose last three words these are; nothing but its numbers is checked by who reads.
+/// Returns the cycle whose last three words these are. It checks nothing; readers check only its numbers.
 [[nodiscard]] constexpr TapeCycle cycle_of(std::uint64_t release, std::uint64_t begin, std::uint64_t summary,
                                            std::uint64_t after) noexcept {
     TapeCycle cycle;
@@ -69,12 +67,12 @@ public:
     [[nodiscard]] static constexpr std::size_t bytes_for(std::size_t words) noexcept {
         return sizeof(CycleTape) + words * sizeof(std::uint64_t);
     }
-    /// At the beginning of bytes_for(words); `words`: a power of two, at least fewest_words.
+    /// Constructed at the beginning of bytes_for(words); `words`: a power of two, at least fewest_words.
     explicit CycleTape(std::size_t words) noexcept
         : WordTape{words, most_marks_of(words) + TapeCycle::words_beside_marks},
           most_marks_{most_marks_of(words)} {}
 
-    /// The engine's, in this order. Real-time.
+    /// For the engine, in this order. Real-time.
     void begin() noexcept TAPPET_REALTIME { marks_ = left_out_ = 0; }
     void mark(std::uint32_t function, std::int64_t ns_after_begin) noexcept TAPPET_REALTIME {
         if (marks_ == most_marks_) {
@@ -95,8 +93,8 @@ public:
         publish(at + TapeCycle::words_beside_marks);
     }
 
-    /// The cycle that ends where `after` says: head(), or the `at` of the cycle after it. False: there is
-    /// none, or it is overwritten.
+    /// Gets the cycle that ends at `after`: head(), or the `at` of the cycle after it. Returns false when
+    /// there is none, or when it is overwritten.
     [[nodiscard]] bool cycle_before(std::uint64_t after, TapeCycle& cycle) const noexcept {
         if (after < TapeCycle::words_beside_marks || after > head()) return false;
         cycle = cycle_of(get(after - 3), get(after - 2), get(after - 1), after);

@@ -29,7 +29,7 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     watches_wakes_ = !plan.periodic && plan.at_most_per > Duration::zero();
     const bool is_simple =
         plan.timers.empty() && plan.guarded.empty() && recorded_ == nullptr && recorder_ == nullptr;
-    // An activity that rows wake also keeps their times.
+    // An activity that rows wake also records their times.
     const bool only_steps = plan.behaviours.empty() && plan.periodic;
     serves_ = !is_simple ? Serves::everything : only_steps ? Serves::steps : Serves::behaviours;
     for (EnginePart& part : plan_.parts) {
@@ -77,7 +77,7 @@ static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's funct
     next_release_ += lost * plan_.period;
 }
 
-// Sporadic activities promised at most n wakes in a window: the analysis believed it, so a breach is counted.
+// A sporadic activity promises at most n wakes in a window. The analysis relies on it: breaches are counted.
 [[gnu::always_inline]] inline void Engine::watch_wakes() noexcept TAPPET_REALTIME {
     const auto n = static_cast<std::uint64_t>(plan_.at_most_n);
     Time& oldest = wakes_[oldest_wake_];
@@ -90,8 +90,8 @@ static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's funct
 template <Engine::Serves serves>
 void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     constexpr bool everything = serves == Serves::everything, causes = serves != Serves::steps;
-    // Not the end of the cycle before, where its thread went straight on: who was preempted behind that would
-    // count it as late.
+    // A new stamp, not the end of the cycle before when the thread ran straight on: after a preemption in
+    // between, the cycle would count as late.
     const Time now = stamps_.now();
     cycle_.now = lap_ = now;
     Duration used{};
@@ -119,9 +119,9 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
         tape_ = recorded_ != nullptr && recorded_->is_on() ? recorded_ : nullptr;
         if (tape_ != nullptr) tape_->begin();
     }
-    if (watches_wakes_ && (due || expired == Expired::none)) // a look at what is as good as it was is no wake
+    if (watches_wakes_ && (due || expired == Expired::none)) // polling an input that is still good is no wake
         watch_wakes();
-    if (ends_at_ == never) { // who asks for a start while the activity ends is refused when it has stopped
+    if (ends_at_ == never) { // a request to start during the end is refused when the activity has stopped
         if (asked_.load(std::memory_order_relaxed)) serve_requests(); // no step: a hint, taken by an exchange
         if (awaiting_ != 0) start_awaiting();
     }
@@ -132,7 +132,7 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     if (inbox_.pending()) acted |= run_messages();
     if constexpr (causes) {
         set_running_cause(cause_);
-        run_behaviours(due || acted); // what ran may have changed a condition
+        run_behaviours(due || acted); // these functions may have changed a condition
         if (ending_ != 0) end_parts();
         if (waking != nullptr) waking->times.add(lap_ - cause_);
         set_running_cause(no_cause);
@@ -154,8 +154,7 @@ template void Engine::cycle_as<Engine::Serves::steps>(bool) noexcept TAPPET_REAL
 template void Engine::cycle_as<Engine::Serves::behaviours>(bool) noexcept TAPPET_REALTIME;
 template void Engine::cycle_as<Engine::Serves::everything>(bool) noexcept TAPPET_REALTIME;
 
-// Between the two steps a later value may name its own row: then that one is not counted, and no time is
-// wrong.
+// Between the two steps a newer value may name its own row. That sample is lost, but no time is wrong.
 WakingRow* Engine::take_waking_row() noexcept TAPPET_REALTIME {
     WakingRow* const row = waking_.load(std::memory_order_acquire);        // no step: for the report
     if (row != nullptr) waking_.store(nullptr, std::memory_order_relaxed); // no step: for the report
@@ -181,7 +180,7 @@ bool Engine::run_timers() noexcept TAPPET_REALTIME {
 bool Engine::run_commands() noexcept TAPPET_REALTIME {
     const auto note_state = [this](std::uint32_t part, CommandState state) noexcept
         TAPPET_REALTIME { note((std::uint64_t{part} << 8) | static_cast<std::uint64_t>(state), cycle_.now); };
-    // Those of one component that come one after the other are timed together.
+    // Consecutive commands of one component are timed together.
     constexpr std::uint32_t nobody = Miss::nobody;
     std::uint32_t at_work = nobody;
     std::uint64_t together = 0;
@@ -200,7 +199,7 @@ bool Engine::run_commands() noexcept TAPPET_REALTIME {
             note_state(part, commands_.take_up(slot));
         });
     const bool ended = commands_.follow([&](std::uint32_t part, CommandSlot& slot) noexcept TAPPET_REALTIME {
-        if (slot.has_completion()) turn_to(part); // else nothing of it runs any more
+        if (slot.has_completion()) turn_to(part); // otherwise none of its code runs any more
         const CommandState state = slot.follow();
         if (!in_flight(state)) note_state(part, state);
         return !in_flight(state);
@@ -251,7 +250,7 @@ Engine::Expired Engine::look_at_expired() noexcept TAPPET_REALTIME {
     auto found = Expired::none;
     for (GuardedInput& each : plan_.guarded) {
         if (each.expires > cycle_.now) continue;
-        // A newer value may have come, of a row that wakes nobody.
+        // A newer value may have come from a row that wakes nobody.
         const bool stale = each.port->flow(each.input) == Flow::stale;
         each.expires = stale ? never : each.port->expires(each.input);
         if (stale || found == Expired::none) found = stale ? Expired::stale : Expired::looked;
@@ -279,13 +278,14 @@ void Engine::record_values(bool stepped) noexcept TAPPET_REALTIME {
     lap_ = stamps_.now();
 }
 
-// Virtual time has no preemption, and its processor is whatever host runs it.
+// Virtual time has no preemption, and its processor is that of any host.
 Duration Engine::used_processor() const noexcept TAPPET_REALTIME {
     return clock_->is_virtual() ? clock_->now() - Time{} : os::processor_time_of_this_thread();
 }
 
 bool Engine::measures_cycle() noexcept TAPPET_REALTIME {
-    // As the analysis counts: what comes together is one job, and the next one comes a time of at_most later.
+    // As the analysis counts: wakes that come together are one job; the next one comes a time of at_most
+    // later.
     if (!plan_.periodic && claim_began_ != Time::min() && cycle_.now - claim_began_ < plan_.at_most_per)
         return measures_claim_;
     claim_began_ = cycle_.now;
@@ -296,7 +296,7 @@ bool Engine::measures_cycle() noexcept TAPPET_REALTIME {
         return false;
     }
     if (next_measured_ != 0) --next_measured_;
-    // By chance: what comes at regular times would be measured each time, or never.
+    // At random: jobs at regular times would be measured always or never.
     left_out_ = static_cast<std::uint32_t>(chance_.below(2 * measured_one_of - 1));
     ++statistics_.measured_claims;
     return true;
@@ -321,7 +321,7 @@ void Engine::note_excess(const FunctionTiming& function, Duration took) noexcept
 void Engine::note_miss(Duration response) noexcept TAPPET_REALTIME {
     const Duration lateness = cycle_.now - cycle_.release;
     Miss miss{worst_function_, cycle_.release, response, worst_took_, worst_usual_};
-    // Begun later than any function exceeded its usual time: the delay is the culprit, no function is.
+    // If the cycle began later than any function exceeded its usual time, the delay is to blame, no function.
     if (worst_excess_ == least_excess_ || lateness > worst_excess_)
         miss = {Miss::nobody, cycle_.release, response, lateness, Duration::zero()};
     else
@@ -331,16 +331,16 @@ void Engine::note_miss(Duration response) noexcept TAPPET_REALTIME {
     if (plan_.stop_when_late) ask_stop(StopReason::missed_deadline, miss.function);
 }
 
-// A response that neither exceeds the longest lateness nor the longest busy time is no new maximum of either,
+// A response that exceeds neither the longest lateness nor the longest busy time is no new maximum of either,
 // which are parts of it, nor of their sum.
 void Engine::note_response(Duration response) noexcept TAPPET_REALTIME {
     EngineStatistics& seen = statistics_;
-    if (seen.cycles > 1) { // the first cycle warms caches: it is run, and counted as no maximum
+    if (seen.cycles > 1) { // the first cycle warms caches: it runs, but counts for no maximum
         seen.longest_response = std::max(seen.longest_response, response);
         seen.longest_lateness = std::max(seen.longest_lateness, cycle_.now - cycle_.release);
         seen.longest_busy = std::max(seen.longest_busy, lap_ - cycle_.now);
-        // Reading the thread's processor time enters the kernel. Who never was busy for longer than its
-        // budget kept it, whatever else ran meanwhile; who was may have been preempted, or have claimed too
+        // Reading the thread's processor time enters the kernel. If never busy for longer than its budget,
+        // the activity kept it, whatever else ran. Otherwise it may have been preempted, or have claimed too
         // little.
         if (!measures_processor_ && plan_.budget > Duration::zero() &&
             (seen.longest_busy > plan_.budget || seen.wakes_too_many != 0)) {

@@ -1,12 +1,12 @@
 // The lives of an engine's components (thesis 3.1.3): all of them with their activity, or one while the
-// others go on. A component starts with valid inputs and leaves safe values.
+// others run on. A component starts with valid inputs and leaves safe values.
 #include "kernel/activity/engine.hpp"
 
 namespace tappet {
 
 namespace {
 
-/// Whether the component may not start because of this input.
+/// Returns why the component may not start because of this input; none: it may.
 LifeRefusal refusal_by(const NeededInput& input) noexcept TAPPET_REALTIME {
     if (input.circle != nullptr && !is_running(*input.circle)) return LifeRefusal::none;
     const Flow flow = input.flow(input.input);
@@ -17,7 +17,7 @@ LifeRefusal refusal_by(const NeededInput& input) noexcept TAPPET_REALTIME {
 
 constexpr std::uint64_t life_note = 0x6c696665u; // "life": no transition of a state machine has this number
 
-/// The first begin of a period after `now`. All count from the beginning of the clock.
+/// Returns the first begin of a period after `now`. All periods count from the beginning of the clock.
 constexpr Time next_on_grid(Time now, Duration period, Duration phase) noexcept TAPPET_REALTIME {
     const Duration since = now - (Time{} + phase);
     const auto whole = since / period - (since % period < Duration::zero() ? 1 : 0);
@@ -28,7 +28,7 @@ static_assert(next_on_grid(Time{} + 1ms, 1ms, 0ms) == Time{} + 2ms &&
                   next_on_grid(Time{} + 1700us, 1ms, 200us) == Time{} + 2200us,
               "the next point lies after now, by a period at most");
 
-/// Hands each port of these kinds, with its facet, to visit(facet, port).
+/// Gives each port of this kind, with its facet, to visit(facet, port).
 template <class Visit>
 void for_ports(const ComponentType& type, void* component, FacetKind kind, Visit&& visit) noexcept
     TAPPET_REALTIME {
@@ -85,15 +85,14 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     cycle_.now = cycle_.release = lap_ = ended_ = now;
     next_release_ = plan_.periodic ? next_on_grid(now, plan_.period, plan_.phase) : never;
     if (was_stopped_) {
-        static_cast<void>(run_messages()); // what came meanwhile reached nobody: each row counts its own
+        static_cast<void>(run_messages()); // messages since the stop reached nobody: each row counts its own
         commands_.reject_sent();
     }
     asked_.store(true, std::memory_order_relaxed);
-    serve_requests(); // and refuse them, as they were answered
+    serve_requests(); // and refuse them, as they were answered before
     active_.store(true, std::memory_order_release);
     awaiting_ = 0;
-    // All of them first: what the first one tells in its start() reaches those behind it that are sure to
-    // start.
+    // All states first: what the first one sends in its start() reaches later ones that are sure to start.
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i)
         if (plan_.parts[i].state.load(std::memory_order_relaxed) != ComponentState::failed)
             plan_.parts[i].state.store(may_wait(i) ? ComponentState::waiting : ComponentState::starting,
@@ -110,7 +109,7 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) start_behaviours(i);
     if (!plan_.periodic)
         for (GuardedInput& each : plan_.guarded)
-            each.expires = now; // the first look says when the next is due
+            each.expires = now; // the first check sets the time of the next one
     end_change(generation);
 }
 
@@ -127,7 +126,7 @@ bool Engine::have_ended(std::uint32_t part) const noexcept TAPPET_REALTIME {
     return true;
 }
 
-// What others asked before the stop is done first.
+// Messages sent before the stop are handled first.
 void Engine::begin_end(Time now, Time until) noexcept TAPPET_REALTIME {
     const std::uint64_t generation = begin_change();
     const RunsActivity here{plan_.activity, &cycle_.now};
@@ -154,9 +153,9 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     const RunsActivity here{plan_.activity, &cycle_.now};
     stamps_.renew();
     cycle_.now = cycle_.release = lap_ = now;
-    // What others asked before the stop is done, and what the own behaviours ask at their end: a valve that
-    // somebody told to close closes. A contract that broke in the cycle may have broken in the mailbox: that
-    // is left alone.
+    // Messages sent before the stop are handled, and those that its own behaviours send at their end: a valve
+    // that was told to close closes. If a contract broke in the cycle, the mailbox itself may be broken, so
+    // it is left alone.
     const bool broke = generation == is_changing;
     if (!broke) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
@@ -187,7 +186,7 @@ void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     open_outputs(part);
     for_ports(*part.type, part.component_, FacetKind::input,
               [](const Facet& facet, void* port) noexcept TAPPET_REALTIME { facet.port->resume(port); });
-    cancel_timers(i); // armed while it stood: by changed()
+    cancel_timers(i); // armed while it was stopped: by changed()
     if (part.type->start != nullptr) part.type->start(part.component_, cycle_);
     part.state.store(ComponentState::running, std::memory_order_release);
 }
@@ -213,7 +212,7 @@ void Engine::tell_resting() noexcept TAPPET_REALTIME {
         plan_.parts[i].waits_for_its_turn.store(rests(i), std::memory_order_relaxed);
 }
 
-// In one place, so that no driver's stop() forgets it.
+// In one place, so that no driver's stop() can forget it.
 void Engine::say_at_rest(const EnginePart& part) noexcept TAPPET_REALTIME {
     for_ports(*part.type, part.component_, FacetKind::output,
               [](const Facet& facet, void* port) noexcept TAPPET_REALTIME {
@@ -227,7 +226,7 @@ void Engine::open_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
     close(*part.type, part.component_, nullptr);
 }
 
-// The count first: who is woken by what closes, and is forced, finds that it has to let go.
+// The count first, so that a forced reader woken by the closing finds that its force has ended.
 void Engine::close_outputs(EnginePart& part, std::uint64_t stop) noexcept TAPPET_REALTIME {
     part.stops.count.fetch_add(stop, std::memory_order_seq_cst);
     close(*part.type, part.component_, &part.dropped_writes);
@@ -238,9 +237,9 @@ void Engine::cancel_timers(std::uint32_t part) noexcept TAPPET_REALTIME {
         if (each.part == part) each.timer->cancel();
 }
 
-// A component that failed or stopped before has left its safe values already. Its inputs are released before
-// it stops, so that a driver sends what others left behind; its outputs after that, so that their readers get
-// nothing between the forced and the safe value.
+// A component that failed or stopped before has already left its safe values. The forces of its inputs end
+// before it stops, so that a driver sends the values that others left behind. Those of its outputs end after
+// that, so that their readers get nothing between the forced and the safe value.
 void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     const ComponentState state = part.state.load(std::memory_order_relaxed);
@@ -260,7 +259,7 @@ void Engine::stop_part(std::uint32_t i) noexcept TAPPET_REALTIME {
         part.left_unsafe.store(!part.type->stopped_safely(part.component_), std::memory_order_relaxed);
     say_at_rest(part);
     end_forces(part, FacetKind::output);
-    close_outputs(part, Stops::of_a_life); // its safe values stand
+    close_outputs(part, Stops::of_a_life); // its safe values stay
     cancel_timers(i);
     part.state.store(ComponentState::stopped, std::memory_order_release);
 }
@@ -285,10 +284,10 @@ bool Engine::may_wait(std::uint32_t part) const noexcept TAPPET_REALTIME {
     return false;
 }
 
-// Its own components have not written yet: only what other activities give can be judged.
+// Its own components have not written yet, so only values from other activities can be judged.
 LifeAnswer Engine::readiness(Time now) noexcept TAPPET_REALTIME {
     expect_standing();
-    cycle_.now = now; // the ages of values are told by it
+    cycle_.now = now; // the ages of values are relative to it
     for (const NeededInput& each : plan_.inputs) {
         if (each.same_activity) continue;
         if (const LifeRefusal refusal = refusal_by(each); refusal != LifeRefusal::none)
@@ -323,7 +322,7 @@ void Engine::serve_requests() noexcept TAPPET_REALTIME {
             continue;
         }
         EnginePart& part = plan_.parts[i];
-        if (part.ends_at != never) { // the last wish counts, but its behaviours are on the way to their ends
+        if (part.ends_at != never) { // the last request counts, but its behaviours are already ending
             part.ending = ticket;
             part.wanted = wanted == LifeChange::start ? LifeChange::restart : wanted;
             continue;
@@ -347,7 +346,7 @@ void Engine::carry_out(std::uint32_t i, LifeTicket ticket, LifeChange wanted) no
     plan_.parts[i].requests.answer(ticket, answer);
 }
 
-// Its activity stops with it, and does what was asked for no more.
+// Its activity stops with it, so its pending request is refused.
 void Engine::refuse_ending(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     if (part.ends_at == never) return;
@@ -421,7 +420,7 @@ void Engine::leave(Parts leaving) noexcept TAPPET_REALTIME {
     resting_ |= leaving;
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if ((leaving >> i & 1) == 0) continue;
-        static_cast<void>(change(i, LifeChange::stop)); // never refused, but to one that failed: it stands
+        static_cast<void>(change(i, LifeChange::stop)); // refused only by a failed one, which does not run
         note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(LifeChange::stop),
              cycle_.now);
     }

@@ -1,4 +1,4 @@
-// How long functions take: every function of an activity is timed in every cycle, always.
+// The durations of functions: every function of an activity is timed in every cycle.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -8,8 +8,8 @@
 
 namespace tappet {
 
-/// Wall time of one function, preemption included. The first pass, which fills caches and touches memory, is
-/// left out so that it does not stand as the maximum for ever.
+/// Wall time of one function, preemption included. The first pass fills caches and touches memory; it is left
+/// out so that it is not the maximum for ever.
 struct FunctionTiming {
     std::uint64_t passes = 0;
     Duration last{};
@@ -17,7 +17,7 @@ struct FunctionTiming {
     Duration total{};
     std::uint64_t blamed = 0; ///< missed deadlines of which this function was the culprit
 
-    /// `together`: so many passes that were timed as one.
+    /// `together`: number of passes that were timed as one.
     void add(Duration took, std::uint64_t together = 1) noexcept TAPPET_REALTIME {
         const bool is_first = passes == 0;
         passes += is_first ? 1 : together;
@@ -27,11 +27,11 @@ struct FunctionTiming {
         longest = is_first ? Duration::zero() : last;
         if (is_first) total = Duration::zero();
     }
-    /// The mean of all passes but the first.
+    /// Returns the mean of all passes but the first.
     [[nodiscard]] Duration usual() const noexcept TAPPET_REALTIME {
         return passes > 1 ? total / static_cast<std::int64_t>(passes - 1) : last;
     }
-    /// Whether took - usual() > excess, told without a division.
+    /// Returns whether took - usual() > excess, without a division.
     [[nodiscard]] bool exceeds_usual(Duration took, Duration excess) const noexcept TAPPET_REALTIME {
         const std::int64_t above = (took - excess).count();
         if (above <= 0) return false;
@@ -49,7 +49,7 @@ struct Miss {
         nobody; ///< index into the engine's functions; nobody: the activity itself began late
     Time release{};
     Duration response{}; ///< from release to the end of the cycle
-    Duration took{};     ///< by the culprit, or the delay of the beginning
+    Duration took{};     ///< time of the culprit, or the delay of the begin
     Duration usual{};
 };
 

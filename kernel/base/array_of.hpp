@@ -1,4 +1,4 @@
-// An array, each of whose elements is made from its place.
+// An array whose elements are each made from their index.
 #pragma once
 
 #include <array>

@@ -15,7 +15,7 @@ struct Bounded {
     std::array<T, N> items{};
     std::size_t used = 0;
 
-    /// Real-time. False, and nothing stored, when it is full.
+    /// Adds an element. Returns false, and stores nothing, when it is full. Real-time.
     [[nodiscard]] constexpr bool push(const T& item) noexcept TAPPET_REALTIME {
         if (used == N) return false;
         items[used++] = item;

@@ -22,7 +22,7 @@ struct Text {
     constexpr Text(const char (&from)[M]) noexcept {
         static_cast<void>(assign({from, M - 1}));
     }
-    /// Real-time. False, and nothing changed, when it is too long.
+    /// Replaces the text. Returns false, and changes nothing, when `from` is too long. Real-time.
     constexpr bool assign(std::string_view from) noexcept TAPPET_REALTIME {
         if (from.size() > N) return false;
         characters = {};
@@ -30,7 +30,7 @@ struct Text {
         length = static_cast<std::uint32_t>(from.size());
         return true;
     }
-    /// Real-time. What does not fit is left out.
+    /// Appends; the part that does not fit is left out. Real-time.
     constexpr void append(std::string_view more) noexcept TAPPET_REALTIME {
         for (const char each : more)
             if (length < N) characters[length++] = each;

@@ -6,7 +6,7 @@
 
 namespace tappet {
 
-/// The code point of a byte; 0: the code page has none for it.
+/// Returns the code point of a byte; 0: the code page has none for it.
 constexpr std::uint32_t code_point_of_1252(std::uint8_t byte) noexcept {
     constexpr std::array<std::uint16_t, 32> from_80{
         0x20AC, 0,      0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,

@@ -1,5 +1,5 @@
-// Texts compared in one step of a constant expression: a table of a thousand components compares ten thousand
-// names, which the library does character by character and call by call.
+// Comparison of texts in one step of a constant expression. A table of a thousand components compares ten
+// thousand names, which the library does character by character and call by call.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace tappet {
 /// As a.compare(b).
 constexpr int compare_text(std::string_view a, std::string_view b) noexcept {
     const std::size_t common = std::min(a.size(), b.size());
-    // g++ folds it for constants of static storage, such as literals; for others it says so, and they are
-    // few.
+    // g++ folds this for constants of static storage, such as literals. For others, which are few, it reports
+    // that it cannot.
     if (__builtin_constant_p(__builtin_memcmp(a.data(), b.data(), common))) {
         const int order = __builtin_memcmp(a.data(), b.data(), common);
         if (order != 0 || a.size() == b.size()) return order;

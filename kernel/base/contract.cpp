@@ -1,4 +1,4 @@
-// The way of a broken contract: text, handler, and what happens when there is none.
+// The handling of a broken contract: text, handler, and the default without a handler.
 #include "kernel/base/contract.hpp"
 
 #include <algorithm>
@@ -29,12 +29,12 @@ constinit std::atomic<ContractHandler> installed{nullptr};
 static_assert(std::atomic<ContractHandler>::is_always_lock_free,
               "contracts are broken on real-time paths too");
 
-// A handler that itself breaks a contract cannot be trusted with a second one, but for one after which it
-// goes on: the way to the safe state may allocate.
+// A handler that breaks a contract itself cannot be trusted with a second one, except one after which the
+// thread goes on: the way to the safe state may allocate.
 constinit thread_local int inside_handler = 0;
 constexpr int most_inside = 4;
 
-// Addresses are read by tools that want hexadecimal.
+// Addresses are read by tools that expect hexadecimal.
 void add_address(Sentence& text, std::uint64_t address) noexcept {
     char digits[18] = {'0', 'x'};
     std::size_t n = 2;

@@ -1,6 +1,6 @@
-// Broken contracts: faults of the program, never of the plant. Each has a number that stays, a sentence and
-// its values, and leads to the installed handler, which stops the machine safely. Operating errors are
-// values, not contracts.
+// Broken contracts: faults of the program, never of the plant. Each has a permanent number, a sentence and
+// its values, and calls the installed handler, which stops the machine safely. Operating errors are values,
+// not contracts.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -16,8 +16,8 @@
 
 namespace tappet {
 
-/// The numbers are written in logs and manuals: they are never reused and never changed. 3, 101, 102, 301 and
-/// 402 were given to contracts that nothing could break.
+/// The numbers are in logs and manuals: they are never reused and never changed. 3, 101, 102, 301 and 402
+/// belonged to contracts that nothing could break.
 enum class Contract : std::uint16_t {
     index_out_of_range = 1,
     precondition = 2,
@@ -41,8 +41,8 @@ enum class Contract : std::uint16_t {
     step_limit_exceeded = 401,
 };
 
-/// What follows once the handler returned. A thread that stops must not be let go on: its next step would use
-/// what the contract says does not hold.
+/// The thread's fate after the handler returned. A thread that stops must not continue: its next step would
+/// use what the contract says does not hold.
 enum class AfterViolation : std::uint8_t { thread_stops, thread_goes_on };
 
 struct ContractText {
@@ -91,24 +91,25 @@ constexpr std::size_t values_of(Contract id) noexcept TAPPET_REALTIME {
     return count;
 }
 
-/// What a handler gets.
+/// The argument of a handler.
 struct ContractViolation {
     static constexpr std::size_t max_values = 4;
     Contract id{};
     std::array<std::int64_t, max_values> values{};
-    std::uint64_t address = 0; ///< the code that noticed; addr2line names it
+    std::uint64_t address = 0; ///< address of the code that noticed; addr2line names it
 };
 
-/// The sentence with its values: "contract 1 index-out-of-range: Element 8 was asked of something that
-/// has 4. [code at 0x...]".
+/// Returns the sentence with its values: "contract 1 index-out-of-range: Element 8 was asked of something
+/// that has 4. [code at 0x...]".
 Sentence describe(const ContractViolation& breach) noexcept;
 
-/// Leads to the safe state. Called on the thread that broke the contract, possibly on several at once. For a
-/// contract after which the thread stops it does not return: when it does, the process is aborted. Real-time.
+/// Brings the machine to its safe state. Called on the thread that broke the contract, possibly on several at
+/// once. For a contract after which the thread stops it must not return: if it does, the process is aborted.
+/// Real-time.
 using ContractHandler = void (*)(const ContractViolation&) noexcept TAPPET_REALTIME;
 
-/// Returns the handler that was there; nullptr, as at the start, stands for: print on standard error and
-/// abort. Real-time.
+/// Installs a handler, and returns the one before. nullptr, as at the start, means: print on standard error
+/// and abort. Real-time.
 ContractHandler install_contract_handler(ContractHandler handler) noexcept TAPPET_REALTIME;
 
 /// Calls the handler. It returns only from contracts after which the thread goes on. Real-time until it
@@ -128,7 +129,7 @@ template <ContractValue T> std::int64_t contract_value(const T& value) noexcept 
         return std::chrono::nanoseconds{value}.count();
 }
 
-/// What TAPPET_CONTRACT calls. Not constexpr on purpose: a broken contract in a constant expression does not
+/// Called by TAPPET_CONTRACT. Not constexpr on purpose: a broken contract in a constant expression does not
 /// compile.
 template <Contract id, ContractValue... Values>
 [[gnu::cold, gnu::noinline]] void contract_broken(const Values&... values) noexcept TAPPET_REALTIME {
@@ -148,7 +149,8 @@ template <Contract id, ContractValue... Values>
             ::tappet::contract_broken<id>(__VA_ARGS__);                                                      \
     } while (false)
 
-/// The same, of which thread comes, on paths whose nanoseconds are figures: in sanitizer builds only.
+/// As TAPPET_CONTRACT, for checks of the calling thread on paths with published times: in sanitizer builds
+/// only.
 #ifdef TAPPET_ASSERTS_THREADS
 #define TAPPET_THREAD_CONTRACT(condition, id, ...) TAPPET_CONTRACT(condition, id __VA_OPT__(, ) __VA_ARGS__)
 #else

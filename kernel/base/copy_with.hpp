@@ -1,4 +1,5 @@
-// A row of a table that says one thing more: copy_with(row, &Row::period, 10ms, &Row::name, "speed").
+// A copy of a row of a table with some members changed: copy_with(row, &Row::period, 10ms, &Row::name,
+// "speed").
 #pragma once
 
 #include <type_traits>
@@ -16,7 +17,7 @@ constexpr void set_members(Row& row, Value Row::* member, const std::type_identi
 }
 } // namespace detail
 
-/// A copy of it, in which these members have these values.
+/// Returns a copy of the row in which these members have these values.
 template <class Row, class... MembersAndValues>
 constexpr Row copy_with(Row row, const MembersAndValues&... these) noexcept {
     detail::set_members(row, these...);

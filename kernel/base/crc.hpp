@@ -1,4 +1,4 @@
-// Cyclic redundancy checks, highest bit first: by a table of one byte that the compiler makes.
+// Cyclic redundancy checks, highest bit first, with a table of one byte made by the compiler.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet {
 
-/// Of the polynomial without its highest power. Real-time; one look into the table a byte.
+/// A check with this polynomial, without its highest power. Real-time; one look-up a byte.
 template <class Word> class Crc {
 public:
     constexpr Crc(Word polynomial, Word first, Word last) noexcept : first_{first}, last_{last} {
@@ -21,7 +21,7 @@ public:
             table_[byte] = rest;
         }
     }
-    /// What begins with another value than `first`, or does not end yet, is made of steps.
+    /// Adds one byte: for checks that begin with another value than `first`, or do not end yet.
     [[nodiscard]] constexpr Word step(Word rest, std::uint8_t byte) const noexcept TAPPET_REALTIME {
         const std::size_t at = (rest >> (8 * (sizeof(Word) - 1))) ^ byte;
         if constexpr (sizeof(Word) == 1) return table_[at];
@@ -46,8 +46,8 @@ inline constexpr Crc<std::uint8_t> crc8_j1850{0x1D, 0xFF, 0xFF};    ///< SAE J18
 inline constexpr Crc<std::uint8_t> crc8_2f{0x2F, 0xFF, 0xFF};       ///< AUTOSAR's CRC8H2F
 inline constexpr Crc<std::uint16_t> crc16_ccitt{0x1021, 0xFFFF, 0}; ///< AUTOSAR's CRC16, CCITT-FALSE
 
-/// The one of disks and files, lowest bit first: of zlib's polynomial, or Castagnoli's. Not for large
-/// amounts: bit by bit.
+/// Returns the checksum of disks and files, lowest bit first: with zlib's polynomial, or Castagnoli's. Not
+/// for large amounts: bit by bit.
 constexpr std::uint32_t crc32(std::span<const std::uint8_t> bytes,
                               std::uint32_t polynomial = 0xEDB88320u) noexcept TAPPET_REALTIME {
     std::uint32_t rest = ~std::uint32_t{0};

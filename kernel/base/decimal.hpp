@@ -1,4 +1,4 @@
-// A number as an engineer writes it in a sentence, in constant expressions too.
+// A number as an engineer writes it in a sentence; also in constant expressions.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -6,8 +6,8 @@
 
 namespace tappet {
 
-/// To the third decimal, without zeros at the end; far beyond it says no more than that. "infinity" and "NaN"
-/// are no numbers.
+/// Returns the number to the third decimal, without zeros at the end; beyond 1e15 only a limit. "infinity"
+/// and "NaN" are not numbers.
 constexpr Sentence decimal(double value) noexcept {
     if (value != value) return Sentence{"NaN"};
     if (!is_number(value)) return Sentence{value < 0 ? "-infinity" : "infinity"};

@@ -1,5 +1,4 @@
-// A running digest of what a machine did, FNV-1a over 64-bit words: two runs that did the same have the same
-// digest.
+// A running digest of a machine's actions, FNV-1a over 64-bit words: equal for two runs that did the same.
 #pragma once
 
 #include "kernel/base/realtime.hpp"

@@ -1,4 +1,4 @@
-// Decimal digits as a number, in constant expressions too.
+// Decimal digits as a number; also in constant expressions.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@ namespace tappet {
 
 constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// Digits * 10^exponent: the nearest double where both are exactly representable (Clinger 1990), otherwise
-/// within one unit of the last place.
+/// Returns digits * 10^exponent: the nearest double where both are exactly representable (Clinger 1990),
+/// otherwise within one unit of the last place.
 constexpr double real_of(std::uint64_t digits, int exponent) noexcept {
     if (digits == 0 || exponent == 0) return static_cast<double>(digits);
     const bool shrinks = exponent < 0;

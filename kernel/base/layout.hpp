@@ -1,11 +1,11 @@
-// Things laid one after the other in one piece of memory, which need not be there yet.
+// Objects laid out one after the other in one piece of memory, which need not exist yet.
 #pragma once
 
 #include <cstddef>
 
 namespace tappet {
 
-/// Where so many objects of a type lie.
+/// The offset and the number of objects of a type.
 template <class T>
 struct PlacesOf {
     std::size_t at = 0;
@@ -24,7 +24,7 @@ public:
     constexpr std::size_t take(std::size_t count = 1) noexcept {
         return take(count * sizeof(T), alignof(T));
     }
-    /// As many as were counted.
+    /// Lays out as many objects as were counted.
     template <class T>
     constexpr void place(PlacesOf<T>& places) noexcept {
         places.at = take<T>(places.count);

@@ -1,5 +1,5 @@
 // Did you mean ...? The name nearest to a misspelt one, found in a constant expression so that a diagnostic
-// can say it.
+// can suggest it.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -11,7 +11,7 @@
 
 namespace tappet {
 
-/// Names longer than this are compared with nothing: they are no typing error.
+/// Longer names are not compared: they are not typing errors.
 inline constexpr std::size_t nearest_max_length = 64;
 
 enum class LetterCase { matters, ignored };
@@ -20,10 +20,9 @@ constexpr char lower_case(char character) noexcept {
     return character >= 'A' && character <= 'Z' ? static_cast<char>(character - 'A' + 'a') : character;
 }
 
-/// The least number of characters inserted, left out, changed, or swapped with their neighbour that leads
-/// from one text to the other (Damerau 1964, with no character edited twice). More than `limit` is reported
-/// as limit
-/// + 1, soon.
+/// Returns the least number of characters inserted, omitted, changed, or swapped with their neighbour that
+/// turns one text into the other (Damerau 1964, with no character edited twice). If it is more than `limit`,
+/// limit + 1 is returned early.
 constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
                                     std::size_t limit = nearest_max_length,
                                     LetterCase letter_case = LetterCase::matters) noexcept {
@@ -53,7 +52,7 @@ constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
             least = std::min(least, best);
         }
         if (least > limit)
-            return limit + 1; // no row's least is under the one before: a swap costs what it skips
+            return limit + 1; // the rows' least values never decrease: a swap costs what it skips
         Row* const oldest = before_last;
         before_last = last;
         last = row;
@@ -62,10 +61,10 @@ constexpr std::size_t edit_distance(std::string_view from, std::string_view to,
     return std::min((*last)[to.size()], limit + 1);
 }
 
-/// Shows every candidate to consider() and keeps the nearest one that is near enough to be meant: at most two
-/// edits, or a third of the written name. Of two equally near the one nearer in lower case wins, then the
-/// first shown. The same name in other case is always near, and so is one that goes on after a dot. The
-/// candidates' characters must outlive it.
+/// Keeps the nearest of the candidates given to consider() that is near enough to be meant: at most two
+/// edits, or a third of the written name. Between two equally near ones the one nearer in lower case wins,
+/// then the first. The same name in other case always counts as near, and so does one that continues after a
+/// dot. The candidates' characters must outlive it.
 class Nearest {
 public:
     explicit constexpr Nearest(std::string_view written) noexcept
@@ -78,7 +77,7 @@ public:
             return;
         }
         const std::size_t folded = edit_distance(written_, candidate, distance_, LetterCase::ignored);
-        if (folded > distance_) return; // respecting case never brings texts nearer
+        if (folded > distance_) return; // comparing case never brings texts nearer
         std::size_t distance = edit_distance(written_, candidate, distance_);
         if (folded == 0) distance = std::min<std::size_t>(distance, 1);
         // Texts without a character in common are no suggestion, however short.
@@ -88,13 +87,13 @@ public:
         distance_ = distance;
         folded_ = folded;
     }
-    /// Empty when nothing was near enough.
+    /// Returns the nearest name; empty when none was near enough.
     [[nodiscard]] constexpr std::string_view best() const noexcept { return best_; }
 
 private:
     std::string_view written_;
     std::string_view best_{};
-    std::size_t distance_; // of the best; at first one more than a suggestion may have
+    std::size_t distance_; // of the best name; at first one more than the limit for a suggestion
     std::size_t folded_ =
         0; // its distance in lower case; 0 at first, so that a distance over the limit loses
 };

@@ -1,4 +1,5 @@
-// What is no number: the border of every machine refuses it, and what keeps a state forgets it.
+// Detection of NaN and infinity: the inputs of every machine refuse them, and components with a state ignore
+// them.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,7 +10,7 @@
 
 namespace tappet {
 
-/// False: not a number, or infinite. A constant expression of those too, as their difference is not.
+/// Returns false for NaN and infinity. A constant expression for these too, unlike a test by subtraction.
 constexpr bool is_number(double value) noexcept TAPPET_REALTIME {
     return value >= std::numeric_limits<double>::lowest() && value <= std::numeric_limits<double>::max();
 }

@@ -1,4 +1,4 @@
-// Whether all numbers of a value are numbers, whatever its type: found by its tag.
+// A check that all numbers of a value are finite, for any type, by its tag.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet {
 
-/// False when a float or double in the value is infinite or not a number. An opaque value is not looked into.
+/// Returns false when a float or double in the value is infinite or NaN. An opaque value is not examined.
 inline bool has_only_numbers(const TypeTag& type, const std::byte* value) noexcept {
     const auto has_them = [&](std::size_t count) {
         for (std::size_t i = 0; i < count; ++i)
@@ -19,7 +19,7 @@ inline bool has_only_numbers(const TypeTag& type, const std::byte* value) noexce
     case ValueKind::real: return is_number(real_at(value, type.size));
     case ValueKind::matrix: return has_them(type.rows * type.columns);
     case ValueKind::sequence: {
-        std::uint64_t used = 0; // little-endian, as wide as it is
+        std::uint64_t used = 0; // little-endian, in its own width
         std::memcpy(&used, value + type.length_at, type.length_bytes);
         return has_them(std::min<std::size_t>(used, type.columns));
     }

@@ -1,4 +1,4 @@
-// The characters between the quotes of a text value, escapes undone.
+// The characters between the quotes of a text value, with escapes decoded.
 #pragma once
 
 #include "kernel/base/utf8.hpp"
@@ -11,15 +11,14 @@
 
 namespace tappet {
 
-/// Reads after an opening quote, one character at a time, up to the closing one. Escapes are those of JSON,
-/// and
-/// \\xHH for a byte.
+/// Reads from after an opening quote up to the closing one, one character at a time. Escapes are those of
+/// JSON, and \\xHH for a byte.
 class QuotedText {
 public:
     explicit QuotedText(std::string_view text) noexcept : text_{text} {}
 
     enum class Next : std::uint8_t { characters, end, broken };
-    /// The next character, of at most 4 bytes.
+    /// Reads the next character, of at most 4 bytes.
     Next take(char (&into)[4], std::size_t& bytes) noexcept {
         bytes = 1;
         if (at_ == text_.size()) return Next::broken;
@@ -47,7 +46,7 @@ public:
         default: return Next::broken;
         }
     }
-    /// Characters of the text so far, the closing quote included.
+    /// Returns the number of characters read so far, including the closing quote.
     [[nodiscard]] std::size_t taken() const noexcept { return at_; }
 
 private:

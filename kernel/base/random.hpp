@@ -1,6 +1,6 @@
 // Random numbers that are the same with every compiler and library: integers by xoshiro256** (Blackman and
-// Vigna, 2018), seeded by splitmix64; distributions of our own. Never two draws in one expression: their
-// order is open.
+// Vigna, 2018), seeded by splitmix64; distributions of our own. Never write two draws in one expression:
+// their order is unspecified.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -31,19 +31,19 @@ public:
         state_[3] = rotate(state_[3], 45);
         return result;
     }
-    /// A whole number in [0, bound); 0 for bound 0. The bias of the multiply-shift is below 2^-32 for bounds
-    /// under 2^32.
+    /// Returns an integer in [0, bound); 0 for bound 0. The bias of the multiply-shift is below 2^-32 for
+    /// bounds under 2^32.
     constexpr std::uint64_t below(std::uint64_t bound) noexcept TAPPET_REALTIME {
         __extension__ using Wide = unsigned __int128;
         return static_cast<std::uint64_t>((static_cast<Wide>(next()) * bound) >> 64);
     }
-    /// A whole number in [low, high].
+    /// Returns an integer in [low, high].
     constexpr std::int64_t between(std::int64_t low, std::int64_t high) noexcept TAPPET_REALTIME {
         return low + static_cast<std::int64_t>(below(static_cast<std::uint64_t>(high - low) + 1));
     }
-    /// True once in `n` draws on average; never for n = 0.
+    /// Returns true once in `n` draws on average; never for n = 0.
     constexpr bool one_in(std::uint64_t n) noexcept TAPPET_REALTIME { return n != 0 && below(n) == 0; }
-    /// A real number in [0, 1), a multiple of 2^-53: exact, so equal everywhere.
+    /// Returns a real number in [0, 1), a multiple of 2^-53: exact, so equal everywhere.
     constexpr double unit() noexcept TAPPET_REALTIME { return static_cast<double>(next() >> 11) * 0x1p-53; }
 
 private:

@@ -1,4 +1,4 @@
-// How decimals are laid out, and what is taken for one; the digits are those of double-conversion.
+// The layout of decimals, and the syntax that is read; double-conversion computes the digits.
 #include "kernel/base/real_text.hpp"
 
 #include <double-conversion/double-to-string.h>
@@ -17,7 +17,7 @@ using double_conversion::DoubleToStringConverter;
 constexpr int max_digits = 17;
 
 struct Digits {
-    char text[max_digits + 1]; // and a zero
+    char text[max_digits + 1]; // and a terminating zero
     int count = 0;
     int point = 0; // the value is 0.text * 10^point
     bool negative = false;
@@ -75,7 +75,7 @@ Digits digits_of(double value, DoubleToStringConverter::DtoaMode mode, int wante
     Digits d;
     DoubleToStringConverter::DoubleToAscii(value, mode, wanted, d.text, sizeof d.text, &d.negative, &d.count,
                                            &d.point);
-    while (d.count > 1 && d.text[d.count - 1] == '0') --d.count; // of a wanted precision
+    while (d.count > 1 && d.text[d.count - 1] == '0') --d.count; // when a precision was requested
     return d;
 }
 
@@ -95,13 +95,13 @@ std::size_t count_digits(std::string_view text) noexcept {
     return n;
 }
 
-/// What stands before the exponent, without zeros at its beginning, and the exponent that makes it whole.
+/// The digits before the exponent, without leading zeros, and the exponent that makes them an integer.
 struct Written {
-    static constexpr std::size_t most = 800; // more never decide how a double is rounded
+    static constexpr std::size_t most = 800; // more digits never decide how a double is rounded
     std::array<char, most> digits;
     std::size_t count = 0;
     int exponent = 0;
-    bool cut = false; // what did not fit was not zero
+    bool cut = false; // some omitted digits were not zero
 
     void take(char digit, bool after_point) noexcept {
         if (count == 0 && digit == '0') {
@@ -116,7 +116,7 @@ struct Written {
     }
 };
 
-/// [digits][.digits][e[sign]digits], with one digit at least before the exponent.
+/// Splits [digits][.digits][e[sign]digits], with at least one digit before the exponent.
 bool take_apart(std::string_view text, Written& into) noexcept {
     const std::size_t whole = count_digits(text);
     for (const char digit : text.substr(0, whole)) into.take(digit, false);

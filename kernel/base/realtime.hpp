@@ -3,7 +3,7 @@
 #pragma once
 
 #if defined(__clang__)
-// Stands after noexcept, as part of the function's type: void step() noexcept TAPPET_REALTIME;
+// Written after noexcept, as part of the function's type: void step() noexcept TAPPET_REALTIME;
 #define TAPPET_REALTIME [[clang::nonblocking]]
 #define TAPPET_PRAGMA(text) _Pragma(#text)
 #else
@@ -20,8 +20,8 @@
 #define TAPPET_SANITIZER_PAUSE static_cast<void>(0)
 #endif
 
-// The one escape hatch: runs a statement the compiler cannot prove to be real-time. The reason is part of the
-// call, and the list of all uses is printed by the test of the house. Example:
+// The only escape from the check: runs a statement that the compiler cannot prove to be real-time. The reason
+// is part of the call, and the test `house` prints the list of all uses. Example:
 //     TAPPET_ESCAPE("the activity's own wait", ppoll(fds, n, &left, nullptr));
 #if defined(__clang__)
 #define TAPPET_ESCAPE(reason, ...)                                                                           \

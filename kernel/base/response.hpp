@@ -1,5 +1,5 @@
-// Worst cases of time in whole nanoseconds: what an analysis answers, spans that never overflow, and the
-// fixed points by which it finds them. All of it runs in constant expressions.
+// Worst-case times in whole nanoseconds: the result of an analysis, time spans that never overflow, and the
+// fixed-point iterations of the analysis. All of it runs in constant expressions.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 namespace tappet {
 
 /// The worst time from a release's arrival to its end, own jitter included. `bounded` is false when there is
-/// none: too much load, a timing without sense (a period or bit rate of 0, a negative time), or no answer
-/// within `analysis_max_steps`; worst_ns then means nothing.
+/// none: too much load, invalid times (a period or bit rate of 0, a negative time), or no result within
+/// `analysis_max_steps`. Then worst_ns means nothing.
 struct Response {
     bool bounded = false;
     std::int64_t worst_ns = 0;
@@ -20,17 +20,17 @@ struct Response {
     constexpr bool operator==(const Response&) const = default;
 };
 
-/// Fixed-point steps one answer may take. Sets loaded to 99 % take some hundreds; without a limit one loaded
+/// Most fixed-point steps of one result. Sets loaded to 99 % take some hundreds; without a limit a set loaded
 /// to 100 % with jitter would never end.
 inline constexpr std::int64_t analysis_max_steps = 20'000;
-/// No interval of the analysis may grow beyond this: 104 days.
+/// Longest interval of the analysis: 104 days.
 inline constexpr std::int64_t analysis_max_ns = std::int64_t{1} << 53;
 static_assert(analysis_max_ns <= std::numeric_limits<std::int64_t>::max() / 4,
               "the sum of three times within the limit must not overflow");
 
 namespace analysis {
 
-// A time within [0, analysis_max_ns], or none: nothing computed from none is a time.
+// A time within [0, analysis_max_ns], or none: a result computed from none is none.
 struct Span {
     std::int64_t ns = -1;
     constexpr explicit Span(std::int64_t value = -1) noexcept
@@ -46,12 +46,12 @@ struct Span {
     }
 };
 
-// How many arrivals of that period fall into a window; 0 periods do not exist here.
+// Returns how many arrivals of that period are in a window; periods of 0 do not occur here.
 constexpr std::int64_t arrivals(Span window, std::int64_t period_ns) noexcept {
     return window.exists() ? (window.ns + period_ns - 1) / period_ns : -1;
 }
 
-// The least fixed point of next() at or above start, or none; takes its steps from the given ones.
+// Returns the least fixed point of next() at or above start, or none; subtracts its steps from steps_left.
 template <class Next> constexpr Span fixed_point(Span start, std::int64_t& steps_left, Next next) noexcept {
     Span now = start;
     while (now.exists() && steps_left > 0) {

@@ -1,4 +1,4 @@
-// Options of the rows that an author writes, of which each sets one member of its row.
+// Options of the rows that an author writes; each option sets one member of its row.
 #pragma once
 
 #include <string_view>
@@ -11,12 +11,12 @@ struct RowOption {
     T value;
 };
 
-/// A row takes it once: a second one is kept in Row::twice, for the check to refuse.
+/// An option that a row accepts once: a second one is stored in Row::twice, for the check to refuse.
 template <class Row, class T>
 struct RowOptionOnce {
     T Row::* member;
     T value;
-    std::string_view name; ///< as a refusal calls it
+    std::string_view name; ///< its name in a refusal
 };
 
 namespace detail {

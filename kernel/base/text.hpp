@@ -1,5 +1,4 @@
-// Text that lives in constant expressions: a sentence built piece by piece, and a text that may be a template
-// argument.
+// Text in constant expressions: a sentence built piece by piece, and a text that may be a template argument.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 
 namespace tappet {
 
-/// A sentence of at most `capacity` characters, built piece by piece; what does not fit is cut, visibly.
+/// A sentence of at most `capacity` characters, built piece by piece. A longer one is cut, visibly.
 struct Sentence {
     static constexpr std::size_t capacity = 480;
     char characters[capacity + 1] = {};
@@ -49,13 +48,12 @@ struct Sentence {
 
     [[nodiscard]] constexpr std::string_view view() const noexcept { return {characters, length}; }
     [[nodiscard]] constexpr bool empty() const noexcept { return length == 0; }
-    // What static_assert(ok, message) asks of a message object.
+    // Required by static_assert(ok, message) of a message object.
     [[nodiscard]] constexpr std::size_t size() const noexcept { return length; }
     [[nodiscard]] constexpr const char* data() const noexcept { return characters; }
 };
 
-/// A text of exactly N characters as a template argument: a compiler that cannot print a message object
-/// prints this.
+/// A text of exactly N characters as a template argument: for a compiler that cannot print a message object.
 template <std::size_t N>
 struct text {
     char characters[N + 1] = {};
@@ -68,10 +66,10 @@ struct text {
 template <std::size_t M>
 text(const char (&)[M]) -> text<M - 1>;
 
-/// A compiler that prints no message objects says: 'accepted' is not a member of refused<the sentence>.
+/// A compiler that cannot print message objects prints: 'accepted' is not a member of refused<the sentence>.
 template <text sentence>
 struct refused {};
-/// Nothing to say.
+/// No refusal.
 template <>
 struct refused<text<0>{}> {
     static constexpr bool accepted = true;
@@ -79,7 +77,7 @@ struct refused<text<0>{}> {
 
 } // namespace tappet
 
-/// Stops the compiler with a constant's sentence, unless that is empty.
+/// Stops the compiler with a constant's sentence, unless the sentence is empty.
 #if defined(__clang__)
 #define TAPPET_ACCEPTED(fault) static_assert((fault).empty(), fault)
 #else

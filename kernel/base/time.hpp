@@ -11,7 +11,7 @@ namespace tappet {
 
 using Duration = std::chrono::nanoseconds;
 
-/// The clock of a machine. It has no now(): reading the time is a service of kernel/os, real or virtual.
+/// The clock of a machine. It has no now(): kernel/os reads the time, real or virtual.
 struct MachineClock {
     using duration = Duration;
     using rep = duration::rep;
@@ -22,20 +22,20 @@ struct MachineClock {
 
 using Time = MachineClock::time_point;
 
-/// The time no event reaches: an activity that waits for it waits for work only.
+/// A time that is never reached: an activity that waits until it waits for work only.
 inline constexpr Time never = Time::max();
 
 namespace detail {
-/// The nearest number to a sum, or difference, that may lie beyond all of them.
+/// Returns the nearest representable number to a sum or difference that may overflow.
 constexpr std::int64_t saturated(std::int64_t sum, bool is_beyond, bool is_low) noexcept {
     if (!is_beyond) return sum;
     return is_low ? std::numeric_limits<std::int64_t>::min() : std::numeric_limits<std::int64_t>::max();
 }
 } // namespace detail
 
-/// Every sum and difference with a Time is taken by these three, which are more specialized than those of
-/// std::chrono: what lies beyond the earliest or the latest time is that time, and so with durations. `never`
-/// and a duration that is not negative is `never`.
+/// These three compute every sum and difference with a Time, because they are more specialized than those of
+/// std::chrono. They saturate: a result beyond the earliest or the latest time is that time, and so with
+/// durations. `never` plus a duration that is not negative is `never`.
 template <class Rep, class Period>
     requires std::convertible_to<std::chrono::duration<Rep, Period>, Duration>
 constexpr Time operator+(const Time& at, const std::chrono::duration<Rep, Period>& by) noexcept {

@@ -1,5 +1,5 @@
-// The identity, the name and the shape of a type, as plain data: two ends of a row fit when their tags are
-// the same object, and what shows, reads or stores a value needs nothing but its bytes and its tag.
+// The identity, the name and the shape of a type, as plain data. Two ends of a row fit when their tags are
+// the same object. Code that shows, reads or stores a value needs only its bytes and its tag.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -19,12 +19,12 @@
 
 namespace tappet {
 
-/// What the bytes of a value mean.
+/// The meaning of the bytes of a value.
 enum class ValueKind : std::uint8_t {
-    opaque,      ///< nobody but the component's own code knows
+    opaque,      ///< known only to the component's own code
     boolean,     ///< bool
     integer,     ///< signed integer of `size` bytes, also an enumeration without names
-    natural,     ///< unsigned integer of `size` bytes, likewise
+    natural,     ///< unsigned integer of `size` bytes, also an enumeration without names
     real,        ///< float or double
     duration,    ///< Duration, or Time since the machine's epoch: nanoseconds in an int64
     text,        ///< Text<N>
@@ -46,7 +46,7 @@ struct RecordField {
     std::string_view name{};
     std::string_view unit{};
     TypeId type = nullptr;
-    /// Bytes from the beginning of the record. Real-time.
+    /// Returns the offset from the beginning of the record, in bytes. Real-time.
     std::size_t (*offset)() noexcept TAPPET_REALTIME = nullptr;
 };
 
@@ -57,15 +57,15 @@ struct TypeTag {
     bool arithmetic = false;
     std::span<const TypeId> elements{}; ///< of an argument list
     ValueKind kind = ValueKind::opaque;
-    bool row_major = false;   ///< of a matrix; otherwise its columns lie one after the other
-    TypeId element = nullptr; ///< of a matrix or a sequence; of an enumeration the integer that it is
-    std::size_t rows = 0;     ///< of a matrix
-    std::size_t columns = 0;  ///< of a matrix; of a text or a sequence: how many there may be, from byte 0 on
-    std::size_t length_at = 0;    ///< of a text or a sequence: where the number that there are stands,
-    std::size_t length_bytes = 0; ///< and how wide it is: 4 or 8
+    bool row_major = false;       ///< of a matrix; otherwise its columns are one after the other
+    TypeId element = nullptr;     ///< of a matrix or a sequence; of an enumeration its integer type
+    std::size_t rows = 0;         ///< of a matrix
+    std::size_t columns = 0;      ///< of a matrix; of a text or a sequence: its capacity, beginning at byte 0
+    std::size_t length_at = 0;    ///< of a text or a sequence: offset of its length,
+    std::size_t length_bytes = 0; ///< and the size of that length: 4 or 8 bytes
     std::span<const RecordField> fields{};         ///< of a record, in its own order
     std::span<const std::string_view> names{};     ///< of an enumeration: the value is the index
-    const RegisteredOperator* operators = nullptr; ///< what scripts may do with it, so many
+    const RegisteredOperator* operators = nullptr; ///< operators for scripts, operator_count of them
     std::size_t operator_count = 0;
 };
 
@@ -73,13 +73,13 @@ struct TypeTag {
 template <class... Types>
 struct Arguments {};
 
-/// Names the fields of a struct; what has none is opaque:
+/// Names the fields of a struct; a struct without names is opaque:
 ///     template <> inline constexpr auto tappet::fields_of<Pose> =
 ///         fields(field<&Pose::x>("x", "mm"), field<&Pose::turn>("turn", "deg"));
 template <class T>
 inline constexpr std::array<RecordField, 0> fields_of{};
 
-/// What a type without operators has.
+/// The default for a type without operators.
 struct NoOperators {
     static constexpr const RegisteredOperator* list = nullptr;
     static constexpr std::size_t count = 0;
@@ -89,7 +89,7 @@ struct NoOperators {
 template <class T>
 inline constexpr NoOperators operators_of{};
 
-/// Names the values of an enum, from 0 on; one without is shown as a number:
+/// Names the values of an enum, from 0 on; a value without a name is shown as a number:
 ///     template <> inline constexpr auto tappet::names_of<Cause> =
 ///         std::array<std::string_view, 2>{"none", "weft"};
 template <class E>
@@ -97,7 +97,7 @@ inline constexpr std::array<std::string_view, 0> names_of{};
 
 namespace detail {
 
-// Both compilers print the template argument after "T = "; what stands around it is cut off here.
+// Both compilers print the template argument after "T = "; the text around it is cut off here.
 template <class T>
 consteval std::string_view printed_name() {
     constexpr std::string_view whole = __PRETTY_FUNCTION__;
@@ -208,7 +208,8 @@ struct FieldOf;
 template <class Record, class T, T Record::* Member>
 struct FieldOf<Member> {
     using Type = T;
-    // Found by comparing addresses, which a constant expression may do and which the compiler folds.
+    // Found by a comparison of addresses, which is allowed in a constant expression and which the compiler
+    // folds.
     static constexpr std::size_t offset() noexcept TAPPET_REALTIME {
         union Place {
             char bytes[sizeof(Record)];
@@ -230,7 +231,7 @@ struct FieldOf<Member> {
 template <class T>
 inline constexpr TypeId type_id = &detail::TagOf<T>::tag;
 
-/// A field for fields_of.
+/// Makes a field for fields_of.
 template <auto Member>
 constexpr RecordField field(std::string_view name, std::string_view unit = {}) noexcept {
     using Field = detail::FieldOf<Member>;

@@ -1,4 +1,4 @@
-// UTF-8 (RFC 3629), as far as a text must be told from other bytes.
+// UTF-8 (RFC 3629), as far as needed to tell a text from other bytes.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,7 @@
 
 namespace tappet {
 
-/// The bytes of the character at the beginning of a text that is not empty; 0: no valid character begins
-/// here.
+/// Returns the bytes of the first character of a text that is not empty; 0: no valid character begins here.
 constexpr std::size_t utf8_length(std::string_view text) noexcept {
     const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
     const std::uint8_t lead = byte(0);
@@ -26,7 +25,7 @@ constexpr std::size_t utf8_length(std::string_view text) noexcept {
     return overlong || surrogate || too_large ? 0 : length;
 }
 
-/// Writes a character, a code point below 0x110000 that is no surrogate; returns its bytes, at most 4.
+/// Writes a character, a code point below 0x110000 that is not a surrogate. Returns its bytes, at most 4.
 constexpr std::size_t put_utf8(std::uint32_t code, char* into) noexcept {
     if (code < 0x80) {
         into[0] = static_cast<char>(code);

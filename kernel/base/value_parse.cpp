@@ -1,4 +1,4 @@
-// Reads values from text: a walk over the type's tag, once to find what is wrong and once to store.
+// Reads values from text: two walks over the type's tag, the first to find faults, the second to store.
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/quoted_text.hpp"
 #include "kernel/base/real_text.hpp"
@@ -20,7 +20,7 @@ public:
 
     ValueReader(std::string_view text, Pass pass) noexcept : text_{text}, pass_{pass} {}
 
-    /// The whole text as one value; false: fault() says why.
+    /// Reads the whole text as one value. Returns false with the reason in fault().
     bool read_all(const TypeTag& tag, std::byte* into) noexcept {
         skip_spaces();
         if (tag.kind == ValueKind::text && !next_is('"')) {
@@ -66,14 +66,14 @@ private:
         ++at_;
         return true;
     }
-    /// The next word, quotes and all.
+    /// Returns the next word, including quotes, without reading it.
     [[nodiscard]] std::string_view glance() noexcept {
         skip_spaces();
         std::size_t end = at_;
         while (end < text_.size() && !ends_word(text_[end])) ++end;
         return text_.substr(at_, end - at_);
     }
-    /// A word without quotes; "": there is none. `also_ends` ends it too.
+    /// Reads a word without quotes; "": there is none. `also_ends` ends it too.
     std::string_view word(char also_ends = ',') noexcept {
         skip_spaces();
         if (next_is('"')) return quoted_word();
@@ -81,7 +81,7 @@ private:
         while (at_ < text_.size() && !ends_word(text_[at_]) && text_[at_] != also_ends) ++at_;
         return text_.substr(begin, at_ - begin);
     }
-    /// What is longer than the room for it is no number and no name.
+    /// A word longer than its buffer is neither a number nor a name.
     std::string_view quoted_word() noexcept {
         QuotedText quoted{text_.substr(at_ + 1)};
         std::size_t used = 0;
@@ -142,7 +142,7 @@ private:
         if (done.ec != std::errc{} || value > most || value < -most - 1)
             return refuse(quotable(spelled), " is out of range; write a number from ", -most - 1, " to ",
                           most);
-        store(into, &value, tag.size); // the low bytes stand first
+        store(into, &value, tag.size); // the low bytes come first
         return true;
     }
     bool read_natural(const TypeTag& tag, std::string_view spelled, std::byte* into) noexcept {
@@ -230,7 +230,7 @@ private:
             }
         const bool number = !spelled.empty() &&
                             (spelled.front() == '-' || (spelled.front() >= '0' && spelled.front() <= '9'));
-        if (number) // as a value without a name is written
+        if (number) // a value without a name is written as a number
             return tag.element->kind == ValueKind::integer ? read_integer(tag, spelled, into)
                                                            : read_natural(tag, spelled, into);
         Nearest nearest{spelled};
@@ -288,7 +288,7 @@ private:
         }
         return true;
     }
-    /// After an element: the list's end, or another one, with or without a comma before it.
+    /// Reads what follows an element: the list's end, or another element, with or without a comma before it.
     bool goes_on(char closing, bool& more) noexcept {
         more = !take(closing);
         if (!more) return true;

@@ -48,7 +48,7 @@ private:
     void put(std::string_view text) noexcept {
         if (static_cast<std::size_t>(end_ - at_) < text.size()) {
             fits_ = false;
-            end_ = at_; // nothing shorter follows what was left out
+            end_ = at_; // nothing shorter may follow an omitted part
             return;
         }
         std::memcpy(at_, text.data(), text.size());

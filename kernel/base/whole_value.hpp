@@ -1,4 +1,4 @@
-// Whether bytes that came from outside are a value of their type: the lengths in it lie within its room.
+// A check that bytes from outside are a value of their type: the lengths in it are within its capacity.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet {
 
-/// The number of characters or elements that a text or a sequence says it has.
+/// Returns the number of characters or elements that a text or a sequence claims to have.
 inline std::uint64_t length_in(const TypeTag& type, const std::byte* value) noexcept TAPPET_REALTIME {
     std::uint64_t length = 0;
     std::memcpy(&length, value + type.length_at,
@@ -17,19 +17,19 @@ inline std::uint64_t length_in(const TypeTag& type, const std::byte* value) noex
     return length;
 }
 
-/// Returns false when a text or a sequence in the value is longer than its type. Looks into records and
-/// lists, eight levels deep; not into a struct without named fields. Bounded by the type, without recursion.
+/// Returns false when a text or a sequence in the value is longer than its type. Checks records and lists
+/// too, up to eight levels deep, but no struct without named fields. Bounded by the type, without recursion.
 /// Real-time.
 inline bool is_whole(const TypeTag& type, const std::byte* value) noexcept TAPPET_REALTIME {
     struct Visit {
-        const TypeTag* of; ///< whose parts are looked at one after the other
+        const TypeTag* of; ///< its parts are checked one after the other
         const std::byte* at;
         std::uint64_t parts;
         std::uint64_t seen = 0;
     };
     std::array<Visit, 8> open;
     std::size_t depth = 0;
-    // Looks at a value, and notes its parts. False: too long, or too deep.
+    // Checks a value, and stores its parts. Returns false when it is too long, or too deep.
     const auto enter = [&](const TypeTag& of, const std::byte* at) noexcept TAPPET_REALTIME {
         std::uint64_t parts = 0;
         switch (of.kind) {

@@ -70,7 +70,7 @@ struct CommandOperations {
     /// Polls the completion. Null: the command is done when its action has run.
     CommandProgress (*progress)(GatedComponent&, std::byte* values) noexcept TAPPET_REALTIME = nullptr;
 
-    /// Of a setter or a getter: the `at` of the property's facet.
+    /// For a setter or a getter: the `at` of the property's facet.
     void* (*property)(void* component, std::size_t index) noexcept = nullptr;
 
     [[nodiscard]] CommandProgress ask(GatedComponent& at, std::byte* values) const noexcept TAPPET_REALTIME {
@@ -79,8 +79,7 @@ struct CommandOperations {
     [[nodiscard]] constexpr std::size_t value_bytes() const noexcept { return argument_bytes + result_bytes; }
 };
 
-/// The functions of a component behind its gate. When the component does not run, a command is rejected or
-/// fails.
+/// A component's functions behind its gate. If it does not run, a command is rejected or fails.
 template <bool (*Begin)(void* component, std::byte* values) noexcept TAPPET_REALTIME,
           CommandProgress (*Progress)(void* component, std::byte* values) noexcept TAPPET_REALTIME>
 struct GatedCommand {
@@ -136,8 +135,7 @@ public:
     }
     /// Returns whether values() belong to the sender now.
     [[nodiscard]] bool is_mine() const noexcept TAPPET_REALTIME { return !in_flight(state()); }
-    /// Sends the command with the arguments in values(). Returns false when it is in flight already, or when
-    /// no row connects it.
+    /// Sends the command with the arguments in values(). Returns false when it is in flight, or has no row.
     [[nodiscard]] bool send() noexcept TAPPET_REALTIME {
         if (!connected() || !is_mine()) return false;
         post();

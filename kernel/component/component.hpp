@@ -211,7 +211,7 @@ inline bool detail::set_property(const ComponentType& type, const CommandOperati
         const Facet& facet = type.facets[f];
         if (facet.kind != FacetKind::property || facet.at != setting.property) continue;
         const PropertyOperations& of = *facet.property;
-        if (is_whole(*facet.type, value)) of.resize(value, of.size(value)); // nothing hides behind its end
+        if (is_whole(*facet.type, value)) of.resize(value, of.size(value)); // no old bytes behind its end
         const ProposedValue proposed{static_cast<std::byte*>(property), value,
                                      static_cast<std::uint32_t>(facet.type->size),
                                      static_cast<std::uint32_t>(f)};

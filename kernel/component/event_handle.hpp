@@ -11,6 +11,7 @@ namespace tappet {
 
 /// A member of a component that a row names with handled_by(...). A copy stands for the same row. Everything
 /// is real-time and wait-free, from any thread, also from a reaction of the same or another event.
+///
 /// After disconnect() returned, no emission begun later reaches the reaction, and waiting earlier emissions
 /// are dropped when their turn comes. The guarantee has two limits: a reaction that another thread has begun
 /// to run may still be running, and an emission in progress on another thread may run a synchronous reaction

@@ -90,8 +90,9 @@ public:
     }
 
     AtomicComponentState state{ComponentState::inactive}; ///< any thread may read it
-    const ComponentType* type = nullptr;                  ///< of the table's row; set before anybody enters
-    /// By turns with others (thesis 3.1.3): it stands, its outputs are shut, and its peers may ask it.
+    const ComponentType* type = nullptr;                  ///< from the table's row; set before anybody enters
+    /// It runs by turns with others (thesis 3.1.3) and waits: it does not run, its outputs are closed, and
+    /// its peers may call it.
     std::atomic<bool> waits_for_its_turn{false};
     std::atomic<std::uint32_t> dropped{0};        ///< synchronous reactions that the gate refused
     std::atomic<std::uint32_t> dropped_writes{0}; ///< writes to its outputs while it did not run

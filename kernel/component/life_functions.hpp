@@ -22,7 +22,7 @@ struct NeverRun {
 };
 
 // clang-format off
-/// Name, parameters, what a call of it must be, how it is spelled.
+/// Name, parameters, requirement on a call, spelling.
 #define TAPPET_LIFE_FUNCTIONS(X) \
     X(configure,  (T & t, Setup& s),               { t.configure(s) } -> std::same_as<Sentence>,        "Sentence configure(Setup&)") \
     X(initialise, (T & t),                         { t.initialise() } -> std::same_as<Sentence>,        "Sentence initialise()") \
@@ -37,7 +37,7 @@ struct NeverRun {
     X(stopped_safely, (const T& t),                { t.stopped_safely() } noexcept -> std::same_as<bool>, "bool stopped_safely() const noexcept TAPPET_REALTIME") \
     X(finalise,   (T & t),                         { t.finalise() } -> std::same_as<void>,              "void finalise()")
 
-/// Names that mean nothing else: two characters exchanged, one left out or written twice, or the same word in
+/// Names that mean nothing else: two characters exchanged, one omitted or doubled, or the same word in
 /// another spelling.
 #define TAPPET_MISSPELT_LIFE_FUNCTIONS(X) \
     X(confgiure, configure) X(configrue, configure) X(configuer, configure) X(confiugre, configure) \
@@ -63,7 +63,7 @@ struct NeverRun {
     X(finalsie, finalise) X(finalies, finalise) X(ifnalise, finalise) X(finalse, finalise) \
     X(fnalise, finalise) X(finalyse, finalise) X(finnalise, finalise)
 
-/// Names that may mean anything: only what anybody could call as the function it stands for is taken for it.
+/// Names that may mean anything: a member counts as misspelt only if anybody could call it as that function.
 #define TAPPET_OTHERWISE_NAMED_LIFE_FUNCTIONS(X) \
     X(on_start,      (T & t, const Cycle& c),         { t.on_start(c) } -> std::same_as<void>,         start) \
     X(starts,        (T & t, const Cycle& c),         { t.starts(c) } -> std::same_as<void>,           start) \

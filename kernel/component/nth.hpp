@@ -1,4 +1,4 @@
-// Facets of ports and events that stand in an array, one of them for each row of a map:
+// Facets of ports and events that are elements of an array, one for each row of a map:
 //     std::array<Output<bool>, count> level{};
 //     nth_output<&LinePort::level>(i, name_of(i), "", "the line's level", as_it_was)
 #pragma once

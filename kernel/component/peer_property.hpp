@@ -19,7 +19,7 @@ namespace tappet {
 
 namespace detail {
 
-/// Changes the property by the type of the component in the table, whichever class declares the member; see
+/// Changes the property by the component's type in the table, whichever class declares the member; see
 /// component.hpp. `value` is aligned and may be changed.
 bool set_property(const ComponentType& type, const CommandOperations& setting, void* component,
                   void* property, std::byte* value) noexcept TAPPET_REALTIME;
@@ -34,7 +34,7 @@ struct PeerProperty {
         return static_cast<typename M::Component*>(component)->*Member;
     }
     static bool set(GatedComponent& gate, std::byte* values) noexcept TAPPET_REALTIME {
-        alignas(Value) std::array<std::byte, sizeof(Value)> value; // what was sent is packed
+        alignas(Value) std::array<std::byte, sizeof(Value)> value; // the sent values are packed
         std::memcpy(value.data(), values, sizeof(Value));
         bool taken = false;
         const bool entered = gate.enter(Entry::queued, [&](void* component) noexcept TAPPET_REALTIME {

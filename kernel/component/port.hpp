@@ -407,8 +407,7 @@ private:
         if (writer_has_stopped()) resume();
         let_go();
     }
-    /// Ends the force at its owner's request: the writer's values are wanted again, unless the writer has
-    /// stopped since.
+    /// Ends the force at its owner's request: the writer's values count again, if it has not stopped since.
     void release() noexcept TAPPET_REALTIME {
         if (!forced_) return;
         if (writer_has_stopped()) return end_force();
@@ -455,7 +454,8 @@ private:
     [[nodiscard]] std::uint64_t stops_of_writer() const noexcept TAPPET_REALTIME {
         return writer_ == nullptr ? 0 : writer_->count.load(std::memory_order_acquire);
     }
-    /// Converts into the unit of the reader. A value too large for T becomes its largest one; NaN stays NaN.
+    /// Converts into the unit of the reader. A value too large for T becomes its largest one; NaN and
+    /// infinity stay.
     [[nodiscard]] T scaled(T value) const noexcept TAPPET_REALTIME
         requires std::is_floating_point_v<T>
     {

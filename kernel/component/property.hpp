@@ -103,7 +103,7 @@ struct Range {
     double high = std::numeric_limits<double>::infinity();
 
     /// Returns whether a property may have this value. Every change of a property is checked here; even an
-    /// unbounded range holds numbers only.
+    /// unbounded range holds finite numbers only.
     [[nodiscard]] constexpr bool holds(double value) const noexcept TAPPET_REALTIME {
         return is_number(value) && value >= low && value <= high;
     }

@@ -53,7 +53,7 @@ private:
             from_ = written;
             began_ = stamp;
         }
-        // A line from NaN has no value, and the distance of two numbers may exceed every number.
+        // A line from NaN or infinity has no slope, and the distance of two numbers may exceed every number.
         if (!is_number(slope_)) from_ = written, slope_ = 0.0;
         is_first_ = false;
     }

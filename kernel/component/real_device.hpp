@@ -57,8 +57,7 @@ public:
     virtual std::expected<void, Sentence> prepare_safe_ending() { return {}; }
     /// Writes the safe values of outputs that act at once. Returns false when that failed.
     virtual bool write_safe_lines() noexcept { return true; }
-    /// Starts to send safe values that are confirmed later: from here on all of them are to be confirmed
-    /// anew.
+    /// Starts to send safe values, which are confirmed later: from here on all must be confirmed again.
     virtual void begin_safe_frames() noexcept {}
     /// Sends the frames that are due, and lost ones again. Called every few milliseconds.
     virtual void send_safe_frames() noexcept {}

@@ -48,20 +48,18 @@ constexpr std::size_t parcel_bytes(std::size_t argument_bytes) noexcept {
     constexpr std::size_t word = sizeof(std::uint64_t);
     return argument_bytes <= sizeof(Message::arguments) ? 0 : (argument_bytes + word - 1) / word * word;
 }
-/// Returns the number of places: a power of two, so that 32-bit counters find their place also after they
-/// wrap.
+/// Returns the number of places: a power of two, so that 32-bit counters find their place after a wrap too.
 constexpr std::uint32_t parcel_places(std::uint32_t quota, bool keeps_latest) noexcept {
     return std::bit_ceil(keeps_latest ? LatestMessage::places : quota + 1);
 }
 static_assert(parcel_places(1, false) == 2 && parcel_places(3, false) == 4 && parcel_places(4, false) == 8);
 
-/// The share of one emitting activity in an asynchronous subscription. Emitters of one event never share a
-/// lane.
+/// The share of one emitting activity in an asynchronous subscription. Emitters of one event share no lane.
 struct EventLane {
     AsyncReaction* row = nullptr;
     std::size_t sender = 0;          ///< the activity's number at the receiving inbox
     LatestMessage* latest = nullptr; ///< for a row that keeps the latest only
-    std::byte* parcels = nullptr;    ///< null: the arguments stand in the message
+    std::byte* parcels = nullptr;    ///< null: the arguments are in the message
     // Counted by the emitter.
     Counter posted{};
     Counter lost{}; ///< no room, or replaced by a later one

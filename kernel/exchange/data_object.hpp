@@ -26,7 +26,7 @@ class DataObject {
                   "the attempts are a reader's worst case: at least one, and few");
 
 public:
-    /// One thread only.
+    /// Writes a value. One thread only.
     void write(const T& value) noexcept TAPPET_REALTIME {
         typename Value::Copy
             packed; // before anything is stored, so that what the caller just copied is at hand
@@ -42,9 +42,9 @@ public:
         published_.store(generation, std::memory_order_release);      // data.write_publish
     }
 
-    /// Any thread. `generation` is the one the caller has (0: none). True: `into` is newer, and `generation`
-    /// is its number. False: both are untouched, because nothing newer was written, or, if generation() says
-    /// otherwise, because the writer overtook every attempt.
+    /// Reads a value newer than the caller's. `generation` is the number of the caller's value (0: none).
+    /// True: `into` is newer, and `generation` is its number. False: both are unchanged, because nothing
+    /// newer was written, or, if generation() differs, because the writer overtook every attempt. Any thread.
     [[nodiscard]] bool read(T& into, std::uint64_t& generation) const noexcept TAPPET_REALTIME {
         for (std::size_t attempt = 0; attempt < Attempts; ++attempt) {
             const std::uint64_t published = published_.load(std::memory_order_acquire); // data.read_index
@@ -52,8 +52,8 @@ public:
             const Slot& slot = slots_[published % Slots];
             typename Value::Copy copy;
             slot.value.load(copy);
-            // Equal to the published one, not just unchanged: a slot that rests may hold a value older than
-            // one this reader has seen.
+            // Equal to the published number, not merely unchanged: a slot at rest may hold a value older than
+            // one that this reader has seen.
             if (slot.generation.load(std::memory_order_relaxed) != published) continue; // data.read_check
             Value::unpack(copy, into);
             generation = published;
@@ -62,7 +62,7 @@ public:
         return false;
     }
 
-    /// How many values were written so far; 0: never written. Any thread.
+    /// Returns the number of values written so far; 0: never written. Any thread.
     [[nodiscard]] std::uint64_t generation() const noexcept TAPPET_REALTIME {
         return published_.load(std::memory_order_acquire); // data.generation
     }
@@ -79,7 +79,7 @@ private:
 
     std::array<Slot, Slots> slots_{};
     alignas(line_pair_bytes) Atomic<std::uint64_t> published_{};
-    // The writer's own: a load of the published line would fetch it back from whoever polls it.
+    // For the writer alone: a load of the published line would fetch it back from readers that poll it.
     alignas(line_pair_bytes) std::uint64_t own_ = 0;
 };
 

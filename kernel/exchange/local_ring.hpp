@@ -1,5 +1,5 @@
-// The queue between two components of one activity: a ring of plain values, no atomics, for nobody else ever
-// looks at it (thesis 4.4: the buffer, both ends in one thread).
+// The queue between two components of one activity: a ring of plain values without atomics, because no other
+// thread uses it (thesis 4.4: the buffer, both ends in one thread).
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -21,7 +21,7 @@ public:
         return capacity * sizeof(T);
     }
 
-    /// `storage`: bytes_for(capacity) bytes at `alignment`, outliving the ring. Not real-time.
+    /// `storage`: bytes_for(capacity) bytes at `alignment`; must outlive the ring. Not real-time.
     LocalRing(std::byte* storage, std::size_t capacity, Overflow overflow) noexcept
         : capacity_{capacity}, overflow_{overflow} {
         for (std::size_t i = 0; i < capacity; ++i) {
@@ -32,7 +32,7 @@ public:
     LocalRing(const LocalRing&) = delete;
     LocalRing& operator=(const LocalRing&) = delete;
 
-    /// Real-time; one copy. False: full, and refused.
+    /// Adds a value; one copy. Returns false when the ring is full and refuses it. Real-time.
     [[nodiscard]] bool push(const T& value) noexcept TAPPET_REALTIME {
         if (used_ == capacity_) {
             ++lost_;
@@ -46,7 +46,7 @@ public:
         high_water_ = std::max(high_water_, used_);
         return true;
     }
-    /// Real-time; one copy. False, `into` untouched: empty.
+    /// Takes the oldest value; one copy. False: the ring is empty, `into` is unchanged. Real-time.
     [[nodiscard]] bool pop(T& into) noexcept TAPPET_REALTIME {
         if (used_ == 0) return false;
         into = cells_[first_];
@@ -57,9 +57,9 @@ public:
     [[nodiscard]] std::size_t size() const noexcept TAPPET_REALTIME { return used_; }
     [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME { return used_ == 0; }
     [[nodiscard]] std::size_t capacity() const noexcept TAPPET_REALTIME { return capacity_; }
-    /// The most that ever were inside.
+    /// Returns the largest number of values that were ever inside.
     [[nodiscard]] std::size_t high_water() const noexcept TAPPET_REALTIME { return high_water_; }
-    /// Values pushed that will never be popped, by either policy.
+    /// Returns the number of pushed values that will never be popped, by either policy.
     [[nodiscard]] std::uint64_t lost() const noexcept TAPPET_REALTIME { return lost_; }
 
 private:

@@ -1,6 +1,5 @@
-// Messages into an engine: one ring and one bit for each activity that sends to it, so that a sender's order
-// is kept, senders are served in order of priority, and what arrives is bounded by the rows
-// (thesis 4.4.4, 4.2.3).
+// Messages into an engine: one ring and one bit for each activity that sends to it. So each sender's order is
+// kept, senders are served in order of priority, and the rows bound what arrives (thesis 4.4.4, 4.2.3).
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -17,37 +16,37 @@
 
 namespace tappet {
 
-/// A call to be made by the receiver, with a copy of its arguments.
+/// A call for the receiver to make, with a copy of its arguments.
 struct Message {
     using Run = void (*)(void* object, const std::byte* arguments) noexcept TAPPET_REALTIME;
 
     Run run = nullptr;
     void* object = nullptr;
-    std::uint32_t id = 0;    ///< the receiver's: a row, a command slot
-    std::uint32_t epoch = 0; ///< of the subscription it was posted through: an older one is dropped
-    Time cause{};            ///< the stamp of what set it off; the epoch: nothing did
+    std::uint32_t id = 0;    ///< for the receiver: a row, a command slot
+    std::uint32_t epoch = 0; ///< of the subscription through which it was posted: an older one is dropped
+    Time cause{};            ///< the time stamp of its cause; the epoch: no cause
     alignas(8) std::array<std::byte, 48> arguments{};
 };
 static_assert(std::is_standard_layout_v<Message>);
 static_assert(sizeof(Message) == 80,
               "with its number in the ring a message takes 88 bytes, two lines and no third");
 
-/// The message that a Message::Run is called out of: it gets the arguments where they lie.
+/// Returns the message whose Message::Run is being called: the arguments are passed in place.
 inline const Message& message_of(const std::byte* arguments) noexcept TAPPET_REALTIME {
     return *reinterpret_cast<const Message*>(arguments - offsetof(Message, arguments));
 }
 
 using Mailbox = Ring<Message>;
 
-/// A command that was sent: its slot holds everything else.
+/// A notice of a sent command: its slot holds everything else.
 struct CommandNotice {
     void* slot = nullptr;
-    std::uint64_t part = 0; ///< of the receiving engine
+    std::uint64_t part = 0; ///< number of the component in the receiving engine
 };
 using CommandMailbox = Ring<CommandNotice>;
 
 /// The receiving end of up to 64 mailboxes, each with one sending activity: index 0 is served first. Posting
-/// is one push and one atomic OR; waking the receiver's thread is its activity's business.
+/// is one push and one atomic OR; the activity wakes the receiver's thread.
 template <class Item>
 class InboxOf {
 public:
@@ -57,8 +56,8 @@ public:
     using Mailbox = Ring<Item>;
 
     constexpr InboxOf() = default;
-    /// The mailboxes are placed with Overflow::reject and outlive the inbox; those beyond max_senders are not
-    /// used.
+    /// The mailboxes must be placed with Overflow::reject and outlive the inbox; those beyond max_senders are
+    /// not used.
     explicit constexpr InboxOf(std::span<Mailbox> mailboxes) noexcept { place(mailboxes); }
     InboxOf(const InboxOf&) = delete;
     InboxOf& operator=(const InboxOf&) = delete;
@@ -68,30 +67,31 @@ public:
         mailboxes_ = mailboxes.first(mailboxes.size() < max_senders ? mailboxes.size() : max_senders);
     }
 
-    /// The sending activity's thread only, real-time. False: no such sender, or its mailbox is full and
-    /// counts the loss.
+    /// Posts a message. The sending activity's thread only, real-time. Returns false when there is no such
+    /// sender, or when its mailbox is full, which counts the loss.
     [[nodiscard]] bool post(std::size_t sender, const Item& message) noexcept TAPPET_REALTIME {
         if (sender >= mailboxes_.size()) return false;
         if (!mailboxes_[sender].push(message)) return false; // inbox.push
-        // The result stays unused: with it both compilers would emit a loop of compare-and-exchange. In one
-        // order with Waiter::wake_after_post(), which looks whether the receiver is woken already.
+        // The result stays unused: with it both compilers would emit a compare-and-exchange loop. In one
+        // seq_cst order with Waiter::wake_after_post(), which checks whether the receiver is woken already.
         pending_.fetch_or(std::uint64_t{1} << sender, std::memory_order_seq_cst); // inbox.bit
         return true;
     }
 
-    /// The sending activity's thread only, real-time: its messages that were not taken yet.
+    /// Returns the number of the sender's messages not yet taken. The sending activity's thread only,
+    /// real-time.
     [[nodiscard]] std::size_t waiting(std::size_t sender) const noexcept TAPPET_REALTIME {
         return mailboxes_[sender].size();
     }
 
-    /// Any thread, real-time: whether serve() would find something.
+    /// Returns whether serve() would find something. Any thread, real-time.
     [[nodiscard]] bool pending() const noexcept TAPPET_REALTIME {
         return pending_.load(std::memory_order_seq_cst) != 0; // inbox.pending
     }
 
-    /// The receiver's thread only, real-time if visit(const Item&) is. Serves from each mailbox what is in
-    /// it when its turn comes, so a message posted by a visited one may wait for the next call: pending()
-    /// then says so. Returns how many were served.
+    /// Serves from each mailbox the messages that it holds when its turn comes. Returns their number. A
+    /// message posted by a visited one may wait for the next call; then pending() is true. The receiver's
+    /// thread only, real-time if visit(const Item&) is.
     template <class Visit> std::size_t serve(Visit&& visit) noexcept TAPPET_REALTIME {
         std::uint64_t waiting = pending_.exchange(0, std::memory_order_seq_cst); // inbox.take_bits
         std::uint64_t left = 0;
@@ -113,8 +113,8 @@ public:
         return served;
     }
 
-    /// The receiver's thread only, real-time: takes one message, of the first sender that has any. For a
-    /// receiver that uses nothing else of the inbox. False: there is none.
+    /// Takes one message, of the first sender that has any. Returns false when there is none. For a receiver
+    /// that uses nothing else of the inbox. The receiver's thread only, real-time.
     [[nodiscard]] bool take(Item& into) noexcept TAPPET_REALTIME {
         const std::size_t senders = mailboxes_.size();
         for (std::size_t sender = 0; sender < senders; ++sender)
@@ -122,7 +122,7 @@ public:
         return false;
     }
 
-    /// serve(), each message making its call.
+    /// As serve(); each message makes its call.
     std::size_t run_all() noexcept TAPPET_REALTIME
         requires std::is_same_v<Item, Message>
     {

@@ -1,6 +1,6 @@
 // A queue from one thread to one other, in storage that the machine's planner provides: wait-free on both
-// sides, in order, and full in one of two ways: it refuses the newest, or it gives up the oldest (thesis 4.4:
-// the buffer).
+// sides and in order. When full, it either refuses the newest value or drops the oldest (thesis 4.4: the
+// buffer).
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -15,28 +15,28 @@
 
 namespace tappet {
 
-/// What a full ring does with one more.
+/// The policy of a full ring for one more value.
 enum class Overflow : std::uint8_t {
     reject,      ///< push returns false, the ring is as it was
     drop_oldest, ///< push always succeeds, the oldest is lost
 };
 
-/// Any capacity from 1. Each index lies with its owner's private state far from what the other side polls,
-/// and an index of the other side is loaded only when the copy kept of it no longer suffices.
+/// A ring of any capacity from 1. Each index is next to its owner's private state and far from what the other
+/// side polls. The other side's index is loaded only when the local copy of it no longer suffices.
 template <Exchangeable T, template <class> class Atomic = std::atomic> class Ring {
     using Value = Words<T, Atomic>;
     struct CellLayout {
         Atomic<std::uint64_t> number;
         Value value;
     };
-    // Cells smaller than a line share it without straddling two; larger ones begin on their own.
+    // Cells smaller than a cache line share one without crossing two; larger cells begin on their own line.
     struct alignas(std::min<std::size_t>(64, std::bit_ceil(sizeof(CellLayout)))) Cell {
         Atomic<std::uint64_t> number{}; // of the value in it, from 1; 0: none, or being written
         Value value{};
     };
 
-    // When it drops, the producer writes this far behind the oldest value that the consumer may still take,
-    // so that an attempt to take it fails only if the producer pushes as often within that one copy.
+    // When the ring drops values, the producer writes this far behind the oldest value that the consumer may
+    // still take. So an attempt to take it fails only if the producer pushes this often within that one copy.
     static constexpr std::size_t spare_cells = 2;
     static constexpr std::size_t attempts = 3;
     static_assert(spare_cells >= 1, "with none the producer writes into the very value being taken");
@@ -49,9 +49,9 @@ public:
         return (capacity + spare_cells) * sizeof(Cell);
     }
 
-    /// Holds nothing and refuses everything until it is placed.
+    /// An empty ring that refuses everything until it is placed.
     constexpr Ring() = default;
-    /// `storage`: bytes_for(capacity) bytes at `alignment`, outliving the ring.
+    /// `storage`: bytes_for(capacity) bytes at `alignment`; must outlive the ring.
     Ring(std::byte* storage, std::size_t capacity, Overflow overflow) noexcept {
         place(storage, capacity, overflow);
     }
@@ -70,7 +70,7 @@ public:
         consumer_.place = producer_.place;
     }
 
-    /// Producer only. One copy. False: full, and refused.
+    /// Adds a value; one copy. Producer only. Returns false when the ring is full and refuses it.
     [[nodiscard]] bool push(const T& value) noexcept TAPPET_REALTIME {
         Producer& my = producer_;
         if (my.place.overflow == Overflow::reject && my.position - my.consumed == my.place.capacity) {
@@ -92,14 +92,14 @@ public:
         return true;
     }
 
-    /// Consumer only. At most `attempts` copies, without overflow exactly one. False, `into` untouched:
-    /// empty; or, when dropping, the producer overtook every attempt, and the next call goes on after what
-    /// was lost.
+    /// Takes the oldest value, in at most `attempts` copies; without overflow exactly one. Consumer only.
+    /// Returns false, with `into` unchanged, when the ring is empty; or, if it drops values, when the
+    /// producer overtook every attempt. Then the next call continues after the lost values.
     [[nodiscard]] bool pop(T& into) noexcept TAPPET_REALTIME {
         return consumer_.place.overflow == Overflow::reject ? pop_next(into) : pop_oldest_left(into);
     }
 
-    /// As pop(), of a ring that rejects: nothing was ever lost, so one look suffices.
+    /// As pop(), for a ring that rejects: nothing was ever lost, so one attempt suffices.
     [[nodiscard]] bool pop_next(T& into) noexcept TAPPET_REALTIME {
         Consumer& my = consumer_;
         if (my.position == my.produced) {
@@ -111,8 +111,8 @@ public:
         return true;
     }
 
-    /// Values inside. Exact for either side as far as its own doing goes; any other thread sees a recent
-    /// value.
+    /// Returns the number of values inside. For either side it is exact as far as that side's own actions go;
+    /// any other thread sees a recent number.
     [[nodiscard]] std::size_t size() const noexcept TAPPET_REALTIME {
         const std::uint64_t head = head_.load(std::memory_order_acquire); // ring.size_head
         const std::uint64_t tail = tail_.load(std::memory_order_acquire); // ring.size_tail
@@ -120,17 +120,17 @@ public:
     }
     [[nodiscard]] bool empty() const noexcept TAPPET_REALTIME { return size() == 0; }
     [[nodiscard]] std::size_t capacity() const noexcept TAPPET_REALTIME { return consumer_.place.capacity; }
-    /// The most that ever were inside; capacity() less this was never needed. Any thread.
+    /// Returns the largest number of values ever inside; the rest of capacity() was never needed. Any thread.
     [[nodiscard]] std::size_t high_water() const noexcept TAPPET_REALTIME {
         const std::uint64_t mark = producer_.high_water.load(std::memory_order_relaxed); // ring.mark_read
         return static_cast<std::size_t>(mark);
     }
-    /// Values pushed that will never be popped, by either policy. Either side; exact while the other one
-    /// rests, otherwise it may differ by what that one is just doing: nothing counts twice, but of a value
-    /// that is being taken nobody knows yet whether the producer comes first.
+    /// Returns the number of pushed values that will never be popped, by either policy. Either side; exact
+    /// while the other side is at rest, otherwise it may differ by the other side's action in progress.
+    /// Nothing counts twice, but for a value being taken it is open whether the producer comes first.
     [[nodiscard]] std::uint64_t lost() const noexcept TAPPET_REALTIME {
         const std::uint64_t refused = producer_.refused.load(std::memory_order_relaxed); // ring.lost_refused
-        // Skipped before head: the consumer stores them the other way round, so nothing counts twice.
+        // Skipped is loaded before head; the consumer stores them in the other order: nothing counts twice.
         const std::uint64_t skipped = consumer_.skipped.load(std::memory_order_acquire); // ring.lost_skipped
         const std::uint64_t head = head_.load(std::memory_order_acquire);                // ring.lost_head
         const std::uint64_t fill = tail_.load(std::memory_order_acquire) - head;         // ring.lost_tail
@@ -161,9 +161,9 @@ private:
         Atomic<std::uint64_t> skipped{};
     };
 
-    // Before the value is published: else one that is taken at once would need no room. The other side's
-    // index is loaded only when the fill could be a new maximum, so the mark is exact as far as the
-    // consumer's pace lets it be told, never too small, and costs nothing once it stands.
+    // Raised before the value is published, because a value that is taken at once needed its room too. The
+    // other side's index is loaded only when the fill could be a new maximum. So the mark is as exact as the
+    // consumer's pace allows, never too small, and costs nothing once it is reached.
     void raise_mark() noexcept TAPPET_REALTIME {
         Producer& my = producer_;
         const std::uint64_t mark = my.high_water.load(std::memory_order_relaxed); // ring.mark_read

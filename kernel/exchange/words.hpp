@@ -1,5 +1,5 @@
-// The one way a value crosses from one thread to another: word by word, each an atomic of its own, so that a
-// copy torn by the other side is no data race but a value to be thrown away.
+// The only way in which a value crosses from one thread to another: word by word, each an atomic of its own.
+// A copy torn by the other side is then not a data race but a value to be discarded.
 #pragma once
 
 #include "kernel/base/fixed_matrix.hpp"
@@ -14,7 +14,7 @@
 
 namespace tappet {
 
-/// What two threads write must lie this far apart: a line is 64 bytes, but the hardware fetches them in
+/// Smallest distance of data that two threads write: a line is 64 bytes, but the hardware fetches lines in
 /// pairs.
 inline constexpr std::size_t line_pair_bytes = 128;
 
@@ -22,9 +22,9 @@ template <class T>
 concept Exchangeable = copied_as_bytes<T> && std::is_trivially_destructible_v<T>;
 
 // Two words at once where the processor keeps the order of such accesses. Nothing relies on such a move being
-// whole: a copy is thrown away unless the number after it says that nobody wrote, so a torn pair is two
-// words of the model, in which every word may be torn from the next. For the thread sanitizer, to which a
-// move that is no atomic is a race, the words go one by one; a test's Atomic may take part in pairs by
+// whole: a copy is discarded unless the number after it shows that nobody wrote. So a torn pair is two words
+// of the model, in which every word may be torn from the next. The thread sanitizer reports a non-atomic move
+// as a race, so there the words are moved one by one. A test's Atomic may take part in pairs with
 // before_pair().
 #if defined(__SANITIZE_THREAD__)
 #define TAPPET_MOVES_PAIRS 0
@@ -46,8 +46,8 @@ namespace detail {
 /// Two words in one register.
 using Pair [[gnu::vector_size(16)]] = std::uint64_t;
 inline constexpr std::size_t pair_bytes = sizeof(Pair);
-/// The same where they lie in memory, wherever that is. A memcpy of sixteen bytes g++ takes for an integer,
-/// and carries it in two registers.
+/// A pair in memory, at any address. g++ would treat a memcpy of sixteen bytes as an integer, and carry it in
+/// two registers.
 using PlacedPair [[gnu::vector_size(16), gnu::aligned(1), gnu::may_alias]] = std::uint64_t;
 
 [[nodiscard]] inline PlacedPair& pair_at(std::byte* first, std::size_t i) noexcept TAPPET_REALTIME {
@@ -58,9 +58,9 @@ using PlacedPair [[gnu::vector_size(16), gnu::aligned(1), gnu::may_alias]] = std
     return reinterpret_cast<const PlacedPair*>(first)[i];
 }
 
-// Written as instructions: to the language a vector that two threads access at once is undefined, to the
-// processor it is a move like that of a word, in the same order (Intel SDM 3A, 9.2.2: loads are not reordered
-// with loads, nor stores with stores).
+// Written as instructions, because in the language a vector that two threads access at once is undefined. For
+// the processor it is a move like that of a word, in the same order (Intel SDM 3A, 9.2.2: loads are not
+// reordered with loads, nor stores with stores).
 inline void store_pair(PlacedPair& to, Pair pair) noexcept TAPPET_REALTIME {
 #if TAPPET_MOVES_PAIRS
     asm volatile("movups %1, %0" : "=m"(to) : "x"(pair));
@@ -78,13 +78,13 @@ inline Pair load_pair(const PlacedPair& from) noexcept TAPPET_REALTIME {
     return pair;
 }
 
-// Values of so many pairs stay in registers between two copies.
+// Values of up to so many pairs stay in registers between two copies.
 inline constexpr std::size_t most_pairs_in_registers = 12;
 
 } // namespace detail
 
-/// A copy that the compiler makes here, sixteen bytes at once, and can make together with others of the same
-/// value; what is small or large it copies best by itself.
+/// Copies a value in place, sixteen bytes at once, so that the compiler can combine it with other copies of
+/// the same value. Small and large values are left to the compiler's own copy.
 template <Exchangeable T>
 inline void copy_value(const T& from, T& into) noexcept TAPPET_REALTIME {
     constexpr std::size_t pairs = sizeof(T) / detail::pair_bytes;
@@ -93,7 +93,7 @@ inline void copy_value(const T& from, T& into) noexcept TAPPET_REALTIME {
     } else {
         const auto* source = reinterpret_cast<const std::byte*>(std::addressof(from));
         auto* target = reinterpret_cast<std::byte*>(std::addressof(into));
-        // All of them before the first is stored: the compiler cannot know that the two do not overlap.
+        // All are loaded before the first is stored: the compiler cannot know that the two do not overlap.
         detail::Pair all[pairs];
 #pragma GCC unroll 16
         for (std::size_t i = 0; i < pairs; ++i) all[i] = detail::pair_at(source, i);
@@ -105,18 +105,18 @@ inline void copy_value(const T& from, T& into) noexcept TAPPET_REALTIME {
 }
 
 /// Room for one T that one thread writes while others read it. Every word is stored with release and loaded
-/// with acquire (on x86-64 the same plain moves as relaxed ones): a reader that met one word of a newer value
-/// therefore also sees whatever the writer stored before it began, and needs no fence, which the thread
-/// sanitizer cannot follow. A larger value goes two words at once. Atomic is std::atomic; tests put one in
-/// its place that lets the other side run between any two accesses, also between two pairs.
+/// with acquire (on x86-64 the same plain moves as relaxed ones). So a reader that loads one word of a newer
+/// value also sees everything that the writer stored before it began, and needs no fence, which the thread
+/// sanitizer cannot follow. A larger value is moved two words at once. Atomic is std::atomic; tests replace
+/// it by one that lets the other side run between any two accesses, also between two pairs.
 template <Exchangeable T, template <class> class Atomic = std::atomic> class Words {
 public:
     static constexpr std::size_t count = (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
 
 private:
-    // A small value was as a rule stored just now, field by field: a wider load would have to wait until
-    // those stores have left the processor's buffer. So would one of a large value's last words: there lies
-    // the stamp.
+    // A small value was usually stored just now, field by field: a wider load would have to wait until those
+    // stores have left the processor's buffer. The same holds for the last words of a large value, where its
+    // stamp is.
     static constexpr std::size_t fewest_for_pairs = 12; // as often its loops are unrolled
     static constexpr bool is_told_of_pairs = requires { Atomic<std::uint64_t>::before_pair(); };
     static constexpr bool moves_pairs =
@@ -175,7 +175,7 @@ public:
         for (std::size_t i = 0; i < singles; ++i)
             into.single[i] = words_[2 * pairs + i].load(std::memory_order_acquire); // words.load
     }
-    /// For whoever knows that nobody is writing: without the copy in between that could be thrown away.
+    /// Loads the value directly, for callers that know that nobody writes: without a copy to discard.
     void load(T& into) const noexcept TAPPET_REALTIME {
         auto* bytes = reinterpret_cast<std::byte*>(std::addressof(into));
         if constexpr (pairs != 0) {

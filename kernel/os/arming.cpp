@@ -1,4 +1,4 @@
-// The report: what was found, what of it refuses, and how a person reads it.
+// The report of arming: the findings, which of them refuse, and its text for a person.
 #include "kernel/os/arming.hpp"
 
 #include "kernel/base/nearest.hpp"
@@ -58,7 +58,7 @@ bool ArmingReport::has_check(std::string_view name) const noexcept {
 }
 
 void print(const ArmingReport& report, int file) noexcept {
-    // When nobody listens, the machine's answer does not depend on it.
+    // When nobody reads the file, the machine's answer does not depend on it.
     const auto say = [file](const Sentence& text) { static_cast<void>(write_all(file, text.view())); };
     Sentence head;
     if (report.refused() > 0)

@@ -1,6 +1,5 @@
-// Arming: the box and the process are looked at before the machine may move. What is not as it must be
-// refuses, with a reason and a cure; a development board may downgrade named checks to warnings, which stay
-// visible.
+// Arming: the box and the process are checked before the machine may move. A fault refuses, with its reason
+// and cure. A development board may downgrade named checks to warnings, which stay visible.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -16,32 +15,32 @@ namespace tappet::os {
 enum class Severity : std::uint8_t { passed, warning, refused };
 
 struct Finding {
-    std::string_view name; ///< of the check; its characters outlive the report
+    std::string_view name; ///< name of the check; its characters outlive the report
     Severity severity = Severity::passed;
     Sentence finding;
     Sentence cure;
 };
 
-/// Filled by check_system and by whoever has checks of its own: buses, boards, schedules. Some 60 kB; not
+/// The report of the checks of check_system and of other layers: buses, boards, schedules. Some 60 kB. Not
 /// real-time.
 class ArmingReport {
 public:
     static constexpr std::size_t max_findings = 64;
 
-    /// `downgraded` names the checks whose faults only warn; it outlives the report.
+    /// `downgraded`: the names of checks whose faults only warn; it outlives the report.
     explicit ArmingReport(std::span<const std::string_view> downgraded = {}) noexcept
         : downgraded_{downgraded} {}
 
     void passed(std::string_view name, const Sentence& finding) noexcept;
-    /// Refuses, unless `name` is downgraded.
+    /// Adds a fault. It refuses, unless `name` is downgraded.
     void fault(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept;
-    /// A fault the machine can live with.
+    /// Adds a fault with which the machine can run.
     void warning(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept;
 
-    /// After the last check: a downgraded name that no check has is refused, with the nearest name that one
-    /// has. True when the machine may arm. Once; what is added later does not count.
+    /// Ends the report after the last check. A downgraded name that no check has is refused, with the nearest
+    /// name of a check. Returns true when the machine may arm. Once; findings added later do not count.
     [[nodiscard]] bool conclude() noexcept;
-    /// False before conclude().
+    /// Returns whether the machine may arm; false before conclude().
     [[nodiscard]] bool can_arm() const noexcept { return concluded_ && refused() == 0; }
 
     [[nodiscard]] std::span<const Finding> findings() const noexcept {
@@ -49,7 +48,7 @@ public:
     }
     [[nodiscard]] std::size_t refused() const noexcept { return count(Severity::refused) + lost_; }
     [[nodiscard]] std::size_t warnings() const noexcept { return count(Severity::warning); }
-    /// Findings there was no room for; each refuses.
+    /// Returns the number of findings without room; each refuses.
     [[nodiscard]] std::size_t lost() const noexcept { return lost_; }
 
 private:
@@ -63,20 +62,20 @@ private:
     bool concluded_ = false;
 };
 
-/// "cannot arm: 3 reasons" and a line for each finding that did not pass, with its cure. No heap.
+/// Writes "cannot arm: 3 reasons" and a line for each finding that did not pass, with its cure. No heap.
 void print(const ArmingReport& report, int file) noexcept;
 
-/// What the machine and its board ask of the system.
+/// The requirements of the machine and its board on the system.
 struct ArmingOptions {
-    std::string_view root = "";                                              ///< stands before /proc and /sys
+    std::string_view root = "";                                              ///< prefix of /proc and /sys
     std::span<const int> processors{};                                       ///< named by the board's plan
     std::span<const std::string_view> clock_sources = trusted_clock_sources; ///< the accepted ones
     int highest_priority = 1;                                                ///< SCHED_FIFO, 1..99
-    // A guest's clock (kvm-clock) or a slow one (hpet) is for the board to accept.
+    // The board must accept a guest's clock (kvm-clock) or a slow one (hpet).
     static constexpr std::string_view trusted_clock_sources[] = {"tsc", "arch_sys_counter"};
 };
 
-/// What no file shows: taken from the process itself. A test states its own.
+/// Facts that no file shows, from the process itself. A test states its own.
 struct ProcessFacts {
     std::int64_t clock_resolution_ns = 0;
     int fifo_error = 0; ///< errno of setting the highest priority on this thread; 0: it could be set
@@ -97,9 +96,9 @@ struct SystemCheck {
     };
     std::string_view name;
     std::string_view looks_at;
-    std::string_view claims; ///< holds on a box that passes
-    /// Kernels on which `tests/bench/probe/arming.cpp` measured the claim on x86-64, as "6.1 6.12". Empty:
-    /// an emulated box cannot show it.
+    std::string_view claims; ///< the property of a box that passes
+    /// Kernels on which `tests/bench/probe/arming.cpp` measured the claim on x86-64, as "6.1 6.12". Empty: an
+    /// emulated box cannot show it.
     std::string_view measured_on;
     Severity severity; ///< of a fault that is not downgraded
     std::string_view cure;
@@ -107,7 +106,7 @@ struct SystemCheck {
 };
 std::span<const SystemCheck> system_checks() noexcept;
 
-/// Looks at everything in system_checks. Not real-time; no heap.
+/// Runs every check in system_checks. Not real-time; no heap.
 void check_system(ArmingReport& report, const ArmingOptions& options, const ProcessFacts& facts) noexcept;
 inline void check_system(ArmingReport& report, const ArmingOptions& options) noexcept {
     check_system(report, options, observe_process(options.highest_priority));

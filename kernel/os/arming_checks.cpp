@@ -1,4 +1,4 @@
-// The table of checks, one function each: what a box must be like for a machine to keep its deadlines.
+// The table of checks, one function each: properties that a box needs for a machine to keep its deadlines.
 #include "kernel/os/arming.hpp"
 
 #include "kernel/os/heap.hpp"
@@ -23,10 +23,10 @@ namespace {
 
 using Verdict = SystemCheck::Verdict;
 
-/// On which the bench measures what the checks claim.
+/// The kernels on which the bench measures the claims of the checks.
 constexpr std::string_view kernels = "6.1 6.12";
 
-/// Of the running kernel: "6.12.9-rt", of the series "6.12".
+/// The release of the running kernel: "6.12.9-rt", of the series "6.12".
 class Release {
 public:
     explicit Release(std::string_view root) noexcept
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] bool is_of(std::string_view series) const noexcept {
         return number_after(series, "", 10) == major_ && number_after(series, ".", 10) == minor_;
     }
-    /// A release that nobody can read has one, too.
+    /// Returns whether the kernel has a fair server; a release that cannot be read counts as one that has.
     [[nodiscard]] bool has_fair_server() const noexcept {
         return !major_ || !minor_ || *major_ > 6 || (*major_ == 6 && *minor_ >= 12);
     }
@@ -60,7 +60,7 @@ bool was_measured(const SystemCheck& check, const Release& release) noexcept {
     return false;
 }
 
-// Kernels with the RT patches say it in /sys; since 6.12 the mainline's own PREEMPT_RT says it in its version
+// Kernels with the RT patches show it in /sys; since 6.12 the mainline's own PREEMPT_RT is in the version
 // only.
 Verdict look_at_kernel(const ArmingOptions& options, const ProcessFacts&) noexcept {
     const SystemFile flag{options.root, Sentence{"/sys/kernel/realtime"}};
@@ -96,9 +96,9 @@ Verdict look_at_priority(const ArmingOptions& options, const ProcessFacts& facts
                             std::strerror(facts.fifo_error), ")"}};
 }
 
-// Linux 6.12 gives threads without a real-time priority 50 ms of each second, whatever sched_rt_runtime_us
-// says: the fair server, which only debugfs shows and stops. Measuring it here would let each start of the
-// machine wait for more than that second; the bench measures it, once for each kernel.
+// Since Linux 6.12 threads without a real-time priority get 50 ms of each second, whatever
+// sched_rt_runtime_us says. This is the fair server, and only debugfs shows and stops it. Measuring it here
+// would delay each start of the machine by more than a second; the bench measures it, once for each kernel.
 Verdict look_at_throttling(const ArmingOptions& options, const ProcessFacts&) noexcept {
     const SystemFile file{options.root, Sentence{"/proc/sys/kernel/sched_rt_runtime_us"}};
     if (!file.readable) return {false, Sentence{"/proc/sys/kernel/sched_rt_runtime_us cannot be read"}};
@@ -271,7 +271,7 @@ ProcessFacts observe_process(int highest_priority) noexcept {
     if (clock_getres(CLOCK_MONOTONIC, &resolution) == 0)
         facts.clock_resolution_ns = resolution.tv_sec * 1'000'000'000 + resolution.tv_nsec;
 
-    // Trying SCHED_FIFO gives the thread its default slack back: it is read before, and restored after.
+    // Setting SCHED_FIFO resets the thread's timer slack: it is read before, and restored after.
     facts.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
     int policy = SCHED_OTHER;
     sched_param before{};

@@ -64,7 +64,7 @@ BuildId build_id() noexcept {
                 const auto* note = reinterpret_cast<const char*>(program->dlpi_addr + segment.p_vaddr);
                 take_build_id(note, note + segment.p_filesz, *static_cast<BuildId*>(into));
             }
-            return 1; // the program itself comes first; its libraries are not asked
+            return 1; // the program itself comes first; its libraries are not searched
         },
         &id);
     return id;

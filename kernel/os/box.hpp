@@ -1,4 +1,4 @@
-// What box and program this is.
+// Identification of this box and this program.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -11,21 +11,20 @@
 
 namespace tappet::os {
 
-/// Not real-time, all of them.
+/// Not real-time, like all functions here.
 [[nodiscard]] Sentence kernel_release() noexcept;
-/// True on a PREEMPT_RT kernel.
+/// Returns true on a PREEMPT_RT kernel.
 [[nodiscard]] bool kernel_is_realtime() noexcept;
-/// The size of this program's file; 0 when it cannot be told.
+/// Returns the size of this program's file; 0 when it is unknown.
 [[nodiscard]] std::size_t binary_bytes() noexcept;
 
-/// Processor time of this process so far. Called first in main it tells what the kernel took to load the
-/// program.
+/// Returns this process's processor time so far. First in main: the kernel's time to load the program.
 [[nodiscard]] Duration own_processor_time() noexcept;
 
-/// Since 1970, UTC, as the box believes: for dates, not for intervals, since it may be set.
+/// Returns the box's time since 1970, UTC: for dates, not for intervals, because the clock may be set.
 [[nodiscard]] std::int64_t wall_clock_ns() noexcept;
 
-/// The linker's mark of this program (--build-id), in hexadecimal; empty when it was linked without.
+/// The linker's ID of this program (--build-id), in hexadecimal; empty when it was linked without.
 struct BuildId {
     std::array<char, 40> digits{};
     std::size_t length = 0;

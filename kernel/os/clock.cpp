@@ -1,4 +1,4 @@
-// Reads CLOCK_MONOTONIC; load that is injected moves virtual time and occupies the processor in real time.
+// Reads CLOCK_MONOTONIC. An injected load moves virtual time, and occupies the processor in real time.
 #include "kernel/os/clock.hpp"
 
 #include <ctime>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signal handlers that call nothing but what a handler may.
+// Signal handlers that call only functions permitted in a handler.
 #include "kernel/os/crash.hpp"
 
 #include "kernel/os/memory.hpp"
@@ -15,7 +15,7 @@
 #include <ucontext.h>
 #include <unistd.h>
 
-/// The program's code, as the linker calls its ends.
+/// The begin and the end of the program's code, as named by the linker.
 extern "C" const unsigned char __executable_start[], etext[]; // NOLINT
 
 namespace tappet::os {
@@ -36,11 +36,11 @@ struct Told {
 };
 constinit Told told{};
 
-// One for all threads: who crashes second finds the first one's note, and sleeps. Should it overwrite what
-// the first one stands on, the kernel ends the process, which whoever acts learns as well.
+// One stack for all threads: the thread that crashes second finds the first one's note, and sleeps. If it
+// overwrites the stack in use by the first one, the kernel ends the process, which the guardian sees as well.
 alignas(64) constinit std::array<std::byte, 32 * 1024> own_stack{};
 
-/// The stack of the calling thread: its guard's addresses, and its size.
+/// The stack of the calling thread: the addresses of its guard, and its size.
 struct OwnStack {
     std::uint64_t guard = 0, guard_end = 0, bytes = 0;
 };
@@ -53,7 +53,7 @@ std::uint64_t instruction_of(const ucontext_t& context) noexcept {
 std::uint64_t stack_of(const ucontext_t& context) noexcept {
     return static_cast<std::uint64_t>(context.uc_mcontext.gregs[REG_RSP]);
 }
-/// Whether the instruction before is a call: direct, or by a register or memory in the usual lengths.
+/// Returns whether the instruction before is a call: direct, or by a register or memory in the usual lengths.
 bool follows_call(const unsigned char* at) noexcept {
     const auto calls = [&](int back) { return at[-back] == 0xff && (at[1 - back] & 0x38) == 0x10; };
     return at[-5] == 0xe8 || calls(2) || calls(3) || calls(4) || calls(6) || calls(7);
@@ -70,9 +70,9 @@ bool follows_call(const unsigned char* at) noexcept {
 #error "say where this processor keeps the place and the stack of an interrupted thread, and what calls"
 #endif
 
-// Frame pointers would tell calls apart from what they left, and cost every function a register.
+// Frame pointers would tell calls from left-over return addresses, but would cost every function a register.
 void note_returns(CrashNote& note, std::uint64_t stack) noexcept {
-    // Read by the kernel, which a wild stack pointer does not stop; a page that is not there ends it.
+    // The kernel reads the stack: a wild stack pointer does not stop it. A missing page ends the reading.
     constexpr std::size_t most = 8192, page = 4096;
     static constinit std::array<std::uint64_t, most / 8> words{};
     std::size_t read = 0;
@@ -116,8 +116,8 @@ void take(int number, siginfo_t* facts, void* context) noexcept {
         note.address = facts->si_code <= 0 ? 0 : // another process, or abort()
                            reinterpret_cast<std::uint64_t>(facts->si_addr);
         note.instruction = instruction_of(*static_cast<const ucontext_t*>(context));
-        // A wild pointer may lead there as well: the stack's own pointer tells. A leaf may use 128 bytes
-        // below it.
+        // A wild pointer may point there as well, so the stack pointer decides. A leaf function may use 128
+        // bytes below it.
         const std::uint64_t stack = stack_of(*static_cast<const ucontext_t*>(context));
         if (note.address >= own.guard && note.address < own.guard_end && stack < own.guard_end + 128)
             note.stack_bytes = own.bytes;

@@ -1,5 +1,5 @@
 // Page faults of the calling thread. After arming a real-time thread has none: each is an access to memory
-// that was not there, and costs microseconds to milliseconds.
+// that was not present, and costs microseconds to milliseconds.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -18,9 +18,9 @@ constexpr PageFaults operator-(const PageFaults& late, const PageFaults& early) 
     return {late.minor - early.minor, late.major - early.major};
 }
 
-/// Since the thread began. One system call that does not block.
+/// Returns those since the thread began. One system call that does not block.
 PageFaults page_faults_of_this_thread() noexcept TAPPET_REALTIME;
-/// Of all threads, those that ended included.
+/// Returns those of all threads, including threads that ended.
 PageFaults page_faults_of_this_process() noexcept TAPPET_REALTIME;
 
 } // namespace tappet::os

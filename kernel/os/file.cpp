@@ -1,4 +1,4 @@
-// Reads a file by read(2), whatever interrupts it.
+// Reads a file with read(2), and continues after interruptions.
 #include "kernel/os/file.hpp"
 
 #include <cerrno>

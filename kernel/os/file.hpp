@@ -1,4 +1,4 @@
-// A whole file read into memory that is there already.
+// A whole file read into memory that is already allocated.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct FileText {
     std::size_t length = 0;
 };
 
-/// Not real-time; takes no heap. What does not fit is not read in part: too_large.
+/// Reads a file. Not real-time; uses no heap. A file that does not fit is not read in part: too_large.
 [[nodiscard]] FileText read_file(const char* path, std::span<char> into) noexcept;
 
 } // namespace tappet::os

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fork, a page of memory that both have, and what a parent learns of its child.
+// fork, a page of memory shared by both processes, and the parent's observation of its child.
 #include "kernel/os/guard.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -36,13 +36,13 @@ bool write_to(const char* path, std::string_view text) noexcept {
     return written;
 }
 
-// 0 keeps it from files, 1 from pipes too: it would hold the end up.
+// A limit of 0 prevents core files; 1 also prevents core dumps to pipes, which would delay the end.
 void dump_no_core() noexcept {
     const rlimit none{1, 1};
     setrlimit(RLIMIT_CORE, &none);
 }
 
-/// What there is to read, or the end of a process.
+/// Returns whether data can be read, or a process has ended, within `time`.
 bool comes_within(int descriptor, Duration time) noexcept {
     pollfd told{descriptor, POLLIN, 0};
     const timespec limit{static_cast<time_t>(time / 1s), static_cast<long>((time % 1s).count())};
@@ -69,10 +69,9 @@ std::expected<Guard::Side, Sentence> Guard::split(int crash_patience_ms) noexcep
     pthread_mutexattr_setrobust(&robust, PTHREAD_MUTEX_ROBUST);
     pthread_mutex_init(&block->machine_lives, &robust);
     guardian_ = getpid();
-    // Somebody who ignores the ends of children leaves that to whom he starts: then nobody could wait for
-    // one.
+    // A parent that ignores the ends of children leaves that to its children: then nobody could wait for one.
     signal(SIGCHLD, SIG_DFL);
-    // What comes in between is for the guardian to hand on.
+    // The guardian passes on signals that arrive in between.
     sigset_t all, before;
     sigfillset(&all);
     sigprocmask(SIG_BLOCK, &all, &before);
@@ -93,8 +92,8 @@ std::expected<Guard::Side, Sentence> Guard::split(int crash_patience_ms) noexcep
         return refusal;
     }
     pthread_mutex_lock(&block->machine_lives); // for ever
-    // The end of the guardian asks for the orderly stop, as every signal does; the supervisor then sees who
-    // is gone.
+    // The end of the guardian requests the orderly stop, as every signal does; the supervisor then sees that
+    // the guardian is gone.
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     dump_no_core();
     on_crash(block->crash, crash_, crash_patience_ms);
@@ -125,7 +124,7 @@ void Guard::end(Outputs outputs, const Sentence& fault) noexcept {
     block_->ended_well.store(outputs == Outputs::safe, std::memory_order_release);
     block_->is_left.store(outputs == Outputs::unsafe, std::memory_order_release);
     block_->has_stopped.store(true, std::memory_order_release);
-    // Nothing of the machine's runs until the guardian has ended it.
+    // No code of the machine runs until the guardian has ended it.
     for (int waited = 0; outputs == Outputs::unsafe && waited < 1000 && !guardian_is_lost(); ++waited)
         sleep_for(1ms);
 }
@@ -148,8 +147,8 @@ bool Guard::become_guardian(std::span<const int> kept) noexcept {
             if (file == each) return true;
         return false;
     };
-    // What the machine opened would otherwise stay open beyond its end: a browser would wait at a socket of
-    // nobody.
+    // Files that the machine opened would otherwise stay open after its end: a browser would wait at a socket
+    // that nobody serves.
     for (int file = 3; file < 256; ++file)
         if (!keeps(file)) close(file);
     on_termination(nullptr);
@@ -169,12 +168,12 @@ void Guard::give_back(std::uintptr_t begin, std::uintptr_t end) noexcept {
     constexpr std::uintptr_t page = 4096;
     begin = (begin + page - 1) & ~(page - 1);
     end &= ~(page - 1);
-    // Of a range that is mapped in part the rest is refused, and that part given back.
+    // If a range is mapped in part, the call fails for the rest, but gives that part back.
     if (begin < end) static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED));
 }
 
-// Not what may be touched later: the machine's memory is in this process as well, where nothing of it is
-// there.
+// Not memory that may be touched later: the machine's memory is mapped in this process as well, but none of
+// it is present here.
 void Guard::stay_in_memory() noexcept {
     constexpr std::uintptr_t own_calls = 16 * 1024, most = 8 << 20;
     const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
@@ -199,7 +198,7 @@ Guard::Seen Guard::look(Duration time) noexcept {
             send(static_cast<int>(facts.ssi_signo));
     }
     if (!is_owned_) is_owned_ = block_->back_by_ns.load(std::memory_order_acquire) != 0;
-    // Its memory is freed before its descriptor tells the end, which takes some milliseconds.
+    // Its memory is freed before its descriptor reports the end, which takes some milliseconds.
     if (is_owned_ && pthread_mutex_trylock(&block_->machine_lives) == EOWNERDEAD) return Seen::dying;
     block_->looked_ns.store(to_ns(Clock::monotonic()), std::memory_order_release);
     return Seen::nothing;
@@ -207,7 +206,7 @@ Guard::Seen Guard::look(Duration time) noexcept {
 
 void Guard::kill() const noexcept { send(SIGKILL); }
 
-// By its descriptor: the number of a process that has ended may be another's.
+// By its descriptor: after a process has ended, another one may have its number.
 void Guard::send(int signal) const noexcept {
     syscall(SYS_pidfd_send_signal, machine_descriptor_, signal, nullptr, 0);
 }
@@ -224,7 +223,7 @@ bool Guard::try_apart(Duration time, void (*act)(void*), void* context) noexcept
     const int descriptor = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
     const bool in_time = descriptor >= 0 && comes_within(descriptor, time);
     if (!in_time) ::kill(child, SIGKILL);
-    // One that waits in the kernel, for a disk, ends when that answers: perhaps never.
+    // A process that waits in the kernel, for a disk, ends when the disk answers: perhaps never.
     if (!in_time && descriptor >= 0) static_cast<void>(comes_within(descriptor, 1s));
     if (descriptor >= 0) close(descriptor);
     int status = 0;
@@ -235,7 +234,7 @@ bool Guard::await_end(Duration time) noexcept {
     if (has_ended_ || !comes_within(machine_descriptor_, time)) return has_ended_;
     has_ended_ = true;
     int status = 0;
-    if (waitpid(machine_, &status, WNOHANG) != machine_) return true; // whoever traces it learns it first
+    if (waitpid(machine_, &status, WNOHANG) != machine_) return true; // a tracer gets the exit status first
     exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     return true;
 }

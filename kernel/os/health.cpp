@@ -1,4 +1,4 @@
-// What the kernel shows in /sys.
+// The kernel's values in /sys.
 #include "kernel/os/health.hpp"
 
 #include "kernel/os/system_file.hpp"

@@ -1,4 +1,4 @@
-// How the box itself is: warm, full, guarded.
+// The condition of the box: temperature, disk space, watchdog.
 #pragma once
 
 #include <optional>
@@ -6,14 +6,14 @@
 
 namespace tappet::os {
 
-/// Of the kernel's thermal zones the hottest, in degrees Celsius; none when the box has no sensor. `root`
-/// stands before /sys. Not real-time, as the others.
+/// Returns the temperature of the hottest thermal zone of the kernel, in degrees Celsius; none when the box
+/// has no sensor. `root` is a prefix of /sys. Not real-time, like the others.
 [[nodiscard]] std::optional<double> hottest_celsius(std::string_view root = "") noexcept;
 
-/// Free for a user on the disk that a folder lies on, in MB; none when it cannot be told.
+/// Returns the space for a user on the disk of a folder, in MB; none when it is unknown.
 [[nodiscard]] std::optional<double> free_megabytes(const char* folder) noexcept;
 
-/// Whether a hardware watchdog counts now.
+/// Returns whether a hardware watchdog is running.
 [[nodiscard]] bool watchdog_counts(std::string_view root = "") noexcept;
 
 } // namespace tappet::os

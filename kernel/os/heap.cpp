@@ -1,4 +1,4 @@
-// The arena's lock, its books, and what sealing means.
+// The arena's lock, its accounts, and the effect of sealing.
 #include "kernel/os/heap.hpp"
 
 #include "kernel/base/contract.hpp"
@@ -39,7 +39,7 @@ public:
 private:
     static void wait() noexcept {
         while (syscall(SYS_futex, &word_, FUTEX_LOCK_PI_PRIVATE, 0, nullptr, nullptr, 0) != 0) {
-            // A signal came, or the owner is just ending: ask again. Anything else would let two threads in.
+            // A signal came, or the owner is ending: try again. Any other error would let two threads in.
             const int error = errno;
             TAPPET_CONTRACT(error == EINTR || error == EAGAIN, Contract::heap_lock_failed, error);
         }
@@ -85,7 +85,7 @@ void note_exhaustion(std::size_t bytes) noexcept {
     errno = ENOMEM;
 }
 
-// Under the lock.
+// Call it under the lock.
 Allocator::Piece checked(const void* piece) noexcept { return allocator.look_at(piece); }
 
 void complain(Allocator::Piece found, const void* piece) noexcept {
@@ -112,7 +112,7 @@ State state() noexcept TAPPET_REALTIME { return now.load(std::memory_order_acqui
 
 bool owns_malloc() noexcept {
     void* piece = std::malloc(1);
-    // The compiler may otherwise leave out a pair of calls whose result nobody uses.
+    // The compiler might otherwise remove a pair of calls whose result is unused.
     asm volatile("" : "+r"(piece) : : "memory");
     const bool ours = [&] {
         const Lock lock;

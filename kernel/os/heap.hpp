@@ -1,5 +1,5 @@
 // The heap of a firmware: one static arena until the machine arms, then sealed. Linking tappet_sealed_heap
-// puts every malloc, operator new and mmap of the program, glibc's own included, behind it.
+// routes every malloc, operator new and mmap of the program to it, including glibc's internal ones.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -21,28 +21,28 @@ inline constexpr bool sanitizer_owns_malloc =
 inline constexpr bool sanitizer_owns_malloc = false;
 #endif
 
-/// open: configuring. sealed: armed; an allocation breaks Contract::allocation_after_seal and is still
-/// served, because the code that brings the machine to its safe state may be the one that allocates; a
-/// mapping is refused, because memory that is not there yet cannot be served without page faults. released:
-/// the machine stands; free again.
+/// open: configuring. sealed: armed. An allocation breaks Contract::allocation_after_seal but is still
+/// served, because the code that brings the machine to its safe state may be the one that allocates. A
+/// mapping is refused, because memory that is not present yet cannot be served without page faults. released:
+/// the machine is stopped; allocations are free again.
 enum class State : std::uint8_t { open, sealed, released };
 
-/// Finds out, too, whether the seal counts: owns_malloc(). Not real-time.
+/// Seals the heap, and determines with owns_malloc() whether the seal counts. Not real-time.
 void seal() noexcept;
-/// After the machine stopped. What was counted stays.
+/// Releases the heap, after the machine stopped. The counts stay.
 void release() noexcept;
 State state() noexcept TAPPET_REALTIME;
 
-/// True when this program's malloc ends in the arena; false in builds with a sanitizer or without
-/// tappet_sealed_heap, where nothing below can count. Tries it: not real-time, not while sealed.
+/// Returns whether this program's malloc uses the arena; false in builds with a sanitizer or without
+/// tappet_sealed_heap, where nothing below can count. It allocates: not real-time, not while sealed.
 bool owns_malloc() noexcept;
-/// What seal() found.
+/// Returns the result of seal().
 bool seal_counts() noexcept TAPPET_REALTIME;
 
 std::uint64_t allocations_after_seal() noexcept TAPPET_REALTIME;
 std::uint64_t mappings_after_seal() noexcept TAPPET_REALTIME; ///< all of them refused
 std::uint64_t releases_after_seal() noexcept TAPPET_REALTIME; ///< calls of free: counted, no breach
-std::uint64_t refused_allocations() noexcept TAPPET_REALTIME; ///< for want of room
+std::uint64_t refused_allocations() noexcept TAPPET_REALTIME; ///< because there was no room
 
 struct Use {
     std::size_t arena_bytes = 0;
@@ -51,12 +51,12 @@ struct Use {
     std::size_t free_bytes = 0;
     std::size_t largest_free_bytes = 0;
 };
-/// Walks the arena: not real-time.
+/// Walks the arena. Not real-time.
 Use use() noexcept;
 std::size_t used_bytes() noexcept;
 std::size_t high_water_bytes() noexcept;
 
-/// The first allocations after sealing: who did it.
+/// One of the first allocations after sealing, with its caller.
 struct Record {
     std::size_t bytes = 0;
     std::uintptr_t caller = 0; ///< code address; addr2line names it
@@ -66,25 +66,25 @@ struct Record {
 inline constexpr std::size_t max_records = 16;
 std::span<const Record> records_after_seal() noexcept TAPPET_REALTIME;
 
-/// What the firmware gives; see TAPPET_HEAP_ARENA.
+/// The firmware's arena; see TAPPET_HEAP_ARENA.
 struct Arena {
     std::byte* begin;
     std::size_t bytes;
 };
 extern const Arena firmware_arena;
 
-// Where malloc and its family come in.
+// The entry points of malloc and its family.
 void* allocate(const Arena& arena, std::size_t bytes, std::size_t align, std::uintptr_t caller) noexcept;
 void* reallocate(const Arena& arena, void* piece, std::size_t bytes, std::uintptr_t caller) noexcept;
 void deallocate(void* piece) noexcept;
 std::size_t usable_bytes(void* piece) noexcept;
-/// False, and a broken contract, after sealing.
+/// Returns whether memory may be mapped. After sealing: false, and a broken contract.
 bool may_map(std::size_t bytes, std::uintptr_t caller) noexcept;
 
 } // namespace tappet::os::heap
 
-/// Once, in one source of the firmware, at namespace scope. The C++ library alone takes 73 kB for exceptions
-/// it may have to throw when memory is short.
+/// Use once, in one source of the firmware, at namespace scope. The C++ library alone needs 73 kB for
+/// exceptions that it may throw when memory is short.
 #define TAPPET_HEAP_ARENA(arena_bytes)                                                                       \
     namespace tappet::os::heap {                                                                             \
     static_assert((arena_bytes) >= 128 * 1024, "the C++ library takes 73 kB before main");                   \

@@ -1,5 +1,5 @@
-// Blocks lie back to back, each after a header with its size and its lower neighbour; free ones hang in the
-// list of their class. A class is searched one size up, so that any block in it fits.
+// Blocks are contiguous. Each has a header with its size and its lower neighbour; free ones are in the list
+// of their class. A search starts one class up, so that any block in it fits.
 #include "kernel/os/heap_allocator.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tappet::os::heap {
 struct Allocator::Block {
     Block* below;           // the neighbour at the lower address; nullptr for the first
     std::size_t size_state; // payload bytes, a multiple of the alignment; bit 0: free
-    // Of the payload, while the block is free:
+    // In the payload while the block is free:
     Block* next;
     Block* before;
 
@@ -75,7 +75,7 @@ Allocator::Block* Allocator::find_free(std::size_t bytes) const noexcept {
         }
         if (seconds != 0) return lists_[first][static_cast<unsigned>(std::countr_zero(seconds))];
     }
-    // The class of the size itself holds blocks that fit and blocks that do not: its first is worth one look.
+    // The class of the size itself holds blocks that fit and blocks that do not: only its first is checked.
     const Class own = class_of(bytes);
     Block* block = own.first < first_count ? lists_[own.first][own.second] : nullptr;
     return block != nullptr && block->size() >= bytes ? block : nullptr;
@@ -107,7 +107,7 @@ void Allocator::remove(Block* block) noexcept {
     block->size_state &= ~std::size_t{1};
 }
 
-// Gives back what a used block of at least `bytes` has too much.
+// Frees the part of a used block beyond `bytes`.
 void Allocator::cut(Block* block, std::size_t bytes) noexcept {
     if (block->size() - bytes < header_bytes + payload_min) return;
     Block* rest = Block::at(block->payload() + bytes);
@@ -135,7 +135,7 @@ void Allocator::take(Block* block) noexcept {
 void* Allocator::allocate(std::size_t bytes, std::size_t align) noexcept {
     if (!is_open() || bytes > arena_bytes_max || align > arena_bytes_max) return nullptr;
     const std::size_t wanted = std::max(rounded(bytes, alignment), payload_min);
-    // What lies before an aligned piece becomes a block of its own, so it needs room for one.
+    // The part before an aligned piece becomes a block of its own, so it needs room for one.
     const std::size_t room = align > alignment ? align + header_bytes + payload_min : 0;
     Block* block = find_free(wanted + room);
     if (block == nullptr) return nullptr;
@@ -206,7 +206,7 @@ Allocator::Piece Allocator::look_at(const void* piece) const noexcept {
     const auto left = static_cast<std::size_t>(reinterpret_cast<std::byte*>(end_) - block->payload());
     if (block->size() % alignment != 0 || block->size() > left) return Piece::damaged;
     if (block->above()->below != block) return Piece::damaged;
-    // The pointer may be anything: it is followed only where a block can lie.
+    // The pointer may be anything: it is followed only where a block can be.
     if (const Block* below = block->below; below != nullptr) {
         const auto at = reinterpret_cast<std::uintptr_t>(below),
                    here = reinterpret_cast<std::uintptr_t>(block);

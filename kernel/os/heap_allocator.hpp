@@ -1,6 +1,5 @@
-// The allocator behind the arena: two-level segregated fit (Masmano, Ripoll, Crespo, Real: TLSF, ECRTS 2004).
-// Every operation is a bounded number of steps, freed neighbours merge at once. One thread at a time; the
-// caller locks.
+// The allocator of the arena: two-level segregated fit (Masmano, Ripoll, Crespo, Real: TLSF, ECRTS 2004).
+// Each operation has a bounded number of steps; freed neighbours merge at once. One thread; the caller locks.
 #pragma once
 
 #include <array>
@@ -10,7 +9,7 @@
 
 namespace tappet::os::heap {
 
-/// Constant-initialised, so that it serves before any constructor has run.
+/// Constant-initialised, so that it works before any constructor has run.
 class Allocator {
 public:
     static constexpr std::size_t alignment = 16; ///< of every block: max_align_t of x86-64 and arm64
@@ -22,20 +21,20 @@ public:
     Allocator(const Allocator&) = delete;
     Allocator& operator=(const Allocator&) = delete;
 
-    /// Takes the arena over; once. It outlives the allocator.
+    /// Takes over the arena, which outlives the allocator; once.
     void open(std::span<std::byte> arena) noexcept;
     [[nodiscard]] bool is_open() const noexcept { return begin_ != nullptr; }
 
-    /// nullptr when no free piece is large enough. `align` is a power of two. Zero bytes get a piece of their
-    /// own.
+    /// Allocates a piece. Returns nullptr when no free piece is large enough. `align` is a power of two. For
+    /// zero bytes it still allocates a piece.
     [[nodiscard]] void* allocate(std::size_t bytes, std::size_t align = alignment) noexcept;
-    /// `piece` came from allocate and is in use.
+    /// Frees a piece, which came from allocate and is in use.
     void release(void* piece) noexcept;
-    /// Stays in place where it can. nullptr, and `piece` as it was, when there is no room.
+    /// Resizes a piece, in place if possible. When there is no room: nullptr, and `piece` is unchanged.
     [[nodiscard]] void* resize(void* piece, std::size_t bytes) noexcept;
 
     [[nodiscard]] bool contains(const void* piece) const noexcept;
-    /// What release would find: the caller breaks a contract on anything but `in_use`.
+    /// The state of a piece for release. The caller breaks a contract on any state but `in_use`.
     enum class Piece : std::uint8_t { in_use, free, foreign, damaged };
     [[nodiscard]] Piece look_at(const void* piece) const noexcept;
     [[nodiscard]] std::size_t usable_bytes(const void* piece) const noexcept;
@@ -45,8 +44,8 @@ public:
     [[nodiscard]] std::size_t high_water_bytes() const noexcept { return high_water_; }
     [[nodiscard]] std::size_t free_bytes() const noexcept;         ///< walks the arena
     [[nodiscard]] std::size_t largest_free_bytes() const noexcept; ///< walks the arena
-    /// Walks everything: the chain of blocks, the free lists and the books agree, and no two free blocks
-    /// touch.
+    /// Returns whether the chain of blocks, the free lists and the accounts agree, and no two free blocks are
+    /// neighbours. Walks everything.
     [[nodiscard]] bool is_sound() const noexcept;
 
 private:
@@ -69,7 +68,7 @@ private:
     void merge_next(Block* block) noexcept;
 
     Block* begin_ = nullptr;
-    Block* end_ = nullptr; // a header without a payload, in use for ever
+    Block* end_ = nullptr; // a header without a payload, always in use
     std::size_t used_ = 0;
     std::size_t high_water_ = 0;
     std::uint32_t firsts_ = 0; // one bit for each first level that has a free block

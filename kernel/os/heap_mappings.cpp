@@ -1,6 +1,6 @@
-// Address space after sealing: every way to get some, glibc's internal ones included, asks here first. Linked
-// with
-// --wrap for each name below, into static programs only: a shared C library's own calls cannot be wrapped.
+// Address space after sealing: every way to get some, including glibc's internal ones, is checked here first.
+// Linked with --wrap for each name below, into static programs only: a shared C library's own calls cannot be
+// wrapped.
 #include "kernel/os/heap.hpp"
 
 #include <cerrno>
@@ -11,7 +11,7 @@
 #include <sys/mman.h>
 #include <sys/types.h>
 
-// Reserved names, as --wrap makes them.
+// Reserved names, as --wrap requires them.
 // NOLINTBEGIN(bugprone-reserved-identifier)
 
 #define TAPPET_MAY_MAP(bytes)                                                                                \

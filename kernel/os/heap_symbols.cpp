@@ -1,6 +1,6 @@
-// malloc and its whole family, and operator new, as this program's own: glibc then links none of its
-// allocator, and what the C and C++ libraries allocate comes here too. Address space is refused by --wrap,
-// since glibc maps internally.
+// malloc with its whole family, and operator new, as this program's own. glibc then links none of its
+// allocator, and allocations of the C and C++ libraries come here too. --wrap refuses address space, because
+// glibc maps internally.
 #include "kernel/base/contract.hpp"
 #include "kernel/os/heap.hpp"
 #include "kernel/os/heap_allocator.hpp"
@@ -25,8 +25,8 @@ void* give(std::size_t bytes, std::size_t align, std::uintptr_t caller) noexcept
 
 bool is_alignment(std::size_t align) noexcept { return std::has_single_bit(align); }
 
-// Who asks malloc looks at what it got; who asks operator new does not, and without exceptions on any path
-// there is nobody to catch bad_alloc: that thread stops, and with it, safely, the machine.
+// A caller of malloc checks the result; a caller of operator new does not. Without exceptions on any path
+// there is nobody to catch bad_alloc. So that thread stops, and with it, safely, the machine.
 void* give_or_end(std::size_t bytes, std::size_t align, std::uintptr_t caller) noexcept {
     void* piece = give(bytes, align, caller);
     TAPPET_CONTRACT(piece != nullptr, tappet::Contract::memory_not_there, bytes, caller);

@@ -1,4 +1,4 @@
-// The latency request and the timer slack, as the kernel takes them.
+// The latency request and the timer slack, by the kernel's interfaces.
 #include "kernel/os/latency.hpp"
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// What keeps a processor from waking late: no deep sleep while the machine is armed, no slack on timers.
+// Keeps a processor from waking late: no deep sleep while the machine is armed, no slack on timers.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -9,8 +9,9 @@
 
 namespace tappet::os {
 
-/// Holds /dev/cpu_dma_latency at 0 as long as it lives: processors stay out of deep sleep states. Waking
-/// another one is 14 times faster with it. The kernel lets go when the process ends, however it ends.
+/// Holds /dev/cpu_dma_latency at 0 as long as it lives: processors stay out of deep sleep states. With it,
+/// waking another processor is 14 times faster. The kernel ends the request with the process, however that
+/// ends.
 class CpuDmaLatency {
 public:
     CpuDmaLatency() = default;
@@ -26,13 +27,13 @@ private:
     int file_ = -1;
 };
 
-/// `root` stands before /dev. The error names the cure. Not real-time.
+/// Opens and holds the request. `root` is a prefix of /dev. The error names the cure. Not real-time.
 std::expected<CpuDmaLatency, Sentence> hold_cpu_dma_latency(std::string_view root = "") noexcept;
-/// True while any CpuDmaLatency of this process holds it.
+/// Returns true while any CpuDmaLatency of this process holds it.
 [[nodiscard]] bool cpu_dma_latency_is_held() noexcept TAPPET_REALTIME;
 
-/// Lets the calling thread's timers, and those of the threads it starts, fire when they are due: 1 ns instead
-/// of 50 us. Threads under SCHED_FIFO have no slack anyway. False when the kernel refuses.
+/// Reduces the timer slack of the calling thread, and of the threads it starts, from 50 us to 1 ns. Threads
+/// under SCHED_FIFO have no slack anyway. Returns false when the kernel refuses.
 bool minimise_timer_slack() noexcept;
 
 } // namespace tappet::os

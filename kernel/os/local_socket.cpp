@@ -95,8 +95,8 @@ LocalConnection::Received LocalConnection::receive(std::span<char> into, Passed 
     msghdr message{};
     message.msg_iov = &piece;
     message.msg_iovlen = 1;
-    // What has no room here the kernel closes itself: no room at all, or exactly one's. (CMSG_SPACE would pad
-    // that to two.)
+    // The kernel itself closes descriptors without room here: there is none, or room for exactly one.
+    // (CMSG_SPACE would pad that to two.)
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
     if (passed == Passed::one) {
         message.msg_control = control;
@@ -114,7 +114,7 @@ LocalConnection::Received LocalConnection::receive(std::span<char> into, Passed 
     if (const cmsghdr* header = CMSG_FIRSTHDR(&message);
         header != nullptr && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SCM_RIGHTS)
         std::memcpy(&received.passed, CMSG_DATA(header), sizeof received.passed);
-    // The end of a connection reads like an empty packet; nobody here sends one.
+    // The end of a connection looks like an empty packet; nobody here sends one.
     received.what = got == 0 ? Received::What::closed : Received::What::packet;
     if (got == 0 && received.passed >= 0) ::close(std::exchange(received.passed, -1));
     received.bytes = std::min(static_cast<std::size_t>(got), into.size());
@@ -155,12 +155,12 @@ std::expected<void, Sentence> LocalListener::listen(std::string_view path, unsig
         errno = EADDRINUSE;
         return refused("another machine of this name runs: stop it, or give this one another directory");
     }
-    // Nobody listens there any more: what a machine that was killed left behind.
+    // Nobody listens there any more: a killed machine left it behind.
     struct stat left{};
     if (errno == ECONNREFUSED && lstat(path_, &left) == 0 && S_ISSOCK(left.st_mode)) unlink(path_);
     ::close(descriptor_);
     descriptor_ = new_socket();
-    // Closed to everybody until its permissions stand.
+    // Closed to everybody until its permissions are set.
     const mode_t before = umask(0777);
     const bool bound = descriptor_ >= 0 &&
                        bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;

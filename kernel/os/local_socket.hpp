@@ -1,5 +1,5 @@
-// Packets between processes of one box: a listening socket in the file system, whose permissions say who may
-// connect, and connections that know who is at the other end.
+// Packets between processes of one box: a listening socket in the file system, whose permissions state who
+// may connect, and connections that know the peer.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -14,7 +14,7 @@
 
 namespace tappet::os {
 
-/// Who connected, as the kernel knows it.
+/// The peer of a connection, as the kernel knows it.
 struct Peer {
     std::int32_t process = 0;
     std::uint32_t user = 0;
@@ -28,15 +28,15 @@ struct Peer {
     }
 };
 
-/// The user that this process runs as.
+/// Returns the user that this process runs as.
 [[nodiscard]] std::uint32_t own_user() noexcept;
 [[nodiscard]] std::int32_t own_process() noexcept;
 
-/// How many descriptors are taken with a packet. Whoever answers strangers takes none.
+/// Number of descriptors accepted with a packet. A server of untrusted peers accepts none.
 enum class Passed : std::uint8_t { none, one };
 
-/// One end of a connection (AF_UNIX, SOCK_SEQPACKET: a packet arrives whole, in order, or not at all).
-/// Nothing of it blocks or allocates; each is a system call, so none is real-time.
+/// One end of a connection (AF_UNIX, SOCK_SEQPACKET: a packet arrives whole, in order, or not at all). No
+/// function blocks or allocates; each is a system call, so none is real-time.
 class LocalConnection {
 public:
     enum class Sent : std::uint8_t { sent, full, closed };
@@ -54,7 +54,7 @@ public:
     }
     ~LocalConnection() { close(); }
 
-    /// To a listener at `path`. The error names the cure.
+    /// Connects to a listener at `path`. The error names the cure.
     static std::expected<LocalConnection, Sentence> connect(const char* path) noexcept;
 
     [[nodiscard]] bool open() const noexcept { return descriptor_ >= 0; }
@@ -62,19 +62,20 @@ public:
     void close() noexcept;
     [[nodiscard]] std::optional<Peer> peer() const noexcept;
 
-    /// With `passed` >= 0 the other end gets a descriptor for the same file.
+    /// Sends a packet. With `passed` >= 0 the other end gets a descriptor for the same file.
     [[nodiscard]] Sent send(std::string_view packet, int passed = -1) const noexcept;
 
     struct Received {
         enum class What : std::uint8_t { packet, nothing, closed };
         What what = What::nothing;
-        std::size_t bytes = 0; ///< of the packet in `into`
-        bool cut = false;      ///< it was longer
-        int passed = -1;       ///< a descriptor that came with it; the caller's to close
+        std::size_t bytes = 0; ///< length of the packet in `into`
+        bool cut = false;      ///< the packet was longer
+        int passed = -1;       ///< a descriptor that came with it; the caller must close it
     };
-    /// What the other end passes beyond `passed` never becomes a descriptor of this process.
+    /// Receives a packet. Descriptors that the other end passes beyond `passed` never become open in this
+    /// process.
     [[nodiscard]] Received receive(std::span<char> into, Passed passed = Passed::none) const noexcept;
-    /// Until a packet or the end is there; false after `milliseconds`.
+    /// Waits until there is a packet or the end of the connection; false after `milliseconds`.
     [[nodiscard]] bool wait(int milliseconds) const noexcept;
 
 private:
@@ -88,15 +89,15 @@ public:
     LocalListener& operator=(const LocalListener&) = delete;
     ~LocalListener() { close(); }
 
-    /// Listens at `path` (at most 107 characters), made with `mode`; a socket that nobody listens at any more
-    /// is replaced, the path's directory made when it is missing. Not real-time. The error names the cure.
+    /// Listens at `path` (at most 107 characters), created with `mode`. A socket at which nobody listens any
+    /// more is replaced, and a missing directory is made. Not real-time. The error names the cure.
     std::expected<void, Sentence> listen(std::string_view path, unsigned mode,
                                          std::int64_t group = -1) noexcept;
     [[nodiscard]] bool open() const noexcept { return descriptor_ >= 0; }
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-    /// A connection that waits, or one that is not open.
+    /// Returns a connection that waits, or one that is not open.
     [[nodiscard]] LocalConnection accept() const noexcept;
-    /// Removes the path too.
+    /// Closes the socket and removes its path.
     void close() noexcept;
 
 private:

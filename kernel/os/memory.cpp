@@ -1,4 +1,4 @@
-// Locking, touching and painting, by mlockall and plain writes.
+// Locking, touching and painting, with mlockall and plain writes.
 #include "kernel/os/memory.hpp"
 
 #include <algorithm>
@@ -20,13 +20,13 @@ namespace {
 
 constinit std::atomic<bool> locked{false};
 
-// A word that neither addresses nor small numbers look like.
+// A word unlike addresses and small numbers.
 constexpr std::uint64_t paint = 0x7a99e77a99e77a99u;
 
 [[gnu::noinline]] void touch_below(std::size_t bytes) noexcept {
     auto* area = static_cast<volatile std::byte*>(alloca(bytes));
     const std::size_t page = page_bytes();
-    // From the top down: the kernel grows the main thread's stack only near where it ends.
+    // From the top down: the kernel grows the main thread's stack only near its present end.
     for (std::size_t left = bytes; left > 0; left -= std::min(left, page)) area[left - 1] = std::byte{0};
     area[0] = std::byte{0};
 }
@@ -54,7 +54,7 @@ void unlock_memory() noexcept {
 
 bool memory_is_locked() noexcept TAPPET_REALTIME { return locked.load(std::memory_order_acquire); }
 
-// Not sysconf: its stack has no size that tests/stack could add up.
+// Not sysconf, because tests/stack could not determine the size of its stack.
 std::size_t page_bytes() noexcept { return getauxval(AT_PAGESZ); }
 
 void touch(std::span<std::byte> range) noexcept {
@@ -70,7 +70,7 @@ void touch_stack(std::size_t bytes) noexcept {
 
 namespace {
 
-/// Bytes of it up to the end of its guard.
+/// Returns the bytes of the stack up to the end of its guard.
 std::size_t end_of_guard(std::span<const std::byte> stack) noexcept {
     const std::size_t page = page_bytes();
     const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(stack.data()) % page) % page;

@@ -1,5 +1,5 @@
-// Memory that is there: locked, touched before arming, its stacks painted so that their depth can be read
-// afterwards.
+// Memory that is present: locked, touched before arming, with painted stacks so that their depth can be
+// measured afterwards.
 #pragma once
 
 #include "kernel/base/realtime.hpp"
@@ -11,38 +11,38 @@
 
 namespace tappet::os {
 
-/// mlockall, what is mapped now and later. The error names the cure. Not real-time.
+/// Locks all memory with mlockall, mapped now and later. The error names the cure. Not real-time.
 std::expected<void, Sentence> lock_memory() noexcept;
 void unlock_memory() noexcept;
-/// True between the two.
+/// Returns true between lock_memory() and unlock_memory().
 [[nodiscard]] bool memory_is_locked() noexcept TAPPET_REALTIME;
 
 std::size_t page_bytes() noexcept;
 
-/// Writes to every page what stands there already, so that each is mapped, private and writable. The range is
-/// writable and no other thread writes to it meanwhile. Not real-time.
+/// Writes to every page its present contents, so that each page is mapped, private and writable. The range
+/// must be writable, and no other thread may write to it meanwhile. Not real-time.
 void touch(std::span<std::byte> range) noexcept;
 
-/// Maps the calling thread's next `bytes` of stack. Less than its stack has left, a page apart. Not
+/// Maps the calling thread's next `bytes` of stack: at least a page less than its stack has left. Not
 /// real-time.
 void touch_stack(std::size_t bytes) noexcept;
 
-/// The lowest whole pages of a stack, which are closed while a thread runs on it: who runs over the rest
-/// faults there. Frames that are larger than a page touch each of their pages in turn, but for those of the C
-/// library: from 64 KiB on, where code that prints may run, a stack has a guard of 16 KiB, else of one page.
-/// Empty: the stack is smaller.
+/// Returns the guard: the lowest whole pages of a stack, which are closed while a thread runs on it, so that
+/// an overflow faults there. Frames larger than a page touch each of their pages in turn, except those of the
+/// C library. So a stack of 64 KiB or more, on which code that prints may run, has a guard of 16 KiB, a
+/// smaller one has one page. Empty: the stack is smaller than that.
 [[nodiscard]] std::size_t stack_guard_bytes(std::size_t stack_bytes) noexcept;
 [[nodiscard]] std::span<std::byte> stack_guard(std::span<std::byte> stack) noexcept;
 
-/// A stack given to a thread is painted before the thread starts; the paint that is gone shows how deep it
-/// went. Painting touches it too. Not real-time.
+/// Paints a thread's stack before the thread starts; the overwritten paint shows how deep it went. Painting
+/// also touches it. Not real-time.
 void paint_stack(std::span<std::byte> stack) noexcept;
-/// The deepest use in bytes, counted from the stack's top, its guard left out. What is found is at least what
-/// was used, less the odd word that happens to equal the paint. Takes time in proportion to what was not
-/// used: not real-time.
+/// Returns the deepest use in bytes, counted from the stack's top, without its guard. The result is at least
+/// the real use, less an odd word that happens to equal the paint. Takes time in proportion to the unused
+/// part: not real-time.
 [[nodiscard]] std::size_t stack_high_water_bytes(std::span<const std::byte> stack) noexcept;
 
-/// Memory of this process that is present; 0 when /proc is not there. Not real-time.
+/// Returns the memory of this process that is present, in bytes; 0 without /proc. Not real-time.
 [[nodiscard]] std::size_t rss_bytes() noexcept;
 
 } // namespace tappet::os

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One datagram.
+// Sends one datagram.
 #include "kernel/os/notify.hpp"
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Since Linux 5.1; not in every C library's header.
+// Since Linux 5.1; not in every C library's headers.
 #if !defined(F_SEAL_FUTURE_WRITE)
 #define F_SEAL_FUTURE_WRITE 0x0010
 #endif
@@ -32,7 +32,7 @@ std::expected<void, Sentence> SharedMemory::lay_under(std::span<std::byte> range
         range.data())
         return refused("it cannot be mapped",
                        "give the box more memory, and share before the heap is sealed");
-    // This mapping stays writable, any later one is not.
+    // This mapping stays writable, later ones do not.
     if (fcntl(descriptor_, F_ADD_SEALS, F_SEAL_FUTURE_WRITE | F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
         return refused("it cannot be sealed against other writers", "use Linux 5.1 or later");
     return {};

@@ -1,4 +1,4 @@
-// Which signals ask to end, and which mean nothing to a machine.
+// The signals that request the end, and those without a meaning for a machine.
 #include "kernel/os/signals.hpp"
 
 #include <csignal>
@@ -7,12 +7,12 @@ namespace tappet::os {
 
 namespace {
 
-// Every signal whose default would end or freeze the process with its outputs as they are, but for those that
-// nobody can catch and those that tell of a fault in the program: these are no request.
+// Every signal whose default would end or freeze the process with its outputs as they are. Excluded are those
+// that nobody can catch, and those that report a fault in the program: these are no requests.
 constexpr int ask_to_end[] = {SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT,   SIGTSTP, SIGUSR1, SIGUSR2,
                               SIGALRM, SIGVTALRM, SIGPROF, SIGSTKFLT, SIGPOLL, SIGPWR,  SIGXCPU};
-// A reader that went away, a terminal that others use, a file that may not grow: the call that meets them
-// says so.
+// A reader that went away, a terminal that others use, a file that may not grow: the call that is affected
+// reports it.
 constexpr int told_by_the_call[] = {SIGPIPE, SIGTTIN, SIGTTOU, SIGXFSZ};
 
 void act(int number, void (*handler)(int)) noexcept {

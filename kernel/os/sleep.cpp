@@ -1,4 +1,4 @@
-// Sleeps on, whatever signal interrupts it, until the time is over.
+// Sleeps until the time is over; continues after signals.
 #include "kernel/os/sleep.hpp"
 
 #include <cerrno>

@@ -1,11 +1,11 @@
-// Sleeping, for threads that are not real-time.
+// Sleep, for threads that are not real-time.
 #pragma once
 
 #include "kernel/base/time.hpp"
 
 namespace tappet::os {
 
-/// At least so long; not real-time.
+/// Sleeps for `time` at least. Not real-time.
 void sleep_for(Duration time) noexcept;
 
 } // namespace tappet::os

@@ -1,4 +1,4 @@
-// Proves and measures the processor's counter, and leads stamps back to the clock before they could stray.
+// Proves and measures the processor's counter, and re-reads the clock before stamps could drift from it.
 #include "kernel/os/stamps.hpp"
 
 #include "kernel/os/sleep.hpp"
@@ -15,14 +15,14 @@ namespace tappet::os {
 
 namespace {
 
-/// 0: the counter is not used.
+/// 0: the counter is not used
 std::atomic<std::uint64_t> proven_ns_per_tick{0};
 
-// The clock may be slewed, by 500 ppm where NTP does it, and the measurement is good for less than 100: a
-// counter that is taken for slower than it is does not lead ahead of the clock. Whoever slews more, or steps
-// the rate, lets stamps stand still for a while.
+// The clock may be slewed, by 500 ppm under NTP, and the measurement is accurate to less than 100 ppm. The
+// counter's rate is therefore taken as too slow, so that stamps do not run ahead of the clock. If the clock
+// is slewed more, or its rate stepped, stamps may stand still for a while.
 constexpr std::uint64_t ppm = 1'000'000, slower_by_ppm = 600, slewed_by_ppm = 500;
-// Longer between two readings of the counter, and something else ran in between: the pair tells nothing.
+// If two readings of the counter are further apart, something else ran in between: the pair is discarded.
 constexpr Duration most_between = 300ns;
 static_assert(most_between + Stamps::window * (slower_by_ppm + slewed_by_ppm) / ppm < Stamps::most_behind);
 
@@ -47,7 +47,7 @@ bool prove_processor_counter(std::string_view root) noexcept {
         Time time{};
         std::uint64_t ticks = 0;
     };
-    // The quickest of several readings: what interrupts one makes it slow.
+    // The quickest of several readings: an interruption makes a reading slow.
     const auto read = []() noexcept {
         Pair best;
         std::uint64_t least = ~std::uint64_t{0};

@@ -1,5 +1,5 @@
-// Time stamps that one thread takes: from the processor's counter where that is proven to be as good as the
-// kernel's clock, else from the clock. A stamp costs a third of a reading of the clock.
+// Time stamps of one thread: from the processor's counter where it is proven to be as good as the kernel's
+// clock, else from the clock. A stamp costs a third of a reading of the clock.
 #pragma once
 
 #include "kernel/os/clock.hpp"
@@ -10,17 +10,17 @@
 namespace tappet::os {
 
 /// Lets all Stamps of the process use the processor's counter, if it is invariant and the same on all
-/// processors: the kernel itself takes its time from it, and watches it. Takes some milliseconds to measure
-/// how fast it counts. `root` stands before the kernel's files. Answers whether they do. Not real-time.
+/// processors: then the kernel itself takes its time from it, and monitors it. Measures the rate for some
+/// milliseconds. `root` is a prefix of the kernel's files. Returns whether it is used. Not real-time.
 bool prove_processor_counter(std::string_view root = {}) noexcept;
 
-/// Of one thread, of CLOCK_MONOTONIC or of virtual time. A stamp is never before the one taken last. While
-/// the clock is slewed by no more than NTP's 500 ppm none is ahead of it, and none so far behind it as
-/// most_behind.
+/// The stamps of one thread, of CLOCK_MONOTONIC or of virtual time. A stamp is never before the previous one.
+/// While the clock is slewed by no more than NTP's 500 ppm, no stamp is ahead of it, and each is less than
+/// most_behind behind it.
 class Stamps {
 public:
     static constexpr Duration most_behind = 600ns;
-    /// How long the counter is followed from one reading of the clock.
+    /// Time for which the counter is used after one reading of the clock.
     static constexpr Duration window = 200us;
 
     void place(const Clock& clock) noexcept {
@@ -29,7 +29,7 @@ public:
         ticks_of_window_ = 0;
     }
 
-    /// The next one is a reading of the clock: after a wait for a time, which has come then.
+    /// Makes the next stamp a reading of the clock: after a wait for a time, so that the time has come.
     void renew() noexcept TAPPET_REALTIME { close_window(); }
 
     [[nodiscard]] Time now() noexcept TAPPET_REALTIME {
@@ -55,7 +55,7 @@ private:
     [[nodiscard]] Duration in_ns(std::uint64_t count) const noexcept TAPPET_REALTIME {
         return Duration{static_cast<std::int64_t>(count * ns_per_tick_ >> fraction_bits)};
     }
-    /// No stamp that was taken is after `floor_`.
+    /// Ends the use of the counter: no earlier stamp is after `floor_`.
     void close_window() noexcept TAPPET_REALTIME {
         if (ticks_of_window_ == 0) return;
         const std::uint64_t passed = ticks() - anchor_ticks_;

@@ -1,4 +1,4 @@
-// Reading and taking apart by read and from_chars.
+// Reads with read, and parses with from_chars.
 #include "kernel/os/system_file.hpp"
 
 #include <cerrno>

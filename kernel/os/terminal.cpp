@@ -1,4 +1,4 @@
-// Writes whole texts by write(2), whatever interrupts it, and without waiting where that is wanted.
+// Writes whole texts with write(2), continues after interruptions, and does not wait where that is required.
 #include "kernel/os/terminal.hpp"
 
 #include "kernel/base/text.hpp"
@@ -21,17 +21,17 @@ namespace tappet::os {
 
 namespace {
 
-// One of the two files that other people hold the end of.
+// One of the two files whose other end belongs to other people.
 class Outlet {
 public:
     explicit constexpr Outlet(int file) noexcept : file_{file} {}
 
-    // A pipe or a terminal is opened anew, so that it can be asked not to wait: O_NONBLOCK on the file as it
-    // was given would hold for everybody who shares it, the shell included, and outlive a process that is
-    // killed. A socket cannot be opened anew, but is asked in each call. What this process may not open (the
-    // terminal of another user, a device that is open once only) is asked before each piece for which room is
-    // known to be there: only another writer to it could take that in between. A regular file does not wait
-    // for a reader, and opened anew it would be written at another place.
+    // A pipe or a terminal is opened anew so that it can be made non-blocking: O_NONBLOCK on the given file
+    // would hold for everybody who shares it, including the shell, and would outlive a killed process. A
+    // socket cannot be opened anew; each call asks it not to wait. A file that this process may not open (the
+    // terminal of another user, a device that opens only once) is polled before each piece that fits into the
+    // known room: only another writer could take that room in between. A regular file does not wait for a
+    // reader, and opened anew it would be written at another place.
     void never_wait() noexcept {
         const std::lock_guard lock{mutex_};
         if (own_ >= 0) ::close(own_);
@@ -48,7 +48,7 @@ public:
         } else {
             const Sentence path{"/proc/self/fd/", file_};
             own_ = open(path.characters, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-            // ENXIO: a pipe whose reader is gone already.
+            // ENXIO: a pipe whose reader is already gone.
             how_ = own_ >= 0 ? How::opened_anew : errno == ENXIO ? How::not_at_all : How::asked_first;
             piece_ = isatty(file_) != 0 ? 1 : PIPE_BUF;
         }
@@ -99,7 +99,7 @@ private:
         std::memmove(rest_, rest_ + written, rest_length_);
         return rest_length_ == 0;
     }
-    // A text that has begun to go out is finished later: nobody reads half a line.
+    // A partly written text is finished later: nobody reads half a line.
     bool write_new(std::string_view text) noexcept {
         const std::size_t written = write_some(text);
         if (written == text.size()) return true;
@@ -129,7 +129,7 @@ private:
 };
 
 constinit std::atomic<std::uint64_t> Outlet::dropped{0};
-// A machine that is started without them opens a bus or a valve in their place, and would print to it.
+// If the standard files are closed at start, a bus or a valve would be opened in their place and printed to.
 [[gnu::constructor]] void occupy_standard_files() noexcept {
     for (int file = STDIN_FILENO; file <= STDERR_FILENO; ++file)
         if (fcntl(file, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDWR));
@@ -162,7 +162,7 @@ void print(std::string_view text) noexcept { static_cast<void>(write_all(STDOUT_
 
 namespace {
 
-/// Of a file in it: a name that was given is on the disk only when its directory is.
+/// Syncs the directory of a file: a new name is on the disk only when its directory is.
 bool sync_directory(const char* path) noexcept {
     char directory[4096] = ".";
     if (const char* slash = std::strrchr(path, '/'); slash != nullptr) {
@@ -172,7 +172,7 @@ bool sync_directory(const char* path) noexcept {
     }
     const int file = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file < 0) return false;
-    const bool synced = fsync(file) == 0 || errno == EINVAL; // some file systems know none of directories
+    const bool synced = fsync(file) == 0 || errno == EINVAL; // some file systems cannot sync directories
     close(file);
     return synced;
 }

@@ -1,6 +1,5 @@
-// What std::terminate runs in a firmware: abort, which stops the machine safely. The library's own handler
-// prints the name of an exception, and brings along what takes such names apart: more code than the kernel
-// itself has.
+// The handler of std::terminate in a firmware: abort, which stops the machine safely. The library's own
+// handler prints an exception's name, and links code to decode such names: more code than the kernel has.
 #include <cstdlib>
 #include <exception>
 

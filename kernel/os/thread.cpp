@@ -1,4 +1,4 @@
-// Starts a pthread on the stack, processor and priority of its plan; a refusal names the cure.
+// Starts a pthread on the stack, processor and priority of its plan. A refusal names the cure.
 #include "kernel/os/thread.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -27,8 +27,8 @@ void* enter(void* context) noexcept {
     return nullptr;
 }
 
-// What asks the process to end is the starter's business: no handler takes time out of this thread's cycles,
-// and no call of it is interrupted. What tells of a fault of its own it gets.
+// Signals that request the end are for the starter: no handler takes time from this thread's cycles, and none
+// of its calls is interrupted. It receives signals of its own faults.
 int block_signals(pthread_attr_t& attributes) noexcept {
     sigset_t blocked;
     sigfillset(&blocked);
@@ -56,7 +56,7 @@ Sentence refusal(const ThreadPlan& plan, int error) {
 } // namespace
 
 std::expected<void, Sentence> Thread::start(const ThreadPlan& plan) {
-    plan_ = plan; // the thread reads it, and some are made in the call
+    plan_ = plan; // the thread reads it, and some threads start within this call
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     int error =
@@ -102,8 +102,7 @@ void Thread::join() noexcept {
     started_ = false;
 }
 
-// Its stack may be touched and painted for another one: there is no other use of a machine whose thread
-// hangs.
+// Its stack may be touched and painted for another thread: a machine whose thread hangs is of no other use.
 void Thread::abandon() noexcept {
     if (!started_) return;
     pthread_detach(handle_);
@@ -112,7 +111,7 @@ void Thread::abandon() noexcept {
 }
 
 // Not pthread_timedjoin_np: it waits by the wall clock, which may be set meanwhile. Not pthread_clockjoin_np:
-// the thread sanitizer does not know it, and takes all that the joined thread did for a race.
+// the thread sanitizer does not know it, and reports all actions of the joined thread as races.
 bool Thread::join_within(int milliseconds) noexcept {
     if (!started_) return true;
     for (const Time end = Clock::monotonic() + milliseconds * 1ms;

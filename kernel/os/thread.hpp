@@ -1,4 +1,4 @@
-// A thread with everything decided beforehand: stack, processor, priority, name.
+// A thread whose stack, processor, priority and name are fixed beforehand.
 #pragma once
 
 #include "kernel/base/text.hpp"
@@ -13,8 +13,8 @@
 namespace tappet::os {
 
 struct ThreadPlan {
-    std::string_view name;        ///< at most 15 characters are shown by the kernel
-    int fifo_priority = 0;        ///< 1..99 SCHED_FIFO; 0 is SCHED_OTHER; or that of its starter
+    std::string_view name;        ///< the kernel shows at most 15 characters
+    int fifo_priority = 0;        ///< 1..99 SCHED_FIFO; 0: SCHED_OTHER, or that of its starter
     int processor = -1;           ///< -1: any
     std::span<std::byte> stack{}; ///< 16 kB at least, aligned to 64; its stack_guard() is closed meanwhile
     void (*body)(void*) noexcept = nullptr;
@@ -30,13 +30,14 @@ public:
     Thread& operator=(const Thread&) = delete;
     ~Thread() { join(); }
 
-    /// An error says what was refused and what cures it. What the plan leads to outlives the thread.
+    /// Starts the thread. An error names the refusal and its cure. The targets of the plan's pointers must
+    /// outlive it.
     std::expected<void, Sentence> start(const ThreadPlan& plan);
-    /// True when it ended; waits for it.
+    /// Waits until it has ended.
     void join() noexcept;
-    /// Waits at most `milliseconds`; false when it still runs.
+    /// Waits at most `milliseconds`. Returns false when it still runs.
     [[nodiscard]] bool join_within(int milliseconds) noexcept;
-    /// Waits for it no more, not even in the destructor: it hangs, and only the process's end ends it.
+    /// Abandons a hung thread: nothing waits for it, not even the destructor. It ends with the process.
     void abandon() noexcept;
     [[nodiscard]] bool running() const noexcept { return started_; }
 

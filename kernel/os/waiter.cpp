@@ -1,4 +1,4 @@
-// The wait on a futex, or by poll on an eventfd beside devices when there are any.
+// Waits on a futex, or, when there are devices, with poll on them and an eventfd.
 #include "kernel/os/waiter.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -19,7 +19,7 @@ timespec to_timespec(std::int64_t ns) noexcept TAPPET_REALTIME {
     return {static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
 }
 
-constexpr short hang_up = POLLERR | POLLHUP | POLLNVAL; // poll tells them unasked, and at once
+constexpr short hang_up = POLLERR | POLLHUP | POLLNVAL; // poll reports them unasked, and at once
 
 } // namespace
 
@@ -66,8 +66,8 @@ bool Waiter::wait(Time until) noexcept TAPPET_REALTIME {
     std::uint32_t expected = idle;
     if (state_.compare_exchange_strong(expected, asleep, std::memory_order_acq_rel)) { // waiter.doze
         const timespec end = to_timespec(to_ns(until));
-        // Returns on a wake, at the end, on a signal, or at once when a wake came in between: all are looked
-        // at below.
+        // Returns on a wake, at the end, on a signal, or at once when a wake came in between: the code below
+        // handles all cases.
         TAPPET_ESCAPE("the activity's own wait",
                       syscall(SYS_futex, &state_, FUTEX_WAIT_BITSET_PRIVATE, asleep, // waiter.sleep
                               until == never ? nullptr : &end, nullptr, FUTEX_BITSET_MATCH_ANY));
@@ -80,7 +80,7 @@ bool Waiter::wait_without_devices(Time until) noexcept TAPPET_REALTIME {
     return take() || wait_on_devices(0, until);
 }
 
-// An error that its driver has taken since is gone: then the device is watched as before.
+// If the driver has taken the error since, it is gone, and the device is watched as before.
 void Waiter::leave_out_hung(pollfd* polled, std::size_t count) noexcept TAPPET_REALTIME {
     const timespec at_once{};
     TAPPET_ESCAPE("a look that does not wait", ppoll(polled, count, &at_once, nullptr));
@@ -95,7 +95,7 @@ void Waiter::leave_out_hung(pollfd* polled, std::size_t count) noexcept TAPPET_R
 bool Waiter::wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME {
     pollfd polled[max_devices + 1] = {};
     for (std::size_t i = 0; i < count; ++i)
-        polled[i] = {((unheeded_ | unserved_) >> i & 1u) != 0 ? -1 : devices_[i], POLLIN, 0}; // passed over
+        polled[i] = {((unheeded_ | unserved_) >> i & 1u) != 0 ? -1 : devices_[i], POLLIN, 0}; // -1: ignored
     if (hung_ != 0) leave_out_hung(polled, count);
     polled[count] = {wake_descriptor_, POLLIN, 0};
     std::uint32_t expected = idle;

@@ -1,5 +1,5 @@
-// What an activity sleeps on: a time, a wake from another activity, or a device. One thread waits, any thread
-// wakes.
+// The wait of an activity: for a time, a wake from another activity, or a device. One thread waits, any
+// thread wakes.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -25,24 +25,25 @@ public:
     Waiter& operator=(const Waiter&) = delete;
     ~Waiter();
 
-    /// Sleep on this file descriptor too. Not real-time; before the first wait. False when there are too
-    /// many. One that hangs up or has an error ends a wait once, and none after it until its driver has taken
-    /// the error: a chip that was removed would make its activity spin at its priority.
+    /// Makes waits return for this file descriptor too. Not real-time; before the first wait. Returns false
+    /// when there are too many. A descriptor that hangs up or has an error ends one wait, and no further one
+    /// until its driver has taken it: otherwise a removed chip would make its activity spin at its priority.
     [[nodiscard]] bool watch(int descriptor) noexcept;
-    /// Those watched from here on are this driver's, a number below 64. Not real-time.
+    /// Assigns later descriptors to this driver, a number below 64. Not real-time.
     void watch_for(std::uint32_t driver) noexcept { driver_ = driver; }
-    /// Whether what a driver watches ends waits; until this is said it does. While nobody takes from a
-    /// device, a thread that returned for each of its frames would spin, at a real-time priority for ever.
-    /// Its own thread. Real-time.
+    /// Sets whether the driver's descriptors end waits; initially they do. While nobody reads a device, a
+    /// thread that returns for each frame would spin at a real-time priority for ever. Its own thread.
+    /// Real-time.
     void serve(std::uint32_t driver, bool is_served) noexcept TAPPET_REALTIME;
-    /// Whether a watched one ends waits; from watch() on it does. Its own thread. Real-time.
+    /// Sets whether one watched descriptor ends waits; from watch() on it does. Its own thread. Real-time.
     void heed(int descriptor, bool wanted) noexcept TAPPET_REALTIME;
 
     /// Wakes the waiting thread, or the next wait. Real-time, from any thread.
     void wake() noexcept TAPPET_REALTIME;
     static void wake_thunk(void* waiter) noexcept TAPPET_REALTIME { static_cast<Waiter*>(waiter)->wake(); }
-    /// wake(), for whoever published what he wakes for by an operation that reads and writes at once, in the
-    /// one order of all such (seq_cst): one that was woken and did not look yet needs no second exchange.
+    /// As wake(), for callers that published the reason for the wake by an atomic read-modify-write in the
+    /// single order of all such (seq_cst): a thread that was woken and has not looked yet needs no second
+    /// exchange.
     void wake_after_post() noexcept TAPPET_REALTIME {
         if (state_.load(std::memory_order_seq_cst) != woken) wake(); // waiter.look
     }
@@ -50,7 +51,7 @@ public:
         static_cast<Waiter*>(waiter)->wake_after_post();
     }
 
-    /// True when woken since the last call; takes the wake. For worlds that do not sleep.
+    /// Returns true when woken since the last call, and resets the wake. For worlds that do not sleep.
     [[nodiscard]] bool take() noexcept TAPPET_REALTIME {
         return (state_.exchange(idle, std::memory_order_seq_cst) & woken) != 0; // waiter.take
     }
@@ -58,28 +59,27 @@ public:
         return (state_.load(std::memory_order_acquire) & woken) != 0; // no step: virtual time has one thread
     }
 
-    /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. True when woken or a device is
-    /// ready.
+    /// Sleeps until `until` (CLOCK_MONOTONIC), a wake or a watched device. Returns true on the latter two.
     bool wait(Time until) noexcept TAPPET_REALTIME;
-    /// Sleeps until `until` or a wake, whatever the devices have to say. True when woken.
+    /// Sleeps until `until` or a wake, and ignores devices. Returns true when woken.
     bool wait_without_devices(Time until) noexcept TAPPET_REALTIME;
     void wait_for_wake() noexcept TAPPET_REALTIME { static_cast<void>(wait_without_devices(never)); }
 
 private:
     static constexpr std::uint32_t idle = 0, woken = 1, asleep = 2;
 
-    /// On the first `count` of them, and on the wake.
+    /// Sleeps on the first `count` devices, and on the wake.
     bool wait_on_devices(std::size_t count, Time until) noexcept TAPPET_REALTIME;
 
     void leave_out_hung(pollfd* polled, std::size_t count) noexcept TAPPET_REALTIME;
 
     alignas(64) std::atomic<std::uint32_t> state_{idle};
     Bounded<int, max_devices> devices_{};
-    std::uint32_t hung_ = 0; // a bit for each device: told, and not taken since
+    std::uint32_t hung_ = 0; // a bit for each device: reported, and not taken since
     std::uint32_t unheeded_ = 0, unserved_ = 0;
-    std::array<std::uint32_t, max_devices> drivers_{}; // whose each device is
+    std::array<std::uint32_t, max_devices> drivers_{}; // the driver of each device
     std::uint32_t driver_ = 0;
-    int wake_descriptor_ = -1; // an eventfd, made when the first device is watched
+    int wake_descriptor_ = -1; // an eventfd, created when the first device is watched
 };
 
 } // namespace tappet::os

@@ -66,7 +66,7 @@ void Watchdog::stand_down() noexcept {
     close();
 }
 
-// Who fails here is reset, which tells it.
+// A failed kick causes a reset, which shows it.
 void Watchdog::keep_alive() const noexcept {
     static_cast<void>(ioctl(descriptor_, WDIOC_KEEPALIVE, nullptr));
 }

@@ -1,5 +1,4 @@
-// Attributes of messages whose values have names, and which of these say yes: CAN FD, and its bit rate
-// switch.
+// Attributes of messages with named values, and the values that mean yes: CAN FD, and its bit rate switch.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +6,11 @@
 
 namespace tappet::can::dbc {
 
-/// A file gives the names of values, or their numbers, which its definition counts.
+/// A file states a value by its name, or by its number in the definition.
 struct Choice {
     std::string_view attribute{};
-    std::uint64_t yes = 0; ///< a bit for each number
-    bool usually = false;  ///< of messages that do not say it
+    std::uint64_t yes = 0; ///< one bit for each number
+    bool usually = false;  ///< for messages that do not state it
 
     constexpr void define(unsigned number, std::string_view value) noexcept {
         if (number < 64 && says_yes(value)) yes |= std::uint64_t{1} << number;
@@ -24,7 +23,7 @@ struct Choice {
     }
 };
 
-// As CANdb++ has them, for files that use the attributes and do not define them.
+// As in CANdb++, for files that use the attributes without a definition.
 inline constexpr Choice can_fd{.attribute = "VFrameFormat", .yes = std::uint64_t{3} << 14};
 inline constexpr Choice bit_rate_switch{.attribute = "CANFD_BRS", .yes = 2, .usually = true};
 

@@ -1,4 +1,4 @@
-// What a DBC file says: messages, their signals, and names of values, as rows that point into its text.
+// The contents of a DBC file: messages, their signals, and names of values, as rows that point into its text.
 #pragma once
 
 #include "drivers/can/dbc/scanner.hpp"
@@ -8,12 +8,12 @@
 
 namespace tappet::can::dbc {
 
-/// Vector's name for nobody, as a sender and as a receiver.
+/// Vector's name for no node, as a sender and as a receiver.
 inline constexpr std::string_view nobody = "Vector__XXX";
 
 struct SignalRow {
-    Signal shape{};     ///< its unit as it stands in the file
-    std::size_t at = 0; ///< of its name in the text
+    Signal shape{};     ///< its unit is as in the file
+    std::size_t at = 0; ///< position of its name in the text
     std::size_t message = 0;
     std::string_view receivers{};
     std::string_view long_name{};
@@ -21,17 +21,17 @@ struct SignalRow {
     bool is_multiplexed = false;
     bool too_many_selections = false;
     std::uint32_t page = 0;            ///< m0: 0
-    std::size_t selected_by = no_such; ///< a signal
+    std::size_t selected_by = no_such; ///< index of a signal
     std::size_t first_value = 0;
     std::size_t values = 0;
     bool is_taken = false;        ///< by the node in question
-    const Signal* row = nullptr;  ///< what the machine says of it
-    std::size_t placed = no_such; ///< in the node's map
+    const Signal* row = nullptr;  ///< the machine's row for it
+    std::size_t placed = no_such; ///< index in the node's map
 };
 
 struct MessageRow {
     Identifier identifier{};
-    bool is_independent = false; ///< Vector's shelf for signals without a message
+    bool is_independent = false; ///< Vector's container for signals without a message
     std::string_view name{};
     std::string_view long_name{};
     std::size_t at = 0;
@@ -41,14 +41,14 @@ struct MessageRow {
     std::size_t first = 0;
     std::size_t signals = 0;
     bool says_every = false;
-    std::optional<bool> is_fd{}, switches{}; ///< nothing: the file's default
+    std::optional<bool> is_fd{}, switches{}; ///< empty: the file's default
     Duration every{};
     bool is_taken = false;
     Direction direction = Direction::receive;
     const FrameRow* row = nullptr;
 };
 
-/// Upper bounds, from a glance at the text.
+/// Upper bounds, from a quick scan of the text.
 struct Room {
     std::size_t messages = 0, signals = 0, values = 0;
 };
@@ -71,14 +71,14 @@ constexpr Room room_for(std::string_view text) noexcept {
     return room;
 }
 
-/// Its rows lie in room that somebody else owns.
+/// A network; its rows are in memory owned elsewhere.
 struct Network {
     std::string_view file{};
     std::string_view text{};
     std::string_view nodes{}; ///< all of them, as a list
     std::span<MessageRow> messages{};
     std::span<SignalRow> signals{};
-    std::span<ValueName> values{}; ///< as they stand in the file
+    std::span<ValueName> values{}; ///< as in the file
     Room used{};
     Sentence fault{};
 
@@ -97,7 +97,7 @@ struct Network {
         return message.sender == node || names(message.more_senders, node);
     }
 
-    /// The first one counts.
+    /// Records a fault; only the first one counts.
     template <class... Pieces> constexpr void fail(std::size_t at, const Pieces&... pieces) {
         if (!fault.empty()) return;
         unsigned line = 1, column = 1;
@@ -109,7 +109,7 @@ struct Network {
     }
 };
 
-/// A network with its room; `text` outlives it.
+/// A network with its memory; `text` must outlive it.
 template <Room room> struct Store {
     std::array<MessageRow, room.messages> messages{};
     std::array<SignalRow, room.signals> signals{};

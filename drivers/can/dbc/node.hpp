@@ -1,15 +1,16 @@
-// What a machine says of its own node beside a DBC file: which one it is, and what such a file cannot say.
+// A machine's rows about its own node next to a DBC file: its name, and facts that such a file cannot state.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
 
 namespace tappet::can {
 
-/// As often as its file says (GenMsgCycleTime).
+/// The rate of the file (GenMsgCycleTime).
 inline constexpr Rate as_in_file{Duration{-1}, Duration{-1}, {}};
 
-/// receive("drive", every(2ms)): the rate where the file has no cycle time. A message that does not name this
-/// node as a receiver is taken all the same, alone all of its signals, otherwise those named.
+/// receive("drive", every(2ms)): states the rate where the file has no cycle time. A message without this
+/// node as a receiver is received all the same: with all of its signals if no signals are given, otherwise
+/// only with those.
 template <std::same_as<Signal>... Signals>
 constexpr auto receive(std::string_view name, Rate rate, const Signals&... signals) noexcept {
     return detail::row({}, name, Direction::receive, Bytes{}, rate, signals...);
@@ -19,7 +20,7 @@ template <std::same_as<Signal>... Signals>
 constexpr auto transmit(std::string_view name, Rate rate, const Signals&... signals) noexcept {
     return detail::row({}, name, Direction::transmit, Bytes{}, rate, signals...);
 }
-/// Likewise with the file's cycle time.
+/// The same with the file's cycle time.
 template <std::same_as<Signal>... Signals>
 constexpr auto receive(std::string_view name, const Signals&... signals) noexcept {
     return receive(name, as_in_file, signals...);
@@ -43,8 +44,8 @@ template <std::size_t F, std::size_t S> struct Node {
     [[nodiscard]] constexpr NodeView view() const noexcept { return {name, frames, signals}; }
 };
 
-/// node("controller", rows...): sends what the file says that it sends, and receives what names it as a
-/// receiver. Each message that it sends has a row, with safe values.
+/// node("controller", rows...): sends the messages that the file says it sends, and receives those that name
+/// it as a receiver. Each message that it sends must have a row, with safe values.
 template <std::size_t... N>
 constexpr auto node(std::string_view name, const FrameWithSignals<N>&... rows) noexcept {
     Node<sizeof...(N), (N + ... + 0)> node;

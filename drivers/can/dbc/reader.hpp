@@ -1,4 +1,4 @@
-// Reads a DBC file, in a constant expression or on the host: the same code, the same sentence for a fault.
+// Reads a DBC file, in a constant expression or on the host, with the same code and the same fault messages.
 #pragma once
 
 #include "drivers/can/dbc/choice.hpp"
@@ -22,7 +22,7 @@ public:
 private:
     static constexpr std::uint32_t extended_bit = 0x8000'0000, independent_id = 0xC000'0000;
 
-    // ---- what is expected
+    // ---- expected items
 
     [[nodiscard]] constexpr bool ok() const noexcept { return net_.fault.empty(); }
     template <class... Pieces> constexpr void fail(std::size_t at, const Pieces&... pieces) {
@@ -45,7 +45,7 @@ private:
         if (word.empty() && ok()) fail_expected(what);
         return word;
     }
-    /// 0 after a fault.
+    /// Returns a number, or 0 after a fault.
     constexpr std::uint32_t whole(std::uint64_t most, std::string_view what) {
         const std::size_t at = in_.at();
         std::uint64_t value = 0;
@@ -75,7 +75,7 @@ private:
             fail(in_.at(), "a text without its end; close its quotes");
     }
 
-    // ---- what is named: no such message, or one on Vector's shelf, is nullptr
+    // ---- look-up: an unknown message, or one in Vector's container, is nullptr
 
     constexpr MessageRow* message_of(std::uint32_t id) const noexcept {
         for (MessageRow& each : net_.all())
@@ -107,7 +107,7 @@ private:
         return nullptr;
     }
     constexpr void check_nodes(std::string_view list) {
-        if (list == checked_nodes_) return; // most lists are the one before
+        if (list == checked_nodes_) return; // most lists equal the previous one
         checked_nodes_ = list;
         for_each_name(list, [&](std::string_view node) {
             if (!ok() || node == nobody || names(net_.nodes, node)) return;
@@ -117,7 +117,7 @@ private:
                  or_meant(nearest, "; add it there"));
         });
     }
-    /// Names up to the end of the line, or to what is none.
+    /// Returns the names up to the end of the line, or to something else.
     constexpr std::string_view node_list() {
         const std::size_t from = in_.at();
         std::size_t end = from;
@@ -130,7 +130,7 @@ private:
 
     // ---- statements
 
-    /// Those that say nothing of what is on the wire are passed over.
+    /// Returns whether to skip the statement, because it has no effect on the wire.
     static constexpr bool is_passed_over(std::string_view keyword) noexcept {
         constexpr std::string_view all =
             "VAL_TABLE_ EV_ ENVVAR_DATA_ EV_DATA_ SGTYPE_ SIG_GROUP_ SIG_TYPE_REF_ SIGTYPE_VALTYPE_ "
@@ -181,7 +181,7 @@ private:
         if (!ok()) return;
         if (has_nodes_) return fail(at, "BU_ is there twice; put all nodes into one");
         has_nodes_ = true;
-        // Nodes may go on in further lines: the next statement ends them.
+        // Nodes may continue on further lines: the next statement ends them.
         const std::size_t from = in_.at();
         while (!in_.at_end() && !is_statement(in_.peek()) && !in_.word().empty()) in_.take(',');
         net_.nodes = in_.since(from);
@@ -252,7 +252,7 @@ private:
         expect('|', "\"|\" between the least and the greatest value");
         s.most = real("the greatest value");
         expect(']', "\"]\" after the greatest value");
-        s.has_range = s.least != 0 || s.most != 0; // [0|0] says nothing
+        s.has_range = s.least != 0 || s.most != 0; // [0|0] means no range
         s.unit = text("the unit between quotes");
         if (!ok()) return;
         row.receivers = node_list();
@@ -268,7 +268,7 @@ private:
         net_.signals[net_.used.signals++] = row;
         ++owner.signals;
     }
-    /// "M", "m12", "m12M".
+    /// Reads "M", "m12" or "m12M".
     constexpr void multiplexing(SignalRow& row, std::string_view written, std::size_t at) {
         std::string_view left = written;
         row.is_multiplexed = left.starts_with('m');
@@ -309,7 +309,7 @@ private:
             ValueName value;
             const std::size_t at = in_.at();
             if (double real = 0; !in_.integer(value.value)) {
-                // "3.0" is 3 for some tools.
+                // Some tools write "3.0" for 3.
                 if (!in_.real(real) || real != static_cast<double>(static_cast<std::int64_t>(real)))
                     return fail_expected("a value and its name, or \";\"");
                 value.value = static_cast<std::int64_t>(real);
@@ -436,7 +436,7 @@ private:
         end_of_statement();
     }
 
-    // ---- a message as a whole
+    // ---- a complete message
 
     constexpr void finish(MessageRow& message) {
         if (!message.says_every) message.every = usual_every_;

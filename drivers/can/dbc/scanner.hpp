@@ -1,4 +1,4 @@
-// The characters of a DBC file, read forward: words, numbers, and texts between quotes.
+// Reads the characters of a DBC file forward: words, numbers, and quoted texts.
 #pragma once
 
 #include "kernel/base/digits.hpp"
@@ -14,7 +14,7 @@ constexpr bool is_word_character(char c) noexcept {
 }
 constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/// Calls visit(name) for each name of a list as it stands in the file: "a, b c".
+/// Calls visit(name) for each name of a list as in the file: "a, b c".
 template <class Visit> constexpr void for_each_name(std::string_view list, const Visit& visit) {
     std::size_t from = 0;
     for (std::size_t i = 0; i <= list.size(); ++i) {
@@ -29,7 +29,7 @@ constexpr bool names(std::string_view list, std::string_view name) noexcept {
     return found;
 }
 
-/// After each piece it stands at the next one; what is not there leaves it where it was.
+/// Each call moves to the next item; a call that does not match leaves the position unchanged.
 class Scanner {
 public:
     constexpr Scanner() = default;
@@ -38,7 +38,7 @@ public:
     [[nodiscard]] constexpr std::size_t at() const noexcept { return at_; }
     [[nodiscard]] constexpr bool at_end() const noexcept { return at_ == text_.size(); }
     [[nodiscard]] constexpr char next() const noexcept { return at_end() ? '\0' : text_[at_]; }
-    /// Nothing but blanks stands before it in its line.
+    /// Returns whether only blanks are before the position in its line.
     [[nodiscard]] constexpr bool begins_line() const noexcept {
         std::size_t i = at_;
         while (i != 0 && (text_[i - 1] == ' ' || text_[i - 1] == '\t')) --i;
@@ -50,7 +50,7 @@ public:
         skip_blanks();
         return true;
     }
-    /// A name or a keyword; empty: there is none.
+    /// Takes a name or a keyword; returns an empty one when there is none.
     constexpr std::string_view word() noexcept {
         const std::size_t from = at_;
         if (is_digit(next())) return {};
@@ -61,9 +61,9 @@ public:
         at_ = i;
         return ended(from);
     }
-    /// Of what a word() would be.
+    /// Returns what word() would return, without moving.
     [[nodiscard]] constexpr std::string_view peek() const noexcept { return Scanner{*this}.word(); }
-    /// False: there is no number, or one of more than 64 bits.
+    /// Takes a whole number; returns false when there is none, or one of more than 64 bits.
     constexpr bool whole(std::uint64_t& into) noexcept {
         std::uint64_t value = 0;
         std::size_t i = at_;
@@ -89,7 +89,7 @@ public:
         into = static_cast<std::int64_t>(negative ? ~size + 1 : size);
         return true;
     }
-    /// "-40", "0.1", "1E-05". False: there is none, or one that a double cannot hold.
+    /// Takes a real: "-40", "0.1", "1E-05". Returns false without one, or when a double cannot hold it.
     constexpr bool real(double& into) noexcept {
         std::size_t i = at_;
         const auto here = [&] { return i == text_.size() ? '\0' : text_[i]; };
@@ -102,7 +102,7 @@ public:
             for (; is_digit(here()); ++i, ++count) {
                 const auto digit = static_cast<std::uint64_t>(here() - '0');
                 if (digits > (most_size - digit) / 10) {
-                    if (!after_point && exponent < far) ++exponent; // what is left out
+                    if (!after_point && exponent < far) ++exponent; // digits beyond the precision
                 } else {
                     digits = digits * 10 + digit;
                     if (after_point && exponent > -far) --exponent;
@@ -135,8 +135,8 @@ public:
         skip_blanks();
         return true;
     }
-    /// What stands between quotes, escapes and all. False: there is none, or it has no end in its line, or,
-    /// where it may have many, in the file.
+    /// Takes the text between quotes, with escapes unchanged. Returns false when there is none, or when it
+    /// does not end in its line, or, with `of_many_lines`, in the file.
     constexpr bool text(std::string_view& into, bool of_many_lines = false) noexcept {
         if (next() != '"') return false;
         std::size_t i = at_ + 1;
@@ -150,8 +150,8 @@ public:
         skip_blanks();
         return true;
     }
-    /// Behind the next semicolon that stands in no text. False: a text or the statement has no end; it then
-    /// stands at that text, or at the end.
+    /// Moves behind the next semicolon outside of texts. Returns false when a text or the statement does not
+    /// end; the position is then at that text, or at the end.
     constexpr bool skip_statement() noexcept {
         std::string_view ignored;
         while (!at_end()) {
@@ -165,14 +165,14 @@ public:
         }
         return false;
     }
-    /// A piece of what stands here, for messages.
+    /// Returns the beginning of the next item, for messages.
     [[nodiscard]] constexpr std::string_view found() const noexcept {
         constexpr std::size_t most = 24;
         std::size_t end = at_;
         while (end != text_.size() && end - at_ < most && !is_blank(text_[end])) ++end;
         return text_.substr(at_, end - at_);
     }
-    /// From an earlier place up to here, without the blanks at the end.
+    /// Returns the text from an earlier position to the present one, without blanks at the end.
     [[nodiscard]] constexpr std::string_view since(std::size_t from) const noexcept {
         std::size_t end = at_;
         while (end > from && is_blank(text_[end - 1])) --end;
@@ -184,7 +184,7 @@ private:
     static constexpr int far = 9999;
 
     constexpr void skip_blanks() noexcept {
-        const char* const characters = text_.data(); // each call costs a constant expression time
+        const char* const characters = text_.data(); // calls cost time in a constant expression
         const std::size_t size = text_.size();
         std::size_t i = at_;
         for (; i != size; ++i)

@@ -1,4 +1,4 @@
-// What of a network one node takes: its frames and signals as rows of a signal map.
+// Selects the part of a network that one node uses: its frames and signals as rows of a signal map.
 #pragma once
 
 #include "drivers/can/dbc/network.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::can::dbc {
 
-/// What the map of a node needs.
+/// The sizes that the map of a node needs.
 struct Sizes {
     std::size_t frames = 0, signals = 0, values = 0, characters = 0;
 };
@@ -18,7 +18,7 @@ class Taking {
 public:
     constexpr Taking(Network& network, const NodeView& node) noexcept : net_{network}, node_{node} {}
 
-    /// Marks what is taken. Its fault becomes the network's.
+    /// Marks the node's frames and signals. Its fault becomes the network's.
     constexpr Sizes take() {
         find_node();
         for (const FrameRow& row : node_.frames) find_message(row);
@@ -30,7 +30,7 @@ public:
         }
         return sizes;
     }
-    /// Into a map of at least these sizes.
+    /// Fills a map of at least these sizes.
     template <std::size_t F, std::size_t S>
     constexpr void fill(SignalMap<F, S>& map, std::span<ValueName> values, std::span<char> characters) {
         std::array<const MessageRow*, F> messages{};
@@ -44,7 +44,7 @@ public:
             FrameRow& frame = map.frames[f++];
             frame = frame_of(message);
             frame.first = s;
-            // What selects others stands before them.
+            // A multiplexor comes before the signals it selects.
             const auto all = net_.of(message);
             for (std::size_t depth = 0; s - frame.first < count(message) && depth <= all.size(); ++depth)
                 for (SignalRow& each : all) {
@@ -77,7 +77,7 @@ private:
         return taken;
     }
 
-    // ---- what the rows name
+    // ---- names in the rows
 
     constexpr void find_node() {
         if (!ok() || node_.name.empty() || names(net_.nodes, node_.name)) return;
@@ -131,7 +131,7 @@ private:
         found->row = &row;
     }
 
-    // ---- what is taken
+    // ---- selection
 
     constexpr void take_message(MessageRow& message) {
         const bool is_ours = !node_.name.empty() && net_.sends(message, node_.name);
@@ -179,7 +179,7 @@ private:
                       " ms and a row with another one; leave it out of the row");
     }
 
-    // ---- rows of the map, whose texts no longer lie in the file's
+    // ---- rows of the map, whose texts are copied out of the file's
 
     template <class Put> static constexpr std::size_t length_of(const Put& put_all) {
         std::size_t length = 0;

@@ -1,5 +1,5 @@
-// Texts of a DBC file as UTF-8: what was Windows' code page 1252, escapes, and units as they are spelled
-// here.
+// Texts of a DBC file as UTF-8: converted from Windows code page 1252, with escapes, and units in this
+// project's spelling.
 #pragma once
 
 #include "kernel/base/code_page.hpp"
@@ -10,13 +10,14 @@
 
 namespace tappet::can::dbc {
 
-/// A byte that means nothing stays as it is.
+/// Returns the code point of a byte; an undefined byte stays unchanged.
 constexpr std::uint32_t code_point_of(std::uint8_t byte) noexcept {
     const std::uint32_t code = code_point_of_1252(byte);
     return code != 0 ? code : byte;
 }
 
-/// Calls put(piece) for the text's pieces. A text that is UTF-8 already, as some tools write it, stays so.
+/// Calls put(piece) for the text's pieces. A text that is already UTF-8, as some tools write it, stays
+/// unchanged.
 template <class Put> constexpr void put_as_utf8(std::string_view raw, const Put& put) {
     bool is_utf8 = true;
     for (std::string_view left = raw; !left.empty() && is_utf8;) {
@@ -39,14 +40,14 @@ template <class Put> constexpr void put_as_utf8(std::string_view raw, const Put&
     }
 }
 
-/// Likewise of a unit. "°C" is degC here, "Nm" is N m, "1/min" is rpm; a unit that is none stays as it is.
+/// Does the same for a unit. "°C" becomes degC, "Nm" N m, "1/min" rpm; an unknown unit stays unchanged.
 template <class Put> constexpr void put_unit(std::string_view raw, const Put& put) {
     constexpr std::string_view spelled[][2] = {{"Nm", "N m"},    {"kNm", "kN m"},   {"mNm", "mN m"},
                                                {"1/min", "rpm"}, {"U/min", "rpm"},  {"min-1", "rpm"},
                                                {"sec", "s"},     {"degree", "deg"}, {"degrees", "deg"}};
     for (const auto& each : spelled)
         if (raw == each[0]) return put(each[1]);
-    bool waiting = false; // a degree sign, for its C
+    bool waiting = false; // a degree sign that may have a C after it
     put_as_utf8(raw, [&](std::string_view piece) {
         if (waiting) {
             waiting = false;

@@ -1,4 +1,4 @@
-// The statements of a DBC file, in the order in which CANdb++ writes them.
+// Writes the statements of a DBC file in the order of CANdb++.
 #include "drivers/can/dbc/writer.hpp"
 
 #include "drivers/can/dbc/scanner.hpp"
@@ -25,7 +25,7 @@ std::string name(std::string_view from) {
     return name;
 }
 
-/// The byte of code page 1252 for the UTF-8 character at the beginning.
+/// Returns the code page 1252 byte for the UTF-8 character at the beginning.
 char byte_of(std::string_view character) {
     if (character.size() == 1) return character[0];
     for (unsigned byte = 0x80; byte < 0x100; ++byte) {
@@ -46,7 +46,7 @@ std::string quoted(std::string_view text) {
     return out + "\"";
 }
 
-/// A file with CAN FD frames says of each message which format it has.
+/// In a file with CAN FD frames each message states its format.
 const std::string fd_definitions =
     "BA_DEF_ \"BusType\" STRING ;\nBA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\"," +
     [] {
@@ -136,7 +136,7 @@ private:
 std::string to_dbc(std::string_view machine, std::span<const FrameRow> frames,
                    std::span<const Signal> signals) {
     Writer writer{machine, signals};
-    // Two that have one identifier are one message there.
+    // Two frames with the same identifier become one message.
     for (auto frame = frames.begin(); frame != frames.end(); ++frame)
         if (std::find_if(frames.begin(), frame, [&](const FrameRow& before) {
                 return before.identifier == frame->identifier;

@@ -1,4 +1,4 @@
-// A signal map as a DBC file, for tools that look at the bus beside us. On the host.
+// Writes a signal map as a DBC file, for tools that observe the bus next to the machine. On the host.
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
@@ -7,8 +7,8 @@
 
 namespace tappet::can::dbc {
 
-/// The machine is the node of that name, everybody else on the bus the node "others". Texts are of code page
-/// 1252: a character that it has not becomes a question mark. What no name of a DBC file may hold becomes
+/// Returns the file. The machine is the node `machine`, all other nodes are the node "others". Texts are in
+/// code page 1252; a missing character becomes a question mark. Characters not allowed in a DBC name become
 /// '_'.
 std::string to_dbc(std::string_view machine, std::span<const FrameRow> frames,
                    std::span<const Signal> signals);
