@@ -253,7 +253,7 @@ std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
     for (const Recursion& each : rules_.recurring)
         if (text.starts_with(each.name)) most.bytes *= each.times;
     ways_[{name, layer}] = most;
-    // What was cut off above is a part of another's need, and holds nowhere else.
+    // A need that a recursion cut off is part of its caller's need, and must not be kept for other callers.
     if (cut_at_ >= at) needs_[{name, layer}] = most;
     cut_at_ = std::min(cut_before, cut_at_ < at ? cut_at_ : nowhere);
     return most.bytes;

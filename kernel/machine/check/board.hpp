@@ -82,7 +82,7 @@ constexpr Sentence check_proof(const MachineView& m, const Board& board, const P
     return {};
 }
 
-/// Of each row by itself: its device stands on the board, and is of its kind.
+/// Checks each row by itself: the board has its device, and the device is of its kind.
 constexpr Sentence check_each_device(const MachineView& m, const Board& board, const Binding& binding) {
     for (std::size_t c = 0; c < m.components.size(); ++c) {
         const ComponentRow& row = m.components[c];

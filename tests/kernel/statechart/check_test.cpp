@@ -1,5 +1,5 @@
-// What a state machine must not be, and the sentence that says so (thesis 5.2, UML 2.5.1 clause 14). The
-// tables are faulty in one thing each.
+// The faults of state machines, and the sentence for each (thesis 5.2, UML 2.5.1 clause 14). Each table has
+// one fault.
 #include "kernel/statechart/check.hpp"
 #include "kernel/statechart/resolve.hpp"
 #include "kernel/statechart/rows.hpp"

@@ -1,4 +1,4 @@
-// What is asked of a state machine from outside: start and deactivation, its final state, where it is and why
+// Requests to a state machine from outside: start and deactivation, its final state, where it is and why
 // (thesis 5.2.1, 5.2.2). Its programs are C++ functions; their order has tests in order_test.cpp.
 #include "tests/kernel/statechart/recorder.hpp"
 
