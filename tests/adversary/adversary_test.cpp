@@ -1,5 +1,5 @@
-// What holds of every machine is seen to be broken, and what a seed does is the same again. How each fault
-// that is kept in tests/planted is found says ci/planted.
+// The adversary finds broken rules of every machine, and repeats its actions for the same seed. ci/planted
+// shows how it finds each fault in tests/planted.
 #include "kernel/services/browsing/protocol.hpp"
 #include "tests/adversary/machine.hpp"
 #include "tests/adversary/plant.hpp"
@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 std::unique_ptr<tappet::Plant> make_plant(std::uint64_t seed) { return std::make_unique<Plant>(seed); }
 
-/// Does to the machine what a fault of the framework would, and denies nothing itself.
+/// Acts on the machine like a fault of the framework, and reports no broken rule itself.
 class Meddles final : public SwarmRules {
 public:
     using Meddle = std::function<void(MachineInstance&, Time)>;
@@ -36,7 +36,7 @@ private:
     Meddle meddle_;
 };
 
-/// What the first of some seeds that breaks a rule says.
+/// The sentence of the first seed that breaks a rule.
 Sentence found(const Meddles::Meddle& meddle) {
     const SwarmOf of{
         on_host(), &make_plant,
@@ -52,7 +52,7 @@ ComponentState state(MachineInstance& machine, std::string_view component) {
     return machine.life().state_of(find_component(machine.machine().table, component));
 }
 
-TEST(Adversary, finds_an_output_that_moves_while_its_component_stands) {
+TEST(Adversary, finds_an_output_that_moves_while_its_component_is_stopped) {
     constexpr std::size_t gate = bed_lines.index("gate");
     const Sentence why = found([](MachineInstance& machine, Time) {
         if (state(machine, "gate") == ComponentState::stopped &&
@@ -61,10 +61,10 @@ TEST(Adversary, finds_an_output_that_moves_while_its_component_stands) {
     });
     EXPECT_THAT(
         std::string{why.view()},
-        HasSubstr("output \"io.gate\" is 1 at the wire (safe: 0), though nothing that drives it runs"));
+        HasSubstr("output \"io.gate\" is 1 at the wire (safe: 0), though no component that drives it runs"));
 }
 
-TEST(Adversary, finds_a_line_that_a_stop_leaves_unsafe) {
+TEST(Adversary, finds_a_line_left_unsafe_by_a_stop) {
     constexpr std::size_t gate = bed_lines.index("gate");
     const Sentence why = found([](MachineInstance& machine, Time) {
         if (state(machine, "io") == ComponentState::stopped)
@@ -74,8 +74,8 @@ TEST(Adversary, finds_a_line_that_a_stop_leaves_unsafe) {
     EXPECT_THAT(std::string{why.view()}, HasSubstr("io.gate"));
 }
 
-/// As people and seeds choose; nothing is judged here but that it is the same again.
-TEST(Adversary, does_the_same_again_with_one_seed) {
+/// With random users and seeds; only the repetition is checked.
+TEST(Adversary, repeats_its_actions_for_the_same_seed) {
     const SwarmOf of{on_host(), &make_plant, {}};
     std::vector<std::string> told[2];
     for (auto& each : told)
@@ -87,7 +87,7 @@ TEST(Adversary, does_the_same_again_with_one_seed) {
     EXPECT_GT(told[0].size(), 50u);
 }
 
-TEST(Adversary, has_people_of_every_role_and_verb) {
+TEST(Adversary, plays_users_of_every_role_with_every_request) {
     const SwarmOf of{on_host(), &make_plant, {}};
     std::string told;
     for (std::uint64_t seed = 1; seed <= 30; ++seed)
@@ -99,8 +99,8 @@ TEST(Adversary, has_people_of_every_role_and_verb) {
     EXPECT_THAT(told, HasSubstr("a visitor asks: "));
 }
 
-/// What it sent last it keeps: a release would leave it so.
-TEST(Bed, has_nothing_forced_of_a_driver_that_nobody_wrote) {
+/// The driver keeps its last sent value: a release would leave that in place.
+TEST(Bed, refuses_to_force_an_unwritten_input) {
     const test::Folder folder;
     Plant plant{1};
     VirtualRun run{on_host(), plant, 1};

@@ -1,5 +1,5 @@
-// A machine that offers to people, scripts and rows every way to an output that there is: what the adversary
-// shall find is tried on it.
+// A machine that offers users, scripts and rows every way to an output: the faults that the adversary must
+// find are planted in it.
 #pragma once
 
 #include "drivers/can/restarter.hpp"

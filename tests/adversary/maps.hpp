@@ -1,4 +1,4 @@
-// What stands on the wires of the test bench's machine: each kind of output that a machine can have.
+// The wires of the test bench's machine, with each kind of output that a machine can have.
 #pragma once
 
 #include "drivers/can/bus.hpp"

@@ -1,5 +1,5 @@
-// Components that write to their outputs in every way in which one can: from a method, an operation, a
-// command, a property's change, a step; and one whose preparations take long.
+// Components that write to their outputs in every possible way: from a method, an operation, a command, a
+// property's change, a step; and one with a long preparation.
 #pragma once
 
 #include "kernel/motion/filters.hpp"
@@ -11,11 +11,11 @@
 
 namespace adversary {
 
-/// Opens and closes upon a call; a property holds it open.
+/// Opens and closes on a call; a property holds it open.
 struct Valve {
     Output<bool> on;
     Property<bool> held_open{false};
-    Property<std::int64_t> opened{0}; ///< kept: so often
+    Property<std::int64_t> opened{0}; ///< saved: how often it opened
 
     void stop(const Cycle&) noexcept TAPPET_REALTIME { on.write(false); }
     void changed() noexcept TAPPET_REALTIME {
@@ -39,7 +39,7 @@ struct Valve {
     }
 };
 
-/// Turns as fast as it is told by a command, and by an event of somebody else.
+/// Turns as fast as a command or an event of another component says.
 struct Pump {
     Output<double> speed, torque;
     Output<std::int64_t> on, spare;
@@ -117,8 +117,8 @@ private:
     }
 };
 
-/// Weighs what is there, and has no mean of it until it has a sample. A filter that a hundred different
-/// weights came through unchanged filters nothing: then it says that it has none.
+/// Weighs its load, and has no mean before the first sample. A filter that passed a hundred different weights
+/// unchanged filters nothing: then it reports that it has none.
 struct Scale {
     Input<double> weight, flow;
     Output<double> filtered, mean, share;
@@ -155,7 +155,7 @@ struct Scale {
     }
 };
 
-/// Asks the valve, by a row of its own, whenever its level is low.
+/// Calls the valve, by a row of its own, whenever its level is low.
 struct Doser {
     Input<double> height, share;
     Output<bool> lamp;
@@ -185,7 +185,7 @@ struct Doser {
     }
 };
 
-/// Much that happens all the time.
+/// Many things that happen all the time.
 struct Beats {
     Event<> a, b, c, d, e, f, g, h, i, j;
     void step(const Cycle&) noexcept TAPPET_REALTIME {

@@ -1,5 +1,4 @@
-// What stands at the other end of the test bench's wires: a level that rises and falls, whatever the machine
-// does.
+// The other end of the test bench's wires: a level that rises and falls, whatever the machine does.
 #pragma once
 
 #include "drivers/can/far_end.hpp"
@@ -21,7 +20,7 @@ public:
         can.set("level.weight", 0.4 * height_);
         io.set("full", height_ > 50.0);
         unit.set("oven.temperature", 20.0 + unit.get("heat.power"));
-        if (!std::exchange(flows_, true)) unit.set("meter.flow", 0.5); // what a fault writes there stays
+        if (!std::exchange(flows_, true)) unit.set("meter.flow", 0.5); // a fault's value stays
         return now + 5ms;
     }
 

@@ -2,16 +2,16 @@
 # tappet_bench_test(NAME ARGUMENT...): a CTest that is one run of tappet-bench with these arguments.
 #
 #   EXPECT REGEX...  the output must match each of them, in any order
-#   GOLDEN FILE...   the lines of each must stand in the output, addresses, times and the build masked
+#   GOLDEN FILE...   the output must contain the lines of each, with addresses, times and the build masked
 #   EXIT CODE        the guest's exit code (default 0)
 #   TIMEOUT S        wall time from the first command on (default 300: other tests may run beside it)
 #   RUN ARGUMENT...  the arguments of tappet-bench; generator expressions are welcome
 #
-# Bench tests carry the label "bench". Each wants a processor, and no more, for its time: they run beside others. In a build tree with a
+# Bench tests carry the label "bench". Each needs one processor for its time, so they run beside others. In a build tree with a
 # sanitizer there is no bench, and the function does nothing.
 include_guard(GLOBAL)
 
-# Half a minute and more each, for what shorter ones look at too.
+# These take half a minute or more each; shorter tests cover the same.
 set(bench_tests_left_to_all
     campaign campaign_without_guardian loom_people loom_faults loom_foreign_nodes two_robots bearing_press cut_to_length woodworking_lane browse modbus_line
     flooded_wire flooded_wire_planted)

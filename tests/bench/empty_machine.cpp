@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smallest thing that can run on the bench: a static program that finds what every machine there relies
-// on, and says what is missing.
+// The smallest program for the bench: a static one that checks what every machine there relies on, and names
+// missing parts.
 
 #include <algorithm>
 #include <array>
@@ -80,7 +80,7 @@ std::size_t gpio_lines(const char* path) {
     return lines;
 }
 
-// The worst lateness of a thread of the highest use that wakes up every millisecond.
+// The worst lateness of a thread of the highest priority class that wakes every millisecond.
 long worst_lateness_ns(int cycles) {
     timespec due{};
     ::clock_gettime(CLOCK_MONOTONIC, &due);
@@ -112,7 +112,7 @@ int main() {
     const sched_param priority{.sched_priority = 80};
     check(::sched_setscheduler(0, SCHED_FIFO, &priority) == 0, "first-in-first-out scheduling");
     check(::mlockall(MCL_CURRENT | MCL_FUTURE) == 0, "memory locked");
-    // Held open: the processor leaves its deeper sleep states only while somebody holds it.
+    // Held open: the processor leaves its deeper sleep states only while a process holds it.
     const int latency = ::open("/dev/cpu_dma_latency", O_WRONLY);
     const std::int32_t zero = 0;
     check(latency >= 0 && ::write(latency, &zero, sizeof zero) == sizeof zero, "wake-up latency held at 0");

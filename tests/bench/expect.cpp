@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // bench-expect: runs a command, shows its output, and checks its exit code, that the output matches every
-// given regular expression, and that the lines of each golden file stand in it, one after the other, once
-// what varies from run to run is masked. CTest's own PASS_REGULAR_EXPRESSION asks for any one of them and
-// forgets the exit code.
+// given regular expression, and that the lines of each golden file occur in it, in order, with all varying
+// parts masked. CTest's own PASS_REGULAR_EXPRESSION requires only one of them and ignores the exit code.
 
 #include <array>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// What a test on the bench sees of the processes that it started: their words, the files that they leave, and
-// what a browser says of a machine.
+// A test's view of the processes that it started: their output, their files, and a browser's answers about a
+// machine.
 #pragma once
 
 #include "tests/drivers/foreign.hpp"
@@ -17,7 +17,7 @@ namespace tappet::bench {
 
 using namespace std::chrono_literals;
 
-/// Looks every so often until it is so; false after `patience`.
+/// Polls until the condition holds; false after `patience`.
 template <class Condition> bool soon(Condition&& is_so, std::chrono::milliseconds patience = 5s,
                                      std::chrono::milliseconds every = 2ms) {
     for (const auto end = std::chrono::steady_clock::now() + patience;
@@ -33,14 +33,14 @@ inline std::string content_of(const std::string& path) {
     return {std::istreambuf_iterator<char>{file}, {}};
 }
 
-/// The process of the machine, a child of its guardian's; 0: it has none.
+/// The process of the machine, a child of its guardian; 0: there is none.
 inline pid_t machine_of(const Foreign& guardian) {
     const std::string number = std::to_string(guardian.number());
     return static_cast<pid_t>(
         std::strtol(content_of("/proc/" + number + "/task/" + number + "/children").c_str(), nullptr, 10));
 }
 
-/// A number in the summary of the firmware; -1 when it is not there.
+/// A number in the summary of the firmware; -1 when it is missing.
 inline double number_in(const std::string& json, std::string_view key) {
     const std::string wanted = "\"" + std::string{key} + "\": ";
     const std::size_t at = json.find(wanted);
@@ -54,14 +54,14 @@ struct Outcome {
 
 constexpr uid_t root = 0;
 
-/// tappet-browse as somebody types it.
+/// tappet-browse as a user types it.
 class Browser {
 public:
-    /// Of the machine of that name; without one, of the only one.
+    /// For the machine of that name; without a name, for the only one.
     explicit Browser(std::string machine = {}) : machine_{std::move(machine)} {}
 
     [[nodiscard]] std::string socket() const { return "/run/tappet/" + machine_ + ".socket"; }
-    /// To its end, as that user.
+    /// Runs it to its end, as that user.
     Outcome run(std::vector<std::string> words, uid_t user = root) const {
         std::array<int, 2> ends{};
         if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {};
@@ -90,9 +90,9 @@ public:
         outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
         return outcome;
     }
-    /// A number with all of its digits; -1 when it is none.
+    /// A number with all of its digits; -1 when it is not a number.
     [[nodiscard]] double value_of(const std::string& name) const {
-        constexpr int busy = 5; // a client that waits for its server is in its cycle
+        constexpr int busy = 5; // a client that waits for its server counts as inside its cycle
         Outcome outcome = run({"get", "--json", name});
         for (int again = 0; again < 20 && outcome.code == busy; ++again)
             outcome = run({"get", "--json", name});

@@ -1,4 +1,4 @@
-// Machines with a control kernel that are good, for rows that spoil them, and components for that.
+// Good machines with a control kernel, for rows that spoil them, and components for them.
 #pragma once
 
 #include "kernel/machine/table/compiled.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::diagnostics {
 
-/// Knows two models of the axis, and what it was told to do.
+/// Knows two models of the axis, and the commands that it was given.
 struct Observer {
     Input<double> measured;
     Input<double> sent;
@@ -23,7 +23,7 @@ struct Observer {
     }
 };
 
-/// A Generator that says neither what it begins with nor what it leaves behind.
+/// A Generator that declares neither its start values nor its final values.
 struct Careless {
     Input<double> measured;
     Output<double> target;
@@ -36,7 +36,7 @@ struct Careless {
     }
 };
 
-/// A Controller that others ask.
+/// A Controller that other components call.
 struct Asked {
     Input<double> target;
     Output<double> velocity;
@@ -74,7 +74,7 @@ inline constexpr auto moving =
     state_machine<Mover>("moving", states(state("on", initial), state("off", final)),
                          transitions(transition("on", "off", after(1s))));
 
-/// Counts in whole numbers, and somebody sees it.
+/// Counts in whole numbers that another component reads.
 struct Cycles {
     Output<std::int32_t> count;
     void step(const Cycle&) noexcept TAPPET_REALTIME { count.write(count.last() + 1); }
@@ -134,12 +134,12 @@ inline Table cascade() {
     return table;
 }
 
-/// A component more, in the activity of the level.
+/// Adds a component to the activity of the level.
 inline void place(Table& m, const ComponentRow& row) { m.add(row, m.activities[0].name); }
 inline void seat(Table& m, const RoleRow& role) {
     static_cast<void>(m.control.levels.back().roles.push(role));
 }
-/// The same with a row that leads to it.
+/// Adds a component, and a row that leads to it.
 inline void seat(Table& m, const ComponentRow& row, const RoleRow& role, const ConnectionRow& to) {
     place(m, row);
     m.add(to);

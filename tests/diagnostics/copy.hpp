@@ -1,4 +1,4 @@
-// A table whose rows can be changed while a program runs, and what the check of the compiler says of it.
+// A table whose rows can be changed at run time, and the answer of the compiler's check to it.
 #pragma once
 
 #include "kernel/machine/accept.hpp"
@@ -31,7 +31,7 @@ struct Copy {
     }
 };
 
-/// What the check says of a table; empty: it is accepted.
+/// The sentence with which the check refuses a table; empty: it is accepted.
 inline std::string refusal_of(const MachineView& m, const Board& board, const Binding& binding = unbound) {
     return std::string{Accepted{m, board, binding}.refusal().view()};
 }

@@ -1,6 +1,6 @@
-// Compiles each faulty case with the compiler of this build and compares what it says with the case's golden
-// sentence. There is a case for each way of a refusal into a compiler's message, and for what a compiler
-// alone can see; every other fault is a row of tests/diagnostics/rows, where the same check runs without a
+// Compiles each faulty case with the compiler of this build and compares the message with the case's golden
+// sentence. There is a case for each way of a refusal into a compiler's message, and for faults that only a
+// compiler can see; every other fault is a row of tests/diagnostics/rows, where the same check runs without a
 // compiler.
 //     diagnostics --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--cases DIR --header FILE]
 //                 [--lines N] [--only TEXT] [--write]
@@ -30,9 +30,9 @@
 
 namespace {
 
-/// Everything a compiler may print for one faulty table, the sentence and its surroundings included.
+/// The most lines that a compiler may print for one faulty table, with the sentence.
 constexpr std::size_t most_lines = 9;
-/// Of a script the sentence comes first, the way through which it was compiled after it.
+/// For a script the sentence comes first, then the lines that lead to the compilation.
 constexpr std::size_t most_script_lines = 14;
 constexpr std::size_t most_named_lines = 16;  // clang shows each call on the way to the fault
 constexpr std::size_t most_effect_lines = 28; // and what that function calls in the standard library
@@ -54,7 +54,7 @@ struct Output {
 struct Case {
     std::filesystem::path file;
     std::string expected;
-    std::string by_clang; ///< beside it
+    std::string by_clang; ///< the expected text of clang beside the name
     bool effects = false;
     bool named = false;
     bool accepted = false;
@@ -91,7 +91,7 @@ FirstError first_error(const std::string& text) {
     return first;
 }
 
-/// Without those that say through which headers a header was read: they are the case's own.
+/// Counts lines, except those that list the including headers: they belong to the case.
 std::size_t lines_of(const std::string& text) {
     std::size_t count = 0;
     std::istringstream lines{text};
@@ -100,7 +100,7 @@ std::size_t lines_of(const std::string& text) {
     return count;
 }
 
-/// What stands between two marks; g++ prints the sentence as a string literal, clang as it is.
+/// The text between two marks; g++ prints the sentence as a string literal, clang as plain text.
 std::string sentence_of(const std::string& error) {
     const auto between = [&error](std::string_view open, std::string_view close) {
         const std::size_t begin = error.find(open);
@@ -119,7 +119,7 @@ std::string sentence_of(const std::string& error) {
     return sentence;
 }
 
-/// Equal, where # in what is expected stands for any number.
+/// Returns whether both are equal; # in the expected text stands for any number.
 bool matches(std::string_view expected, std::string_view said) {
     std::size_t at = 0;
     for (const char character : expected) {
@@ -170,8 +170,8 @@ std::vector<Case> read_cases(const Options& options, std::string& fault) {
     return cases;
 }
 
-/// The headers, parsed once for all cases. Returns the flags that use them, or nothing with the fault
-/// printed.
+/// Parses the headers once for all cases. Returns the flags that use them, or nothing after printing the
+/// fault.
 std::string precompile(const Options& options, bool clang) {
     const std::filesystem::path place =
         options.build + "/precompiled/" + options.header + (clang ? ".pch" : ".gch");

@@ -1,4 +1,4 @@
-// Writes the source of a large machine: what a compiler takes for it is a figure of the framework.
+// Writes the source of a large machine: its compile time and memory are a figure of the framework.
 #pragma once
 
 #include <cstddef>

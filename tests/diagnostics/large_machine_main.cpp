@@ -1,5 +1,6 @@
-// What a large machine costs to compile: 400 components of 20 types, 800 connections, 100 reactions; or one
-// machine of a large system: ten on one wire, with 100 rows across; or a large script with the firmware.
+// Limits the compile time and memory of a large machine: 400 components of 20 types, 800 connections, 100
+// reactions; of one machine of a large system: ten on one wire, with 100 rows across; and of a large script
+// with the firmware.
 //     large_machine --compiler PATH --flags FLAGS|@FILE --source DIR --build DIR [--what
 //     machine|system|script]
 // Fails above the limits. Time is the compiler's own processor time: it does not depend on who else uses the

@@ -1,5 +1,6 @@
-// Writes the source of one machine's firmware in a large system: what a compiler takes for the whole system's
-// table, its frames, the analysis of its wire and that machine's end of it is a figure of the framework.
+// Writes the source of one machine's firmware in a large system: the compile time and memory for the whole
+// system's table, its frames, the analysis of its wire and that machine's end of it are a figure of the
+// framework.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,7 @@
 
 namespace tappet::diagnostics {
 
-/// Each machine has ten rows across: it tells its neighbours six values, two events and a command, and knows
+/// Each machine has ten rows across: it sends its neighbours six values, two events and a command, and knows
 /// whether one of them is there.
 struct SystemSize {
     std::size_t machines = 10;

@@ -15,7 +15,7 @@
 
 namespace tappet::diagnostics {
 
-/// How the check calls a row.
+/// The check's name for a row.
 inline std::string label(const ComponentRow& row) { return "component \"" + std::string{row.name} + "\""; }
 inline std::string label(const ActivityRow& row) { return "activity \"" + std::string{row.name} + "\""; }
 inline std::string label(const ConnectionRow& row) {
@@ -33,13 +33,13 @@ template <class Row> std::string label_of(const Row& row) { return label(row); }
 
 struct Tally {
     std::size_t misspelt = 0, dropped = 0, doubled = 0, retyped = 0;
-    std::vector<std::string> wrong;          ///< accepted, or another row named
+    std::vector<std::string> wrong;          ///< accepted, or the sentence names another row
     std::vector<std::string> may_be_dropped; ///< rows without which the table is still good
 
     [[nodiscard]] std::size_t all() const { return misspelt + dropped + doubled + retyped; }
 };
 
-/// Makes every mutation of one table and judges what the check says of it.
+/// Makes every mutation of one table and judges the check's answer to it.
 class Mutations {
 public:
     Mutations(const MachineView& table, const Board& board, const Binding& binding)
@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    /// Refused, and the sentence has one of these in it.
+    /// Expects a refusal whose sentence contains one of these.
     void expect(std::size_t& count, const std::string& what, const Copy& copy,
                 const std::vector<std::string>& named) {
         ++count;
@@ -83,8 +83,8 @@ private:
         return list;
     }
 
-    /// `place` finds the name in a row of the section; an empty one is none. The sentence then has in it
-    /// what `named` says of that row.
+    /// `place` finds the name in a row of the section; empty names are skipped. The sentence must contain the
+    /// result of `named` for that row.
     template <class Row, class Place>
     void misspell(std::vector<Row> Copy::* section, std::size_t i, Place place,
                   std::string (*named)(const std::type_identity_t<Row>&) = &label_of<Row>) {
@@ -160,7 +160,7 @@ private:
             for (std::string_view TransitionRow::* const part :
                  {&TransitionRow::from, &TransitionRow::to, &TransitionRow::event})
                 misspell_in(&StateMachineTable::transitions, t, part);
-        // A state that no row names, like a safe state reached by request alone, has any name.
+        // A state that no row names, such as a safe state reached only by request, may have any name.
         for (std::size_t s = 0; s < machine.states.size(); ++s)
             if (is_named(machine, machine.states[s].name))
                 misspell_in(&StateMachineTable::states, s, &StateRow::name);
@@ -202,7 +202,7 @@ private:
             return std::vector{"\"" + std::string{row.to} + "\""};
         });
         drop<ReactionRow>(&Copy::reactions, [](const ReactionRow& row) {
-            // Missed by the operation that is required, by the event that must be heard, or by the call.
+            // The sentence names the required operation, the event without subscribers, or the call.
             return std::vector{"\"" + std::string{row.target.operation} + "\"",
                                "when(\"" + std::string{row.event} + "\"",
                                "uses(\"" + std::string{row.event} + "\""};
@@ -231,7 +231,8 @@ private:
 
     // ---- types
 
-    /// A facet of the same kind as the one at that path, but of another type; empty when the table has none.
+    /// Returns a facet of the same kind as the one at that path, but of another type; empty: the table has
+    /// none.
     std::string_view of_another_type(std::string_view path) {
         End end;
         if (!resolve(table_, path, FacetKind::input, end).empty()) return {};

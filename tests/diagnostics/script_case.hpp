@@ -1,7 +1,7 @@
-// What a faulty script is compiled against: one component with a method and an event.
+// The context of a faulty script: one component with a method and an event.
 #pragma once
 
-// First, since it is compiled ahead.
+// Included first, since it is precompiled.
 #include "tests/diagnostics/small_machine.hpp"
 
 #include "kernel/script/compiled.hpp"

@@ -185,7 +185,7 @@ constexpr Machine<C, A, X, R, B> loom(const Section<ComponentRow, C>& c, const S
 inline constexpr auto good_loom =
     loom(good_components, good_activities, good_connections, good_reactions, good_behaviours);
 
-/// With a component more, in an activity of its own.
+/// Adds a component, in an activity of its own.
 constexpr auto loom_with(const ComponentRow& component, const ActivityRow& activity) {
     const auto& c = good_components.rows;
     const auto& a = good_activities.rows;

@@ -1,4 +1,4 @@
-// The components that generated scripts act on: one of each kind of facet, and a diary of everything that
+// The components that generated scripts use: one of each kind of facet, and a diary of everything that
 // happens to them. A command with 7 fails, one below zero is rejected.
 #pragma once
 
@@ -16,7 +16,7 @@ struct Diary {
     void write(const std::string& line) { lines.push_back(line); }
 };
 
-/// How a command that takes `goal` cycles goes on.
+/// Progress of a command that takes `goal` cycles.
 struct Job {
     std::int64_t left = 0;
     bool fails = false;
@@ -44,7 +44,7 @@ struct Place {
 template <> inline constexpr auto fields_of<Place> =
     fields(field<&Place::x>("x"), field<&Place::turns>("turns"));
 
-/// Under the script's component and its peer in the same activity alike.
+/// Runs in the same activity as the script's component and its peer.
 struct Bench {
     Diary* diary = nullptr;
     const char* name = "";
@@ -108,7 +108,7 @@ struct Bench {
     }
 };
 
-/// In another activity.
+/// Runs in another activity.
 struct Arm {
     Diary* diary = nullptr;
     Job job{};

@@ -1,6 +1,6 @@
 // Ten thousand random scripts, loaded, on random days: the compiled tables and a second interpreter that
-// walks the text's own tree do the same, step by step: states, variables, ports, properties, and everything
-// that the components were asked for in its order (thesis 5.1, 5.2). TAPPET_SEED chooses other scripts.
+// walks the text's own tree agree in each step: states, variables, ports, properties, and the calls of the
+// components in their order (thesis 5.1, 5.2). TAPPET_SEED chooses other scripts.
 #include "tests/differential/generator.hpp"
 #include "tests/differential/random_day.hpp"
 
@@ -72,7 +72,7 @@ TEST(A_loaded_state_machine, with_a_child_does_what_its_text_says) {
     compare_loaded(seed() * 4'000'000, 2000, {.states = 5});
 }
 
-/// Programs that may be under way together, all in the same function: the run programs of two regions, an
+/// Programs that may run at the same time, all in the same function: the run programs of two regions, an
 /// internal transition, an exit.
 constexpr std::string_view shared_function = R"(StateMachine Machine {
     param int goal;
@@ -110,7 +110,7 @@ constexpr std::string_view shared_function = R"(StateMachine Machine {
 RootStateMachine Machine m(3, 2.5)
 )";
 
-TEST(A_loaded_state_machine, keeps_apart_what_its_programs_have_in_the_same_function) {
+TEST(A_loaded_state_machine, separates_programs_that_share_a_function) {
     const std::string text{shared_function};
     Loaded loaded;
     const ScriptOutcome outcome = loaded.compile(text);

@@ -14,7 +14,7 @@ struct GeneratorOptions {
     int states = 6;
     bool nested = true;   ///< composite states, regions and history
     bool children = true; ///< child state machines
-    bool machine = true;  ///< otherwise a program alone
+    bool machine = true;  ///< false: only a program
 };
 
 class Generator {

@@ -7,7 +7,7 @@ namespace tappet {
 
 namespace {
 
-/// Lead around the circle of states at each depth.
+/// Events that lead around the circle of states at each depth.
 constexpr std::array<std::string_view, 4> circle_events = {"tick()", "mate.tick()", "switched(p)",
                                                            "moved(a, x)"};
 
@@ -89,7 +89,7 @@ void Generator::child_type() {
     in_child_ = false;
 }
 
-// It knows nothing of the machine's names, as a child.
+// As a child, it knows no names of the machine.
 void Generator::aid() {
     open("program int aid(int n, bool how)");
     in_child_ = returns_value_ = true;
@@ -142,7 +142,7 @@ std::vector<std::size_t> Generator::inside(int parent, const std::string& region
     return found;
 }
 
-// One is an expression, the other one has statements.
+// One of them is an expression, the other one has statements.
 void Generator::functions() {
     in_function_ = true;
     const std::size_t kept = names_.size();
@@ -217,7 +217,7 @@ std::string Generator::target(std::size_t from) {
     const Planned& source = states_[from];
     const std::vector<std::size_t> siblings = inside(source.parent, source.region);
     if (one_in(2)) return states_[any(siblings)].name;
-    // Anywhere that does not lead from one region of a composite into another one of it.
+    // Any state that is not in another region of the same composite.
     for (int tries = 0; tries < 8; ++tries) {
         const std::size_t to = below(states_.size());
         bool crosses = false;
@@ -244,7 +244,7 @@ void Generator::transitions(std::size_t index) {
     const Planned& planned = states_[index];
     const std::vector<std::size_t> siblings = inside(planned.parent, planned.region);
     if (planned.final) return;
-    // Around the circle of its siblings, so that each state is reached and left.
+    // Leads around the circle of its siblings, so that each state is reached and left.
     std::size_t next = siblings[0];
     for (std::size_t i = 0; i + 1 < siblings.size(); ++i)
         if (siblings[i] == index) next = siblings[i + 1];
@@ -275,9 +275,9 @@ void Generator::condition_transition(std::size_t index, bool always) {
     if (guarded && always && one_in(2)) line("else " + select(index));
 }
 
-// What always comes first hides what comes after it: without a guard, or with an else branch, a state hears
-// the event of its circle, and an outermost one another one; nobody hears with a guard that of a circle
-// inside. `always`: what is selected then.
+// A transition that always comes first hides those after it. Therefore a transition without a guard, or with
+// an else branch, waits for the event of its circle, or another event at the outermost level; no transition
+// with a guard waits for the event of an inner circle. `always`: always selected.
 void Generator::event_transition(std::size_t index, std::string_view event, const std::string& always) {
     static constexpr std::array<std::string_view, 4> others = {"mate.moved(b, y)", "mate.switched(q)",
                                                                "mate.moved(a, x)", "mate.switched(p)"};

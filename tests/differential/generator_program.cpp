@@ -147,7 +147,7 @@ std::string Generator::vector(int depth) {
     }
 }
 
-// Known before, or not: to reckon one is a statement.
+// Constant or not: evaluating one is a statement.
 std::string Generator::argument() {
     return one_in(3) ? std::to_string(below(9)) : "a % 50 + " + expression(Kind::integer, 1);
 }
@@ -155,7 +155,7 @@ std::string Generator::argument() {
 void Generator::block(int statements, int depth, bool may_wait) {
     const std::size_t kept = names_.size();
     for (int i = 0; i < statements; ++i) statement(depth, may_wait);
-    names_.resize(kept); // what it declared ends with it
+    names_.resize(kept); // ends the names that it declared
 }
 
 void Generator::statement(int depth, bool may_wait) {
@@ -293,12 +293,12 @@ void Generator::assignment() {
     if (kind == Kind::vector && !one_in(3))
         return line("set " + to->name + "[" + (one_in(8) ? "(b % 4)" : std::to_string(below(3))) +
                     "] = " + expression(Kind::real, 1) + ";");
-    // A real takes a whole number as well.
+    // A real accepts a whole number as well.
     const Kind from = kind == Kind::real && one_in(5) ? Kind::integer : kind;
     line("set " + to->name + " = " + expression(from, 2) + ";");
 }
 
-// Of what is copied as a whole, and of its parts; and of what comes one after the other.
+// Assignments of whole values and of their parts, and of elements in order.
 void Generator::whole_value() {
     const Named* to = variable(Kind::record, true);
     const Named* text = variable(Kind::text, true);

@@ -1,5 +1,5 @@
-// Scripts that mean harm: nested without end, loops without end, texts that multiply. All are refused, in a
-// time and a room that the text's length bounds; nothing of it is on the heap.
+// Hostile scripts: endless nesting, endless loops, texts that multiply. All are refused, within a time and a
+// room that the text's length bounds, and without the heap.
 #include "tests/differential/unit_bench.hpp"
 
 #include "kernel/script/compile.hpp"
@@ -22,7 +22,7 @@ std::string repeated(std::string_view what, std::size_t bytes = characters) {
     return text;
 }
 
-/// Compiles it, refused or not; a good text of this length takes a few milliseconds.
+/// Compiles a text, refused or not; a good text of this length takes a few milliseconds.
 ScriptOutcome compile(const std::string& text) {
     static const auto rows = std::make_unique<ScriptBuffer<capacity>>();
     Reach reach;
@@ -42,7 +42,7 @@ void expect_refused(const std::string& text, std::string_view why = "") {
 
 std::string program(const std::string& body) { return "program m {\nvar int a = 0;\n" + body + "\n}\n"; }
 
-TEST(A_hostile_script, that_is_nested_without_end_is_refused) {
+TEST(A_hostile_script, is_refused_when_nested_too_deeply) {
     for (std::string_view what : {"(", "-", "!", "abs(", "1 + (", "true ? ("})
         expect_refused(program("set a = " + repeated(what)), "deeper");
     for (std::string_view what :
@@ -53,7 +53,7 @@ TEST(A_hostile_script, that_is_nested_without_end_is_refused) {
     expect_refused(states, "deeper");
 }
 
-TEST(A_hostile_script, that_loops_without_waiting_is_refused) {
+TEST(A_hostile_script, is_refused_when_it_loops_without_waiting) {
     expect_refused(program("while (true) { set a = 1; }"), "without waiting");
     expect_refused(program("while (a < 1) { if a > 0 then yield; }"), "without waiting");
     expect_refused(program("for (var int i = 0; i < 1000000000; i = i + 1) { do note(i); }"),
@@ -64,7 +64,7 @@ TEST(A_hostile_script, that_loops_without_waiting_is_refused) {
     expect_refused(program("for (var int i = 0; i < 10; i = i + 0) { do note(i); }"), "without waiting");
 }
 
-TEST(A_hostile_script, whose_functions_call_each_other_is_refused) {
+TEST(A_hostile_script, is_refused_when_its_calls_recurse_or_multiply) {
     expect_refused("function f(int a) { do f(a); }\n" + program("do f(1);"), "calls itself");
     // Each calls the one before it ten times: a billion statements of a short text.
     std::string text = "function f0(int a) { do note(a); }\n";
@@ -74,7 +74,7 @@ TEST(A_hostile_script, whose_functions_call_each_other_is_refused) {
         text += "}\n";
     }
     expect_refused(text + program("do f9(1);"), "make it smaller");
-    // Likewise in one expression.
+    // The same within one expression.
     text = "function int g0(int a) { return a + a; }\n";
     for (int i = 1; i < 40; ++i) {
         const std::string inner = "g" + std::to_string(i - 1) + "(a)";
@@ -83,7 +83,7 @@ TEST(A_hostile_script, whose_functions_call_each_other_is_refused) {
     expect_refused(text + program("set a = g39(1);"), "deeper");
 }
 
-TEST(A_hostile_script, that_is_larger_than_its_room_is_refused) {
+TEST(A_hostile_script, is_refused_when_larger_than_its_room) {
     expect_refused(program(repeated("do note(1);\n")), "make it smaller");
     expect_refused(program("set a = 1" + repeated(" + note(2)")), "make it smaller");
     std::string text = "StateMachine M {\n";
@@ -94,7 +94,7 @@ TEST(A_hostile_script, that_is_larger_than_its_room_is_refused) {
     expect_refused(program(text), "make it smaller");
 }
 
-TEST(A_hostile_script, that_ends_nowhere_or_means_nothing_is_refused) {
+TEST(A_hostile_script, is_refused_when_unterminated_or_meaningless) {
     for (const std::string& text :
          {repeated("a"), repeated("1"), repeated("\""), repeated("/*"), repeated("."), repeated("\xff"),
           repeated("StateMachine "), std::string(characters, '\0'), program(repeated("x.y.z."))})

@@ -1,4 +1,4 @@
-// What happens on a random day, and what is compared after each thing that happened.
+// The events of a random day, and the comparison after each of them.
 #include "tests/differential/random_day.hpp"
 
 #include <array>
@@ -61,7 +61,7 @@ void RandomDay::Aid::advance(std::int64_t now, std::int64_t statements) {
 RandomDay::RandomDay(std::uint64_t seed, const std::string& text, const ScriptUnit& unit,
                      std::span<const ProgramCode> code, std::span<const StateMachineFast> fast)
     : random_{seed}, script_{reference::read(text)} {
-    // Few statements in a step: what is left over goes on in the next one.
+    // Few statements in a step: the rest runs in the next one.
     policy_ = {.statements = random_.one_in(2) ? static_cast<std::uint32_t>(random_.between(1, 8)) : 100'000,
                .escalates = random_.one_in(2)};
     bench_.place(unit, code, fast, policy_);
@@ -126,7 +126,7 @@ void RandomDay::step() {
     for (std::size_t i = 0; i <= root_->children().size(); ++i) machine(i).step(now);
 }
 
-/// Of what is paused.
+/// Executes a single step of a paused behaviour.
 void RandomDay::single_step() {
     did("single step");
     const std::int64_t now = bench_.now.time_since_epoch().count();
@@ -225,7 +225,7 @@ void RandomDay::command() {
     StateMachineExecution& one = *part(which).machine;
     const Time at = bench_.now;
     const std::int64_t now = at.time_since_epoch().count();
-    // Once it is in error little else helps.
+    // After an error few requests have an effect.
     const bool helpless = other.in_error() && random_.one_in(2);
     switch (helpless ? 8 : random_.below(12)) {
     case 0:

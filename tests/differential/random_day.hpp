@@ -1,4 +1,5 @@
-// One script in both interpreters through the same day: events, requests, measurements and time at random.
+// Runs one script in both interpreters through the same day: events, requests, measurements and time at
+// random.
 #pragma once
 
 #include "tests/differential/reference_bench.hpp"
@@ -14,11 +15,11 @@ public:
     RandomDay(std::uint64_t seed, const std::string& text, const ScriptUnit& unit,
               std::span<const ProgramCode> code = {}, std::span<const StateMachineFast> fast = {});
 
-    /// What differs first, and the whole diary of both; empty: nothing in so many steps.
+    /// The first difference, and the whole diary of both; empty: no difference in that many steps.
     std::string run(int steps);
 
 private:
-    /// A program that stands alone, in the second interpreter.
+    /// A program alone, in the second interpreter.
     struct Alone {
         reference::Scope scope{};
         reference::ProgramRun run{};
@@ -27,12 +28,12 @@ private:
         void step(std::int64_t now, std::int64_t statements);
         void stop();
     };
-    /// One that the state machine of the script commands.
+    /// A program that the script's state machine commands.
     struct Aid final : Alone, reference::BenchWorld::Beside {
         const reference::Type* type = nullptr; ///< null: there is none
         bool has_ended = false;
         bool is_in_step = false;
-        bool is_to_stop = false; ///< at its end, since a statement of its own led to that
+        bool is_to_stop = false; ///< requests a stop at the end of the step: its own statement led to that
         bool begin(const std::vector<reference::Value>& given) override;
         reference::Answer ended() override;
         void stop() override;
@@ -54,7 +55,7 @@ private:
                                       const reference::Scope& scope) const;
     void did(const std::string& what);
     [[nodiscard]] reference::Machine& machine(std::size_t i) const;
-    /// The root, or the program that stands alone, then its children.
+    /// The root, or the program alone; then its children.
     [[nodiscard]] BenchPart& part(std::size_t i) const;
 
     Random random_;

@@ -16,14 +16,14 @@ public:
     Bench own{};
     Bench mate{};
     Arm arm{};
-    double measured = 0; ///< what the input gets
+    double measured = 0; ///< value at the input
     double setpoint = 0;
     static constexpr std::size_t places = 4; ///< of a buffer
     std::deque<std::int64_t> queue{};
     std::deque<double> sent{};
-    /// Hears what is emitted, after the diary.
+    /// Called for each emitted event, after the diary.
     std::function<void(const std::string& event, const std::vector<Value>& arguments)> heard;
-    /// The program "aid" of the script, which others of it command.
+    /// The script's program "aid", which other programs of it command.
     struct Beside {
         virtual bool begin(const std::vector<Value>& given) = 0;
         virtual Answer ended() = 0;
@@ -42,7 +42,7 @@ public:
         mate.name = "mate";
         arm.diary = &diary;
     }
-    /// The other activity: what was sent begins, what began goes on.
+    /// Steps the other activity: sent commands begin, running ones continue.
     void step_arm() {
         while (!sent_.empty()) {
             Sent& each = *sent_.front();

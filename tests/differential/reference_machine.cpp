@@ -1,4 +1,4 @@
-// A step: run, conditions, handle; and what an event does.
+// A step (run, conditions, handle), and the effect of an event.
 #include "tests/differential/reference_machine.hpp"
 
 #include <algorithm>
@@ -132,7 +132,7 @@ bool Machine::run_states(std::int64_t now) {
     return true;
 }
 
-// A single step asks one; failed: it has had that.
+// A single step evaluates one condition; `failed`: it has done that.
 Machine::Reply Machine::find_condition(std::int64_t now, Chosen& found) {
     std::size_t number = 0;
     for (const State* leaf : leaves())

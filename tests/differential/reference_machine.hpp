@@ -1,4 +1,4 @@
-// The second interpreter's state machines: what is to be done stands in a queue of acts, states are found by
+// The second interpreter's state machines: a queue of acts holds the pending work, and states are found by
 // walking the tree. Written from the table of the order of everything in kernel/statechart, without its code.
 #pragma once
 
@@ -15,7 +15,7 @@ public:
     static constexpr std::size_t most_deferred = 8;
     static constexpr std::int64_t enough_statements = 100'000;
 
-    /// What a row of the table says of it, and of its children.
+    /// The options of a table's row for the machine and its children.
     struct Policy {
         std::int64_t statements = enough_statements;
         bool escalates = false;
@@ -23,7 +23,7 @@ public:
     Machine(const Script& script, const Instance& instance, const std::string& name, World& bench,
             Policy policy, Machine* parent = nullptr);
 
-    // ---- what the engine, an operator or a parent asks for
+    // ---- requests of the engine, an operator or a parent
     bool activate(std::int64_t now);
     bool start(std::int64_t now);
     bool reactive();
@@ -36,7 +36,7 @@ public:
     void step_once(std::int64_t now);
     void event(const std::string& name, const std::vector<Value>& arguments, std::int64_t now);
 
-    // ---- what is compared
+    // ---- compared values
     [[nodiscard]] std::string picture() const;
     [[nodiscard]] bool is_in(const std::string& state) const;
     [[nodiscard]] bool in_error() const { return error_; }
@@ -70,7 +70,7 @@ private:
         ProgramRun run{};
         std::int64_t entered_at = 0;
     };
-    /// One thing of many that a transition is made of.
+    /// One of the many acts of a transition.
     struct Act {
         enum class Kind : std::uint8_t {
             program,
@@ -82,9 +82,9 @@ private:
             depart
         } kind = Kind::program;
         const Block* block = nullptr;
-        const State* state = nullptr; ///< that is left or entered
+        const State* state = nullptr; ///< to leave or to enter
         std::string enters{};         ///< of a plan: "history" or "deep history"
-        std::size_t kept = 0;         ///< of a plan: levels around the target that stay
+        std::size_t kept = 0;         ///< of a plan: levels around the target that stay active
     };
     struct Chosen {
         const State* source = nullptr;
@@ -97,7 +97,8 @@ private:
     };
     enum class Reply : std::uint8_t { no, yes, otherwise, failed };
 
-    /// One for what is in hand, and one for the run program of each state that may be active beside others.
+    /// One slot for the act in hand, and one for the run program of each state that may be active beside
+    /// others.
     [[nodiscard]] std::string slot(const std::string& name) const;
 
     // ---- the tree
@@ -113,13 +114,13 @@ private:
     [[nodiscard]] const State* remembered(const std::string& parent, const std::string& region) const;
     Active* active_of(const State* state);
     [[nodiscard]] std::vector<const State*> leaves() const;
-    /// The states that are asked at a leaf: itself and those around it, of which it is the last leaf.
+    /// The states that are considered at a leaf: itself and those around it, of which it is the last leaf.
     [[nodiscard]] std::vector<const State*> asked_at(const State* leaf) const;
 
-    /// A call from outside begins, with the statements of one.
+    /// Begins a call from outside, with the statements of one.
     void open() { busy_ = true, left_ = policy_.statements; }
 
-    // ---- what is in hand
+    // ---- the act in hand
     bool work(std::int64_t now);
     bool do_acts(std::int64_t now);
     void plan(const State* source, const State* target, const Block& program, const std::string& enters);
@@ -151,16 +152,16 @@ private:
     Scope scope_;
     std::vector<std::unique_ptr<Machine>> children_;
     std::vector<Active> active_;                  ///< each before those inside it
-    std::map<std::string, const State*> history_; ///< by composite and region: what was left last
+    std::map<std::string, const State*> history_; ///< by composite and region: the state that was left last
     std::deque<Act> acts_;
     std::deque<Chosen> chosen_;      ///< by one event, still to be taken
     ProgramRun current_;             ///< of the act in hand
-    const State* running_ = nullptr; ///< whose run program is executed just now
+    const State* running_ = nullptr; ///< its run program is being executed
     std::deque<Event> deferred_;
     std::string wanted_;
     bool wanted_run_ = false;
     bool run_once_ = false;
-    bool to_final_ = false; ///< what is in hand leads to the final state by request
+    bool to_final_ = false; ///< the act in hand leads to the final state by request
     bool leaving_ = false;
     bool final_wanted_ = false;
     bool is_active_ = false;

@@ -44,7 +44,7 @@ ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t&
     } const at_work{scope, std::exchange(scope.run, this)};
     while (!open_.empty()) {
         Open& top = open_.back();
-        if (catches_) { // to come there is a statement too
+        if (catches_) { // reaching it is a statement too
             if (statements == 0) return Result::left_over;
             --statements;
             catches_ = false;
@@ -56,7 +56,7 @@ ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t&
                 top = {.block = &owner->second, .owner = owner, .is_increment = true};
                 continue;
             }
-            open_.pop_back(); // a loop stands where its condition is asked again
+            open_.pop_back(); // a loop is at the place where its condition is evaluated again
             if (!is_loop && !open_.empty()) ++open_.back().next;
             continue;
         }
@@ -90,8 +90,8 @@ ProgramRun::Result ProgramRun::run(Scope& scope, std::int64_t now, std::int64_t&
     return Result::ended;
 }
 
-// Whether it is one of the statements that a step may execute: of a call the reckoning of its arguments is
-// one.
+// Returns whether it is one of the statements that a step may execute: for a call, the evaluation of its
+// arguments is one.
 bool ProgramRun::counts(const Scope& scope, const Statement& statement) {
     if (statement.kind != Statement::Kind::perform ||
         scope.function(statement.expressions[0].text) == nullptr)
@@ -101,7 +101,7 @@ bool ProgramRun::counts(const Scope& scope, const Statement& statement) {
     });
 }
 
-// The innermost try around the statement goes on with its catch.
+// The innermost try around the statement continues with its catch.
 bool ProgramRun::recover() {
     for (std::size_t i = open_.size(); i-- > 0;) {
         const Statement* owner = open_[i].owner;
@@ -161,7 +161,7 @@ ProgramRun::Done ProgramRun::wait(Scope& scope, const Statement& statement, std:
     if (!value) return Done::failed;
     if (const auto* time = std::get_if<Span>(&*value)) {
         ++covered()["wait for time"];
-        acted_ = true; // how long is reckoned once
+        acted_ = true; // the duration is evaluated once
         time_limit_ = time->ns;
         return now - entered_at_ >= time->ns ? Done::next : Done::wait;
     }
@@ -253,7 +253,7 @@ bool ProgramRun::take_arguments(Scope& scope, const Expression& call) {
 
 ProgramRun::Done ProgramRun::perform_command(Scope& scope, const Statement& statement, std::int64_t now) {
     const Expression& call = statement.expressions[0];
-    std::vector<Value>& given = given_; // a command at work keeps its own
+    std::vector<Value>& given = given_; // a running command keeps its own
     const auto arguments = [&] { return take_arguments(scope, call); };
     const auto late = [&]() -> std::optional<bool> {
         if (!statement.has_timeout) return false;
@@ -306,7 +306,7 @@ ProgramRun::Done ProgramRun::perform_command(Scope& scope, const Statement& stat
 
 ProgramRun::Done ProgramRun::perform(Scope& scope, const Statement& statement, std::int64_t now) {
     const Expression& call = statement.expressions[0];
-    std::vector<Value>& given = given_; // a command at work keeps its own
+    std::vector<Value>& given = given_; // a running command keeps its own
     const auto arguments = [&] { return take_arguments(scope, call); };
     if (const Function* function = scope.function(call.text)) {
         ++covered()["function"];

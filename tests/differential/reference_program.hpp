@@ -1,5 +1,5 @@
-// The second interpreter's programs: the tree is walked with a stack of open blocks, values carry their types
-// along, whole numbers are computed in 128 bits and then looked at.
+// The second interpreter's programs: it walks the tree with a stack of open blocks, values carry their types,
+// and whole numbers are computed in 128 bits and then checked.
 #pragma once
 
 #include "tests/differential/reference_syntax.hpp"
@@ -14,7 +14,7 @@ namespace tappet::reference {
 
 enum class Answer : std::uint8_t { no, yes, failed };
 
-/// What a program acts on. A name is dotted: "arm.move", and of the own component without one.
+/// The facets that a program acts on. A name is dotted, "arm.move"; names of the own component have no dot.
 class World {
 public:
     enum class Kind : std::uint8_t { unknown, value, method, command, sent_command, event };
@@ -25,16 +25,16 @@ public:
     virtual ~World() = default;
 
     [[nodiscard]] virtual Kind kind_of(const std::string& name) const = 0;
-    /// A property or a port; nothing: it failed.
+    /// Reads a property or a port; nothing: it failed.
     virtual std::optional<Value> read(const std::string& name) = 0;
     virtual bool write(const std::string& name, const Value& value) = 0;
-    /// A method, an operation, or an event to be emitted.
+    /// Calls a method or an operation, or emits an event.
     virtual std::optional<Value> call(const std::string& name, const std::vector<Value>& arguments) = 0;
-    /// The own component's command.
+    /// Begins a command of the own component.
     virtual bool begin(const std::string& name, const std::vector<Value>& arguments) = 0;
     virtual Answer progress(const std::string& name, const std::vector<Value>& arguments) = 0;
-    /// Another one's: false while an earlier one is on its way. Of each there is one for every program that
-    /// may be at work at the same time.
+    /// Sends a command to another component; returns false while an earlier one is pending. Each program that
+    /// may run at the same time has its own slot.
     virtual bool send(const std::string& name, const std::vector<Value>& arguments) = 0;
     virtual Answer ended(const std::string& name) = 0;
 };
@@ -52,35 +52,36 @@ struct Variables {
 
 class ProgramRun;
 
-/// What a name means inside of one behaviour: its variables, and what stands around it.
+/// The meaning of names inside one behaviour: its variables, and those around it.
 struct Scope : Variables {
     World* world = nullptr;
     const std::vector<Function>* functions = nullptr;
     const std::vector<Function>* outer_functions = nullptr;
-    ProgramRun* run = nullptr; ///< at work just now; its own variables are nearer
+    ProgramRun* run = nullptr; ///< running; its own variables are nearer
 
-    std::vector<Variables*> given{}; ///< of the functions that are being reckoned, nearest last
+    std::vector<Variables*> given{}; ///< of the functions that are being evaluated, nearest last
 
     [[nodiscard]] const Function* function(const std::string& name) const;
-    /// Those among which the nearest of that name stands; null: no variable has it.
+    /// Returns the variables that contain the nearest one of that name; null: there is none.
     [[nodiscard]] Variables* holder(const std::string& name);
 };
 
 std::optional<Value> evaluate(Scope& scope, const Expression& expression);
-/// A value on its way into a variable or an argument of that type.
+/// Converts a value for a variable or an argument of that type.
 std::optional<Value> convert(const Value& value, const std::string& type);
-/// A whole number as the field of the record that holds one; nothing: it does not fit there.
+/// Converts a whole number to the field of the record that holds one; nothing: it does not fit.
 std::optional<std::int64_t> turns_of(const Value& value);
 Value zero_of(const std::string& type);
 std::string print(const Value& value);
 
-/// One program on its way. It may be dropped at any time. Arguments and variables of its blocks and of the
-/// functions it is in are its own: other programs that call the same function meanwhile have theirs.
+/// One running program. It may be dropped at any time. It owns the arguments and variables of its blocks and
+/// of the functions that it is in: other programs that call the same function meanwhile have theirs.
 class ProgramRun {
 public:
     enum class Result : std::uint8_t { ended, waits, left_over, failed };
 
-    /// Of a program that stands alone the outermost variables are the behaviour's: its properties.
+    /// Starts a program. When it stands alone, its outermost variables are the behaviour's, which are its
+    /// properties.
     void start(const Block* block, bool stands_alone = false, const std::string& result = {}) {
         open_.clear();
         open_.push_back({.block = block});
@@ -91,10 +92,10 @@ public:
     [[nodiscard]] bool is_on() const { return !open_.empty(); }
     void drop() { open_.clear(); }
     Result run(Scope& scope, std::int64_t now, std::int64_t& statements);
-    /// Those of the blocks around the statement in hand, up to the call or the program; null: none of that
-    /// name.
+    /// Returns the variables of that name in the blocks around the statement in hand, up to the call or the
+    /// program; null: there are none.
     [[nodiscard]] Variables* holder(const std::string& name);
-    /// Of the statement that failed, or that waits.
+    /// Line of the statement that failed or waits.
     [[nodiscard]] int line() const { return line_; }
     [[nodiscard]] const Value& result() const { return result_; }
     static std::map<std::string, std::size_t>& covered();
@@ -103,10 +104,10 @@ private:
     struct Open {
         const Block* block = nullptr;
         std::size_t next = 0;
-        const Statement* owner = nullptr; ///< a loop, what is tried, or a call
+        const Statement* owner = nullptr; ///< a loop, a try block, or a call
         bool is_increment = false;
         bool is_call = false;
-        const Function* function = nullptr; ///< that is called
+        const Function* function = nullptr; ///< the called function
         Variables own{};
     };
     enum class Done : std::uint8_t { next, elsewhere, wait, failed };
@@ -125,8 +126,8 @@ private:
     std::int64_t time_limit_ = 0; ///< of a wait
     bool entered_ = false;        ///< the statement in hand
     bool acted_ = false;
-    bool again_ = false;   ///< it could not act yet: to try again is a statement
-    bool catches_ = false; ///< what failed leads there
+    bool again_ = false;   ///< it could not act yet: retrying is a statement
+    bool catches_ = false; ///< a failure leads there
     std::vector<Value> given_{};
     Value result_{};
     std::string result_type_{}; ///< of the program
@@ -135,7 +136,7 @@ private:
     bool stands_alone_ = false;
 };
 
-/// Notes that something was covered.
+/// Counts a covered kind.
 inline void count(const std::string& what) { ++ProgramRun::covered()[what]; }
 
 } // namespace tappet::reference

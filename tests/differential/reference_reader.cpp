@@ -66,7 +66,7 @@ private:
         }
     }
 
-    // ---- what stands outside of programs
+    // ---- declarations outside of programs
     Instance instance() {
         Instance made{.type = name(), .name = name()};
         if (take("(")) made.arguments = list(")");
@@ -219,7 +219,7 @@ private:
         if (take("if")) {
             made.has_guard = true;
             made.guard = expression();
-            if (take("because")) ++at_; // what is told has no meaning for the order
+            if (take("because")) ++at_; // a reason has no effect on the order
             static_cast<void>(take("then"));
         }
         if (is("{")) made.then = block();

@@ -1,4 +1,4 @@
-// What is asked of a machine from outside, and what its programs see of its children.
+// Requests to a machine from outside, and its programs' view of its children.
 #include "tests/differential/reference_machine.hpp"
 
 #include <algorithm>
@@ -173,7 +173,7 @@ void Machine::step(std::int64_t now) {
     finish(now);
 }
 
-// One statement of what is in hand or of a run program, or one condition, or one event.
+// Executes one statement of the act in hand or of a run program, or one condition, or one event.
 void Machine::step_once(std::int64_t now) {
     now_ = now;
     if (!is_active_ || busy_ || !paused_ || error_) return;

@@ -1,4 +1,4 @@
-// Which states there are, and the way from some of them into others: programs, exits, entries, one at a time.
+// Finds the states, and the way from some of them into others: programs, exits, entries, one at a time.
 #include "tests/differential/reference_machine.hpp"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ bool Machine::is_inside(const State* state, const State* around) const {
     return std::ranges::find(up, around) != up.end();
 }
 
-// Levels that are around both and neither of the two.
+// Number of levels that contain both and are neither of the two.
 std::size_t Machine::kept_of(const State* source, const State* target) const {
     const std::vector<const State*> a = chain(source);
     const std::vector<const State*> b = chain(target);
@@ -140,7 +140,7 @@ std::string Machine::picture() const {
     return text;
 }
 
-// ---- what is in hand
+// ---- the act in hand
 
 bool Machine::do_acts(std::int64_t now) {
     while (!acts_.empty()) {
@@ -163,7 +163,7 @@ bool Machine::do_acts(std::int64_t now) {
             continue;
         }
         case Act::Kind::enter: {
-            // After those that stand before it in a walk through the whole tree.
+            // Inserts it after those that precede it in a walk through the whole tree.
             const std::vector<const State*> path = chain(act.state);
             const auto is_behind = [&](const State* state) {
                 const std::vector<const State*> other = chain(state);
@@ -238,7 +238,7 @@ void Machine::fail() {
     }
 }
 
-// The program, the exits from the inside, the entries from the outside.
+// The program, the exits from the inside out, the entries from the outside in.
 void Machine::plan(const State* source, const State* target, const Block& program,
                    const std::string& enters) {
     if (!program.empty()) acts_.push_back({.block = &program});
@@ -276,7 +276,7 @@ void Machine::take(const Chosen& chosen) {
     if (!chosen.otherwise && !t.enters.empty()) count(t.enters);
 }
 
-// Everything is left by request; an exit program that was begun is brought to its end.
+// A request leaves every state; an exit program that has begun runs to its end.
 void Machine::replace(const State* target, bool departs) {
     chosen_.clear();
     run_once_ = false;

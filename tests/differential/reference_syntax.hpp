@@ -1,5 +1,6 @@
-// A second reader of the script language, to compare the first with: the text becomes a tree on the heap. It
-// shares nothing with the script compiler, and takes good scripts only: at a fault it says where and aborts.
+// A second reader of the script language, for comparison with the first: it turns the text into a tree on the
+// heap. It shares nothing with the script compiler, and accepts good scripts only: at a fault it names the
+// place and aborts.
 #pragma once
 
 #include <compare>
@@ -12,7 +13,7 @@
 
 namespace tappet::reference {
 
-/// Nanoseconds, apart from whole numbers.
+/// Nanoseconds, distinct from whole numbers.
 struct Span {
     std::int64_t ns = 0;
     auto operator<=>(const Span&) const = default;
@@ -23,9 +24,9 @@ struct Record {
     std::int64_t turns = 0;
 };
 using Value = std::variant<std::monostate, bool, std::int64_t, double, Span, Vector, std::string, Record>;
-/// What the last function that has statements returned, as a name.
+/// Name for the result of the last function that has statements.
 inline constexpr std::string_view result_of_call = "result of the call";
-/// What the program beside returned.
+/// Name for the result of the program beside.
 inline constexpr std::string_view result_of_program = "result of the program";
 
 struct Expression {
@@ -53,15 +54,15 @@ struct Statement {
         pause    ///< break
     };
     Kind kind = Kind::perform;
-    std::string text{};                ///< the name that is set or declared
+    std::string text{};                ///< the name that is assigned or declared
     std::string type{};                ///< of a declaration
-    std::vector<Expression> indices{}; ///< of the element that is set
+    std::vector<Expression> indices{}; ///< of the assigned element
     std::vector<Expression> expressions{};
-    Block first{};  ///< then, the body, what is tried, the initialisation of a for
-    Block second{}; ///< else, what is done on failure, the increment of a for
+    Block first{};  ///< then, the body, the try block, the initialisation of a for
+    Block second{}; ///< else, the catch block, the increment of a for
     Expression timeout{};
     bool has_timeout = false;
-    bool counts = true; ///< a constant is known before, and "try" says only where a failure leads
+    bool counts = true; ///< a constant is known before, and "try" only names the target of a failure
     int line = 0;
 };
 
@@ -112,7 +113,7 @@ struct Function {
     Block body{};
 };
 
-/// A StateMachine, or a program: that one has a body and no states.
+/// A StateMachine, or a program: a program has a body and no states.
 struct Type {
     std::string name{};
     std::vector<Variable> variables{};
@@ -121,7 +122,7 @@ struct Type {
     std::vector<Function> functions{};
     bool is_program = false;
     bool on_command = false; ///< a program with parameters
-    std::string result{};    ///< of such a one; empty: none
+    std::string result{};    ///< of a program with parameters; empty: none
     Block body{};
 };
 

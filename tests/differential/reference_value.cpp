@@ -1,4 +1,4 @@
-// What expressions are worth.
+// Evaluates expressions.
 #include "tests/differential/reference_program.hpp"
 
 #include <array>
@@ -127,7 +127,7 @@ std::optional<Value> unary(const std::string& sign, const Value& a) {
     return Value{-std::get<double>(a)};
 }
 
-/// Functions of numbers; nothing for a name that is none of them.
+/// Mathematical functions; nothing: the name is none of them.
 std::optional<std::optional<Value>> mathematics(const std::string& name, const std::vector<Value>& given) {
     const bool whole_numbers = !given.empty() && std::holds_alternative<std::int64_t>(given[0]) &&
                                (given.size() == 1 || std::holds_alternative<std::int64_t>(given[1]));

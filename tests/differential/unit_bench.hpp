@@ -20,7 +20,7 @@ namespace tappet {
 
 class UnitBench;
 
-/// What "m" and "m.left" of a unit are made of.
+/// The parts of a unit's "m" and "m.left".
 struct BenchPart {
     const BehaviourInstance* row = nullptr;
     const BehaviourType* type = nullptr;
@@ -29,7 +29,7 @@ struct BenchPart {
     std::unique_ptr<std::byte[]> memory{};
     std::byte* data = nullptr;
     std::vector<ProgramLink> links{};
-    // Of the resolved machine.
+    // Names of the resolved machine.
     std::vector<StatePlan> plans{};
     std::vector<std::string_view> triggers{};
     std::vector<AskedIndex> cells{};
@@ -52,7 +52,7 @@ public:
     Output<double> source{};                 ///< of own.measured
     BufferOutput<std::int64_t> feed{};       ///< of own.queue
     BufferInput<double> drain{};             ///< of own.sent
-    static constexpr std::size_t places = 4; ///< of either
+    static constexpr std::size_t places = 4; ///< of each buffer
     Time now{};
 
     UnitBench();
@@ -60,19 +60,19 @@ public:
     UnitBench(const UnitBench&) = delete;
     UnitBench& operator=(const UnitBench&) = delete;
 
-    /// One ProgramCode for each type; without: interpreted.
+    /// One ProgramCode for each type; without any, the programs are interpreted.
     void place(const ScriptUnit& unit, std::span<const ProgramCode> code = {},
                std::span<const StateMachineFast> fast = {},
                StateMachinePolicy policy = {.statements = 100'000});
     void start();
     void step();
-    /// The other activity: what was sent begins, what began goes on.
+    /// Steps the other activity: sent commands begin, running ones continue.
     void step_arm();
     void hear(std::string_view event, const std::byte* packed);
 
     [[nodiscard]] BenchPart& part(std::string_view name);
     [[nodiscard]] std::deque<BenchPart>& parts() { return parts_; }
-    /// The only one that others of the script may command, which then stands first; 0: there is none.
+    /// The only program that others of the script may command; it stands first. 0: there is none.
     [[nodiscard]] std::size_t programs_beside() const { return parts_.front().row->on_command ? 1 : 0; }
     [[nodiscard]] std::string picture(const BenchPart& part) const;
     /// A variable by name, as the reference prints it.

@@ -1,4 +1,4 @@
-// Programs that are not ours, as peers of a test: cansend, gpioset, a Modbus device in Python.
+// Foreign programs as peers of a test: cansend, gpioset, a Modbus device in Python.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@ namespace tappet {
 /// A running program; its output goes to a file, and it ends with the object.
 class Foreign {
 public:
-    /// `into`: its output goes there instead, and whoever reads that fills file().
+    /// `into`: its output goes there instead; the reader of it fills file().
     explicit Foreign(const std::string& command, int into = -1)
         : output_{std::string{std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "/tmp"} +
                   "/foreign." + std::to_string(::getpid()) + "." + std::to_string(next_++)} {
@@ -62,7 +62,7 @@ public:
         std::ifstream file{output_};
         return {std::istreambuf_iterator<char>{file}, {}};
     }
-    /// Waits until it wrote `text`; false after ten seconds.
+    /// Waits until it has written `text`; false after ten seconds.
     [[nodiscard]] bool says(const std::string& text) const {
         for (int i = 0; i < 1000; ++i) {
             if (output().find(text) != std::string::npos) return true;
@@ -75,7 +75,7 @@ public:
     void signal(int number) const {
         if (process_ > 0) ::kill(process_, number);
     }
-    /// False once it has ended, though nobody waited for it.
+    /// False once it has ended, even before wait().
     [[nodiscard]] bool runs() const {
         siginfo_t ended{};
         return process_ > 0 &&

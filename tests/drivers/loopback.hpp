@@ -1,4 +1,4 @@
-// Sockets at ports of this box that are nobody's.
+// Sockets at free ports of this box.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct Loopback {
     int socket;
     std::uint16_t port;
 };
-/// Of a type, SOCK_STREAM or SOCK_DGRAM.
+/// Binds a socket of this type, SOCK_STREAM or SOCK_DGRAM.
 inline Loopback bound_to_loopback(int type) {
     const int socket = ::socket(AF_INET, type | SOCK_CLOEXEC, 0);
     sockaddr_in at{};
@@ -24,7 +24,7 @@ inline Loopback bound_to_loopback(int type) {
     if (::bind(socket, address, size) != 0 || ::getsockname(socket, address, &size) != 0) std::abort();
     return {socket, ntohs(at.sin_port)};
 }
-/// Nobody's at this moment.
+/// A port that is free at this moment.
 inline std::uint16_t free_port(int type) {
     const auto [socket, port] = bound_to_loopback(type);
     ::close(socket);

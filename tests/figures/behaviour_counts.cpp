@@ -1,7 +1,7 @@
 // Counts instructions under callgrind: of an event transition, early and late in a machine's life, and
 // against a switch written by hand.
 //     behaviour_counts                started by the test: starts valgrind on itself, once for each form
-//     behaviour_counts FORM EVENTS    drives that form by so many events, of which the last two are measured
+//     behaviour_counts FORM EVENTS    drives that form by that many events and measures the last two
 #include "tests/figures/behaviour/by_hand.hpp"
 #include "tests/figures/behaviour/steps.hpp"
 #include "tests/figures/measure/callgrind.hpp"
@@ -24,7 +24,8 @@ extern "C" {
 
 namespace {
 
-/// Room over the switch written by hand for what an execution keeps: all active states, budgets, positions.
+/// The bound on an execution's instructions, as a factor over the switch written by hand: it also keeps all
+/// active states, budgets, positions.
 constexpr double most_times = 1.5;
 
 template <class Machine, class Measured>

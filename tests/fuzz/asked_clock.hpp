@@ -1,4 +1,4 @@
-// Who asks another machine for its time, and that one, whose clock is somewhere else.
+// A machine that asks another machine for its time, and that other machine, whose clock differs.
 #pragma once
 
 #include "drivers/udp/peer_clock.hpp"
@@ -11,10 +11,10 @@ struct AskedClock : Rig {
     udp::PeerClock peer;
     udp::ClockAnswers answers;
     Duration ahead{};                                 ///< of the other clock
-    udp::clock_packet::Content question{};            ///< that was asked last
-    std::array<udp::clock_packet::Packet, 8> given{}; ///< answers, to be repeated
+    udp::clock_packet::Content question{};            ///< the last question
+    std::array<udp::clock_packet::Packet, 8> given{}; ///< answers, for repetition
     std::int64_t asked = 0;
-    bool is_true = true; ///< whatever was late or repeated, no answer lied
+    bool is_true = true; ///< no answer lied, although some may have been late or repeated
 
     AskedClock() {
         wait(1s);
@@ -35,7 +35,7 @@ struct AskedClock : Rig {
         demand(peer.error.last() >= 0ns && peer.exchanges.last() + peer.lost.last() <= asked);
         if (is_true && peer.exchanges.last() > 0) demand(is_within(peer.error.last() + 1ns));
     }
-    /// By the other machine, whose clock is ahead.
+    /// The other machine answers; its clock is ahead.
     void answer() {
         tell(answering, udp::clock_packet::write(question));
         answers.step(cycle);
@@ -60,7 +60,7 @@ struct AskedClock : Rig {
     void take(std::uint8_t what, Script& script) {
         switch (what >> 4 & 7) {
         case 0: answer(); break;
-        case 1: // it was set, or began anew
+        case 1: // the clock was set, or restarted
             ahead = Duration{number_of(script) / 4};
             is_true = false;
             break;

@@ -1,4 +1,5 @@
-// A press under virtual time that browsers ask for anything, and what must hold of it then.
+// A press under virtual time that answers any requests of browsers, and the invariants that must hold
+// afterwards.
 #pragma once
 
 #include "tests/kernel/services/browsing/press_machine.hpp"
@@ -16,7 +17,7 @@ namespace tappet::press {
 
 using fuzz::demand;
 
-/// Hears what it is answered, each packet one object.
+/// Reads its answers, each packet one object.
 struct Browser {
     std::optional<os::LocalConnection> connection;
     std::string last{};
@@ -24,7 +25,7 @@ struct Browser {
     void connect(const std::string& path) {
         if (auto made = os::LocalConnection::connect(path.c_str())) connection.emplace(std::move(*made));
     }
-    /// How many packets have come.
+    /// Returns the number of packets that have come.
     std::size_t hear() {
         static std::array<char, browsing::max_packet_bytes + 1> room;
         for (std::size_t packets = 0;; ++packets) {
@@ -38,7 +39,7 @@ struct Browser {
     }
 };
 
-/// The first of some lines, which is taken from them.
+/// Removes and returns the first line.
 inline std::string_view next_line(std::string_view& lines) {
     const std::size_t end = std::min(lines.find('\n'), lines.size());
     const std::string_view line = lines.substr(0, end);
@@ -50,9 +51,9 @@ template <const auto& machine_table> struct BrowsedPress {
     os::Clock clock{os::Clock::Kind::virtual_time};
     MachineInstance instance{AtRunTime<machine_table, board>::machine(), clock};
     VirtualWorld world{instance};
-    PropertyFiles files{{}}; // none are kept
+    PropertyFiles files{{}}; // no file is kept
 
-    /// It starts, and answers in a folder.
+    /// Starts, and answers in a folder.
     explicit BrowsedPress(const std::string& folder) {
         instance.read_properties_from(files.store());
         instance.browse_in(folder);
@@ -64,7 +65,8 @@ template <const auto& machine_table> struct BrowsedPress {
     BrowsedPress& operator=(const BrowsedPress&) = delete;
 
     void run(Duration time) { demand(world.run_until(clock.now() + time)); }
-    /// No property leaves what its component accepts, and the count of forced ports is right.
+    /// Demands that each property is within the limits of its component and that the count of forced ports is
+    /// right.
     void check() {
         const auto& ram = *instance.template find<Ram>("ram");
         demand(ram.speed.get() * ram.force.get() <= 100);

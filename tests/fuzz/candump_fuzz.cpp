@@ -1,5 +1,5 @@
-// Any bytes as a line of a candump log: the reader says in which column it goes wrong, or gives a frame that
-// can be, and writes what it read in words that say the same.
+// Any bytes as a line of a candump log: the reader names the wrong column, or gives a valid frame, and writes
+// it back with the same meaning.
 #include "drivers/can/candump.hpp"
 #include "tests/fuzz/input.hpp"
 

@@ -1,8 +1,8 @@
 // Any frames on a network, to its manager and to its nodes: nothing breaks, and nodes that boot afterwards
-// come to work.
+// become operational.
 //
-// Each step is a byte that says who is to hear it, three quarters of a frame's identifier and its length, and
-// then its data.
+// Each step is a byte with the receiver, three quarters of a frame's identifier and its length, followed by
+// the data.
 #include "tests/drivers/canopen/network_machine.hpp"
 #include "tests/fuzz/input.hpp"
 
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if ((what & 0x40) != 0) rig.run(std::chrono::milliseconds{what & 0x1F});
     }
     rig.run(20ms);
-    // Whatever it was: who boots anew is configured anew.
+    // A node that boots again is configured again, whatever came before.
     rig.drive.power_on(rig.clock.now() + 10ms);
     rig.encoder.power_on(rig.clock.now() + 10ms);
     rig.run(2s);

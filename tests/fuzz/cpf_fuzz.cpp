@@ -1,5 +1,5 @@
-// Any bytes as a properties file (thesis 4.7.1): the reader refuses with a sentence or takes values that it
-// then writes and reads back unchanged; it never reads outside its text and never ends.
+// Any bytes as a properties file (thesis 4.7.1): the reader refuses with a sentence, or accepts values that
+// it then writes and reads back unchanged; it never reads outside its text and always ends.
 #include "kernel/services/configuration/cpf.hpp"
 #include "tests/fuzz/input.hpp"
 #include "tests/kernel/component/every_property.hpp"
@@ -11,7 +11,7 @@ namespace {
 using namespace tappet;
 using tappet::fuzz::demand;
 
-std::array<char, 2 * max_cpf_bytes> written; // of values that a file gave, which are longer in our spelling
+std::array<char, 2 * max_cpf_bytes> written; // the values of a file may be longer in our spelling
 
 std::size_t write(every::Arm& arm, std::span<char> into) {
     static PropertyTransaction all;

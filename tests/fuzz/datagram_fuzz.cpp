@@ -1,8 +1,8 @@
-// Any datagrams at any times: to the camera of the tool's robot and who follows it, and between two machines
-// that ask for each other's time. Each one is given on or refused, and counted; no place and no time that is
-// given on is none; and a proper peer is soon heard again.
+// Any datagrams at any times: to the camera of the tool's robot and its estimator, and between two machines
+// that ask for each other's time. Each datagram is accepted or refused, and counted; accepted places and
+// times are valid; and a correct peer is soon accepted again.
 //
-// Each step is a byte that says what comes, and what that takes of the bytes behind it.
+// Each step is a byte that selects the action, followed by the bytes that the action consumes.
 #include "tests/fuzz/asked_clock.hpp"
 #include "tests/fuzz/followed_camera.hpp"
 

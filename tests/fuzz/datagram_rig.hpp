@@ -1,5 +1,5 @@
-// What drives the readers of datagrams under virtual time: the steps of an input, and twins that are told
-// them.
+// Drives the readers of datagrams under virtual time: executes the steps of an input, and holds the twins
+// that must agree with them.
 #pragma once
 
 #include "drivers/udp/twin.hpp"
@@ -23,7 +23,7 @@ struct Rig {
     os::Clock clock{os::Clock::Kind::virtual_time};
     Cycle cycle{};
     std::array<std::byte, udp::most_bytes> room{};
-    Bytes last{}; ///< what came last
+    Bytes last{}; ///< the last datagram
     std::int64_t arrived = 0;
 
     template <class Component>

@@ -1,5 +1,5 @@
-// Any bytes as a DBC file: the reader refuses with a sentence that has a line, or gives a map whose frames
-// come back as they were decoded; it never reads outside its text and never ends.
+// Any bytes as a DBC file: the reader refuses with a sentence that names a line, or gives a map whose frames
+// encode back as they were decoded; it never reads outside its text and always ends.
 #include "drivers/can/signal_store.hpp"
 #include "tests/drivers/can/dbc_on_host.hpp"
 #include "tests/fuzz/input.hpp"

@@ -1,5 +1,5 @@
-// Any bytes as an EDS file: it is refused with a sentence that names a line, or its objects are in order and
-// within what their types hold.
+// Any bytes as an EDS file: the reader refuses with a sentence that names a line, or gives objects in order
+// and within the limits of their types.
 #include "drivers/canopen/eds.hpp"
 #include "tests/fuzz/input.hpp"
 

@@ -1,4 +1,4 @@
-// The camera of the tool's robot, and an estimator that follows what it tells.
+// The camera of the tool's robot, and an estimator that follows its data.
 #pragma once
 
 #include "apps/two_robots/tool/body_estimator.hpp"
@@ -26,7 +26,7 @@ template <class Estimator> struct FollowedCamera : Rig {
         set_up(camera, twin);
         body.start(cycle);
     }
-    /// The packet of a body that stands 1 m before the robot.
+    /// The packet of a body 1 m in front of the robot.
     static auto packet(std::uint16_t number) {
         Leds leds{.at = leds_on_body, .cycle = number, .seen = 0b111111};
         for (auto& place : leds.at) place[0] += 1.0;
@@ -51,7 +51,7 @@ template <class Estimator> struct FollowedCamera : Rig {
                 demand((leds.seen >> i & 1U) == 0 || std::abs(place) <= 10.0);
         demand(camera.late.last() >= late && camera.received.last() >= received);
         if (camera.received.last() == received) return;
-        // What is not ahead of the one before is believed when so many were late.
+        // After that many late packets, the reader accepts one that is not ahead of the one before.
         const bool is_ahead = static_cast<std::int16_t>(leds.cycle - given) > 0;
         demand(received == 0 || is_ahead || camera.late.last() - late >= 5 ||
                camera.received.last() - received > 1);
@@ -62,7 +62,7 @@ template <class Estimator> struct FollowedCamera : Rig {
         case 0: tell(twin, packet(++exposure)); break;
         case 1:
             tell(twin, packet(exposure = static_cast<std::uint16_t>(number_of(script))));
-            break; // begins anew
+            break; // restarts
         case 2: tell(twin, last); break;
         case 3: tell(twin, bytes_of(script, what & 0xF)); break;
         case 4: { // another content
@@ -79,7 +79,7 @@ template <class Estimator> struct FollowedCamera : Rig {
         if ((what & 0x80) != 0) step();
     }
     void come_back() {
-        for (int steps = 0; steps < 32; ++steps) step(); // what waits there is read, an empty one alone
+        for (int steps = 0; steps < 32; ++steps) step(); // reads all waiting packets, also an empty one
         demand(camera.received.last() + camera.late.last() + camera.invalid.last() == arrived);
         for (int exposures = 0; exposures < 60; ++exposures) {
             const std::int64_t before = camera.received.last();

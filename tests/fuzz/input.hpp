@@ -1,4 +1,4 @@
-// What fuzz targets do with an input, and what must hold then.
+// How fuzz targets read an input and state their demands.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace tappet::fuzz {
 
-/// A fuzzer notices that the process ends.
+/// Ends the process when the demand fails: a fuzzer notices that.
 inline void demand(bool holds) {
     if (!holds) std::abort();
 }
 
-/// An input that is taken from its front, as much as there is.
+/// An input, read from its front as far as it goes.
 struct Script {
     std::span<const std::uint8_t> rest;
 

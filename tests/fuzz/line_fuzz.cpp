@@ -1,5 +1,5 @@
-// Any bytes as lines that somebody types: an observer's change nothing, whatever they are; an engineer's are
-// refused with a sentence or come to an end, and leave a machine that goes on.
+// Any bytes as lines that somebody types: an observer's lines change nothing; an engineer's lines are refused
+// with a sentence or end, and the machine keeps running.
 #include "tests/kernel/services/interpreter/line_machine.hpp"
 
 #include "tests/fuzz/browsed_press.hpp"
@@ -15,7 +15,7 @@ using fuzz::demand;
 struct Rig : press::BrowsedPress<press::line_table> {
     using BrowsedPress::BrowsedPress;
 
-    /// Whether it was begun.
+    /// Returns whether execution began.
     bool execute(std::string_view line, Role role) {
         auto& interpreter = *instance.find<CommandInterpreter>("interpreter");
         const LineFunctions& functions = CommandInterpreter::line_functions;
@@ -27,7 +27,7 @@ struct Rig : press::BrowsedPress<press::line_table> {
         if (const LineEnd* const end = functions.end(&interpreter); end != nullptr)
             demand(end->why.empty() == (end->state == CommandState::done));
         functions.let_go(&interpreter);
-        run(20ms); // what was posted is served
+        run(20ms); // serves posted requests
         return true;
     }
 };

@@ -1,8 +1,8 @@
-// Any frames on the wire between two machines: damaged, repeated, rightly protected lies, while either
-// machine begins anew. What is damaged is counted and moves nothing; no event is taken twice; a lie brings no
-// more than itself; and afterwards all that crosses the wire does so again.
+// Any frames on the wire between two machines: damaged, repeated, or forged with valid protection, while
+// either machine restarts. Damaged frames are counted and change nothing; no event is accepted twice; a
+// forged frame affects only its own values; and afterwards all rows across the wire work again.
 //
-// Each step is a byte that says what comes, and what that takes of the bytes behind it.
+// Each step is a byte that selects the action, followed by the bytes that the action consumes.
 #include "tests/drivers/system/pair.hpp"
 #include "tests/fuzz/input.hpp"
 #include "toolchain/machine/system_run.hpp"
@@ -26,7 +26,7 @@ struct Wire {
     std::array<AcceptedMachine, 2> machines{GiverFirmware::machine(), TakerFirmware::machine()};
     SystemRun run{tappet::pair::pair.view(), machines, {}, 1};
     can::Twin liar{}, spy{};
-    std::array<can::Frame, 16> heard{}; ///< the last ones, to be repeated
+    std::array<can::Frame, 16> heard{}; ///< the last ones, for repetition
     std::size_t hears = 0;
     std::int32_t sent = 0;
     std::size_t lies = 0;
@@ -54,7 +54,7 @@ struct Wire {
         liar.service(run.now());
         wait(5ms, true);
     }
-    /// On its way: one bit of a frame that was heard.
+    /// Damages one bit of a heard frame on its way.
     void damage(std::size_t which, std::span<const std::uint8_t> bit) {
         can::Frame frame = heard[which];
         if (frame.length == 0 || bit.empty()) return;
@@ -68,7 +68,7 @@ struct Wire {
         return run.instance(0).find<systems::Link<tappet::pair::pair, 0>>("wire")->frames_refused.last() +
                run.instance(1).find<systems::Link<tappet::pair::pair, 1>>("wire")->frames_refused.last();
     }
-    /// A machine's memory is never given back, nor what its components hold of the heap.
+    /// Forgets the machine: neither its memory nor its components' heap is ever released.
     void forget() {
         giver().to_send = std::vector<std::int32_t>{};
         giver().states = std::vector<CommandState>{};
@@ -103,7 +103,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         frame.id = as.id;
         frame.length = as.bytes;
         switch (what >> 5) {
-        case 0: // whatever
+        case 0: // anything
             frame.length = std::min<std::uint8_t>(as.bytes, what & 7);
             std::ranges::copy(script.next(8), frame.data.begin());
             wire.put(frame);
@@ -126,8 +126,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         wire.look();
     }
     wire.wait(100ms);
-    // A lie in the right session may say that messages were given up, and a beat of an earlier start that is
-    // repeated makes one end count anew: both end with the session.
+    // A lie in the right session may claim that messages were given up, and a repeated beat of an earlier
+    // start makes one end restart its count: both end with the session.
     if (wire.lies != 0 || wire.began_anew) wire.begin_anew(0, true);
     wire.wait(300ms);
     wire.giver().tells = 5.0;

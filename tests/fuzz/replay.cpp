@@ -1,4 +1,4 @@
-// Runs a fuzz target over files and folders given: what once was found is tested for ever, with any compiler.
+// Runs a fuzz target over given files and folders: past findings are tested for ever, with any compiler.
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -13,7 +13,7 @@ namespace {
 void replay(const std::filesystem::path& path) {
     std::ifstream file{path, std::ios::binary};
     const std::vector<char> bytes{std::istreambuf_iterator<char>{file}, {}};
-    std::cout << path.filename().string() << std::endl; // flushed: the last one is the one that broke
+    std::cout << path.filename().string() << std::endl; // flushed: the last name is the file that broke
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 

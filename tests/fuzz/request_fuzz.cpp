@@ -1,6 +1,6 @@
-// Any bytes as requests of a browser: each line one packet into a machine under virtual time. Whatever comes,
-// every packet is answered, no property leaves what its component accepts, and the count of forced ports is
-// right.
+// Any bytes as requests of a browser: each line is one packet to a machine under virtual time. The machine
+// answers every packet, each property stays within the limits of its component, and the count of forced ports
+// is right.
 #include "tests/fuzz/browsed_press.hpp"
 
 #include <unistd.h>
@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         demand(client.connection && client.connection->send(packet) == os::LocalConnection::Sent::sent);
         rig->run(60ms);
         std::size_t answers = client.hear();
-        // What an engine that was stopped is asked for, is given up in the end.
+        // A stopped engine gives up pending requests in the end.
         for (int waits = 0; answers == 0 && waits < 60; ++waits) {
             rig->run(50ms);
             answers = client.hear();

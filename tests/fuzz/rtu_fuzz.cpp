@@ -1,9 +1,9 @@
-// A Modbus RTU server that answers anything at any moment: what is taken is what it sent for that question,
-// with its unit, function, count, place and checksum; no call holds its caller for longer than was said; and
-// the rounds after the noise are good.
+// A Modbus RTU server that answers anything at any moment: an accepted answer is one that it sent for that
+// question, with its unit, function, count, place and checksum; no call blocks its caller beyond the stated
+// time; and the rounds after the noise succeed.
 //
-// Each question is answered by steps: a byte that says what comes, and what that takes of the bytes behind
-// it.
+// A list of steps answers each question: a byte that selects the action, followed by the bytes that the
+// action consumes.
 #include "drivers/modbus/libmodbus_transport.hpp"
 #include "drivers/modbus/session.hpp"
 #include "tests/fuzz/input.hpp"
@@ -24,7 +24,7 @@ constexpr auto map = register_map(
     write("lamps", coils(3, 2), every(40ms), stale_after(10s), bit("a", 0).safe(0), bit("b", 1).safe(0)));
 static_assert(map.fault.empty());
 
-/// The transport, and what is demanded of it.
+/// The transport, and the demands on it.
 class Judged final : public Transport {
 public:
     explicit Judged(Transport& of) : of_{of} {}
@@ -55,7 +55,7 @@ public:
     }
 
 private:
-    /// True: nothing was taken of it, so nothing more is to be judged.
+    /// Returns true when no byte was accepted: there is nothing more to judge.
     bool judge(const Answer& answer, Time began) {
         const Line& at = *line;
         demand(at.now - began <= 2 * patience + 10us && at.asked_at >= quiet_until_);
@@ -100,7 +100,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::uint64_t answers = session.counters().answers, requests = session.counters().requests;
         while (here.now < end + 150ms) step();
         const Counters& now = session.counters();
-        demand(now.requests - requests - (now.answers - answers) <= 1); // the one that is flushed away
+        demand(now.requests - requests - (now.answers - answers) <= 1); // the one that is flushed
         for (const std::size_t v : {0u, 2u, 3u})
             demand(session.value(v).quality == Quality::good && session.value(v).stamp > here.now - 100ms);
         demand(!session.outage() && session.trouble() == Trouble{});

@@ -1,5 +1,5 @@
-// Any bytes as a script: the compiler that runs in the firmware refuses them with a place in the text, or
-// makes tables that may be executed; both in bounded time and in the room that it was given.
+// Any bytes as a script: the firmware's compiler refuses them with a place in the text, or makes tables that
+// may be executed; both in bounded time and in the given room.
 #include "tests/differential/unit_bench.hpp"
 
 #include "kernel/script/compile.hpp"
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     static const auto rows = std::make_unique<ScriptBuffer<capacity>>();
     Reach reach;
     reach.components = UnitBench::reach();
-    // Some with loops that run without waiting, some without.
+    // Some machines allow loops that run without waiting, some do not.
     reach.statements_per_step = size % 2 == 0 ? 1000 : 0;
     const ScriptOutcome outcome = compile_into(text, "fuzz.osd", reach, rows->room());
     if (!outcome.good()) {

@@ -1,7 +1,7 @@
-// Any frames at any times to an SDO client with a transfer under way and to a server: what is done is what
-// the other end sent, in the order of CiA 301; each transfer ends; and afterwards a clean one works.
+// Any frames at any times to an SDO client with a transfer under way and to a server: they use only data that
+// the other end sent, in the order of CiA 301; each transfer ends; and afterwards a correct one succeeds.
 //
-// Each step is a byte that says what happens, and what that takes of the bytes behind it.
+// Each step is a byte that selects the action, followed by the bytes that the action consumes.
 #include "drivers/canopen/sdo_client.hpp"
 #include "tests/fuzz/sdo_objects.hpp"
 
@@ -18,7 +18,7 @@ struct Connection {
     Address at{};
     bool writes = false;
     Bytes wanted{};
-    Frames requests{}, answers{}; ///< of this transfer; the last one before the next request is the one taken
+    Frames requests{}, answers{}; ///< of this transfer; the last answer before the next request counts
 
     void begin(bool to_write, Address of, std::span<const std::uint8_t> value) {
         writes = to_write, at = of, wanted.assign(value.begin(), value.end());
@@ -32,7 +32,7 @@ struct Connection {
         asked = now;
         requests.push_back(request);
         answers.emplace_back();
-        demand(requests.size() <= 2 + sdo::most_bytes); // each brings something
+        demand(requests.size() <= 2 + sdo::most_bytes); // each request brings data
     }
     [[nodiscard]] bool awaits_answer() const {
         sdo::Payload ignored;
@@ -63,7 +63,7 @@ struct Connection {
         demand(is_whole ? requests.size() == 1
                         : are_segments(writes ? first : confirmed, rest(writes ? requests : answers), moved));
         demand(std::ranges::equal(moved, writes ? std::span<const std::uint8_t>{wanted} : client.value()));
-        for (std::size_t i = 1; i < requests.size(); ++i) // each is answered by its own toggle bit
+        for (std::size_t i = 1; i < requests.size(); ++i) // each carries its own toggle bit
             demand((requests[i][0] >> 4 & 1u) == (answers[i][0] >> 4 & 1u) &&
                    (!writes || answers[i][0] >> 5 == 1));
     }
@@ -108,13 +108,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             (what >> 5) == 2 ? c.hear(last = frame) : static_cast<void>(c.serve(frame, answer));
             break;
         case 4: c.wait(Duration{10ms} * (what & 0x1F)); break;
-        case 5: // the server's answer to what is asked, changed or not, once or twice
+        case 5: // the server's answer, changed or not, once or twice
             if (c.requests.empty() || !c.serve(c.requests.back(), last)) break;
             last[0] ^= change;
             c.hear(last);
             if ((what & 8) != 0) c.hear(last);
             break;
-        case 6: // late, or ever on
+        case 6: // time passes, perhaps too much
             for (int times = what & 0xF; times >= 0; --times) {
                 last[0] ^= what & 0x10;
                 c.hear(last);

@@ -1,5 +1,5 @@
-// SDO transfers as CiA 301 has them, read once more, and objects that take nothing but what such a one
-// brings.
+// SDO transfers as CiA 301 defines them, decoded a second time, and objects that accept only complete
+// downloads.
 #pragma once
 
 #include "drivers/canopen/sdo_server.hpp"
@@ -14,14 +14,14 @@ using namespace canopen;
 using Bytes = std::vector<std::uint8_t>;
 using Frames = std::vector<sdo::Payload>;
 
-/// Appends what an expedited transfer carries, and says whether it is one.
+/// Appends the data of an expedited transfer; returns whether it is one.
 inline bool is_expedited(const sdo::Payload& frame, Bytes& into) {
     if ((frame[0] & 2u) == 0) return false;
     const std::ptrdiff_t unused = (frame[0] & 1u) != 0 ? frame[0] >> 2 & 3u : 0;
     into.assign(frame.begin() + 4, frame.begin() + 8 - unused);
     return true;
 }
-/// Whether these segments follow on `begun`, and nothing of them is missing. Written from the standard.
+/// Returns whether these segments continue `begun` without a gap. Written from the standard.
 inline bool are_segments(const sdo::Payload& begun, std::span<const sdo::Payload> frames, Bytes& into) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const std::uint8_t head = frames[i][0];
@@ -32,7 +32,7 @@ inline bool are_segments(const sdo::Payload& begun, std::span<const sdo::Payload
     return (begun[0] & 1u) == 0 || from_bytes(std::span{begun}.subspan(4, 4)) == into.size();
 }
 
-/// Takes nothing but what was downloaded to it completely.
+/// Accepts only complete downloads.
 struct Objects final : ObjectAccess {
     std::map<std::uint16_t, Bytes> values{{0x2000, {1}}, {0x2001, Bytes(20, 'a')}, {0x2002, {}}};
     Frames heard{}; ///< since a transfer began

@@ -1,6 +1,6 @@
-// A serial line under a time of its own, and a Modbus server at its far end that answers as an input says.
-// libmodbus reaches it by calls that the linker gives it in place of the system's: one file of a program
-// includes this, and its linker wraps them.
+// A serial line with a time of its own, and a Modbus server at its far end that answers as the input says.
+// The linker replaces the system calls of libmodbus by the functions here: exactly one source file of a
+// program includes this header.
 #pragma once
 
 #include "tests/drivers/modbus/raw_server.hpp"
@@ -27,7 +27,7 @@ inline void seal(Bytes& frame) {
 struct Line {
     Script script{};
     Time now{}, asked_at{}, first_taken_at{};
-    int terminal = -1; ///< what libmodbus has open
+    int terminal = -1; ///< open in libmodbus
     std::deque<std::pair<Time, std::uint8_t>> coming{};
     Bytes asked{}, taken{}, before{};
     std::uint8_t questions = 0;
@@ -36,7 +36,7 @@ struct Line {
         const auto part = script.next(most);
         return {part.begin(), part.end()};
     }
-    /// As a good server does; each question has other values.
+    /// The answer of a correct server; each question has other values.
     [[nodiscard]] Bytes right() const {
         if (asked[1] > 4) return {asked.begin(), asked.begin() + 6};
         const auto bytes = static_cast<std::uint8_t>(asked[1] <= 2 ? (asked[5] + 7) / 8 : 2 * asked[5]);
@@ -61,7 +61,7 @@ struct Line {
             case 1: at += Duration{500us} * (what & 0x1F); break;
             case 2: put(next(1 + (what & 0xFu)), false, at, between); break;
             case 3: put(answer, true, at, between); break;
-            case 4: // another content, rightly sealed
+            case 4: // another content, with a correct checksum
                 for (std::size_t place = what & 0xFu;
                      const std::uint8_t by : next((what & 0x10) != 0 ? 2 : 1))
                     answer[place++ % answer.size()] = by;

@@ -1,7 +1,7 @@
-// Any bytes as what three browsers ask at once of a machine with behaviours, a slot and lines: a line's first
-// character says who asks what stands behind it, an empty line lets time pass. Whatever comes, each answer is
-// one object, no property leaves what its component accepts, the count of forced ports is right, and in the
-// end somebody who asks for one thing is served.
+// Any bytes as simultaneous requests of three browsers to a machine with behaviours, a slot and lines: a
+// line's first character selects the browser, the rest is its request, and an empty line lets time pass. Each
+// answer is one object, each property stays within the limits of its component, the count of forced ports is
+// right, and in the end a single request is served.
 #include "tests/fuzz/browsed_press.hpp"
 
 #include "kernel/services/interpreter/command_interpreter.hpp"
@@ -40,7 +40,7 @@ constexpr auto table = machine("press",
 
 using Rig = press::BrowsedPress<table>;
 
-/// Commands and lines may take any time; what they leave is asked again for so long.
+/// Commands and lines may take any time; the machine gets that many cycles to answer afterwards.
 constexpr int patience = 400;
 
 void demand_to_be_served(Rig& rig, const std::string& path) {

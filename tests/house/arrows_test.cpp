@@ -1,5 +1,4 @@
-// Which folder may include which: one table. Arrows point downwards only, and nothing includes itself in a
-// circle.
+// One table says which folder may include which. Arrows point downwards only, and includes form no cycle.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,8 @@ namespace {
 
 struct Row {
     std::string_view folder;
-    /// Folders, or single headers, that this one stands on; what those stand on is allowed with them.
+    /// Folders, or single headers, that this one may include, together with everything that those may
+    /// include.
     std::vector<std::string_view> stands_on;
 };
 
@@ -59,21 +59,21 @@ const std::vector<Row> house{
     {"board/init",        {}},
     {"board/box",         {"board/init", "kernel/os"}},
     {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen", "drivers/instruments"}},
-    // A machine may say what spin is to prove of it, what its host's program is to look at, and what its swarm judges by; a plant may
+    // A machine may include its claims for spin, its host's views, and the rules of its swarm; a plant may
     // contain another machine.
-    {"apps",              {"board", "drivers/plant", "drivers/system", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/system_run.hpp", "toolchain/machine/bench/plant_program.hpp", "toolchain/command_line.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
-    // A plant meets its machine at frames, lines and registers only.
+    {"apps",              {"board", "drivers/plant", "drivers/system", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/system_run.hpp", "toolchain/machine/bench/plant_program.hpp", "toolchain/command_line.hpp", "toolchain/version.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},
+    // A plant uses a machine's frames, lines and registers only.
     {"apps/carpet_loom/plant", {"kernel/base", "kernel/services/json.hpp", "apps/carpet_loom/wires.hpp", "apps/carpet_loom/maps.hpp", "apps/carpet_loom/network.hpp", "drivers/canopen"}},
 
-    // A browser meets a machine at its memory and its socket only.
+    // A browser uses a machine's memory and socket only.
     {"toolchain/tools/browser", {"kernel/base", "kernel/machine/map/layout.hpp", "kernel/machine/map/black_box.hpp", "kernel/machine/map/view.hpp",
                            "kernel/machine/plan/scope_layout.hpp", "kernel/activity/cycle_tape.hpp", "kernel/services/reporting/layout.hpp",
-                           "kernel/services/browsing/protocol.hpp"}},
+                           "kernel/services/browsing/protocol.hpp", "toolchain/version.hpp"}},
 
     {"toolchain",         {"kernel/base"}},
     {"toolchain/machine", {"board", "drivers/plant", "kernel/system", "toolchain/tools/chart"}},
     {"toolchain/tools/chart", {"kernel/machine", "toolchain", "drivers/can"}},
-    {"toolchain/tools/bench", {}},
+    {"toolchain/tools/bench", {"kernel/base", "toolchain/version.hpp"}},
     {"toolchain/tools/image", {"toolchain", "toolchain/tools/bench", "board/box"}},
     {"toolchain/tools/front", {"toolchain", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp", "toolchain/tools/image/options.hpp"}},
     {"toolchain/tools/pages", {"drivers/plant", "drivers/system", "kernel/pieces", "drivers/instruments", "drivers/canopen", "toolchain/tools/browser", "kernel/control"}},
@@ -92,8 +92,8 @@ const Row* row_of(std::string_view path) {
     return best;
 }
 
-/// What a row may include: itself, what it stands on, and so on down. The machine's program may hold its
-/// plant.
+/// The folders that a row may include: itself, its dependencies, and theirs in turn. The machine's program
+/// may hold its plant.
 std::set<std::string_view> reach(const Row& row) {
     std::set<std::string_view> found{row.folder};
     std::vector<std::string_view> open(row.stands_on);
@@ -159,7 +159,7 @@ Findings foreign_quotes(const Tree& files) {
     return found;
 }
 
-/// Follows the includes from each file in depth; a file met again while it is open closes a circle.
+/// Follows the includes from each file in depth; a file met again while it is open closes a cycle.
 class Circles {
 public:
     explicit Circles(const Tree& files) {
@@ -193,7 +193,7 @@ private:
 
 TEST(Arrows, point_downwards_only) { expect_none(wrong_arrows(tree())); }
 TEST(Arrows, have_a_folder_at_each_row) { expect_none(empty_rooms(tree())); }
-TEST(Arrows, make_no_circle) { expect_none(Circles(tree()).found()); }
+TEST(Arrows, form_no_cycle) { expect_none(Circles(tree()).found()); }
 TEST(Arrows, are_spelt_from_the_root_in_quotes) { expect_none(foreign_quotes(tree())); }
 
 TEST(ArrowsRule, refuses_a_lower_folder_that_includes_a_higher_one) {
@@ -214,7 +214,7 @@ TEST(ArrowsRule, refuses_drivers_that_include_each_other_and_the_machine) {
               1u);
 }
 
-TEST(ArrowsRule, refuses_whatever_includes_an_app_and_a_plant_that_knows_its_machine) {
+TEST(ArrowsRule, refuses_includes_of_an_app_and_a_plant_that_knows_its_machine) {
     EXPECT_EQ(wrong_arrows({file("board/bench/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")}).size(),
               1u);
     EXPECT_EQ(wrong_arrows({file("apps/carpet_loom/plant/x.cpp", "#include \"apps/carpet_loom/loom.hpp\"\n")})
@@ -235,7 +235,7 @@ TEST(ArrowsRule, does_not_take_a_comment_for_an_include) {
         wrong_arrows({file("kernel/os/x.hpp", "// #include \"apps/carpet_loom/loom.hpp\"\n")}).empty());
 }
 
-TEST(ArrowsRule, finds_a_circle_of_three) {
+TEST(ArrowsRule, finds_a_cycle_of_three) {
     const Tree three{file("a/a.hpp", "#include \"a/b.hpp\"\n"), file("a/b.hpp", "#include \"a/c.hpp\"\n"),
                      file("a/c.hpp", "#include \"a/a.hpp\"\n")};
     EXPECT_EQ(Circles(three).found().size(), 1u);
@@ -246,7 +246,7 @@ TEST(ArrowsRule, refuses_a_foreign_header_in_quotes) {
     EXPECT_EQ(foreign_quotes({file("kernel/os/x.hpp", "#include <kernel/base/time.hpp>\n")}).size(), 1u);
 }
 
-TEST(ArrowsTable, has_no_circle_itself) {
+TEST(ArrowsTable, has_no_cycle) {
     for (const Row& row : house)
         for (const std::string_view below : reach(row))
             for (const Row& other : house) {

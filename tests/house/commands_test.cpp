@@ -1,4 +1,4 @@
-// ci/test --all runs each command of ci/, and each that a page prints, at least in a short form.
+// ci/test --all runs each command of ci/, and each that a page shows, at least in a short form.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace tappet::house {
 namespace {
 
-/// The rest of the file name that `ci/` begins there.
+/// The rest of the file name that begins with `ci/` there.
 std::string command_at(std::string_view line, std::size_t at) {
     std::string name{"ci/"};
     for (at += 3;
@@ -19,7 +19,7 @@ std::string command_at(std::string_view line, std::size_t at) {
     return name;
 }
 
-/// Of the table in ci/test. It runs what is in place by the first, and is the second.
+/// The commands in the table of ci/test, with ci/setup, which it runs, and ci/test itself.
 std::vector<std::string> tried(const Tree& files) {
     std::vector<std::string> names{"ci/setup", "ci/test"};
     for (const File& file : files)
@@ -50,9 +50,9 @@ Findings untried(const Tree& files) {
     return found;
 }
 
-TEST(Commands, that_people_are_told_to_type_are_tried) { expect_none(untried(tree())); }
+TEST(Commands, are_tried_when_people_are_told_to_type_them) { expect_none(untried(tree())); }
 
-TEST(CommandsRule, finds_what_is_there_or_printed_and_never_run) {
+TEST(CommandsRule, finds_printed_or_existing_commands_that_are_never_run) {
     const File test = file("ci/test", "commands=(\n    \"ci/demo --plain\"\n)\n");
     EXPECT_TRUE(untried({test, file("ci/demo", "true\n"),
                          file("a.md", "Type `ci/demo`, after `ci/setup`.\n    ci/test\n")})

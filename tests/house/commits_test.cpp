@@ -1,4 +1,4 @@
-// What a commit says of itself: "area: what" within 72 characters, and a body that says why.
+// The form of a commit message: "area: what" within 72 characters, and a body that says why.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,10 +11,10 @@ namespace tappet::house {
 namespace {
 
 constexpr std::size_t most_characters = 72;
-/// The rule holds for what came after this commit.
+/// The rule holds for commits after this one.
 constexpr const char* since = "e71bbb0f7ab4";
 
-/// What is wrong with a message; empty when nothing is.
+/// Returns the fault of a message; empty: it has none.
 std::string fault_of(const std::string& subject, const std::string& body) {
     static const std::regex form("[a-z][a-z0-9_, -]*: [^ ].*[^.]");
     if (!std::regex_match(subject, form)) return "its subject is not \"area: what\" without a full stop";
@@ -30,7 +30,7 @@ struct Commit {
     std::string id, subject, body;
 };
 
-/// Separated by characters that no message contains.
+/// The separators are characters that no message contains.
 std::vector<Commit> commits_since(const std::string& first, bool& known) {
     const std::string command = "git -C '" TAPPET_TREE "' log --no-merges --format='%h%x1f%s%x1f%b%x1e' " +
                                 first + "..HEAD 2>/dev/null";
@@ -58,7 +58,7 @@ TEST(Commits, say_where_what_and_why) {
         EXPECT_EQ(fault_of(commit.subject, commit.body), "") << commit.id << " " << commit.subject;
 }
 
-TEST(CommitsRule, refuses_what_nobody_can_place_or_read_at_a_glance) {
+TEST(CommitsRule, refuses_subjects_without_an_area_and_empty_bodies) {
     EXPECT_EQ(fault_of("os: a thread is joined", "Why."), "");
     EXPECT_EQ(fault_of("carpet loom: the valve closes", "Why."), "");
     EXPECT_NE(fault_of("fix", "Why."), "");

@@ -1,5 +1,5 @@
-// The numbers of contracts are written in logs and manuals: each stands once, with one text, its name is
-// unique, and the product checks it.
+// Logs and manuals refer to the numbers of contracts: each number has one text and a unique name, and the
+// product checks it.
 #include "kernel/base/contract.hpp"
 #include "tests/house/tree.hpp"
 

@@ -97,7 +97,7 @@ Findings other_ways_out(const Tree& files) {
     return found;
 }
 
-TEST(Escapes, have_a_reason_each) {
+TEST(Escapes, each_have_a_reason) {
     expect_none(without_reason(tree()));
     const auto all = escapes(tree());
     std::size_t shipped = 0;

@@ -1,5 +1,5 @@
-// Pages tell what is there: every file and function that a page names exists, and every floor and room has a
-// page that names its folders.
+// Pages describe the tree as it is: every file and function that a page names exists, and every floor and
+// room has a page that names its folders.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 7> floors{"apps",   "board", "ci",       "drivers",
                                                  "kernel", "tests", "toolchain"};
-/// Its commands say by themselves what they do.
+/// Its commands explain themselves.
 constexpr std::string_view without_page = "ci";
 
 using Exists = std::function<bool(const std::string& path)>;
@@ -27,7 +27,7 @@ bool is_there(const std::string& path) { return fs::exists(fs::path{TAPPET_TREE}
 
 bool is_page(const File& file) { return file.path.ends_with(".md"); }
 
-/// A page without its fenced examples, in one line, so that a sentence may go over the end of one.
+/// A page without its fenced examples, in one line, since sentences may continue in the next line.
 struct Prose {
     std::string text;
     std::vector<std::size_t> starts; ///< of each line of the page
@@ -71,8 +71,8 @@ bool ends_like_a_file(std::string_view word) {
     return std::ranges::any_of(ends, [&](std::string_view end) { return word.ends_with(end); });
 }
 
-/// The file or folder that the words between two backticks mean; empty when they mean something else. A
-/// command counts by its first word.
+/// Returns the file or folder that the words between two backticks name; empty: they name none. A command
+/// counts by its first word.
 std::string file_in(const std::string& code) {
     static constexpr std::string_view characters =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
@@ -83,8 +83,8 @@ std::string file_in(const std::string& code) {
     return is_of_a_floor || (word == code && word.size() > 1 && ends_like_a_file(word)) ? word : "";
 }
 
-/// From the page's folder, or from the root; in the guide also a file of the project that the front door
-/// writes.
+/// Looks from the page's folder and from the root; in the guide also for a file of the project that the front
+/// door writes.
 bool leads_somewhere(const File& page, const std::string& name, const Exists& exists) {
     const auto tidy = [](const fs::path& path) { return path.lexically_normal().generic_string(); };
     return exists(tidy(fs::path{page.folder()} / name)) || exists(tidy(name)) ||
@@ -142,7 +142,7 @@ Findings missing_functions(const Tree& files) {
             const auto beside = (fs::path{page.folder()} / hop.file).lexically_normal().generic_string();
             const auto file = std::ranges::find_if(
                 files, [&](const File& f) { return f.path == hop.file || f.path == beside; });
-            if (file == files.end()) continue; // missing_files tells
+            if (file == files.end()) continue; // missing_files reports it
             for (std::sregex_iterator at(hop.function.begin(), hop.function.end(), part), end; at != end;
                  ++at)
                 if (!says(*file, at->str()))
@@ -155,7 +155,7 @@ Findings missing_functions(const Tree& files) {
     return found;
 }
 
-/// The folders right inside another one that hold a file, at whatever depth; of the root "".
+/// Returns the folders directly inside another one that hold a file, at any depth; "" is the root.
 std::set<std::string> folders_in(const Tree& files, const std::string& folder) {
     const std::string above = folder.empty() ? "" : folder + "/";
     std::set<std::string> found;
@@ -189,8 +189,7 @@ Findings missing_pages(const Tree& files) {
     return found;
 }
 
-/// The numbers of lines that a page's tables have, and those that names of tests below `folder` bear as
-/// line_NN.
+/// The numbers of lines in a page's tables, and those in names of tests below `folder`, as line_NN.
 std::set<std::string> numbers_in(const Tree& files, std::string_view folder, const std::regex& form) {
     std::set<std::string> found;
     for (const File& each : files) {
@@ -202,7 +201,7 @@ std::set<std::string> numbers_in(const Tree& files, std::string_view folder, con
     return found;
 }
 
-TEST(Pages, of_the_order_of_state_machines_have_a_test_for_each_line_and_a_line_for_each_test) {
+TEST(Pages, list_exactly_the_tests_of_the_order_of_state_machines) {
     const auto lines = numbers_in(tree(), "kernel/statechart", std::regex("^\\| ([0-9]+) \\|"));
     const auto tests = numbers_in(tree(), "tests/kernel/statechart", std::regex("^TEST.* line_([0-9]+)_"));
     EXPECT_GT(lines.size(), 30u);
@@ -216,7 +215,7 @@ TEST(Pages, name_functions_that_are_there) {
     ASSERT_NE(way, tree().end());
     EXPECT_GT(hops(*way).size(), 20u) << "the rule does not see the page's hops";
 }
-TEST(Pages, stand_at_the_head_of_every_room) { expect_none(missing_pages(tree())); }
+TEST(Pages, exist_at_the_head_of_every_room) { expect_none(missing_pages(tree())); }
 
 TEST(PagesRule, finds_files_and_links_that_lead_nowhere) {
     const Exists exists = [](const std::string& path) {
@@ -244,14 +243,14 @@ TEST(PagesRule, finds_functions_that_are_not_in_their_file) {
     EXPECT_EQ(faults("one line\n`word` in\n`kernel/os/a.cpp`\n"), 1u) << "a comment is no code";
 }
 
-TEST(PagesRule, tells_the_line) {
+TEST(PagesRule, reports_the_line) {
     const Findings found = missing_files({file("a.md", "one\n```\n`b.hpp`\n```\nsee `b.hpp`\n")},
                                          [](const std::string&) { return false; });
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].line, 5u);
 }
 
-TEST(PagesRule, finds_rooms_without_a_page_and_folders_that_no_page_names) {
+TEST(PagesRule, finds_rooms_without_a_page_and_unnamed_folders) {
     Tree files{file("README.md", "apps board ci drivers kernel tests toolchain\n"),
                file("kernel/os/a.hpp", "// A.\n")};
     for (const std::string_view floor : floors)

@@ -1,4 +1,4 @@
-// The faults that are kept as patches still fit the tree: one that does not was moved away from unseen.
+// Each fault that is kept as a patch still applies: otherwise its code was changed unnoticed.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// No dead file: a source is named by a CMakeLists.txt, a header by an include.
+// No dead file: a CMakeLists.txt names each source, and an include names each header.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 namespace tappet::house {
 namespace {
 
-/// The words of a CMakeLists.txt that name sources, as patterns from the root: a variable stands for
-/// anything, since foreach makes names of them.
+/// The words of a CMakeLists.txt that name sources, as patterns from the root: a variable matches anything,
+/// since foreach builds names from it.
 std::vector<std::regex> sources_of(const File& cmake) {
     static const std::regex word("[^\\s()\"]+\\.(cpp|c)(?=[\\s()\"]|$)");
     static const std::regex root("^\\$\\{(CMAKE|PROJECT)_SOURCE_DIR\\}/");
@@ -32,8 +32,8 @@ std::vector<std::regex> sources_of(const File& cmake) {
     return found;
 }
 
-/// The cases of tests/diagnostics are found by their program, in their folder; what the guide's pages become
-/// includes its context.
+/// The program of tests/diagnostics finds its cases in their folder; the machines of the guide's pages
+/// include its context.
 bool has_no_target(const File& file) {
     return file.is_under("tests/diagnostics/cases") || file.is_under("board/bench/left_out") ||
            file.is_under("toolchain/libmodbus") || file.is_under("toolchain/aarch64") ||
@@ -62,8 +62,8 @@ Findings dead(const Tree& files) {
     for (const File& file : files) {
         if (!file.is_cpp() || has_no_target(file)) continue;
         if (file.path.ends_with(".hpp")) {
-            // A board's header is named by the build, which picks the board.
-            // So are the headers of a machine, which tappet_machine(..) of its folder hands to the mains.
+            // The build names a board's header and picks the board. tappet_machine(..) hands the headers of
+            // its folder to the mains.
             const bool by_build = (file.name() == "board.hpp" &&
                                    cmake_text.contains(file.folder().substr(file.folder().rfind('/') + 1))) ||
                                   given_to_mains.contains(file.path);
@@ -87,7 +87,7 @@ TEST(ReachRule, finds_a_source_without_a_target_and_a_header_without_an_include)
         dead({file("kernel/os/a.cpp", "// A.\n"), file("kernel/CMakeLists.txt", "# os/a.cpp\n")}).size(), 1u);
 }
 
-TEST(ReachRule, knows_how_a_source_can_be_named) {
+TEST(ReachRule, knows_every_way_to_name_a_source) {
     const File source = file("kernel/os/a_main.cpp", "// A.\n#include \"kernel/os/a.hpp\"\n");
     const File header = file("kernel/os/a.hpp", "// A.\n");
     for (const auto* line :

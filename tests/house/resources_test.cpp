@@ -1,4 +1,4 @@
-// What kernel/ and drivers/ do without: the operating system outside kernel/os, and the heap with all that
+// kernel/ and drivers/ use neither the operating system outside kernel/os nor the heap, nor anything that
 // lives on it.
 #include "tests/house/tree.hpp"
 
@@ -23,8 +23,7 @@ bool is_of_the_system(std::string_view header) {
 }
 
 Findings system_headers(const Tree& files) {
-    // The sanitizer's own header, which realtime.hpp needs to let it pause; and a library of plain
-    // arithmetic.
+    // The sanitizer's own header, with which realtime.hpp pauses it; and a library of plain arithmetic.
     static constexpr std::string_view sanitizer = "sanitizer/rtsan_interface.h";
     static constexpr std::string_view decimals = "double-conversion/";
     Findings found;
@@ -41,7 +40,7 @@ Findings system_headers(const Tree& files) {
     return found;
 }
 
-// ---- the heap and its company
+// ---- the heap
 
 constexpr std::array words{"new",
                            "malloc",
@@ -140,7 +139,7 @@ Uses heap_users(const Tree& files) {
     for (const File& file : files) {
         if (!file.is_under("kernel") && !file.is_under("drivers")) continue;
         if (file.is_under("drivers") && file.name().starts_with("bench_"))
-            continue; // the plant's: no firmware has them
+            continue; // part of the plant: no firmware contains them
         for (std::size_t i = 0; i < file.code.size(); ++i)
             for (const std::string_view word : words) {
                 if (!says(file.code[i], word)) continue;
@@ -156,7 +155,7 @@ Uses heap_users(const Tree& files) {
     return uses;
 }
 
-TEST(Resources, of_the_system_are_asked_for_in_one_folder) { expect_none(system_headers(tree())); }
+TEST(Resources, come_from_the_system_through_one_folder_only) { expect_none(system_headers(tree())); }
 
 TEST(Resources, are_static) {
     const Uses uses = heap_users(tree());

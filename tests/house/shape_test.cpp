@@ -1,5 +1,5 @@
-// The shape of files: one idea that its first line says, of a size that can be read at once, where a reader
-// looks for it.
+// The shape of files: one idea, stated in the first line, a size that can be read at once, and a place where
+// a reader looks for it.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t most_lines = 500;
 constexpr std::size_t most_lines_of_a_function = 70;
 constexpr std::size_t most_columns =
-    140; // code is held at 110 by its layout; this catches what the layout may not touch
+    140; // clang-format keeps code within 110; this catches the parts that it may not touch
 
 Findings too_long(const Tree& files) {
     Findings found;
@@ -26,8 +26,8 @@ Findings too_long(const Tree& files) {
     return found;
 }
 
-/// A function's body begins after a head with its parameters; what else stands in braces has none, or says
-/// what it is.
+/// A function's body follows a head with parameters; other braces follow a keyword, or a head without
+/// parameters.
 bool opens_function(std::string_view head) {
     if (find_word(head, "namespace") != head.npos) return false; // behind a macro, too
     for (const std::string_view word : {"class", "struct", "enum", "union"})
@@ -68,8 +68,7 @@ Findings too_long_functions(const Tree& files) {
     return found;
 }
 
-/// Unbroken words and tables whose layout is switched off may be longer than the layout's own limit, but not
-/// without end.
+/// Unbroken words and tables with clang-format off may exceed the limit, up to this width.
 Findings too_wide(const Tree& files) {
     Findings found;
     for (const File& file : files) {
@@ -79,7 +78,7 @@ Findings too_wide(const Tree& files) {
         for (std::size_t i = 0; i < file.lines.size(); ++i) {
             if (file.comments[i].contains("clang-format off")) is_table = true;
             if (file.comments[i].contains("clang-format on")) is_table = false;
-            // Without what literals hold: a raw literal cannot be broken.
+            // Literals are left out: a raw literal cannot be broken.
             const std::size_t columns = file.code[i].size() + file.comments[i].size();
             if (!is_table && columns > most_columns)
                 found.push_back({file.path, i + 1, std::to_string(columns) + " columns beside literals",
@@ -131,18 +130,18 @@ Findings unguarded(const Tree& files) {
     return found;
 }
 
-/// Folders of tests that mirror none of the tree.
+/// Folders of tests that mirror no folder of the tree.
 constexpr std::array own_folders{
     std::string_view{"tests/house"},        // holds for the whole tree
     std::string_view{"tests/diagnostics"},  // machines that must not compile
-    std::string_view{"tests/bench"},        // what needs a booted kernel
-    std::string_view{"tests/stack"},        // how deep a firmware may use its stacks
-    std::string_view{"tests/waitfree"},     // the object code of what crosses between activities
+    std::string_view{"tests/bench"},        // need a booted kernel
+    std::string_view{"tests/stack"},        // the stack depth of a firmware
+    std::string_view{"tests/waitfree"},     // the object code of exchange between activities
     std::string_view{"tests/adversary"},    // a machine with every way to an output, for the swarm
-    std::string_view{"tests/fuzz"},         // any bytes against what reads them, and the corpus of it
+    std::string_view{"tests/fuzz"},         // any bytes for every reader, and their corpus
     std::string_view{"tests/models"},       // the algorithms as Promela, and their labels in the source
-    std::string_view{"tests/differential"}, // scripts, compiled and loaded, against a second reading of them
-    std::string_view{"tests/figures"},      // what things cost, side by side
+    std::string_view{"tests/differential"}, // scripts, compiled and loaded, against a second interpreter
+    std::string_view{"tests/figures"},      // measurements, side by side
     std::string_view{"tests/drivers/components"}, // the drivers' components inside machines
 };
 
@@ -169,7 +168,7 @@ TEST(Shape, no_file_is_too_long) { expect_none(too_long(tree())); }
 TEST(Shape, no_function_is_too_long) { expect_none(too_long_functions(tree())); }
 TEST(Shape, no_line_is_too_wide) { expect_none(too_wide(tree())); }
 TEST(Shape, every_file_begins_with_its_idea) { expect_none(without_idea(tree())); }
-TEST(Shape, lines_end_where_they_end) { expect_none(untidy_ends(tree())); }
+TEST(Shape, lines_contain_no_tabs_and_no_trailing_spaces) { expect_none(untidy_ends(tree())); }
 TEST(Shape, headers_are_included_once) { expect_none(unguarded(tree())); }
 TEST(Shape, tests_mirror_the_tree) { expect_none(unmirrored(tree())); }
 
@@ -210,7 +209,7 @@ TEST(ShapeRule, finds_tabs_trailing_spaces_and_unguarded_headers) {
     EXPECT_EQ(unguarded({file("a.hpp", "// A.\n")}).size(), 1u);
 }
 
-TEST(ShapeRule, finds_a_test_of_no_folder) {
+TEST(ShapeRule, finds_a_test_without_a_matching_folder) {
     EXPECT_EQ(unmirrored({file("tests/kernel/attic/a_test.cpp", "// A.\n")}).size(), 1u);
     EXPECT_TRUE(
         unmirrored({file("kernel/os/sub/a.hpp", "// A.\n"), file("tests/kernel/os/a_test.cpp", "// A.\n")})

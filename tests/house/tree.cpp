@@ -1,4 +1,4 @@
-// Reads the repository and parts C++ text into code and comments: a scanner of comments, literals and raw
+// Reads the repository and separates C++ text into code and comments: a scanner of comments, literals and raw
 // literals.
 #include "tests/house/tree.hpp"
 
@@ -29,7 +29,7 @@ std::vector<std::string> split(std::string_view text) {
     return lines;
 }
 
-/// Goes through the text once; what it reads lands on the line it stands on.
+/// Scans the text once and assigns each part to its line.
 class Scanner {
 public:
     Scanner(std::string_view text, File& into) : text_(text), into_(into) {
@@ -73,7 +73,7 @@ private:
     [[nodiscard]] bool is_raw_literal() const {
         return text_.substr(at_).starts_with("R\"") && (at_ == 0 || !is_word_character(text_[at_ - 1]));
     }
-    /// Not the mark between digits.
+    /// Tells a character literal from the mark between digits.
     [[nodiscard]] bool is_character() const {
         return text_[at_] == '\'' && (at_ == 0 || !is_word_character(text_[at_ - 1]));
     }
@@ -99,7 +99,7 @@ private:
     std::size_t line_ = 0;
 };
 
-/// What the rules hold for. Other files, pictures among them, are none of their business.
+/// Returns whether the rules apply to a file. They ignore all others, such as pictures.
 bool is_text(const fs::path& path) {
     static constexpr std::array extensions{".hpp", ".cpp", ".h", ".c", ".cmake", ".txt", ".md", ".json", ""};
     return std::ranges::find(extensions, path.extension().string()) != extensions.end();

@@ -1,5 +1,5 @@
-// The repository as the rules of the house see it: every text file with its lines, and of C++ files also what
-// is code and what is comment on each line.
+// The repository as the rules of the house see it: every text file with its lines, and for C++ files also the
+// code and the comments of each line.
 #pragma once
 
 #include <cstddef>
@@ -13,18 +13,18 @@ struct File {
     std::string path; ///< from the repository's root
     std::vector<std::string> lines;
     std::vector<std::string>
-        code; ///< of C and C++: the same lines, comments and what literals contain left out
-    std::vector<std::string> comments; ///< of C and C++: what the comments of each line say, with their marks
+        code; ///< for C and C++: the same lines without comments and without the contents of literals
+    std::vector<std::string> comments; ///< for C and C++: the comments of each line, with their marks
 
     [[nodiscard]] bool is_cpp() const; ///< C++ or C
     [[nodiscard]] bool is_cmake() const;
     [[nodiscard]] std::string name() const;   ///< without its folder
     [[nodiscard]] std::string folder() const; ///< without the last slash; empty at the root
-    /// Stands in this folder or in one below it.
+    /// Returns whether the file is in this folder or below it.
     [[nodiscard]] bool is_under(std::string_view folder) const;
 };
 
-/// A file from its text; the self-tests of the rules make theirs with it.
+/// Makes a file from its text; the self-tests of the rules use it.
 File file(std::string path, std::string_view text);
 
 using Tree = std::vector<File>;
@@ -32,7 +32,7 @@ using Tree = std::vector<File>;
 /// The whole repository, read once.
 const Tree& tree();
 
-/// What #include "..." and #include <...> name, with their lines.
+/// The names in #include "..." and #include <...>, with their lines.
 struct Include {
     std::string name;
     std::size_t line;
@@ -48,10 +48,10 @@ struct Finding {
 };
 using Findings = std::vector<Finding>;
 
-/// Fails the running test when something was found, with one line for each: "path:line: fault; cure".
+/// Fails the running test when there are findings, with one line for each: "path:line: fault; cure".
 void expect_none(const Findings& findings);
 
-/// Whether `word` stands in `text` from `from` on as a word of its own; npos when not.
+/// Finds `word` in `text` from `from` on as a word of its own; npos: not found.
 std::size_t find_word(std::string_view text, std::string_view word, std::size_t from = 0);
 
 } // namespace tappet::house

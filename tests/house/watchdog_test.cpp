@@ -1,5 +1,5 @@
-// The watchdog has one gate: one file touches the device, few say that the outputs are safe, one kills
-// everybody.
+// The watchdog has one gate: one file accesses the device, few files may declare the outputs safe, and one
+// kills all processes.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 struct Gate {
     std::string_view words;
-    std::vector<std::string_view> files; ///< that may say them
+    std::vector<std::string_view> files; ///< files that may use them
     std::string_view cure;
 };
 
@@ -22,7 +22,7 @@ constexpr std::string_view ask_the_class = "use os::Watchdog of kernel/os/watchd
 const std::array gates{
     Gate{"<linux/watchdog.h>", {"kernel/os/watchdog.cpp"}, ask_the_class},
     Gate{"WDIOC_", {"kernel/os/watchdog.cpp"}, ask_the_class},
-    Gate{"\"/dev/watchdog", {}, ask_the_class}, // but for the boards' headers
+    Gate{"\"/dev/watchdog", {}, ask_the_class}, // except in the boards' headers
     Gate{"guardian_says_safe(",
          {"kernel/os/output_latch.hpp", "toolchain/machine/guardian.cpp", "toolchain/machine/safe_ending.cpp",
           "board/box/custody.cpp"},

@@ -1,4 +1,5 @@
-// What no file says: notes to oneself, places outside the repository, code that is switched off.
+// Words that no file may contain: notes to oneself, places outside the repository, code that is switched off;
+// and sentences that begin with their object.
 #include "tests/house/tree.hpp"
 
 #include <gtest/gtest.h>
@@ -66,6 +67,42 @@ Findings code_in_comments(const Tree& files) {
     return found;
 }
 
+/// Returns the text of a line that people read as sentences: a comment without its marks, or a line of a page
+/// outside of its examples and headings.
+std::string prose_of(const File& file, std::size_t at, bool& is_fenced) {
+    const std::string& line = file.lines[at];
+    if (file.path.ends_with(".md")) {
+        const bool is_fence = line.starts_with("```");
+        is_fenced ^= is_fence;
+        return is_fenced || is_fence || line.starts_with('#') || line.starts_with("    ") ? "" : line;
+    }
+    const std::string comment = file.is_cpp() ? file.comments[at] : line;
+    const std::size_t mark = comment.find_first_not_of(file.is_cpp() ? "/<!*" : " ");
+    if (mark == comment.npos || (!file.is_cpp() && comment[mark] != '#')) return {};
+    return comment.substr(mark + (file.is_cpp() ? 0 : 1));
+}
+
+/// A sentence that begins with its object, or with a clause about whoever does it, is read twice. Questions
+/// may.
+Findings sentences_turned_round(const Tree& files) {
+    static const std::regex opening("(?:^[ >|*0-9.-]*|[.;:|] |[*][*])"
+                                    "(What|Who|Whose|Whoever|Whom|Of|Likewise|Beside)\\b[^.?]*[.?]?");
+    Findings found;
+    for (const File& file : files) {
+        if (file.is_under("tests/fuzz/corpus")) continue;
+        bool is_fenced = false;
+        for (std::size_t i = 0; i < file.lines.size(); ++i) {
+            const std::string prose = prose_of(file, i, is_fenced);
+            for (std::sregex_iterator at(prose.begin(), prose.end(), opening), end; at != end; ++at)
+                if (!at->str().ends_with('?'))
+                    found.push_back({file.path, i + 1, "a sentence begins with \"" + at->str(1) + "\"",
+                                     "begin with the subject: say who does what"});
+        }
+    }
+    return found;
+}
+
+TEST(Words, begin_no_sentence_with_its_object) { expect_none(sentences_turned_round(tree())); }
 TEST(Words, hold_no_note_to_oneself_and_no_place_outside) { expect_none(banned_words(tree())); }
 TEST(Words, of_comments_are_not_code) { expect_none(code_in_comments(tree())); }
 
@@ -77,6 +114,21 @@ TEST(WordsRule, finds_each_banned_word_and_no_part_of_another) {
                                            "STODON and for n"
                                            "owhere\n")})
                     .empty());
+}
+
+TEST(WordsRule, finds_sentences_that_begin_with_their_object) {
+    for (const auto* wrong :
+         {"// What wakes it says its row.", "/// Late. Who asks is told.", "int x; ///< Of its thread"})
+        EXPECT_EQ(sentences_turned_round({file("a.hpp", wrong)}).size(), 1u) << wrong;
+    for (const auto* right : {"// What is a tappet?", "// Says what wakes it, of its thread.",
+                              "int What = 1;", "const char* x = \"Who asks is told.\";", "// Whatever"})
+        EXPECT_TRUE(sentences_turned_round({file("a.hpp", right)}).empty()) << right;
+    EXPECT_EQ(sentences_turned_round({file("ci/run", "# Beside it lies a log.\necho What it is.\n")}).size(),
+              1u);
+    EXPECT_EQ(sentences_turned_round(
+                  {file("a.md", "# What holds\n- Of both.\n```\nWho\n```\n    Who\n| a | Whose |\n")})
+                  .size(),
+              2u);
 }
 
 TEST(WordsRule, tells_code_from_prose) {

@@ -1,14 +1,14 @@
 /* A command from the sender's object to the receiver's engine and back (thesis 4.5.2): one slot, whose values belong to
-   the sender until it is sent and to the receiver until it has ended.
+   the sender until it is sent, and then to the receiver until the command ends.
    Source: kernel/component/command.hpp
    Twins: SENT_AFTER_POST RESULT_AFTER_STATE RESEND NO_FAIL_AT_STOP NO_REJECT_AT_STOP NO_REJECT_WHEN_ASLEEP
 
-   Shown: the action gets the arguments as they were set; results are read whole, and are those of this sending; states come
-   in their order and none is overwritten by the other side; the mailbox holds one message of a slot at most; when
-   everybody rests the command has ended, also when the receiver's engine was stopped meanwhile; send, polling and each of
-   the receiver's turns end within their bound of steps.
-   The state goes from one side to the other by a message through a ring, and back by a store that the sender loads: each
-   side stores values and then the state, in the order that the processor keeps. */
+   Shown: the action gets the arguments as they were set; results are read whole, and belong to this call; states come in
+   order and neither side overwrites the other's; the mailbox holds at most one message of a slot; when all threads rest,
+   the command has ended, even if the receiver's engine was stopped meanwhile; send, polling and each turn of the receiver
+   end within their bound of steps.
+   The state goes to the receiver by a message through a ring, and back by a store that the sender loads: each side stores
+   values and then the state, in an order that the processor keeps. */
 
 #define SENDINGS 2
 #define SEND_BOUND 4
@@ -25,7 +25,7 @@
 
 byte state = READY;
 byte argument[2], result[2];
-bool engine_stopped;       /* what the sender sees of it */
+bool engine_stopped;       /* as the sender sees it */
 byte messages;             /* of this slot, in the mailbox */
 bool woken;                /* of the receiver's thread */
 bool sender_rests;
@@ -92,7 +92,7 @@ command_reset:
     sender_rests = true
 }
 
-/* The receiver's engine, which is stopped at some time and may be started again. */
+/* The receiver's engine, which stops at some time and may start again. */
 active proctype receiver() {
     byte got[2];
     byte steps;
@@ -136,9 +136,9 @@ command_execute:
         fi;
         assert(steps <= END_BOUND)
     :: active_now && woken ->
-        woken = false                       /* what woke it is looked for now, or found by the stop */
+        woken = false                       /* the message that woke it is handled now, or by the stop */
     :: active_now ->
-        /* Engine::stop(): what the sender sees first, then what is at work, then what lies in the mailbox. */
+        /* Engine::stop(): first the flag for the sender, then the running command, then the mailbox. */
         active_now = false;
         engine_stopped = true;
 #ifndef TWIN_NO_FAIL_AT_STOP
@@ -155,7 +155,7 @@ command_execute:
 #endif
 #ifndef TWIN_NO_REJECT_WHEN_ASLEEP
     :: !active_now && woken ->
-        /* Its thread, woken while it waits to be started again: the sender had looked before the stop. */
+        /* Its thread is woken while it waits for a restart: the sender had looked before the stop. */
         woken = false;
         if
         :: messages > 0 -> messages--; state = REJECTED

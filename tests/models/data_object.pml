@@ -3,12 +3,12 @@
    Twins: NO_MARK MARK_LATE NO_CHECK CHECK_UNCHANGED PUBLISH_EARLY TRY_FOR_EVER
 
    Shown: no value is torn or mixed with another one's number; a reader never goes backwards; an attempt fails only when
-   the writer has begun to write into that very slot again; with the writer at rest a reader gets the last value; and
+   the writer has begun to write into the same slot again; with the writer at rest, a reader gets the last value; and
    every call ends within its bound of steps.
-   A word stands for whatever the processor moves at once: of a larger value two words, which may also come apart. Nothing
-   shown depends on how much that is, since a value of two pieces is accepted or refused by its number alone.
-   Steps interleave in program order. The processor lets a load pass an earlier store of its own, and nothing else: here
-   the writer loads nothing and a reader stores nothing, so there is no such pair. Readers do not meet: one stands for
+   A word stands for the unit that the processor moves at once. A larger value has two words, which may come apart. The
+   results do not depend on the size of a word, since the number alone decides whether a value of two words is accepted.
+   Steps interleave in program order. The processor only lets a load pass an earlier store of the same thread: here the
+   writer loads nothing and a reader stores nothing, so there is no such pair. Readers do not interact: one stands for
    all. */
 
 #define SLOTS 2
@@ -119,7 +119,7 @@ data_read_check:
         od;
         assert(steps <= READ_BOUND);
         assert(!rests || generation == LAST);
-        /* How a caller tells being overtaken from nothing new. */
+        /* A caller distinguishes "overtaken" from "nothing new" by this. */
 data_generation:
         atomic { check = published; assert(check >= generation && (attempt < ATTEMPTS || check > generation)) }
     :: else -> break

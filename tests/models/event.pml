@@ -1,14 +1,14 @@
-/* An asynchronous subscription that is connected and disconnected while it is emitted to (thesis 4.6.2, 4.6.3).
+/* An asynchronous subscription that is connected and disconnected during emissions (thesis 4.6.2, 4.6.3).
    Source: kernel/component/subscription.hpp kernel/component/event_handle.hpp kernel/component/event.hpp
    Twins: EPOCH_FIRST NO_EPOCH BIT_FIRST NO_CHECK CHECK_BIT_ONLY NO_QUOTA COUNT_LATE
 
-   Shown: an emission begun after disconnect() returned finds no way to the reaction; a reaction that begins after
-   disconnect() returned is of no emission that found the row connected before, however long it lay in the mailbox; what is
-   emitted to a row that is connected and stays so is not dropped; the mailbox never takes more than the row's quota; and
-   every call ends within its bound of steps.
+   Shown: an emission begun after disconnect() returned never reaches the reaction; a reaction that begins after
+   disconnect() returned never belongs to an emission that found the row connected before, however long its message was in
+   the mailbox; no emission to a row that stays connected is dropped; the mailbox never holds more than the row's quota;
+   and every call ends within its bound of steps.
    Two threads disconnect, one of them connects again; the emitter and the receiver are two others. Bit and epoch are
-   changed by operations that read and write at once, which the processor turns round with nothing; the emitter only loads
-   them, in order. */
+   changed by operations that read and write at once, which the processor never reorders; the emitter only loads them, in
+   order. */
 
 #define EMISSIONS 3
 #define QUOTA 2
@@ -19,15 +19,15 @@ bool linked = true;
 byte epoch;
 byte served;                     /* the receiver's count, which the emitter loads */
 byte pushed, popped;             /* of the mailbox, which is the one of ring.pml */
-byte sent_epoch[QUOTA];          /* what a message holds */
+byte sent_epoch[QUOTA];          /* content of a message */
 
 /* For the assertions only. */
 byte found_at[QUOTA];            /* how many disconnect() had cleared the bit when the row was found connected */
 bool sure[QUOTA];                /* emitted to a row that was connected, with nobody disconnecting */
 byte begun_at[QUOTA];
 byte begun, cleared, returned;   /* disconnect(): how many began, how many cleared the bit, how many returned */
-byte latest;                     /* of those that returned the one that cleared it last */
-bool firm;                       /* disconnect() returned, and connect() was not called since */
+byte latest;                     /* of the disconnects that returned, the last one to clear the bit */
+bool firm;                       /* disconnect() returned, without a later connect() */
 byte connects;                   /* connect(): how many began */
 
 inline disconnect() {

@@ -1,11 +1,11 @@
-/* The newest of what one thread emits to one other, three places for it, and a notice in the mailbox (thesis 4.6.2: save
-   only the last event data).
+/* The newest message of one thread to another, three places for it, and a notice in the mailbox (thesis 4.6.2: save only
+   the last event data).
    Source: kernel/exchange/latest_message.hpp
    Twins: TWO_PLACES EXCHANGE_IN_TWO NOTICE_ALWAYS NOTICE_NEVER_AGAIN
 
-   Shown: no message is torn; the receiver never gets an older one than it has had; at rest it has had the newest, so no
-   notice is missing; at most one notice is on its way; and both calls end within their bound of steps.
-   Both sides meet in one operation that reads and writes at once, which the processor turns round with nothing. */
+   Shown: no message is torn; the receiver never gets an older one than before; at rest it has received the newest, so no
+   notice is missing; at most one notice is in flight; and both calls end within their bound of steps.
+   Both sides meet in one operation that reads and writes at once, which the processor never reorders. */
 
 #define WORDS 2
 #define LAST 6

@@ -1,11 +1,11 @@
-/* The account of what a ring lost, asked for by the producer while the consumer works (thesis 4.4.3).
+/* The count of messages that a ring lost, read by the producer while the consumer works (thesis 4.4.3).
    Source: kernel/exchange/ring.hpp
    Twins: HEAD_FIRST COUNT_FIRST
 
-   Shown: nothing counts twice, so no more is told as lost than was pushed; with the consumer at rest the account is
+   Shown: no message counts twice, so the count never exceeds the pushed messages; with the consumer at rest the count is
    exact.
-   The index that the consumer stores and the count of what it skipped are read in the opposite order, so that what
-   lies between the two stores is missing in the account and not in it twice. */
+   The consumer's index and its count of skipped messages are read in the order opposite to their stores, so that
+   messages between the two stores are missing in the count instead of counting twice. */
 
 #define LAST 5
 #define CAPACITY 1

@@ -3,15 +3,15 @@
    Source: kernel/exchange/mailbox.hpp kernel/os/waiter.hpp kernel/os/waiter.cpp
    Twins: BIT_BEFORE_PUSH WAKE_BEFORE_BIT CLEAR_AFTER SLEEP_WITHOUT_LOOKING WAIT_WITHOUT_COMPARING WAKE_BY_STORE
 
-   Shown: no wake is lost: when everybody rests, every message was served, each sender's in its order, and with a message
-   left in a mailbox the receiver never sleeps for ever; posting and waking end within their bound of steps.
-   The ring is the one of ring.pml: here its push, its pop and its fill are one step each. All that decides is done by
-   operations that read and write at once, which the processor turns round with nothing. */
+   Shown: no wake is lost: when all threads rest, every message was served, in the order of its sender, and the receiver
+   never sleeps for ever with a message in a mailbox; posting and waking end within their bound of steps.
+   The ring is the one of ring.pml: here its push, its pop and its fill are one step each. All deciding steps are
+   operations that read and write at once, which the processor never reorders. */
 
 #define SENDERS 2
 #define MESSAGES 3
 #define CAPACITY 2
-#define POST_BOUND 4        /* the push, the bit, the look, the wake; beside it the operating system's call */
+#define POST_BOUND 4        /* the push, the bit, the look, the wake; plus the operating system's call */
 
 #define IDLE 0
 #define WOKEN 1
@@ -28,7 +28,7 @@ inline wake() {
 waiter_look:
     atomic { seen = state; steps++ }
     if
-    :: seen == WOKEN -> goto awake      /* it takes that wake after this look, and looks at the bits after it */
+    :: seen == WOKEN -> goto awake      /* it consumes that wake after this look, and then looks at the bits */
     :: else
     fi;
 #ifdef TWIN_WAKE_BY_STORE
@@ -53,7 +53,7 @@ active [SENDERS] proctype sender() {
     :: sent < MESSAGES ->
         steps = 0;
         if
-        :: pushed[me] - popped[me] == CAPACITY -> posted++          /* refused and counted; the caller goes on */
+        :: pushed[me] - popped[me] == CAPACITY -> posted++          /* refused and counted; the caller continues */
         :: else ->
 #ifdef TWIN_BIT_BEFORE_PUSH
             pending = pending | (1 << me);
@@ -163,7 +163,7 @@ inbox_put_back:
     od
 }
 
-/* Nobody can go on: all senders are through, and the receiver sleeps. */
+/* No thread can continue: all senders are done, and the receiver sleeps. */
 active proctype rest() {
     timeout;
     assert(served + posted == SENDERS * MESSAGES);

@@ -45,7 +45,7 @@ Labels labels_of_model(const std::string& text) {
     return found;
 }
 
-/// Runs a command, with what it says; -1 when it did not end by itself.
+/// Runs a command and returns its output; -1 when it did not end by itself.
 int run(const std::string& command, std::string& said) {
     std::FILE* const pipe =
         popen((command + " 2>&1").c_str(), "r"); // NOLINT: the command is made of the tree's own names
@@ -107,7 +107,7 @@ std::vector<std::string> unlabelled_accesses(const std::string& text) {
         "\\b((?:load|store)(?:_pair)?|exchange|compare_exchange_\\w+|fetch_\\w+)\\("};
     static const std::regex excused{"// ([a-z]+\\.[a-z_]+|no step: \\S+ \\S+ .*)$"};
     // A value of several words is written and read by Words, whose own accesses bear the labels;
-    // std::exchange is of one thread.
+    // std::exchange stays in one thread.
     static const std::regex composed{
         "\\bvalue\\.(load|store)\\(|(?:void|Pair) (?:load|store)(?:_pair)?\\(|std::exchange\\("};
     std::vector<std::string> found;

@@ -1,5 +1,5 @@
-// A model of an algorithm between threads, in Promela: what its first comment says of it, its labels, and
-// what spin finds in it.
+// A model of an algorithm between threads, in Promela: the contents of its first comment, its labels, and the
+// results of spin.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ struct Model {
     std::string path;
     std::string text;
     std::vector<std::string> sources; ///< the files it is a model of
-    std::vector<std::string> twins;   ///< the same algorithm with one fault: each a define of its own
+    std::vector<std::string> twins;   ///< the same algorithm with one fault; each twin is a define of its own
     Labels labels;
 };
 
@@ -26,12 +26,12 @@ const std::vector<Model>& all_models();
 
 [[nodiscard]] std::string read(const std::string& path);
 [[nodiscard]] Labels labels_of_source(const std::string& text);
-/// Lines with an access to shared memory that bear neither a label nor "// no step: reason".
+/// Lines that access shared memory without a label and without "// no step: reason".
 [[nodiscard]] std::vector<std::string> unlabelled_accesses(const std::string& text);
 
-/// What an exhaustive search over every interleaving found.
+/// The result of an exhaustive search over every interleaving.
 struct Search {
-    bool ran = false;      ///< spin, the compiler and the search itself came to their end
+    bool ran = false;      ///< spin, the compiler and the search itself completed
     bool complete = false; ///< no state was left out
     long errors = -1;
     double states = 0;

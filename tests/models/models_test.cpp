@@ -68,7 +68,7 @@ TEST_P(Twin, is_rejected) {
 }
 INSTANTIATE_TEST_SUITE_P(Broken, Twin, testing::ValuesIn(broken()), name);
 
-TEST(Models, have_twins_and_each_twin_is_in_the_model) {
+TEST(Models, have_twins_that_each_occur_in_the_model) {
     ASSERT_FALSE(all_models().empty());
     for (const Model& model : all_models()) {
         EXPECT_FALSE(model.twins.empty()) << model.name;
@@ -105,7 +105,7 @@ TEST(Models, take_the_same_steps_as_the_source) {
     }
 }
 
-TEST(Labels, are_found_at_the_end_of_a_line_only) {
+TEST(Labels, are_found_only_at_the_end_of_a_line) {
     const Labels labels =
         labels_of_source("a.store(1); // ring.push\n// see ring.push for more\nb(); // of a.b c\n");
     ASSERT_EQ(labels.size(), 1u);
@@ -113,7 +113,7 @@ TEST(Labels, are_found_at_the_end_of_a_line_only) {
     EXPECT_EQ(labels.begin()->second, 1u);
 }
 
-TEST(Labels, are_missed_on_any_access_that_has_none) {
+TEST(Labels, are_required_on_every_access) {
     EXPECT_EQ(unlabelled_accesses("head_.store(1, order);\n").size(), 1u);
     EXPECT_EQ(unlabelled_accesses("x.fetch_or(1); // no step\n").size(), 1u);
     EXPECT_EQ(unlabelled_accesses("store_pair(place, from);\n").size(), 1u);

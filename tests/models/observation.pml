@@ -1,11 +1,12 @@
-/* Another process reads an activity's values out of the machine's memory, which does not notice (thesis 4.8).
+/* Another process reads an activity's values out of the memory of the machine, which does not notice (thesis 4.8).
    Source: kernel/activity/engine.hpp kernel/activity/engine.cpp kernel/machine/map/view.hpp
    Twins: EVEN_ALL_THE_TIME NO_SECOND_LOOK ODD_IGNORED START_UNGUARDED
 
-   Shown: what the observer takes is whole and of one cycle, whether the activity starts, runs or stops meanwhile; it gives
-   up after its attempts, so that it never waits; and the machine's part is two steps in a cycle, whatever observers do.
-   The machine stores the generation, the values and the generation again in the order that the processor keeps, and is the
-   only one that writes them; the observer only loads, in order. */
+   Shown: an accepted observation is whole and from one cycle, whether the activity starts, runs or stops meanwhile; the
+   observer gives up after its attempts, so it never waits; and the machine's part is two steps in a cycle, whatever
+   observers do.
+   The machine stores the generation, the values and the generation again in an order that the processor keeps, and is the
+   only writer; the observer only loads, in order. */
 
 #define WORDS 2
 #define CYCLES 3
@@ -16,7 +17,7 @@
 byte generation;
 byte words[WORDS];
 
-/* The first turn is the activity's start, the last one its stop, those between are cycles. */
+/* The first turn is the activity's start, the last one its stop; the others are cycles. */
 active proctype engine() {
     byte turn, i, steps;
     do

@@ -1,13 +1,14 @@
-/* Who may kick the box's watchdog: init, and the guardian of a firmware, each by a latch of its own, while a machine's
-   process, its guardian and init's worker crash, hang in the kernel or are killed at any time, and people press the button.
+/* The processes that may kick the box's watchdog: init, and the guardian of a firmware, each by a latch of its own, while
+   a machine's process, its guardian and init's worker crash, hang in the kernel or are killed at any time, and users press
+   the button.
    Source: kernel/os/output_latch.hpp kernel/os/watchdog.cpp toolchain/machine/safe_ending.cpp board/box/custody.cpp
    Twins: KILL_TOGETHER HOLD_UNASKED START_UNASKED CODE_HANDED_ON STAND_DOWN_UNASKED WORKER_WITHOUT_END ACT_WITHOUT_END SAY_BEFORE_END DRIVE_WHEN_UNSAFE
 
-   Shown: outputs that nobody drives are safe, or the box is reset, within a bound, whatever happens in between; a guardian
-   says "safe" only when they are; init kills no guardian that has not said so; the power goes off with safe outputs only;
-   a worker that cannot be killed is not waited for beyond a bound.
-   Time are ticks, and a process may be kept from running for as many as it likes: then it kicks nothing. Whether lines
-   take what is written to them is free. The reset of the box ends a run: the next boot begins where the model does. */
+   Shown: within a bound, undriven outputs are safe or the box is reset, whatever happens in between; a guardian says "safe"
+   only when the outputs are; init kills a guardian only after that; the power goes off only with safe outputs; init waits
+   for an unkillable worker only up to a bound.
+   Time counts in ticks, and a process may be kept from running for any number of them: then it kicks nothing. Whether
+   lines accept a write is free. The reset of the box ends a run: the next boot begins where the model does. */
 
 #define WITHIN 2   /* of the watchdog */
 #define ACT 2      /* guardian_acts_within */
@@ -15,7 +16,7 @@
 #define GUARD 3    /* guardian_patience */
 #define WORK 2
 #define GONE 1     /* gone_patience */
-/* A guardian that looks late has kicked nothing meanwhile. */
+/* A guardian that looks late kicked nothing meanwhile. */
 #define UNSAFE_BOUND (WITHIN + ACT + WITHIN)
 #define WORKER_BOUND (WORK + WITHIN + GONE + WITHIN)
 
@@ -69,7 +70,7 @@ inline drop_machine() {
     fi
 }
 
-/* Before it is said how the firmware ended, init has read its notices. */
+/* Init reads the notices of the firmware before it reports how that ended. */
 inline take_end() {
     if
     :: said_safe -> said_safe = false; latch = SAFE
@@ -139,7 +140,7 @@ latch_lose:
         :: else
         fi
 #endif
-    :: guardian_is != ENDED -> break          /* the button, or what ends the box in order */
+    :: guardian_is != ENDED -> break          /* the button, or an orderly shutdown of the box */
     od;
 
     /* end_everything() */
@@ -214,7 +215,7 @@ done:
     skip
 }
 
-/* What a firmware's guardian does, from the split to its end. */
+/* A firmware's guardian, from the split to its end. */
 active proctype guardian() {
     bool has_ended, writes_well;
     {
@@ -222,7 +223,7 @@ active proctype guardian() {
     :: atomic { GUARDIAN_RUNS && !guardian_has_dog ->
 dog_open:
         guardian_has_dog = true; guardian_latch = SAFE; guardian_left = 0; dog_ticks = true; dog_left = WITHIN }
-    /* A look that sees life. */
+    /* This look sees a life sign. */
     :: atomic { GUARDIAN_RUNS && guardian_has_dog && machine_is != ENDED && !machine_hangs ->
 latch_drive:
         guardian_latch = UNKNOWN; guardian_left = 1;
@@ -265,7 +266,7 @@ guardian_write:
             fi };
         atomic {
             if
-            :: !GUARDIAN_RUNS                   /* it says nothing, whatever it did */
+            :: !GUARDIAN_RUNS                   /* it reports nothing, whatever it did */
 #ifdef TWIN_SAY_BEFORE_END
             :: GUARDIAN_RUNS && writes_well ->
 #else
@@ -285,7 +286,7 @@ dog_stand_down:
 #ifdef TWIN_CODE_HANDED_ON
                 guardian_code = machine_code;
 #else
-                guardian_code = 9               /* never that it touched nothing */
+                guardian_code = 9               /* never "touched nothing" */
 #endif
             fi };
 keeps:                                          /* the black box, which may take long */
@@ -297,7 +298,7 @@ keeps:                                          /* the black box, which may take
     } unless { off }
 }
 
-/* What happens to them. */
+/* The faults and events from outside. */
 active proctype world() {
     {
     do
@@ -312,7 +313,7 @@ active proctype world() {
     :: atomic { machine_is == LIVES && !machine_hangs -> machine_is = ENDED; unsafe = true;
         if
         :: machine_code = 9
-        :: machine_code = TOUCHED_NOTHING       /* a thread that says so itself */
+        :: machine_code = TOUCHED_NOTHING       /* a thread reports that itself */
         fi }
     :: atomic { machine_is == LIVES && !machine_hangs -> machine_hangs = true; unsafe = true }
     :: atomic { machine_is == LIVES && !machine_hangs -> machine_hangs = true; machine_waits = true; unsafe = true }

@@ -1,14 +1,13 @@
-/* A queue from one thread to one other (thesis 4.4.3), refusing the newest when full, or giving up the oldest.
+/* A queue from one thread to another (thesis 4.4.3) that, when full, refuses the newest message or drops the oldest.
    Source: kernel/exchange/ring.hpp kernel/exchange/words.hpp
    Twins: NO_FULL_CHECK PUBLISH_EARLY RELEASE_EARLY NO_MARK MARK_LATE NO_CHECK NO_SPARE SKIP_UNCOUNTED NO_SKIP TRY_FOR_EVER MARK_AFTER
 
-   Shown: what is popped is whole, in order, and without a gap that is not counted: popped, skipped and what is still in it
-   add up to what was pushed; a full ring that refuses keeps its contents, one that drops never loses the newest; an attempt
-   to pop fails only when the producer has come round to that very cell; the high-water mark is the most that ever were
-   inside, and never too small; what
-   size() tells the consumer can be popped; and every call ends within its bound of steps.
-   Each side loads the other's index after it stored its own, the one pair of accesses that the processor may turn round.
-   So such a load may here give any value that the index had since the last one, which is all that turning round can do. */
+   Shown: popped messages are whole and in order, and every gap is counted: popped, skipped and remaining messages add up to
+   the pushed ones; a full ring that refuses keeps its contents, one that drops never loses the newest; an attempt to pop
+   fails only when the producer has come round to the same cell; the high-water mark is the largest fill so far, and never
+   too small; the consumer can pop as many messages as size() says; and every call ends within its bound of steps.
+   Each side loads the other's index after it stored its own, the only pair of accesses that the processor may reorder.
+   So such a load may here return any value that the index had since the last one; reordering can do no more. */
 
 #define WORDS 2
 #define ATTEMPTS 3
@@ -29,7 +28,7 @@ byte words[MOST * WORDS];
 byte tail, head, skipped, refused, high_water;
 byte begun, popped, most;   /* for the assertions only */
 
-/* Any value that the index had since it was last looked at. */
+/* Any value that the index had since the last look. */
 inline look(mine, index) {
     atomic {
         byte_looked = mine;
@@ -171,11 +170,11 @@ active proctype consumer() {
         atomic { rests = producer_rests; steps = 0; attempt = 0; i = 0; taken = false; byte_looked = 0 }
         if
         :: !drops ->
-            /* What a receiver asks before it pops: so many are there for sure. */
+            /* A receiver reads size() before it pops: at least that many are there. */
 ring_size_head:
             atomic {
                 check = head;
-                /* Of one place a thread never sees an older value than it has seen. */
+                /* A thread never sees an older value of a place than before. */
                 if
                 :: produced > seen -> seen = produced
                 :: else
@@ -285,7 +284,7 @@ ring_pop_release:
         assert(steps <= POP_BOUND)
     :: else -> break
     od;
-    /* Both sides rest: the account is exact. */
+    /* Both sides rest: the count is exact. */
     assert(tail == head);
     assert(popped + skipped + refused == LAST);
     assert(!drops || (last == LAST && refused == 0));

@@ -1,11 +1,11 @@
-/* An engine writes each of its cycles onto its tape, over the oldest ones, and asks nobody; readers go from the last cycle
-   backwards (thesis A.2.1).
+/* An engine writes each of its cycles onto its tape, over the oldest ones, without synchronization; readers go backwards
+   from the last cycle (thesis A.2.1).
    Source: kernel/exchange/word_tape.hpp
    Twins: NO_CHECK CHECK_WITHOUT_ITS_CYCLE HEAD_FIRST
 
-   Shown: what a reader takes is whole and of one cycle, and no cycle between two of them is left out, however often the
-   engine laps it; each side ends within its bound of steps, whatever the other does.
-   A cycle is up to one mark and its summary, which says how many marks stand before it. The engine stores in order, the
+   Shown: each record that a reader accepts is whole and from one cycle, and the reader skips no cycle between two of them,
+   however often the engine laps it; each side ends within its bound of steps, whatever the other does.
+   A cycle has up to one mark and its summary, which holds the number of marks before it. The engine stores in order, the
    reader loads in order. */
 
 #define ROOM 4

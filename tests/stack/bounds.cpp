@@ -27,9 +27,9 @@ std::optional<std::int64_t> number(std::string_view text) {
     return text.contains("0x") ? waitfree::as_number(text) : std::nullopt;
 }
 
-/// Not values.hpp of waitfree: that keeps what all paths agree on and forgets the frame that an alignment
-/// begins in; here the deepest path counts. The stack below where the function was entered, the registers
-/// that keep another stack pointer, and the depth that the stack pointer was just compared with.
+/// Differs from waitfree's values.hpp, which keeps only facts that all paths share and forgets the frame in
+/// which an alignment begins; here the deepest path counts. Holds the depth below the function's entry, the
+/// registers that keep another stack pointer, and the depth last compared with the stack pointer.
 struct Height {
     std::int64_t used = 0;
     std::map<std::string, std::int64_t, std::less<>> kept{};
@@ -94,7 +94,7 @@ bool execute(const Instruction& one, Height& height) {
             height.used -= place->second;
             return true;
         }
-        // The end of a frame that was aligned: g++ keeps the pointer at entry in r10, and then in the frame.
+        // The end of an aligned frame: g++ keeps the pointer at entry in r10, and then in the frame.
         if (place->first == "r10") height.used = 0;
         return place->first == "r10" || restore(place->first, place->second);
     }
@@ -104,7 +104,7 @@ bool execute(const Instruction& one, Height& height) {
         height.used += *by;
     else if (one.is("add"))
         height.used -= *by;
-    else if (one.is("and")) // aligns: what the mask takes away at most
+    else if (one.is("and")) // aligns: the mask removes at most this much
         height.used += -*by - 1;
     else
         return false;
@@ -176,7 +176,7 @@ Bounds::Frame Bounds::frame_of(const Function& function) const {
             if (one.is_call() && !ends)
                 frame.calls.push_back({depth + std::size_t{word}, one.symbol});
             else if (!ends && !one.symbol.empty() && one.symbol != "(the middle of a function)")
-                frame.calls.push_back({depth, one.symbol}); // it goes on there
+                frame.calls.push_back({depth, one.symbol}); // it continues there
             else if (one.is_jump() && one.target == waitfree::none && one.symbol.empty() && depth == 0)
                 frame.calls.push_back({0, {}});
             if (one.is_call() && ends) continue;
@@ -191,8 +191,8 @@ Bounds::Frame Bounds::frame_of(const Function& function) const {
         }
     };
     follow();
-    // What only a table of jumps reaches is reached with a frame that is complete.
-    // The cold part of a function is entered in its middle, too.
+    // Code reached only by a jump table has a complete frame.
+    // The cold part of a function is also entered in its middle.
     const bool has_table = function.name.find(".cold") != std::string::npos ||
                            std::ranges::any_of(code, [](const Instruction& one) {
                                return one.is_jump() && one.target == waitfree::none && one.symbol.empty();
@@ -239,7 +239,8 @@ std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
     };
     for (const Call& call : own.calls) {
         if (!call.to.empty()) {
-            // What a layer names calls through pointers what lies below it, also when it is called directly.
+            // A function named by a layer calls lower layers through pointers, even when it is called
+            // directly.
             const std::size_t own_layer = layer == no_layer ? layer : std::min(layer, layer_of(call.to));
             weigh(call.depth + need_of(call.to, own_layer), {call.to, own_layer});
         } else if (layer == no_layer) {
@@ -259,7 +260,7 @@ std::size_t Bounds::need_of(const std::string& name, std::size_t layer) {
     return most.bytes;
 }
 
-/// What a call through a pointer out of this layer needs: each lower layer comes as often as it says.
+/// The need of a call through a pointer out of this layer: each lower layer counts as often as it states.
 const Bounds::Need& Bounds::need_below(std::size_t layer) {
     if (const auto known = below_.find(layer); known != below_.end()) return known->second;
     Need most;
@@ -268,8 +269,8 @@ const Bounds::Need& Bounds::need_below(std::size_t layer) {
     for (std::size_t lower = 0; lower < layer; ++lower) {
         const auto& [what, of, times, only] = rules_.layers[lower];
         if (!only.empty() && std::ranges::find(allowed_, only) == allowed_.end()) continue;
-        // The last of several entries needs what it needs; each one before it adds its own frames, at most
-        // the same.
+        // The last of several entries has its full need; each one before it adds its own frames, at most the
+        // same.
         for (const std::string& name : of_layer_[lower])
             if (const std::size_t bytes = need_of(name, lower) * times; bytes > most.bytes)
                 most = {bytes, {name, lower}};

@@ -1,4 +1,4 @@
-// The bound on made-up programs: what is added up, and what is refused instead of guessed.
+// The bound on made-up programs: it adds up known needs, and refuses to guess.
 #include "tests/stack/bounds.hpp"
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ TEST(Bounds, add_up_frames_and_return_addresses_along_the_deepest_path) {
     EXPECT_EQ(bounds.path(), "    304 root\n    256 leaf\n");
 }
 
-TEST(Bounds, count_a_large_frame_whose_pages_are_touched_in_a_loop) {
+TEST(Bounds, include_a_large_frame_whose_pages_are_touched_in_a_loop) {
     const Image program = image(R"(
 0000000000001000 <root>:
     1000:	lea    r11,[rsp-0x5000]
@@ -71,7 +71,7 @@ TEST(Bounds, count_a_large_frame_whose_pages_are_touched_in_a_loop) {
     EXPECT_THAT(bounds.faults(), IsEmpty());
 }
 
-TEST(Bounds, take_what_is_stated_and_end_where_a_call_does_not_come_back) {
+TEST(Bounds, use_stated_frames_and_end_at_calls_that_do_not_return) {
     const Image program = image(R"(
 0000000000001000 <root>:
     1000:	call   2000 <stated>
@@ -90,7 +90,7 @@ TEST(Bounds, take_what_is_stated_and_end_where_a_call_does_not_come_back) {
     EXPECT_THAT(bounds.faults(), IsEmpty()) << "what comes after the call is never reached";
 }
 
-TEST(Bounds, count_two_that_call_each_other_from_either_end) {
+TEST(Bounds, include_mutual_calls_from_either_end) {
     const Image program = image(R"(
 0000000000001000 <root>:
     1000:	call   2000 <even>
@@ -151,16 +151,16 @@ struct Refused {
 };
 void PrintTo(const Refused& each, std::ostream* out) { *out << each.name; }
 
-class WhatIsNotKnown : public testing::TestWithParam<Refused> {};
+class UnboundedStack : public testing::TestWithParam<Refused> {};
 
-TEST_P(WhatIsNotKnown, is_a_fault) {
+TEST_P(UnboundedStack, is_a_fault) {
     const Image program = image(GetParam().code, GetParam().taken);
     Bounds bounds{program, layers};
     static_cast<void>(bounds.of("root", {}));
     EXPECT_THAT(bounds.faults(), ElementsAre(HasSubstr(GetParam().fault)));
 }
 
-INSTANTIATE_TEST_SUITE_P(, WhatIsNotKnown,
+INSTANTIATE_TEST_SUITE_P(, UnboundedStack,
                          testing::Values(Refused{"a_frame_of_any_size", R"(
 0000000000001000 <root>:
     1000:	sub    rsp,rax
@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(, WhatIsNotKnown,
                                                  {"_ZN6tappet6unseenEv"}}),
                          [](const auto& each) { return std::string{each.param.name}; });
 
-TEST(AnImage, of_no_program_is_empty) {
+TEST(AnImage, is_empty_without_a_program) {
     EXPECT_TRUE(read_image("/nowhere").functions.empty());
     EXPECT_TRUE(read_image("/proc/version").functions.empty());
 }

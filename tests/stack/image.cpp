@@ -34,7 +34,7 @@ Image read_image(const std::string& path) {
         const auto section = at<Elf64_Shdr>(bytes, header.e_shoff + header.e_shstrndx * sizeof(Elf64_Shdr));
         return std::string_view{bytes}.substr(std::min(section.sh_offset, bytes.size()), section.sh_size);
     }();
-    // A jump into the middle of a cold part is one to it: all of it is looked at as entered anywhere.
+    // A jump into the middle of a cold part is a jump to it: all of it is treated as entered anywhere.
     for (auto& [name, function] : image.functions)
         for (waitfree::Instruction& one : function.code) {
             const auto after = at_address.upper_bound(one.reckoned);

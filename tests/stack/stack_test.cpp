@@ -1,5 +1,4 @@
-// The stacks of the loom's activities: what its firmware's object code may use of each, against the table's
-// rows.
+// The stacks of the loom's activities: the need of its firmware's object code against the table's rows.
 #include "kernel/machine/firmware.hpp"
 #include "kernel/os/memory.hpp"
 #include "tests/stack/bounds.hpp"
@@ -15,8 +14,8 @@ AcceptedMachine on_host();
 namespace tappet::stack_bound {
 namespace {
 
-/// The framework's design: who calls whom through a pointer. An engine calls its components' functions, they
-/// end in primitives, rows and devices, and these wake somebody.
+/// The framework's design: the calls through pointers. An engine calls its components' functions, they reach
+/// primitives, rows and devices, and these wake a thread.
 // clang-format off
 const Rules rules{
     .layers = {
@@ -30,7 +29,8 @@ const Rules rules{
         {"posting; values as texts",
          {"detail::post<", "EventWaitState::receive", "(anonymous namespace)::ValueReader::", "(anonymous namespace)::ValueWriter::",
           "(anonymous namespace)::Reader::", "(anonymous namespace)::Writer::"}},
-        // A synchronous reaction of a component may emit what another one of the activity hears at once.
+        // A synchronous reaction of a component may emit an event that another one of the activity receives
+        // at once.
         {"operations, methods and guards",
          {"OperationCall<", "detail::MethodOf", "MethodCall<", "detail::CommandOf", "statechart::call", "detail::TimerCall", "note_transition",
           "MachineBuilder::place_engines"},
@@ -42,7 +42,8 @@ const Rules rules{
          {"AsyncReaction::serve", "::run_operation(", "::run_method(", "::force_port(", "::release_port(", "::command_behaviour(", "::ask_guards(",
           "PropertyTransaction::", "BehaviourSlot::obey", "EngineCall::run", "MethodRequest::run", "run_trigger",
           "run_observer", "BrowserService::observe", "MachineBuilder::place_unit", "MachineBuilder::place_slot"}},
-        // Of a component that decides itself when it runs; the loom has none, and a layer that nobody enters needs nothing.
+        // For a component that decides itself when it runs; the loom has none, and a layer that is never
+        // entered needs nothing.
         {"an engine's cycle out of a loop", {"tappet::Activity::loop("}, 1, "nobody"},
         {"requests of browsers", {"BrowserService::look_at_", "PropertyFiles::store"}, 1, "describe<tappet::BrowserService"},
         {"requests as they come", {"BrowserService::serve_"}, 1, "describe<tappet::BrowserService"},
@@ -50,7 +51,7 @@ const Rules rules{
     },
     .ends = {"contract_broken", "break_contract", "__assert_fail", "__stack_chk_fail", "abort", "__libc_message", "std::terminate",
              "__throw_", "__cxa_", "_Unwind_", "__libc_fatal", "pthread_exit"},
-    // Called by the main thread: arming, opening devices, the end; and by the guardian.
+    // The main thread calls these: arming, opening devices, the end; so does the guardian.
     .outside = {"::analyse_traffic(", "::longest_seen(", "os::(anonymous namespace)::", "ExtraSections<", "ExtraList::", "ExtraSection::", "Limits<", "Control<", "RealWorld::", "MakersThread::", "Activity::enter(", "MachineInstance",
                 "tappet::Hardware<", "tappet::OpenedDevices::", "::RealBus::", "::RealChip::", "::RealServer::", "::RealPort::", "tappet::RealDevice::", "tappet::DeviceAsked const&", "os::Guard::try_apart<", "tappet::make_safe_requests(", "::GuardedProcess::", "tappet::end_safely(", "BrowserService::answer_for_nobody", "run_firmware(", "Probe::wake(", "Probe::load(", "os::build_id()", "cpf::is_blank"},
     .stated = {
@@ -74,10 +75,10 @@ const Rules rules{
 };
 // clang-format on
 
-/// libc's own of a thread, between the top of its stack and Activity::enter: measured 3548 bytes.
+/// libc's own share of a thread, between the top of its stack and Activity::enter: measured 3548 bytes.
 constexpr std::size_t above_the_body = 4096;
 
-TEST(Stacks, hold_what_the_firmware_may_use_of_them) {
+TEST(Stacks, are_large_enough_for_the_firmware) {
     const Image image = read_image(LOOM_FIRMWARE);
     ASSERT_FALSE(image.functions.empty())
         << "the firmware or objdump is not there; ci/setup installs the latter";

@@ -1,4 +1,4 @@
-// A folder of a test's own, which is gone with it; and what a file holds.
+// A test's own folder, which is removed at its end; and reading a file whole.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A program run as a user runs it: what it printed, on both outputs, and how it ended.
+// Runs a program as a user does: its output on both streams, and its exit code.
 #pragma once
 
 #include <cstdio>
@@ -13,7 +13,7 @@ struct Ended {
     int exit_code = -1;
 };
 
-/// A line of the shell.
+/// Runs a line of the shell.
 inline Ended run_line(const std::string& line) {
     Ended ended;
     std::FILE* const output = popen(("{ " + line + "; } 2>&1").c_str(), "r"); // NOLINT: a test's own words

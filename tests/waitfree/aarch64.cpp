@@ -1,6 +1,6 @@
-// Says what an instruction of aarch64 does to registers, frame and flags in the words of x86-64, in which the
-// check of loops thinks: one instruction becomes one to four, at the same address. What has no such words
-// makes what it writes unknown. Read from `objdump -d -r -M no-aliases`.
+// Translates an instruction of aarch64 into the words of x86-64 in which the loop check works (registers,
+// frame and flags): one instruction becomes one to four, at the same address. An instruction without such
+// words makes its results unknown. Input is `objdump -d -r -M no-aliases`.
 #include "tests/waitfree/disassembly.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ bool is_any(std::string_view name, std::initializer_list<std::string_view> names
     return std::ranges::find(names, name) != names.end();
 }
 
-/// "x0, [x1, #8]!, lsl #2" parted at the commas outside of brackets.
+/// "x0, [x1, #8]!, lsl #2" split at the commas outside of brackets.
 Texts parts_of(std::string_view text) {
     Texts parts;
     std::size_t begin = 0;
@@ -43,7 +43,7 @@ bool is_general(std::string_view name) {
            std::ranges::all_of(name.substr(1), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Of a source; what is neither a general register nor a number is unknown.
+/// The source operand; anything but a general register or a number is unknown.
 std::string source(std::string_view name) {
     if (name == "sp") return "rsp";
     if (name == "wsp") return "esp";
@@ -117,7 +117,7 @@ private:
         if (operand < operands_.size() && is_general(operands_[operand]))
             say(name_, {source(operands_[operand])}, true);
     }
-    /// Flags of which nothing is known.
+    /// Flags with unknown contents.
     void flags() { say("bt", {"?"}); }
 
     /// Jumps and calls.
@@ -140,7 +140,7 @@ private:
         } else if (is_any(name_, {"cbz", "cbnz"})) {
             say("test", {source(operands_[0]), source(operands_[0])});
             say(name_ == "cbz" ? "je" : "jne", {operands_[1]});
-            say("cmc"); // the flags are as they were, which nobody may take for this comparison's
+            say("cmc"); // the flags are unchanged, and must not count as this comparison's
         } else if (is_any(name_, {"tbz", "tbnz"})) {
             flags();
             say(name_ == "tbz" ? "je" : "jne", {operands_[2]});
@@ -166,7 +166,7 @@ private:
                     : at == 1 && begins_with_any(name_, {"str", "stur", "stlr", "stlur", "stllr"});
         const bool is_narrow = name_.ends_with('b') || name_.ends_with('h') || name_.ends_with("sw");
         if (loads || stores) {
-            // What the address stands on is loaded last.
+            // The base register of the address is loaded last.
             const std::size_t first = is_pair && source(operands_[0]) == memory.base ? 1 : 0;
             for (std::size_t k = 0; k < at; ++k) {
                 const std::size_t i = k ^ first;
@@ -191,7 +191,7 @@ private:
                     unknown(i);
             }
         } else if (begins_with_any(name_, {"ldadd", "ldclr", "ldset", "ldeor", "ldsm", "ldum", "swp"})) {
-            unknown(1); // what was there before
+            unknown(1); // the previous contents
         } else {
             unknown(0);
             if (begins_with_any(name_, {"casp", "ldxp", "ldaxp"})) unknown(1);
@@ -200,7 +200,7 @@ private:
         if (memory.base_is_lost) say(name_, {memory.base}, true);
     }
 
-    /// Between registers; false: nothing but that the first operand changes is known.
+    /// Between registers; false: only the change of the first operand is known.
     bool computes() {
         const std::size_t count = operands_.size();
         const auto is_register = [&](std::size_t i) {
@@ -213,7 +213,7 @@ private:
             say("nop");
         } else if (is_any(name_, {"add", "sub", "adds", "subs"}) && count >= 3) {
             auto number = immediate(operands_[2]);
-            if (number && count > 3) *number <<= 12; // the only shift that there is
+            if (number && count > 3) *number <<= 12; // the only possible shift
             const bool adds = name_.starts_with("add"), sets_flags = name_.ends_with('s');
             const bool is_plain = number || (count == 3 && is_register(2) && !adds);
             if (sets_flags && is_plain && !(adds && number == 0))
@@ -262,7 +262,7 @@ private:
 } // namespace
 
 std::vector<Instruction> of_aarch64(std::uint64_t address, std::string_view text) {
-    text = trimmed(text.substr(0, text.find("//"))); // what follows is objdump's own reckoning
+    text = trimmed(text.substr(0, text.find("// the rest is objdump's own computation
     const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
     return Saying{address, std::string{text.substr(0, end)}, parts_of(text.substr(end))}.said();
 }

@@ -20,7 +20,7 @@ bool hexadecimal(std::string_view text, std::uint64_t& value) {
     return number.has_value();
 }
 
-/// One function while its lines are read: jumps are known by address until it is complete.
+/// A function while its lines are read: jumps are kept by address until it is complete.
 struct Open {
     Function function;
     std::string section;
@@ -31,7 +31,7 @@ Instruction instruction(std::uint64_t address, std::string_view text) {
     static constexpr std::array prefixes{"lock", "rep", "repz", "repnz", "notrack", "bnd", "data16", "cs"};
     Instruction one;
     one.address = address;
-    // What follows a mark of comment is objdump's own reckoning.
+    // The text after a comment mark is objdump's own computation.
     const std::size_t mark = std::min(text.find('#'), text.size());
     if (mark != text.size()) {
         const std::string_view note = trimmed(text.substr(mark + 1));

@@ -13,7 +13,7 @@ namespace {
 
 using Nodes = std::set<std::size_t>;
 
-/// What can be reached from `from` by at least one step within `within`, not passing through `avoided`.
+/// Nodes reachable from `from` by at least one step within `within`, not passing through `avoided`.
 Nodes reach(const Function& function, const Nodes& within, std::size_t from, const Nodes& avoided = {}) {
     Nodes found;
     std::vector<std::size_t> open;
@@ -56,7 +56,8 @@ bool leads_to(const Function& function, std::size_t at, std::size_t to) {
 
 enum class Leaves : std::uint8_t { when_equal, upwards, downwards, never };
 
-/// For the jump's condition on (left, right): to which side the left one leaves, when the jump leaves on it.
+/// The direction in which the left operand leaves the loop, for a jump that leaves on this condition of
+/// (left, right).
 Leaves side(std::string_view condition) {
     static constexpr std::array equal{"je"};
     static constexpr std::array up{"ja", "jae", "jnb", "jg", "jge", "jns"};
@@ -82,7 +83,7 @@ std::string_view negated(std::string_view condition) {
     return {};
 }
 
-/// What a conditional jump compares when it counts a cycle.
+/// The comparison of a conditional jump that counts a cycle.
 struct Test {
     Value counter;
     Value bound;
@@ -107,7 +108,7 @@ public:
         }
     }
 
-    /// By this conditional jump; false: it does not count the cycle.
+    /// Checks this conditional jump; false: it does not count the cycle.
     bool counted_by(std::size_t jump, Test& test) const {
         const Instruction& exit = function_.code[jump];
         const bool taken_leaves = exit.target == none || !cycle_.contains(exit.target);
@@ -145,13 +146,13 @@ private:
         return side == Leaves::downwards ? Leaves::upwards : side;
     }
 
-    /// Whether another path comes in at this instruction, so that the one before it need not have run.
+    /// Whether another path enters at this instruction, so that the previous one need not have run.
     [[nodiscard]] bool is_joined(std::size_t at) const {
         return std::ranges::any_of(function_.code,
                                    [at](const Instruction& each) { return each.target == at; });
     }
 
-    /// The change of a place in one pass, the same way on every path; 0: none, or not known.
+    /// The change of a place in one pass, equal on every path; 0: none, or unknown.
     [[nodiscard]] std::int64_t step_of(const Place& place) const {
         std::int64_t step = 0;
         for (const State& after : returns_) {
@@ -184,7 +185,7 @@ private:
         if (!first.same_base(last)) return true;
         const std::int64_t distance = step > 0 ? last.offset - first.offset : first.offset - last.offset;
         const std::int64_t stride = std::abs(step);
-        // An end that is stepped over would be met after the counter wrapped, if ever.
+        // A stepped-over bound would be met only after the counter wrapped, if ever.
         if (leaves == Leaves::when_equal && (distance < 0 || distance % stride != 0)) return false;
         test.passes =
             distance < 0
@@ -193,7 +194,7 @@ private:
         return true;
     }
 
-    /// What a place holds when the cycle is entered.
+    /// The contents of a place when the cycle is entered.
     [[nodiscard]] Value before(const Place& place) const {
         std::optional<Value> value;
         for (const auto& [at, state] : in_function_) {
@@ -232,7 +233,7 @@ void examine(const Function& function, const States& in_function, const Nodes& w
         } else {
             const Examination examination{function, in_function, cycle, header};
             loop.fault = "has no exit that every pass meets, by a counter against a bound that stays";
-            // Compilers copy the end of a loop to where paths part: the same test at each of them counts as
+            // Compilers copy the end of a loop to diverging paths: the same test on each of them counts as
             // one.
             std::vector<std::pair<Test, Nodes>> tests;
             for (const std::size_t at : cycle) {
@@ -261,8 +262,7 @@ void examine(const Function& function, const States& in_function, const Nodes& w
     }
 }
 
-/// A jump to an address that is computed: the end of a function that calls what it was given, or a table of
-/// jumps.
+/// A jump to a computed address: the end of a function that calls its argument, or a jump table.
 bool jumps_by_table(const Function& function, std::size_t at) {
     const Instruction& jump = function.code[at];
     if (!jump.is_jump() || jump.target != none || !jump.symbol.empty() || jump.operands.empty()) return false;
@@ -277,7 +277,7 @@ public:
         : program_{program}, permission_{permission}, verdict_{verdict} {}
 
     void visit(const std::string& name, const std::string& from) {
-        // A broken promise (noexcept, a smashed stack) ends the process: nothing comes after it.
+        // A broken promise (noexcept, a smashed stack) ends the process: nothing follows it.
         static constexpr std::array ends{"__clang_call_terminate", "_ZSt9terminatev", "__stack_chk_fail",
                                          "abort"};
         if (std::ranges::find(ends, name) != ends.end()) return;

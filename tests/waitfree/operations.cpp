@@ -1,5 +1,5 @@
 // Each operation that is claimed to be wait-free as a function of its own, so that its object code can be
-// looked at: the containers (thesis 4.4), emission, posting and waking (thesis 4.6, 4.2.3).
+// checked: the containers (thesis 4.4), emission, posting and waking (thesis 4.6, 4.2.3).
 #include "kernel/activity/command_processor.hpp"
 #include "kernel/activity/cycle_tape.hpp"
 #include "kernel/component/buffer_port.hpp"
@@ -20,8 +20,8 @@ using namespace tappet;
 
 namespace tappet::waitfree {
 
-/// A value that is copied in a loop. With a name outside: of functions that only this file can know the
-/// compiler also knows which registers they leave alone, and their callers follow no convention.
+/// A value that is copied in a loop. It has external linkage: for functions known only to this file, the
+/// compiler also knows which registers they preserve, and their callers follow no convention.
 struct Frame {
     std::array<std::uint64_t, 40> words;
 };

@@ -1,4 +1,5 @@
-// What looks much the same and is not wait-free: each of these must be refused, or the check sees nothing.
+// Code that looks similar but is not wait-free: each of these must be refused, otherwise the check sees
+// nothing.
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -32,14 +33,14 @@ void retry_push(std::atomic<Node*>& head, Node* node) noexcept {
 }
 
 #if defined(__aarch64__)
-/// No loop is written here: before the atomic instructions of version 8.1 the compiler makes it.
+/// The source has no loop: before the atomic instructions of version 8.1, the compiler generates it.
 [[gnu::target("no-lse")]] std::uint64_t retry_add_without_lse(std::uint64_t& word) noexcept {
     return __atomic_fetch_add(&word, 1, __ATOMIC_ACQ_REL);
 }
 #endif
 
-/// No loop is written here: the compiler makes it, because the result is used and an or of x86-64 has none.
-/// Of aarch64 it has: there this retries nothing.
+/// The source has no loop: the compiler generates it, because the result is used and x86-64 has no "or" that
+/// returns it. aarch64 has one: there this retries nothing.
 bool retry_set_bit(std::atomic<std::uint64_t>& word, std::uint64_t bits) noexcept {
     return (word.fetch_or(bits, std::memory_order_acq_rel) & bits) != bits;
 }
@@ -49,7 +50,7 @@ void retry_wait_for_flag(const std::atomic<bool>& flag) noexcept {
     }
 }
 
-/// A sequence lock: the reader goes on as long as the writer does.
+/// A sequence lock: the reader retries as long as the writer writes.
 void retry_read(const OneSlot& slot, std::uint64_t* into) noexcept {
     std::uint64_t before = 0;
     do {
@@ -67,7 +68,7 @@ std::uint64_t retry_while_more_comes(const Counted& queue) noexcept {
     return sum;
 }
 
-/// A counter that a failure sets back counts nothing.
+/// A counter that a failure resets counts nothing.
 bool retry_with_a_counter_that_is_set_back(const OneSlot& slot) noexcept {
     std::uint64_t seen = slot.generation.load(std::memory_order_acquire);
     for (std::size_t i = 0; i < slot.words.size(); ++i)
@@ -78,14 +79,14 @@ bool retry_with_a_counter_that_is_set_back(const OneSlot& slot) noexcept {
     return seen != 0;
 }
 
-/// Through a function that is not inlined, and in the end through itself.
+/// Calls a function that is not inlined, and finally itself.
 [[gnu::noinline]] std::uint64_t retry_by_recursion(const std::atomic<std::uint64_t>& word,
                                                    std::uint64_t seen) noexcept {
     const std::uint64_t now = word.load(std::memory_order_acquire);
     return now == seen ? now : 1 + retry_by_recursion(word, now);
 }
 
-/// Bounded, and no cycle at all: must not be refused.
+/// Bounded and without a cycle: must not be refused.
 std::uint64_t counted_sum(const Counted& queue) noexcept {
     std::uint64_t sum = 0;
     for (const auto& word : queue.words) sum += word.load(std::memory_order_acquire);

@@ -40,7 +40,7 @@ std::optional<Register> as_register(std::string_view name) {
     if (const auto found = in(word, 2)) return found;
     if (const auto found = in(low, 1)) return found;
     if (const auto found = in(high, 1)) return found;
-    // Of aarch64, behind those; its stack pointer goes by the other's name.
+    // The registers of aarch64 follow those; its stack pointer has the other's name.
     if (name.size() < 2 || (name[0] != 'x' && name[0] != 'w')) return std::nullopt;
     const auto index = as_number(name.substr(1), 10);
     if (!index || *index < 0 || *index > 30) return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<Register> as_register(std::string_view name) {
 
 Value constant(std::int64_t offset) { return {Value::Kind::constant, {}, offset}; }
 
-/// "[rsp+rax*1+0x8]": what address that is.
+/// The address of "[rsp+rax*1+0x8]".
 Value address(const State& state, std::string_view operand) {
     const std::size_t open = operand.find('[');
     if (operand.substr(0, open).contains(':')) return {}; // relative to a segment
@@ -107,7 +107,7 @@ void write(State& state, const std::string& operand, const Value& value) {
     }
     if (!operand.contains('[')) return;
     const auto place = slot(address(state, operand));
-    if (!place) return; // a slot that the compiler spills to is written by its own address only
+    if (!place) return; // the compiler writes a spill slot only by its own address
     const std::int64_t bytes = bytes_of(operand);
     for (auto& [other, held] : state)
         if (other.kind == place->kind && other.at > place->at - word_bytes && other.at < place->at + bytes)
@@ -214,7 +214,7 @@ void execute(const Instruction& one, State& state) {
         state[number(rsp)] = value_of(state, number(rbp)).plus(word_bytes);
         state[number(rbp)] = Value{};
     } else {
-        // Whatever else there is: all that it may write is unknown.
+        // Any other instruction makes everything that it may write unknown.
         if (begins_with_any(name, {"mul", "div", "idiv"}) || (name == "imul" && count == 1) ||
             name.ends_with("cmpxchg") ||
             begins_with_any(name, {"cqo", "cdq", "cwd", "cpuid", "rdtsc", "syscall"}))

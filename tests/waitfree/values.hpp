@@ -1,5 +1,5 @@
-// What registers and stack slots hold at each instruction, as far as it is "a constant" or "what that place
-// held before, plus a constant": enough to know a counter and its bound.
+// The contents of registers and stack slots at each instruction, as far as they are "a constant" or "the
+// earlier contents of a place, plus a constant": enough to know a counter and its bound.
 #pragma once
 
 #include "tests/waitfree/disassembly.hpp"
@@ -24,8 +24,8 @@ struct Value {
     enum class Kind : std::uint8_t {
         unknown,
         constant,
-        at_entry,  ///< what `of` held when the function began, plus `offset`
-        at_header, ///< what `of` held when this pass of the loop began, plus `offset`
+        at_entry,  ///< the contents of `of` when the function began, plus `offset`
+        at_header, ///< the contents of `of` when this pass of the loop began, plus `offset`
         aligned,   ///< the stack pointer after its alignment, plus `offset`
     } kind = Kind::unknown;
     Place of{};
@@ -39,12 +39,12 @@ struct Value {
     [[nodiscard]] Value plus(std::int64_t more) const;
 };
 
-/// A place that is not listed holds what it held when the function began.
+/// An unlisted place still has its contents from the function's beginning.
 using State = std::map<Place, Value>;
 
 [[nodiscard]] Value value_of(const State& state, const Place& place);
-/// Of an operand as objdump writes it: a register, a number, or memory of the frame. Other memory is unknown:
-/// any thread may write it.
+/// The value of an operand as objdump writes it: a register, a number, or memory of the frame. Other memory
+/// is unknown: any thread may write it.
 [[nodiscard]] Value value_of(const State& state, const std::string& operand);
 [[nodiscard]] bool writes_flags(const Instruction& one);
 void execute(const Instruction& one, State& state);
@@ -55,7 +55,7 @@ using States = std::map<std::size_t, State>;
 [[nodiscard]] States follow(const Function& function, const std::set<std::size_t>& within, std::size_t from,
                             const State& first);
 
-/// What two paths agree on.
+/// The facts on which two paths agree.
 [[nodiscard]] State meet(const State& a, const State& b);
 
 } // namespace tappet::waitfree

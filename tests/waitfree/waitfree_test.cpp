@@ -20,14 +20,14 @@ const Program& program() {
     return all;
 }
 
-/// Copies whose length is given with them; the operating system, which wakes a thread that sleeps.
+/// Copies whose length is passed along; the operating system, which wakes a sleeping thread.
 const Permission plain{{"memcpy", "memset", "memmove"}, false};
 const Permission calling{plain.outside, true};
 const Permission waking{{"syscall", "write"}, false};
-/// A broken contract ends the thread: what it does then is no step of the operation.
+/// A broken contract ends the thread: its actions then are no steps of the operation.
 const Permission sending{
     {"memcpy", "memset", "memmove", "_ZN6tappet14break_contractERKNS_17ContractViolationE"}, true};
-/// The end of a command wakes the one who waits for it, besides what the component does.
+/// The end of a command wakes the waiting caller, besides the component's own actions.
 const Permission ending{{"memcpy", "memset", "memmove", "syscall", "write"}, true};
 
 struct Claim {
@@ -38,7 +38,7 @@ void PrintTo(const Claim& claim, std::ostream* out) { *out << claim.operation; }
 
 class Operation : public testing::TestWithParam<Claim> {};
 
-TEST_P(Operation, has_no_loop_but_counted_ones) {
+TEST_P(Operation, has_only_counted_loops) {
     const auto& [operation, permission] = GetParam();
     ASSERT_FALSE(program().empty()) << "objdump shows nothing; ci/setup installs it with the compiler";
     const Verdict verdict = check(program(), operation, permission);
@@ -107,26 +107,26 @@ TEST(Check, finds_the_loop_of_a_sum_and_its_count) {
     for (const Loop& loop : verdict.loops) EXPECT_LE(loop.passes.value_or(~std::uint64_t{0}), 40u);
 }
 
-TEST(Check, refuses_a_function_that_is_not_there_and_one_that_calls_into_the_dark) {
+TEST(Check, refuses_a_missing_function_and_one_with_unknown_calls) {
     EXPECT_FALSE(check(program(), "misspelt", plain).faults.empty());
     EXPECT_FALSE(check(program(), "waiter_wake", plain).faults.empty()) << "it makes a system call";
     EXPECT_FALSE(check(program(), "event_emit", plain).faults.empty()) << "it calls its handlers";
 }
 
-/// Object code written by hand, for shapes that no compiler can be asked for.
+/// Object code written by hand, for shapes that no compiler produces on request.
 Verdict of(std::string_view lines, const std::string& format = {}) {
     Program hand;
     add_disassembly(hand, (format + "Disassembly of section .text:\n0000000000000000 <f>:\n").append(lines));
     return check(hand, "f", plain);
 }
 
-TEST(Check, accepts_a_jump_backwards_that_closes_no_cycle) {
+TEST(Check, accepts_a_backward_jump_that_closes_no_cycle) {
     const Verdict verdict = of(" 0:\tjmp    4 <f+0x4>\n 2:\tret\n 4:\tjmp    2 <f+0x2>\n");
     EXPECT_TRUE(verdict.faults.empty());
     EXPECT_TRUE(verdict.loops.empty());
 }
 
-TEST(Check, follows_a_counter_that_is_kept_in_the_frame_meanwhile) {
+TEST(Check, follows_a_counter_that_is_spilled_to_the_stack) {
     const Verdict verdict =
         of(" 0:\txor    edx,edx\n 2:\tmov    QWORD PTR [rsp-0x10],rdx\n 8:\tmov    rdx,QWORD PTR [rdi]\n"
            " c:\tmov    rdx,QWORD PTR [rsp-0x10]\n 10:\tadd    rdx,0x1\n 14:\tcmp    rdx,0x3f\n"
@@ -136,7 +136,7 @@ TEST(Check, follows_a_counter_that_is_kept_in_the_frame_meanwhile) {
     EXPECT_EQ(verdict.loops[0].passes.value_or(0) / 2, 32u) << "sixty-four, or one more";
 }
 
-TEST(Check, takes_the_same_test_on_each_path_for_one) {
+TEST(Check, merges_equal_tests_on_different_paths) {
     const Verdict verdict =
         of(" 0:\txor    eax,eax\n 2:\tadd    rax,0x1\n 4:\ttest   BYTE PTR [rdi],0x1\n 6:\tje     e <f+0xe>\n"
            " 8:\tcmp    rax,0x10\n a:\tjne    2 <f+0x2>\n c:\tret\n e:\tcmp    rax,0x10\n"
@@ -149,14 +149,14 @@ Verdict of_aarch64_code(std::string_view lines) {
     return of(lines, "f.o:     file format elf64-littleaarch64\n");
 }
 
-TEST(Aarch64, counts_down_in_the_instruction_that_compares) {
+TEST(Aarch64, recognizes_a_counting_compare_instruction) {
     const Verdict verdict = of_aarch64_code(" 0:\tmovz\tx8, #0x28\n 4:\tldr\tx9, [x0], #8\n 8:\tsubs\tx8, "
                                             "x8, #0x1\n c:\tb.ne\t4 <f+0x4>  // b.any\n 10:\tret\n");
     ASSERT_TRUE(verdict.faults.empty());
     EXPECT_EQ(verdict.loops.at(0).passes.value_or(0), 40u);
 }
 
-TEST(Aarch64, follows_a_counter_that_is_kept_in_the_frame_over_a_call_and_a_pair) {
+TEST(Aarch64, follows_a_counter_spilled_across_a_call_and_a_register_pair) {
     const Verdict verdict = of_aarch64_code(" 0:\tstp\tx29, x30, [sp, #-32]!\n 4:\torr\tx8, xzr, xzr\n "
                                             "8:\tstp\tx0, x8, [sp, #16]\n c:\tldadd\tx9, x8, [x0]\n"
                                             " 10:\tldp\tx0, x8, [sp, #16]\n 14:\tadd\tx8, x8, #0x10\n "

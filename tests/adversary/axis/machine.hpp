@@ -1,5 +1,5 @@
-// A machine whose one axis stands on a CiA 402 drive: it goes home, to places and follows, and people ask it
-// for anything besides.
+// A machine whose one axis uses a CiA 402 drive: it homes, moves to positions and follows, while users send
+// it any other request.
 #pragma once
 
 #include "drivers/can/bus.hpp"
@@ -12,8 +12,8 @@ namespace adversary_axis {
 
 using namespace tappet;
 
-/// One motion after the other, each a while after the one before. While the axis follows positions, it leads
-/// it on from where it is, for long enough that more is asked for besides.
+/// One motion after another, with pauses. While the axis follows positions, they continue from its current
+/// one, long enough for other requests to come in between.
 struct Work {
     Input<bool> follows;
     Input<double> position;

@@ -1,5 +1,5 @@
-// A servo drive as slow and as forgetful as CiA 402 lets it be, and somebody who turns its shaft by hand
-// while it has no power.
+// A servo drive as slow and forgetful as CiA 402 allows, and a person who turns its shaft by hand while it
+// has no power.
 #pragma once
 
 #include "drivers/can/far_end.hpp"

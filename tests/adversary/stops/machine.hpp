@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A machine in real time whose makers' functions take as long as a seed says, with people who restart its
+// A machine in real time whose user functions take as long as a seed says, with users who restart its
 // activities; and the memory in which its judge sees it from another process.
 #pragma once
 
@@ -34,7 +34,7 @@ enum class Cause : std::uint8_t {
 inline constexpr std::size_t causes = 9;
 enum Slow : std::uint8_t { camera, receiver };
 
-/// What a seed chose. Times are in ms. Those of people count from their first cycle.
+/// The choices of a seed. Times are in ms. Those of users count from their first cycle.
 struct Draw {
     std::array<std::array<int, functions>, 2> takes{}; ///< Slow, Function
     struct Ask {
@@ -51,7 +51,7 @@ struct Page : test::WirePage {
     Draw draw{};
     std::atomic<int> on_supervisor{-1}; ///< the Function that ran there
     std::array<std::atomic<int>, 2> initialised{}, finalised{};
-    std::atomic<bool> has_stopped{false}; ///< the valve, by its own stop()
+    std::atomic<bool> has_stopped{false}; ///< of the valve, by its own stop()
 };
 inline Page* page = nullptr;
 inline MachineInstance* instance = nullptr;
@@ -89,8 +89,8 @@ struct Pulse {
     static constexpr auto interface() { return facets(output<&Pulse::beat>("beat", "", "counts")); }
 };
 
-/// No row awaits what it says and nobody watches its life, so that nothing but the machine's patience with
-/// its stop tells that it hangs. Until it is ended it puts the wire on again and again.
+/// No row waits for it and no life check watches it, so that only the time limit of its stop reveals that it
+/// hangs. Until it is ended, it switches the wire on again and again.
 struct Lamp {
     Property<std::int64_t> unused{0};
     std::atomic<bool> hangs_in_stop{false};
@@ -103,7 +103,7 @@ struct Lamp {
     }
 };
 
-/// They restart what takes long, and in the end something stops the machine.
+/// They restart slow activities, and in the end something stops the machine.
 struct People {
     Property<std::int64_t> unused{0};
     Time began = never;
@@ -126,7 +126,7 @@ struct People {
         auto& valve = *instance->find<Valve>("valve");
         auto& pulse = *instance->find<Pulse>("pulse");
         switch (by) {
-        case Cause::termination: ::kill(::getppid(), SIGTERM); break; // the guardian, which hands it on
+        case Cause::termination: ::kill(::getppid(), SIGTERM); break; // the guardian, which forwards it
         case Cause::somebody: instance->ask_stop(StopReason::requested, 0, nullptr); break;
         case Cause::contract: valve.breaks_contract = true; break;
         case Cause::deadline: valve.takes_long = true; break;
@@ -151,8 +151,8 @@ struct People {
     }
 };
 
-/// Each of its functions takes the time that the seed chose, on whatever thread; that of the supervisor is
-/// noted.
+/// Each of its functions takes the time that the seed chose, on any thread; a run on the supervisor's thread
+/// is recorded.
 template <Slow who>
 struct Slowly {
     static void take(Function function) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The adversary in real time: seed after seed a firmware in its two processes, whose makers' functions take
-// their time while people restart its activities and something asks for the stop. Rules judge from outside.
+// The adversary in real time: seed after seed, a firmware in its two processes, whose user functions take
+// their time while users restart its activities and something requests the stop. Rules judge from outside.
 #include "kernel/base/random.hpp"
 #include "kernel/machine/accept.hpp"
 #include "kernel/os/arming.hpp"
@@ -18,7 +18,7 @@ namespace {
 constexpr std::array options{
     Option{.name = "--working",
            .value = "N",
-           .help = "so many seconds (default 60)",
+           .help = "N seconds of processor time (default 60)",
            .is_number = true,
            .least = 1},
     swarm_options::findings,
@@ -75,11 +75,11 @@ Sentence described(const Draw& draw) {
     return text;
 }
 
-/// From the cause to the moment in which somebody knows of it, at most.
+/// Longest time from the cause until it is noticed.
 Duration noticed_within(Cause cause) {
     switch (cause) {
     case Cause::contract: return 100ms; // a period of the drivers
-    case Cause::deadline: return 250ms; // and the cycle that takes long
+    case Cause::deadline: return 250ms; // and the slow cycle
     case Cause::stale:
     case Cause::hang: return 110ms;         // the row's age
     case Cause::hang_alone: return 10100ms; // RealWorld::patience_beside_ms
@@ -91,7 +91,7 @@ Duration noticed_within(Cause cause) {
     return {};
 }
 
-/// No thread was held up: the machine sees to its stop itself.
+/// No thread was blocked: the machine executes its stop itself.
 bool is_for_machine(const Draw& draw) {
     if (draw.cause == Cause::hang || draw.cause == Cause::hang_alone ||
         draw.cause == Cause::supervisor_sleeps)
@@ -110,7 +110,7 @@ template <class Condition> bool becomes(Condition condition, Duration within) {
     return is_so;
 }
 
-std::uint64_t not_started = 0; ///< seeds of which no stop was seen
+std::uint64_t not_started = 0; ///< seeds without an observed stop
 
 /// Empty: all rules held.
 Sentence judge(pid_t guardian, const Draw& draw) {
@@ -124,7 +124,7 @@ Sentence judge(pid_t guardian, const Draw& draw) {
             },
             longest_makers))
         return Sentence{"its people do not come to their turn"};
-    if (has_ended && page->asked == 0) { // on a host so busy that an activity came too late
+    if (has_ended && page->asked == 0) { // the host was so busy that an activity came too late
         ++not_started;
         return page->wire == 0 ? Sentence{} : Sentence{"it did not start, and its outputs are not safe"};
     }
@@ -152,7 +152,7 @@ Sentence judge(pid_t guardian, const Draw& draw) {
                         "() of a component ran on the thread that executes stops"};
     if (!is_for_machine(draw)) return {};
     if (!page->has_stopped) return Sentence{"its valve left no safe values by itself"};
-    if (page->by_guardian != 0 && draw.cause != Cause::contract) // of which nobody knows what it broke
+    if (page->by_guardian != 0 && draw.cause != Cause::contract) // a broken contract may have broken anything
         return Sentence{"its guardian had to act, though no thread was held up"};
     for (std::size_t who = 0; who < 2; ++who)
         if (page->initialised[who] != page->finalised[who])
@@ -176,7 +176,7 @@ Sentence run(std::uint64_t seed) {
     const Sentence broken = judge(guardian, page->draw);
     ::kill(-guardian, SIGKILL);
     int status = 0;
-    ::waitpid(guardian, &status, 0); // none, when the judge has seen its end
+    ::waitpid(guardian, &status, 0); // nothing to wait for when the judge has seen its end
     return broken;
 }
 

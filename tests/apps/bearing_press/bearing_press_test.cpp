@@ -1,5 +1,5 @@
-// The bearing press with its plant under virtual time: each bearing is seated with its force, nothing jumps
-// when another controller takes over, and what fails leaves the slide at rest.
+// The bearing press with its plant under virtual time: it seats each bearing with its force, a hand-over
+// causes no jump, and after a failure the slide rests.
 #include "apps/bearing_press/axis.hpp"
 #include "kernel/control/chain_switch.hpp"
 #include "kernel/machine/map/view.hpp"
@@ -35,7 +35,7 @@ TEST_P(BearingPress, seats_each_bearing_with_its_force_and_not_more) {
     EXPECT_EQ(run.instance().find<Axis>("axis")->seated.last(), plant.bearings());
 }
 
-// The bound: what the inner ramp may change, through a drive that lags by 4 ms.
+// Upper bound: the largest change of the inner ramp, through a drive that lags by 4 ms.
 TEST_P(BearingPress, is_never_jolted_by_a_hand_over) {
     ASSERT_TRUE(run.run_until([this] { return plant.is_done(); }, 60s));
     EXPECT_GT(run.instance().observation().counted(0, 4).times, 2u) << "hand-overs to the press";
@@ -55,7 +55,7 @@ TEST_P(BearingPress, comes_to_rest_when_stop_is_pressed_at_any_time_of_the_cycle
         EXPECT_TRUE(state() == "Standstill" || state() == "Pressing" || state() == "Returning") << state();
         plant.press("stop", false);
         run.run_for(50ms);
-        plant.press("stop", true); // one that was pressed while nothing could be stopped
+        plant.press("stop", true); // pressed once while nothing could be stopped
         run.run_for(50ms);
         plant.press("stop", false);
         ASSERT_TRUE(comes_to("Standstill")) << state();
@@ -79,7 +79,7 @@ TEST_P(BearingPress, is_not_jolted_when_power_comes_back_after_a_stop_in_mid_pat
     EXPECT_LT(plant.worst_jolt(), Plant::most_jolt);
 }
 
-TEST_P(BearingPress, does_not_start_while_stop_is_held_and_stops_jogging_by_it) {
+TEST_P(BearingPress, stops_jogging_and_does_not_start_while_stop_is_held) {
     ASSERT_TRUE(comes_to("Standstill"));
     plant.press("stop", true);
     run.run_for(2s);
@@ -96,7 +96,7 @@ TEST_P(BearingPress, does_not_start_while_stop_is_held_and_stops_jogging_by_it) 
     EXPECT_TRUE(stands());
 }
 
-TEST_P(BearingPress, stops_jogging_at_the_end_to_which_it_leads_and_jogs_away_from_it) {
+TEST_P(BearingPress, stops_jogging_at_an_end_and_jogs_away_from_it) {
     ASSERT_TRUE(comes_to("Standstill"));
     plant.work(false);
     run.run_for(100ms);
@@ -152,7 +152,7 @@ TEST_P(BearingPress, stops_the_axis_when_its_drive_falls_silent) {
     EXPECT_TRUE(stands());
 }
 
-TEST_P(BearingPress, does_not_start_by_itself_at_an_end_and_goes_on_when_it_is_free) {
+TEST_P(BearingPress, does_not_start_at_an_end_until_it_is_free) {
     ASSERT_TRUE(comes_to("Standstill"));
     plant.hold_lower_end(true);
     run.run_for(3s);
@@ -161,7 +161,7 @@ TEST_P(BearingPress, does_not_start_by_itself_at_an_end_and_goes_on_when_it_is_f
     EXPECT_TRUE(run.run_until([this] { return plant.bearings() > 0; }, 20s)) << state();
 }
 
-TEST_P(BearingPress, shows_what_is_forced_where_several_write_by_turns) {
+TEST_P(BearingPress, shows_forced_inputs_that_have_several_writers) {
     const AcceptedMachine& machine = run.instance().machine();
     const auto view = map::View::open(run.instance().observation().shared_memory());
     ASSERT_TRUE(view) << view.error().view();

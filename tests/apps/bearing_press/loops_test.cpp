@@ -1,5 +1,5 @@
-// The press' controllers, each alone: whatever they began with or were told, they are what they were as soon
-// as their inputs are numbers again.
+// The press' controllers, each alone: after any initial values and any inputs they recover as soon as their
+// inputs are numbers again.
 #include "apps/bearing_press/loops.hpp"
 #include "tests/kernel/base/hostile.hpp"
 
@@ -17,7 +17,8 @@ template <class Loop>
 using Outputs = std::initializer_list<Output<double> Loop::*>;
 
 struct Loops : test::Hostile {
-    /// Two steps after the inputs are numbers again, all outputs are, and what is a speed is at most `most`.
+    /// Two steps after the inputs are numbers again, all outputs are numbers, and each speed is at most
+    /// `most`.
     template <class Loop>
     void recover(Inputs<Loop> inputs, Outputs<Loop> outputs, double most) {
         for (int n = 0; n < 2000; ++n) {
@@ -51,7 +52,7 @@ struct Loops : test::Hostile {
 
 constexpr double any = std::numeric_limits<double>::max();
 
-TEST_F(Loops, recover_from_whatever_they_began_with) {
+TEST_F(Loops, recover_from_any_initial_values) {
     recover<Speed>({&Speed::position}, {&Speed::velocity}, any);
     recover<Idle>({&Idle::position}, {&Idle::target, &Idle::speed}, 0.01);
     recover<Standing>({&Standing::position, &Standing::sent}, {&Standing::target, &Standing::speed}, any);
@@ -84,7 +85,7 @@ struct ToldRamp : bearing_press::Ramp {
     }
 };
 
-TEST_F(Loops, of_places_ask_for_a_number_however_far_the_place_is) {
+TEST_F(Loops, command_a_finite_speed_at_any_position) {
     ToldPlace place;
     for (int n = 0; n < 2000; ++n) {
         for (Output<double>* each :
@@ -96,7 +97,7 @@ TEST_F(Loops, of_places_ask_for_a_number_however_far_the_place_is) {
     }
 }
 
-TEST_F(Loops, begin_from_rest_when_they_were_sent_what_is_no_number) {
+TEST_F(Loops, begin_at_rest_when_the_sent_value_is_not_finite) {
     for (const double none :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         ToldRamp ramp;
@@ -109,7 +110,7 @@ TEST_F(Loops, begin_from_rest_when_they_were_sent_what_is_no_number) {
     }
 }
 
-/// A slide that stands at 0.1 m; its drive does what it may.
+/// A slide that stands at 0.1 m; its drive keeps its limits.
 struct PlacedSlide : ToldPlace {
     double at = 0.1, worst = 0.0, drives = 0.0;
     PlacedSlide() { tell(); }
@@ -125,13 +126,13 @@ struct PlacedSlide : ToldPlace {
     }
 };
 
-TEST_F(Loops, do_not_leave_their_place_for_a_target_that_was_far) {
+TEST_F(Loops, hold_their_position_after_a_distant_target) {
     for (const double far : {10.0, -10.0, 1e3, 1e300, -1e300, 0.2}) {
         PlacedSlide place;
         place.told_target.write(far);
         place.told_speed.write(0.0);
         place.start({});
-        place.told_target.write(0.1); // it shall stand where it is
+        place.told_target.write(0.1); // it is to stay where it is
         for (int ms = 0; ms < 3000; ++ms) {
             place.step({.period = 1ms});
             place.go(place.velocity.last());
@@ -140,7 +141,7 @@ TEST_F(Loops, do_not_leave_their_place_for_a_target_that_was_far) {
     }
 }
 
-TEST_F(Loops, begin_at_the_speed_that_the_slide_has) {
+TEST_F(Loops, begin_at_the_speed_of_the_slide) {
     for (const double target_now : {0.1, 0.3, -5.0, 1e300}) {
         ToldPlace place;
         place.told_target.write(target_now), place.told_speed.write(0.0);
@@ -159,7 +160,7 @@ TEST_F(Loops, begin_at_the_speed_that_the_slide_has) {
     }
 }
 
-TEST_F(Loops, come_back_from_what_was_commanded_beyond_the_speed_of_the_drive) {
+TEST_F(Loops, recover_from_a_command_beyond_the_speed_of_the_drive) {
     ToldRamp ramp;
     ramp.told_sent.write(0.0);
     ramp.told_command.write(1e300);
@@ -170,7 +171,7 @@ TEST_F(Loops, come_back_from_what_was_commanded_beyond_the_speed_of_the_drive) {
     EXPECT_EQ(ramp.target.last(), 0.0);
 }
 
-TEST_F(Loops, begin_no_faster_than_the_drive_whatever_was_sent) {
+TEST_F(Loops, begin_within_the_speed_of_the_drive_whatever_was_sent) {
     for (const double far : {1e300, -1e300, 50.0}) {
         Output<double> sent, position, target, command;
         sent.write(far), position.write(0.1), target.write(0.1), command.write(0.0);
@@ -203,7 +204,7 @@ struct Seat {
     void once_more() noexcept TAPPET_REALTIME { ++times; }
 };
 
-TEST_F(Loops, seat_no_bearing_with_a_force_that_is_no_number) {
+TEST_F(Loops, seat_no_bearing_when_the_force_is_not_a_number) {
     Output<double> target, force;
     Press press;
     Seat seated;

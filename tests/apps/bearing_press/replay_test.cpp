@@ -1,5 +1,5 @@
-// The bearing press and a log of its own bus: what a machine did at a customer's comes out of the log again,
-// though the nodes of the bus say nothing.
+// The bearing press replays a log of its own bus: a run at a customer's site repeats itself although the
+// nodes of the bus are silent.
 #include "toolchain/machine/test.hpp"
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct ReplayedPress : testing::Test {
     ReplayedPress() { std::filesystem::create_directories(folder); }
     ~ReplayedPress() override { std::filesystem::remove_all(folder); }
 
-    /// A bearing is seated meanwhile.
+    /// Long enough to seat a bearing.
     static constexpr Duration recorded = 6s;
     void record() {
         Plant plant{1};
@@ -29,7 +29,7 @@ struct ReplayedPress : testing::Test {
     }
     CanReplay::Counts replay() {
         Plant plant{1};
-        plant.silence_drive(); // as nobody hears it this changes nothing
+        plant.silence_drive(); // nothing reads it, so this changes nothing
         VirtualRun run{on_host(), plant, 2};
         run.devices().replay_can("axis-can", log.string());
         const auto started = run.start();
@@ -60,13 +60,13 @@ TEST_F(ReplayedPress, commands_its_drive_as_it_did_when_the_log_was_recorded) {
     EXPECT_LE(counts.only_in_log + counts.only_sent, 10u) << "the last moments, and the end's";
 }
 
-// The commands come from the log, not from the plant, which is the same.
-TEST_F(ReplayedPress, commands_something_else_when_the_log_says_something_else) {
+// The commands come from the log: the plant is the same.
+TEST_F(ReplayedPress, commands_something_else_for_a_changed_log) {
     record();
     std::ifstream in{log};
     std::string text, line;
     while (std::getline(in, line)) {
-        // 2 kN as soon as it presses, which is where it stops
+        // 2 kN as soon as it presses; it stops at that force
         if (line.starts_with("(0000000004.") && line.find(" 182#") != line.npos)
             line.replace(line.find('#') + 1, 8, "400D0300");
         text += line + "\n";

@@ -10,12 +10,12 @@ AcceptedMachine on_host();
 
 class CarRun {
 public:
-    /// `machine`: the car tracker, or one that differs in how its behaviour is executed.
+    /// `machine`: the car tracker, or a variant that executes its behaviour differently.
     explicit CarRun(std::uint64_t seed, const AcceptedMachine& machine = on_host())
         : plant_{seed}, run_{machine, plant_, seed} {}
 
     std::expected<void, Sentence> start() { return run_.start(); }
-    /// False: the machine asked to stop.
+    /// Returns false when the machine asked to stop.
     bool run_for(Duration time) {
         for (const Time end = run_.now() + time; run_.now() < end; look())
             if (!run_.run_for(std::min(end - run_.now(), Record::every))) return false;
@@ -30,7 +30,7 @@ public:
     [[nodiscard]] std::string_view state() { return state_of(instance(), "tracking"); }
     [[nodiscard]] Scene& scene() { return plant_.scene; }
     [[nodiscard]] MachineInstance& instance() { return run_.instance(); }
-    /// Of everything that happened, in machine and room.
+    /// Digest of everything that happened, in machine and room.
     [[nodiscard]] std::uint64_t digest() {
         Digest digest;
         digest.add(instance().observation().event_log_digest());

@@ -1,5 +1,5 @@
-// Thesis 5.1.4, 5.4: the tracker's script is the same machine in both forms: native code made by the C++
-// compiler, and tables walked in memory, as a script that is loaded is executed.
+// Thesis 5.1.4, 5.4: both forms of the tracker's script are the same machine: native code made by the C++
+// compiler, and tables walked in memory, as for a loaded script.
 #include "apps/car_tracking/machine.hpp"
 #include "board/host/board.hpp"
 #include "kernel/machine/accept.hpp"
@@ -24,7 +24,7 @@ std::uint64_t digest_of(CarRun& run) {
     return run.digest();
 }
 
-TEST(CarTrackingForms, native_and_walked_are_the_same_day) {
+TEST(CarTrackingForms, native_and_walked_tables_run_identically) {
     for (const std::uint64_t seed : {1u, 8u}) {
         CarRun native{seed};
         CarRun walked{seed, AtRunTime<with_tables_walked, board::host>::machine()};

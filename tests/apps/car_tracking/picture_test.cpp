@@ -1,5 +1,5 @@
-// Thesis 5.4: the picture of a run shows its track, its states and what was seen; the program draws it
-// or says why not.
+// Thesis 5.4: the picture of a run shows its track, its states and the sightings; the program draws it or
+// says why not.
 #include "apps/car_tracking/host/picture.hpp"
 #include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
@@ -33,7 +33,7 @@ TEST(Picture, shows_every_located_car_and_every_image) {
         EXPECT_THAT(picture, HasSubstr(state));
 }
 
-TEST(Picture, of_nothing_is_a_picture_of_the_room) { EXPECT_THAT(picture_of({}, {}), HasSubstr("tunnel")); }
+TEST(Picture, shows_the_room_without_data) { EXPECT_THAT(picture_of({}, {}), HasSubstr("tunnel")); }
 
 TEST(Program, draws_its_picture_or_says_why_not) {
     const test::Folder folder;
@@ -48,10 +48,10 @@ TEST(Program, draws_its_picture_or_says_why_not) {
     EXPECT_THAT(nowhere.text, HasSubstr("the picture cannot be written to \"/nowhere/at/all.svg\"; name a"));
 }
 
-TEST(Program, that_looks_into_its_machine_has_no_real_time) {
+TEST(Program, refuses_real_time) {
     const Ended ended = run_line(CAR_TRACKING " --real --for 1");
     EXPECT_EQ(ended.exit_code, 2);
-    EXPECT_THAT(ended.text, HasSubstr("option --real: this program looks into its machine"));
+    EXPECT_THAT(ended.text, HasSubstr("option --real: this program stops its machine to look into it"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// Parts of the car tracker that are stopped and started again while the rest goes on. Who commands is started
-// after those whom it commands: it switches them on.
+// Parts of the car tracker are stopped and started again while the rest keeps running. The task starts after
+// the parts that it commands: it switches them on.
 #include "apps/car_tracking/camera.hpp"
 #include "apps/car_tracking/image_recognition.hpp"
 #include "tests/apps/car_tracking/car_run.hpp"
@@ -24,7 +24,7 @@ struct Restarted : testing::Test {
     Restarted() { EXPECT_TRUE(run.start()); }
     ~Restarted() override { run.stop(); }
 
-    /// What speaks against it.
+    /// Returns the reason for a refusal; empty: accepted.
     std::string change(std::string_view name, LifeChange how) {
         MachineInstance& machine = run.instance();
         const std::size_t c = find_component(machine.machine().table, name);
@@ -45,7 +45,7 @@ struct Restarted : testing::Test {
         EXPECT_THAT(change(name, LifeChange::start), IsEmpty());
         EXPECT_EQ(state_of(name), ComponentState::running) << name;
     }
-    /// The panel's day begins anew with its start.
+    /// The panel's day begins again when the panel starts.
     void expect_follows_the_car_again() {
         const std::size_t before = run.looks().size();
         EXPECT_TRUE(run.run_for(to_follow_again)) << run.instance().describe_stop().view();
@@ -59,7 +59,7 @@ struct Restarted : testing::Test {
     }
 };
 
-TEST_F(Restarted, one_by_one_every_component_runs_again) {
+TEST_F(Restarted, every_component_runs_again_after_its_own_restart) {
     EXPECT_TRUE(run.run_for(in_between));
     ASSERT_EQ(run.state(), "ReadyForLocalisation");
     for (const char* name : {"camera", "recognition", "tracking", "panel"}) {
@@ -70,7 +70,7 @@ TEST_F(Restarted, one_by_one_every_component_runs_again) {
     expect_follows_the_car_again();
 }
 
-TEST_F(Restarted, after_all_were_stopped_every_component_runs_again) {
+TEST_F(Restarted, every_component_runs_again_after_all_were_stopped) {
     EXPECT_TRUE(run.run_for(in_between));
     for (const char* name : {"camera", "recognition", "tracking", "panel"}) stop(name);
     EXPECT_EQ(run.state(), "Shutdown") << "that nobody is there to be switched off is no error";
@@ -79,7 +79,7 @@ TEST_F(Restarted, after_all_were_stopped_every_component_runs_again) {
     expect_follows_the_car_again();
 }
 
-TEST_F(Restarted, who_commands_switches_both_off_before_it_stops) {
+TEST_F(Restarted, the_task_switches_camera_and_recognition_off_before_it_stops) {
     EXPECT_TRUE(run.run_for(in_between));
     auto& recognition = *run.instance().find<ImageRecognition>("recognition");
     stop("tracking");
@@ -88,7 +88,7 @@ TEST_F(Restarted, who_commands_switches_both_off_before_it_stops) {
     EXPECT_FALSE(recognition.begin_processing()) << "the second command of the final state";
 }
 
-TEST_F(Restarted, who_commands_comes_to_its_end_before_it_begins_anew) {
+TEST_F(Restarted, the_task_ends_before_it_starts_again) {
     struct Part {
         Duration of_the_day;
         std::string_view state;
@@ -106,7 +106,7 @@ TEST_F(Restarted, who_commands_comes_to_its_end_before_it_begins_anew) {
     expect_follows_the_car_again();
 }
 
-TEST_F(Restarted, a_recognition_that_never_saw_an_image_is_refused_and_says_why) {
+TEST_F(Restarted, a_recognition_without_an_image_is_refused_with_the_reason) {
     EXPECT_TRUE(run.run_for(to_wait));
     stop("recognition");
     EXPECT_THAT(change("recognition", LifeChange::start),
@@ -115,7 +115,7 @@ TEST_F(Restarted, a_recognition_that_never_saw_an_image_is_refused_and_says_why)
     EXPECT_EQ(run.state(), "Waiting");
 }
 
-TEST_F(Restarted, a_camera_is_off_until_it_is_switched_on_and_who_uses_it_so_says_where) {
+TEST_F(Restarted, a_camera_stays_off_until_switched_on_and_its_user_names_the_line) {
     EXPECT_TRUE(run.run_for(to_wait));
     stop("camera");
     EXPECT_FALSE(run.scene().expose(10ms));

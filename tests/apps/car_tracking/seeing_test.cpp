@@ -1,4 +1,4 @@
-// Thesis 1.4, 5.4: what the car tracker's parts see: lens and rays, blobs, the calibration, and the two
+// Thesis 1.4, 5.4: the parts of the car tracker's vision: lens and rays, blobs, the calibration, and the two
 // components against the simulated room, each alone.
 #include "apps/car_tracking/camera.hpp"
 #include "apps/car_tracking/image_recognition.hpp"
@@ -26,7 +26,7 @@ public:
         camera().start({});
         recognition().start({});
     }
-    /// Until the command has ended; how.
+    /// Runs until the command has ended; returns how.
     CommandProgress run(CommandProgress (Camera::*progress)() noexcept TAPPET_REALTIME,
                         Duration at_most = 20s) {
         for (const Time end = now_ + at_most; now_ < end;) {
@@ -46,7 +46,7 @@ public:
                run(&Camera::calibrated) == CommandProgress::done;
     }
     bool look_at(Aim aim) { return camera().begin_move(aim) && run(&Camera::moved) == CommandProgress::done; }
-    /// One image, processed.
+    /// Processes one image.
     Sighting look() {
         EXPECT_TRUE(camera().begin_fetch());
         EXPECT_EQ(run(&Camera::fetched), CommandProgress::done);
@@ -67,7 +67,7 @@ private:
 
 constexpr std::array<std::uint64_t, 6> seeds{1, 2, 3, 11, 17, 99};
 
-TEST(Geometry, a_pixel_is_the_pixel_of_its_ray) {
+TEST(Geometry, a_pixel_maps_to_its_ray_and_back) {
     const Lens lens{153.0, -0.14};
     for (double x = 0; x < image_columns; x += 13.0)
         for (double y = 0; y < image_rows; y += 7.0) {
@@ -98,7 +98,7 @@ TEST(Geometry, a_ray_that_rises_never_meets_the_floor) {
     EXPECT_NEAR(meet_height({0, 0, 2}, {0, 1, -1}, 0.5)->y(), 1.5, 1e-12);
 }
 
-TEST(Blobs, what_touches_at_a_corner_is_one_and_what_does_not_is_two) {
+TEST(Blobs, pixels_that_touch_at_a_corner_form_one_blob) {
     Image image;
     for (const auto& [row, column] : {std::pair{10u, 10u}, {11u, 11u}, {10u, 12u}, {9u, 13u}, {50u, 3u}})
         image.pixels[row * image_columns + column].red = 200;
@@ -113,7 +113,7 @@ TEST(Blobs, what_touches_at_a_corner_is_one_and_what_does_not_is_two) {
     EXPECT_EQ(blobs[1].pixels, 1);
 }
 
-TEST(Blobs, a_spiral_of_many_labels_is_one_and_a_board_of_points_is_bounded) {
+TEST(Blobs, a_comb_of_many_labels_is_one_blob_and_the_number_is_bounded) {
     const auto weigh = [](const Colour& c) noexcept TAPPET_REALTIME { return int{c.red}; };
     auto image = std::make_unique<Image>();
     for (std::size_t row = 0; row < image_rows; ++row) // teeth that only the last row joins
@@ -146,7 +146,7 @@ TEST(Calibration, finds_the_lens_that_made_the_views) {
     EXPECT_LT(fit->error_px, 1e-4);
 }
 
-TEST(Calibration, refuses_too_few_views_views_that_say_nothing_and_views_that_contradict) {
+TEST(Calibration, refuses_too_few_uninformative_or_contradicting_views) {
     LensCalibration calibration;
     calibration.begin();
     for (int i = 0; i < 5; ++i) calibration.add({{4.0 * i, -27}, {80.0 - 10.0 * i, 60}});
@@ -175,7 +175,7 @@ TEST(Camera, learns_its_lens_and_where_it_looks) {
     }
 }
 
-TEST(Camera, refuses_what_does_not_fit_what_it_does) {
+TEST(Camera, refuses_commands_that_conflict_with_its_state) {
     Eyes eyes{5};
     Camera& camera = eyes.camera();
     EXPECT_FALSE(camera.begin_fetch()) << "it is off";
@@ -195,7 +195,7 @@ TEST(Camera, refuses_what_does_not_fit_what_it_does) {
     EXPECT_FALSE(camera.is_calibrated());
 }
 
-TEST(Recognition, says_where_in_the_room_the_car_is_to_four_centimetres) {
+TEST(Recognition, locates_the_car_in_the_room_to_four_centimetres) {
     for (const std::uint64_t seed : seeds) {
         Eyes eyes{seed};
         ASSERT_TRUE(eyes.calibrate());
@@ -217,7 +217,7 @@ TEST(Recognition, says_where_in_the_room_the_car_is_to_four_centimetres) {
     }
 }
 
-TEST(Recognition, takes_no_ball_for_the_car) {
+TEST(Recognition, does_not_mistake_a_ball_for_the_car) {
     Eyes eyes{3};
     ASSERT_TRUE(eyes.calibrate());
     for (const auto& ball : room::balls) {

@@ -11,7 +11,7 @@
 namespace tappet::car_tracking {
 namespace {
 
-/// What is left of one run.
+/// Summary of one run.
 struct Day {
     std::vector<Moment> moments{};
     std::vector<Look> looks{};
@@ -33,14 +33,14 @@ Day run_day(std::uint64_t seed) {
     return day;
 }
 
-/// Each seed's day is run once.
+/// Runs each seed's day once.
 const Day& day_of(std::uint64_t seed) {
     static std::map<std::uint64_t, Day> days;
     const auto known = days.find(seed);
     return known != days.end() ? known->second : days.emplace(seed, run_day(seed)).first->second;
 }
 
-/// The states one after the other.
+/// The states, in order.
 std::vector<std::string_view> states_of(const Day& day) {
     std::vector<std::string_view> states;
     for (const Moment& each : day.moments)
@@ -55,7 +55,7 @@ std::string_view state_at(const Day& day, double at_s) {
     return state;
 }
 
-/// The roof of the tunnel hides a part of the car, or the car's shadow side of it.
+/// The roof of the tunnel hides part of the car, or part of its shadow side.
 bool partly_hidden(const Look& look) { return room::tunnel.holds(look.car_x, look.car_y, 0.35); }
 
 constexpr std::array<std::uint64_t, 6> seeds{1, 2, 3, 4, 17, 4711};
@@ -80,7 +80,7 @@ TEST(CarTracking, does_not_localise_before_it_is_calibrated) {
     EXPECT_GT(day.looks.front().at_s, 11.0);
 }
 
-TEST(CarTracking, locates_the_car_to_five_centimetres_wherever_the_whole_of_it_is_to_be_seen) {
+TEST(CarTracking, locates_a_fully_visible_car_to_five_centimetres) {
     for (const std::uint64_t seed : seeds) {
         const Day& day = day_of(seed);
         double squares = 0.0;
@@ -96,7 +96,7 @@ TEST(CarTracking, locates_the_car_to_five_centimetres_wherever_the_whole_of_it_i
     }
 }
 
-TEST(CarTracking, never_sees_a_car_that_nobody_could_see) {
+TEST(CarTracking, never_sees_an_invisible_car) {
     for (const std::uint64_t seed : seeds) {
         const Day& day = day_of(seed);
         for (const Look& look : day.looks)
@@ -142,7 +142,7 @@ TEST(CarTracking, loses_the_car_and_finds_it_again) {
     }
 }
 
-/// How often the camera was turned between two images without the car, and how often it was not.
+/// How often the camera turned between two images without the car, and how often it did not.
 std::pair<int, int> turned_and_kept(const Day& day) {
     const auto looks_at = [&](const Look& look) {
         const auto at =
@@ -156,7 +156,7 @@ std::pair<int, int> turned_and_kept(const Day& day) {
     return count;
 }
 
-TEST(CarTracking, looks_elsewhere_when_its_patience_ends_which_a_property_says) {
+TEST(CarTracking, looks_elsewhere_after_the_patience_that_a_property_sets) {
     const auto [turned, kept] = turned_and_kept(day_of(1));
     EXPECT_GT(turned, 0);
     EXPECT_GT(kept, 0);
@@ -202,7 +202,8 @@ TEST(CarTracking, stops_the_camera_when_the_machine_stops) {
     EXPECT_TRUE(day.camera_is_off);
 }
 
-/// What both compilers make of the seeds; a change of machine, components or room shows the new ones.
+/// Both compilers compute these values from the seeds; after a change of machine, components or room the
+/// failing test prints the new ones.
 struct Golden {
     std::uint64_t seed;
     std::uint64_t digest;
@@ -217,7 +218,7 @@ TEST(CarTracking, is_the_same_with_both_compilers) {
 
 TEST(CarTracking, is_the_same_in_a_second_run) { EXPECT_EQ(run_day(2).digest, day_of(2).digest); }
 
-TEST(CarTracking, is_another_with_another_seed) { EXPECT_NE(day_of(1).digest, day_of(2).digest); }
+TEST(CarTracking, differs_for_another_seed) { EXPECT_NE(day_of(1).digest, day_of(2).digest); }
 
 } // namespace
 } // namespace tappet::car_tracking

@@ -1,5 +1,5 @@
-// What the shaft's angle opened and switched on ends when the angle that ends it will not come, and what is
-// fed and learned by the shaft stays within what is known of it.
+// Actions that begin at an angle of the shaft end even when their end angle never comes, and the feeds and
+// learned values that depend on the shaft stay within its known range.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 namespace tappet::carpet {
@@ -10,7 +10,7 @@ using loom::Fault;
 
 struct ByHand : LoomRig {
     explicit ByHand(std::uint64_t seed = 5) : LoomRig{seed, nobody_there()} {}
-    /// As from the box: shaft.stop_at.
+    /// Stops as by the box's command shaft.stop_at.
     void stop_at(double deg) {
         double error = 0.0;
         static_cast<void>(component<MainShaft>("shaft").stop_shaft_at(deg, error));
@@ -40,7 +40,7 @@ TEST_P(WeavingAngles, the_valve_closes_when_the_shaft_stops_inside_its_window) {
     EXPECT_FALSE(rig.output(wires::line::weft_release));
 }
 
-TEST_P(WeavingAngles, a_weft_that_is_missed_by_a_stop_inside_its_window_is_told) {
+TEST_P(WeavingAngles, a_weft_missed_by_a_stop_inside_its_window_is_reported) {
     rig.plant().inject({.fault = Fault::weft_break});
     rig.stop_at(235.0);
     ASSERT_TRUE(rig.stands());
@@ -84,7 +84,7 @@ TEST_P(Angles, the_cutter_and_the_valve_are_off_when_the_encoder_is_lost) {
 TEST_P(WeavingAngles, the_cutter_is_off_when_the_activity_of_the_shaft_hangs) {
     ASSERT_TRUE(rig.run_until([&] { return rig.output(wires::line::yarn_cutter); }, 1s));
     rig.hang("shaft", 1s);
-    rig.run_for(35ms); // it is silent after 20, and looked for each 5
+    rig.run_for(35ms); // it is silent after 20 ms, and the check runs every 5 ms
     EXPECT_FALSE(rig.output(wires::line::yarn_cutter));
     rig.run_for(2s);
     EXPECT_FALSE(rig.output(wires::line::yarn_cutter));
@@ -108,7 +108,7 @@ TEST_P(WeavingAngles, the_let_off_feeds_nothing_when_encoder_and_load_cell_are_l
     EXPECT_EQ(rig.plant().let_off_drive().target(), 0);
 }
 
-TEST_P(WeavingAngles, what_the_shaft_learns_of_a_broken_brake_stays_within_its_range) {
+TEST_P(WeavingAngles, the_learned_distance_of_a_broken_brake_stays_in_range) {
     auto& shaft = rig.component<MainShaft>("shaft");
     for (int stop = 0; stop < 6; ++stop) {
         rig.plant().press(Button::stop, 100ms);

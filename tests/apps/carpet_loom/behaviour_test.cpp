@@ -1,5 +1,5 @@
-// A new weave is loaded into the weaving loom (thesis 5.2.4): at an angle of the shaft; a faulty one is
-// refused with its line, one that misbehaves is taken back, and the loom goes on weaving.
+// A new weave is loaded into the weaving loom (thesis 5.2.4) at an angle of the shaft. A faulty one is
+// refused with its line, a failing one is rolled back, and the loom keeps weaving.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 #include <gmock/gmock.h>
@@ -87,7 +87,7 @@ TEST_F(WeaveBehaviour, a_faulty_weave_is_refused_with_its_line_and_nothing_chang
     expect_undisturbed();
 }
 
-TEST_F(WeaveBehaviour, one_that_misbehaves_is_taken_back_and_the_weave_before_it_goes_on) {
+TEST_F(WeaveBehaviour, a_failing_weave_is_rolled_back_to_the_one_before_it) {
     ASSERT_EQ(load("twill.osd", "now"), "");
     ASSERT_TRUE(rig.weave(20));
     ASSERT_EQ(load("running_out.osd", "90"), "");
@@ -103,7 +103,7 @@ TEST_F(WeaveBehaviour, one_that_misbehaves_is_taken_back_and_the_weave_before_it
     expect_undisturbed();
 }
 
-TEST_F(WeaveBehaviour, without_it_the_loom_weaves_its_carpet_again) {
+TEST_F(WeaveBehaviour, the_loom_weaves_its_carpet_again_after_unloading) {
     ASSERT_EQ(load("twill.osd", "now"), "");
     ASSERT_TRUE(rig.weave(20));
     ASSERT_TRUE(slot.ask(BehaviourSlot::Change::unload));

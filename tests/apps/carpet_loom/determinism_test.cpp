@@ -1,4 +1,4 @@
-// One seed is one run, bit for bit: in one process and in two, with both compilers, whatever goes wrong on
+// A seed gives one run, bit for bit: in one process and in two, with both compilers, and with any fault on
 // the wires.
 #include "kernel/os/heap.hpp"
 #include "tests/apps/carpet_loom/loom_rig.hpp"
@@ -27,9 +27,9 @@ std::uint64_t digest_of(std::uint64_t seed, bool bad_wires = false) {
     return rig.run().event_log_digest();
 }
 
-/// What both compilers make of the seeds. They change with the machine's
-/// table, its components and the plant, and with nothing else: after such a change the failing test shows the
-/// new ones, which both presets (gcc, clang) must then show alike.
+/// Both compilers compute these values from the seeds. They change only with the machine's table, its
+/// components and the plant: after such a change the failing test prints the new ones, which both presets
+/// (gcc, clang) must then share.
 struct Golden {
     std::uint64_t seed;
     std::uint64_t digest;
@@ -46,7 +46,7 @@ TEST(Determinism, the_event_log_of_a_seed_is_the_same_with_both_compilers) {
             << "seed " << each.seed << std::hex << ": the new digest is 0x" << digest_of(each.seed);
 }
 
-TEST(Determinism, a_second_run_in_the_same_process_is_the_first_one_again) {
+TEST(Determinism, a_second_run_in_the_same_process_repeats_the_first) {
     const std::uint64_t first = digest_of(17);
     static_cast<void>(digest_of(18));
     EXPECT_EQ(digest_of(17), first);
@@ -68,7 +68,7 @@ TEST(Determinism, seeds_differ) {
     }
 }
 
-TEST(Determinism, two_processes_report_the_same_but_for_the_memory_they_took) {
+TEST(Determinism, two_processes_report_the_same_except_for_their_memory) {
     const std::string first = temporary_file("first.json");
     const std::string second = temporary_file("second.json");
     for (const std::string& path : {first, second})
@@ -82,7 +82,7 @@ TEST(Determinism, two_processes_report_the_same_but_for_the_memory_they_took) {
 }
 
 TEST(Speed, virtual_time_runs_fifty_times_faster_than_real_time) {
-    const std::clock_t begin = std::clock(); // processor time: what else runs here does not count
+    const std::clock_t begin = std::clock(); // processor time: other programs on the host do not count
     LoomRig rig{3, breaks()};
     ASSERT_TRUE(rig.run().weave(picks, 300s));
     const double took_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -90,7 +90,7 @@ TEST(Speed, virtual_time_runs_fifty_times_faster_than_real_time) {
     std::cout << "virtual time runs " << ratio << " times faster than real time\n";
 #if defined(NDEBUG)
     if constexpr (!os::heap::sanitizer_owns_malloc) {
-        EXPECT_GE(ratio, 50.0); // half of what a host gave at its slowest
+        EXPECT_GE(ratio, 50.0); // half of the ratio on a slow host
     }
 #endif
 }

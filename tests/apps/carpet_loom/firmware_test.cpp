@@ -1,4 +1,4 @@
-// What a firmware is as a file: fully static, small, with its memory known at build time.
+// A firmware as a file: fully static, small, with its memory known at build time.
 #include <gtest/gtest.h>
 
 #include <elf.h>
@@ -30,7 +30,7 @@ struct Firmware {
             if (at<Elf64_Phdr>(head.e_phoff + i * sizeof(Elf64_Phdr)).p_type == type) return true;
         return false;
     }
-    /// Of all sections that are loaded; `writable`: of those only.
+    /// Bytes of all loaded sections; `writable_only`: of the writable ones.
     [[nodiscard]] std::uint64_t loaded_bytes(bool writable_only) const {
         const Elf64_Ehdr head = header();
         std::uint64_t sum = 0;

@@ -1,8 +1,8 @@
-// The carpet loom on the host under virtual time, as a test sees it: run until something is so, ask for the
-// state and its reason, and what the plant says of the run.
+// The carpet loom on the host under virtual time, as a test sees it: it runs until a condition holds, and
+// gives the state, its reason, and the plant's report of the run.
 #pragma once
 
-// The components, and not the table: on_host() of the machine's library holds that, compiled once.
+// Includes the components but not the table: on_host() of the machine's library holds that, compiled once.
 #include "apps/carpet_loom/loom.hpp"
 #include "apps/carpet_loom/main_drive.hpp"
 #include "apps/carpet_loom/main_shaft.hpp"
@@ -25,11 +25,11 @@ namespace tappet::carpet {
 using CanBus = can::Bus<can_signals, canopen::frames<loom_network>>;
 using Network = canopen::Manager<loom_network>;
 
-/// Only what a test asks for goes wrong, and nobody presses a button but the test.
+/// Only the test causes faults, and only the test presses buttons.
 inline loom::Settings nobody_there() { return {.operator_present = false}; }
 
-/// The seeds of a suite, each another plant. Under the real-time sanitizer, which looks at the ways that the
-/// code takes and is twelve times slower, the first: the others take the same ways.
+/// The seeds of a suite, each another plant. The real-time sanitizer checks code paths and is twelve times
+/// slower: it runs the first seed only, since the others take the same paths.
 inline auto seeds(std::uint64_t number) {
 #if defined(__has_feature)
 #if __has_feature(realtime_sanitizer)
@@ -41,7 +41,7 @@ inline auto seeds(std::uint64_t number) {
 
 class LoomRig {
 public:
-    /// By default only what a test asks for goes wrong; the operator is at work.
+    /// By default only the test causes faults; the operator is at work.
     explicit LoomRig(std::uint64_t seed, const loom::Settings& settings = {})
         : run_{std::make_unique<LoomRun>(settings, seed)} {
         const auto started = run_->start();
@@ -52,7 +52,7 @@ public:
     LoomRig& operator=(const LoomRig&) = delete;
 
     void run_for(Duration time) { static_cast<void>(run_->run_for(time)); }
-    /// Looks every millisecond. False when `limit` passed first.
+    /// Checks every millisecond. Returns false when `limit` passed first.
     template <class Condition>
     bool run_until(Condition condition, Duration limit) {
         for (const Time end = now() + limit; now() < end; run_for(1ms))
@@ -73,29 +73,29 @@ public:
     bool run_until_it_stands(Duration limit) {
         return run_until([&] { return plant().speed_rpm() == 0.0; }, limit);
     }
-    /// An activity of the machine runs nothing for so long.
+    /// Stops an activity of the machine for that long.
     void hang(std::string_view activity, Duration time) {
         run().world().hang(find_activity(run().instance().machine().table, activity), now() + time);
     }
-    /// By hand, for a loom whose operator is away: its buttons, as long as a hand presses them.
+    /// Buttons by hand, for a loom whose operator is away: each is pressed as long as a hand presses it.
     void acknowledge() { press(loom::Button::acknowledge); }
     void press(loom::Button button) {
         plant().press(button, 100ms);
         run_for(110ms);
     }
-    /// Unlocked by hand after a start, and prepared.
+    /// Unlocks the loom by hand after a start, and prepares it.
     bool prepare() {
         run_for(500ms); // its nodes boot
         acknowledge();
         return run_until_state("ready", 5s);
     }
-    /// The same, started by hand and some picks on its way.
+    /// Prepares the loom, starts it by hand, and weaves some picks.
     bool weave_by_hand() {
         if (!prepare()) return false;
         press(loom::Button::start);
         return run_until([&] { return state() == "weave" && plant().picks() > 5; }, 5s);
     }
-    /// Prepared, started by the operator, and some picks on its way.
+    /// Prepares the loom, lets the operator start it, and weaves some picks.
     bool weave(std::uint64_t picks = 5) {
         const std::uint64_t wanted = plant().picks() + picks;
         return run_until([&] { return state() == "weave" && plant().picks() >= wanted; }, 30s);
@@ -106,7 +106,7 @@ public:
         const auto path = execution().path();
         return path.empty() ? std::string_view{} : path[path.size() - 1];
     }
-    /// Of the last transition that gave one.
+    /// The reason of the last transition that gave one.
     [[nodiscard]] std::string_view reason() { return execution().reason(); }
     [[nodiscard]] const StateMachineExecution& execution() {
         return *run_->instance().state_machine_of("loom");
@@ -116,7 +116,7 @@ public:
     [[nodiscard]] T& component(std::string_view name) {
         return *run_->instance().find<T>(name);
     }
-    /// Why it is in this state, for who expected another one.
+    /// Explains the state when a test expected another one.
     [[nodiscard]] std::string told() {
         return "in state " + std::string{state()} + ": " + std::string{reason()};
     }
@@ -128,9 +128,9 @@ public:
     [[nodiscard]] modbus::Twin& utility() { return run_->devices().server("loom-utility"); }
     [[nodiscard]] loom::Plant& plant() { return run_->plant(); }
     [[nodiscard]] loom::Report report() { return plant().report(); }
-    /// The machine's output line of this offset, as it is on the wire.
+    /// The level of the machine's output line with this offset, as on the wire.
     [[nodiscard]] bool output(unsigned offset) { return (lines().outputs() >> line_index(offset) & 1u) != 0; }
-    /// Of the twin's lines, by the wire's offset.
+    /// Index in the twin's lines, by the wire's offset.
     [[nodiscard]] static std::size_t line_index(unsigned offset) {
         namespace line = wires::line;
         constexpr std::array<unsigned, 12> offsets{
@@ -147,7 +147,7 @@ private:
     std::unique_ptr<LoomRun> run_;
 };
 
-/// Every stop for a weft or a warp end within the tolerance of the stop angle.
+/// Expects every stop for a weft or a warp end within the tolerance of the stop angle.
 inline void expect_stops_in_tolerance(const loom::Report& report) {
     for (const loom::Stop& stop : report.stops) {
         const bool is_guided = stop.cause == loom::StopCause::weft || stop.cause == loom::StopCause::warp ||

@@ -15,10 +15,11 @@ public:
         : plant_{settings, seed}, run_{on_host(), plant_, seed} {}
 
     std::expected<void, Sentence> start() { return silence(run_.start()); }
-    /// A new machine at the same plant.
+    /// Starts a new machine at the same plant.
     std::expected<void, Sentence> start_again() { return silence(run_.start_again()); }
     bool run_for(Duration time) { return run_.run_for(time); }
-    /// Until the plant has woven `picks` and stands, or `limit` has passed. True when they were woven.
+    /// Runs until the plant has woven `picks` and stands, or `limit` has passed. Returns true when they were
+    /// woven.
     bool weave(std::uint64_t picks, Duration limit) {
         for (const Time end = run_.now() + limit; run_.now() < end && !instance().stop_asked();) {
             run_for(50ms);

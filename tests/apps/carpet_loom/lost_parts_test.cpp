@@ -1,5 +1,5 @@
-// A part of the loom's machine that is stopped, started anew or lost while the rest goes on: what is said of
-// it is not believed any longer, what it opened is closed, and what moves is stopped until acknowledged.
+// A part of the loom's machine is stopped, restarted or lost while the rest keeps running: its last values
+// become invalid, its valves close, and motion stops until acknowledged.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 #include <string>
@@ -13,7 +13,7 @@ using loom::Fault;
 struct Parts : LoomRig {
     explicit Parts(std::uint64_t seed = 5) : LoomRig{seed, nobody_there()} {}
 
-    /// "component:..." or "activity:...".
+    /// `what`: "component:..." or "activity:...".
     void change(const std::string& what, LifeChange how) {
         MachineInstance& instance = run().instance();
         const MachineView& table = instance.machine().table;
@@ -26,7 +26,7 @@ struct Parts : LoomRig {
     }
     void expect_stopped_and_staying_so(Duration within) {
         EXPECT_TRUE(run_until_it_stands(within)) << state();
-        run_for(200ms); // a shaft that stands shows so only by staying, and a drive that slips by going on
+        run_for(200ms); // only time shows that a shaft stands or that a drive slips
         const double stood_at = plant().position_deg();
         for (const Time end = now() + 2s; now() < end; run_for(1ms)) {
             EXPECT_EQ(component<MainDrive>("main").target.last(), 0.0);
@@ -57,12 +57,12 @@ INSTANTIATE_TEST_SUITE_P(part, WhileWeaving,
                                          "component:loom"));
 
 TEST_P(WhileWeaving, the_stop_of_a_part_stops_the_loom_with_its_valve_closed) {
-    for (const double deg : {100.0, 230.0}) { // the valve is open there, and the cutter on
+    for (const double deg : {100.0, 230.0}) { // at these angles the valve is open, or the cutter is on
         Parts rig;
         ASSERT_TRUE(rig.weave_by_hand());
         ASSERT_TRUE(rig.run_until_angle(deg));
         rig.change(GetParam(), LifeChange::stop);
-        rig.run_for(30ms); // four milliseconds of silence are the encoder's; the watchdogs look each five
+        rig.run_for(30ms); // 4 ms of encoder silence; the watchdogs check every 5 ms
         EXPECT_FALSE(rig.output(wires::line::weft_release)) << "at " << deg << " deg";
         EXPECT_NE(rig.state(), "weave");
         rig.expect_stopped_and_staying_so(1s);
@@ -70,20 +70,20 @@ TEST_P(WhileWeaving, the_stop_of_a_part_stops_the_loom_with_its_valve_closed) {
     }
 }
 
-/// What the watchdogs tell once reached nobody.
+/// The watchdogs report a fault once; here nobody heard it.
 TEST(TheLastResort, acts_when_it_starts_while_the_states_hang) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
     rig.change("component:last_resort", LifeChange::stop);
     rig.hang("logic", 5s);
-    rig.plant().press(Button::stop, 100ms); // somebody needs it
+    rig.plant().press(Button::stop, 100ms); // a person needs it
     rig.run_for(200ms);
     EXPECT_GT(rig.plant().speed_rpm(), 500.0);
     rig.change("component:last_resort", LifeChange::start);
     rig.expect_stopped_and_staying_so(1s);
 }
 
-TEST(TheLines, that_come_back_braked_get_no_weft_while_the_states_hang) {
+TEST(TheLines, release_no_weft_after_a_restart_while_the_states_hang) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
     ASSERT_TRUE(rig.run_until_angle(60.0)); // before the release
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(part, StartedAnew,
                                          "component:io", "activity:motion", "component:main",
                                          "component:warp", "activity:logic", "component:loom"));
 
-TEST_P(StartedAnew, a_part_that_is_restarted_while_weaving_stops_the_loom_until_acknowledged) {
+TEST_P(StartedAnew, a_part_restarted_while_weaving_stops_the_loom_until_acknowledged) {
     Parts rig;
     ASSERT_TRUE(rig.weave_by_hand());
     ASSERT_TRUE(rig.run_until_angle(100.0));
@@ -111,7 +111,7 @@ TEST_P(StartedAnew, a_part_that_is_restarted_while_weaving_stops_the_loom_until_
         << rig.state() << ": " << rig.reason();
 }
 
-TEST_P(StartedAnew, a_part_that_is_restarted_while_the_loom_is_prepared_moves_nothing_until_acknowledged) {
+TEST_P(StartedAnew, a_part_restarted_during_preparation_moves_nothing_until_acknowledged) {
     if (std::string_view{GetParam()} == "component:weft")
         return; // it drives nothing: the valve is closed until start is pressed
     Parts rig;
@@ -131,8 +131,7 @@ TEST_P(StartedAnew, a_part_that_is_restarted_while_the_loom_is_prepared_moves_no
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
 }
 
-TEST_F(LostWhileWeaving,
-       a_shaft_activity_that_hangs_is_told_by_its_watchdog_and_the_valve_closes_without_it) {
+TEST_F(LostWhileWeaving, the_watchdog_reports_a_hung_shaft_activity_and_the_valve_closes) {
     ASSERT_TRUE(rig.run_until_angle(85.0));
     ASSERT_TRUE(rig.output(wires::line::weft_release));
     MachineInstance& instance = rig.run().instance();
@@ -169,7 +168,7 @@ TEST_F(LostWhenReady, every_component_runs_again_after_it_was_stopped_and_starte
         << rig.state() << ": " << rig.reason();
 }
 
-/// The last word of the drive's leader: stand. And nothing that it said of the drive holds any longer.
+/// The component's last command is standstill, and its values about the drive are invalid.
 template <class T> void expect_left_at_rest(const T& leader) {
     EXPECT_EQ(leader.target.last(), 0.0);
     EXPECT_EQ(leader.controlword.last(), canopen::controlword::quick_stop);
@@ -177,7 +176,7 @@ template <class T> void expect_left_at_rest(const T& leader) {
     EXPECT_TRUE(leader.fault.last());
 }
 
-TEST_F(LostWhileWeaving, the_leader_of_the_main_drive_leaves_it_at_rest_when_it_alone_is_stopped) {
+TEST_F(LostWhileWeaving, the_main_drive_rests_when_its_component_alone_is_stopped) {
     const auto& main = rig.component<MainDrive>("main");
     ASSERT_TRUE(main.at_speed.last());
     rig.change("component:main", LifeChange::stop);
@@ -189,7 +188,7 @@ TEST_F(LostWhileWeaving, the_leader_of_the_main_drive_leaves_it_at_rest_when_it_
     EXPECT_EQ(rig.plant().main_drive().target(), 0);
 }
 
-TEST_F(LostWhileWeaving, the_leader_of_the_let_off_leaves_it_at_rest_when_it_alone_is_stopped) {
+TEST_F(LostWhileWeaving, the_let_off_rests_when_its_component_alone_is_stopped) {
     const auto& warp = rig.component<WarpTension>("warp");
     ASSERT_NE(warp.target.last(), 0.0);
     ASSERT_TRUE(warp.in_band.last());
@@ -202,7 +201,7 @@ TEST_F(LostWhileWeaving, the_leader_of_the_let_off_leaves_it_at_rest_when_it_alo
     EXPECT_EQ(rig.plant().let_off_drive().target(), 0);
 }
 
-TEST_F(LostWhenReady, nodes_that_nobody_watches_any_longer_are_not_said_to_work) {
+TEST_F(LostWhenReady, unwatched_nodes_are_not_reported_as_operational) {
     ASSERT_TRUE(rig.component<Network>("network").operational.last());
     rig.change("component:network", LifeChange::stop);
     rig.run_for(20ms);
@@ -213,13 +212,13 @@ TEST_F(LostWhenReady, nodes_that_nobody_watches_any_longer_are_not_said_to_work)
     EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
 }
 
-TEST_F(LostWhileWeaving, lines_that_are_driven_no_longer_are_an_emergency) {
+TEST_F(LostWhileWeaving, lines_that_are_no_longer_driven_cause_an_emergency) {
     rig.change("activity:io", LifeChange::stop);
     ASSERT_TRUE(rig.run_until_state("emergency", 10ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the lines can no longer be relied on");
 }
 
-TEST_F(LostWhileWeaving, a_chip_that_refuses_is_an_emergency_and_is_not_acknowledged_away) {
+TEST_F(LostWhileWeaving, a_missing_chip_is_an_emergency_until_it_is_back) {
     rig.lines().set_removed(true);
     ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the lines can no longer be relied on");
@@ -233,15 +232,15 @@ TEST_F(LostWhileWeaving, a_chip_that_refuses_is_an_emergency_and_is_not_acknowle
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state() << ": " << rig.reason();
 }
 
-TEST_F(LostWhileWeaving, a_loom_without_a_brake_is_stopped_by_its_drive_though_the_machine_ends) {
+TEST_F(LostWhileWeaving, the_drive_stops_a_loom_without_a_brake_even_as_the_machine_ends) {
     rig.lines().set_removed(true);
     ASSERT_TRUE(rig.run_until_state("emergency", 200ms)) << rig.state();
-    rig.change("activity:logic", LifeChange::stop); // as the first of an orderly stop
+    rig.change("activity:logic", LifeChange::stop); // the first step of an orderly stop
     EXPECT_TRUE(rig.run_until_it_stands(1s)) << "it does not coast";
 }
 
-TEST(LostParts, no_weft_is_released_into_the_stop_of_a_loom_whose_states_hang) {
-    for (Duration later{}; later < 100ms; later += 7ms) { // wherever in a turn
+TEST(LostParts, no_weft_is_released_into_a_stop_while_the_states_hang) {
+    for (Duration later{}; later < 100ms; later += 7ms) { // anywhere in a turn
         Parts rig;
         ASSERT_TRUE(rig.weave_by_hand());
         rig.run_for(later);
@@ -256,7 +255,7 @@ TEST(LostParts, no_weft_is_released_into_the_stop_of_a_loom_whose_states_hang) {
     }
 }
 
-TEST_F(LostWhenReady, a_shaft_activity_that_hangs_while_the_loom_is_ready_keeps_it_from_its_start) {
+TEST_F(LostWhenReady, a_hung_shaft_activity_keeps_a_ready_loom_from_starting) {
     MachineInstance& instance = rig.run().instance();
     instance.engines()[find_activity(instance.machine().table, "shaft")].mark_failed();
     rig.run_for(50ms);
@@ -267,7 +266,7 @@ TEST_F(LostWhenReady, a_shaft_activity_that_hangs_while_the_loom_is_ready_keeps_
     EXPECT_EQ(rig.state(), "fault") << rig.reason();
 }
 
-TEST_F(LostWhenReady, without_the_part_that_judges_the_wefts_the_loom_does_not_start) {
+TEST_F(LostWhenReady, the_loom_does_not_start_without_its_weft_check) {
     rig.change("component:weft", LifeChange::stop);
     rig.press(Button::start);
     rig.run_for(1s);
@@ -275,7 +274,7 @@ TEST_F(LostWhenReady, without_the_part_that_judges_the_wefts_the_loom_does_not_s
 }
 
 TEST_F(LostWhileWeaving, a_drive_that_pulls_against_a_brake_is_stopped) {
-    rig.plant().set_line(wires::line::brake, true, rig.now()); // it grips unasked
+    rig.plant().set_line(wires::line::brake, true, rig.now()); // it brakes without a command
     ASSERT_TRUE(rig.run_until_state("fault", 300ms)) << rig.state();
     EXPECT_EQ(rig.reason(), "the main drive does not keep its speed");
     EXPECT_EQ(rig.report().damage.motor_blocked, 0u);

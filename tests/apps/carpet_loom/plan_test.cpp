@@ -1,5 +1,5 @@
-// What the compiler derives from the loom's table is under version control: a change of it is seen in the
-// commit.
+// The plan that the compiler derives from the loom's table is under version control: a commit shows every
+// change of it.
 #include "kernel/machine/plan_text.hpp"
 #include "tests/apps/carpet_loom/loom_run.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-TEST(LoomPlan, is_the_one_that_was_looked_at) {
+TEST(LoomPlan, equals_the_plan_under_version_control) {
     Lines derived, golden;
     describe_plan(on_host(), &derived,
                   [](void* to, std::string_view line) { static_cast<Lines*>(to)->emplace_back(line); });

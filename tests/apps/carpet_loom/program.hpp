@@ -1,4 +1,4 @@
-// The host's carpet loom as a program of its own: what it is started with, what it answers.
+// The host's carpet loom as a program of its own: its arguments and its output.
 #pragma once
 
 #include "tests/toolchain/folder.hpp"
@@ -15,13 +15,13 @@ inline Ended run_loom(const std::vector<std::string>& words) {
     return run_line(line);
 }
 
-/// It is gone with the program of the tests.
+/// The file is removed at the end of the test program.
 inline std::string temporary_file(const std::string& name) {
     static const test::Folder folder;
     return folder / name;
 }
 
-/// A JSON text without one field of a number.
+/// Returns a JSON text without one numeric field.
 inline std::string without_field(std::string text, const std::string& name) {
     const auto begin = text.find("\"" + name + "\"");
     if (begin != std::string::npos) text.erase(begin, text.find(',', begin) - begin);

@@ -1,5 +1,5 @@
-// The host's carpet loom as a program: what is wrong in its command line is named, with its cure, and ends
-// with exit code 2; what it writes at its end.
+// The host's carpet loom as a program: it names each mistake in its command line with a cure and ends with
+// exit code 2; and it writes a summary at its end.
 #include "tests/apps/carpet_loom/program.hpp"
 
 #include <gmock/gmock.h>
@@ -22,12 +22,12 @@ TEST(Program, names_the_nearest_option_when_one_is_misspelt) {
     EXPECT_EQ(refusal({"xyz"}), "carpet-loom: option xyz is unknown; see --help\n");
 }
 
-TEST(Program, misses_the_value_that_was_left_out) {
+TEST(Program, names_an_option_without_its_value) {
     EXPECT_EQ(refusal({"--picks", "3", "--seed"}),
               "carpet-loom: option --seed needs a value after it; see --help\n");
 }
 
-TEST(Program, refuses_what_is_no_whole_number) {
+TEST(Program, refuses_a_value_that_is_not_a_whole_number) {
     for (const char* word : {"", "three", "3.5", "-1", "0x10", "18446744073709551616"}) {
         EXPECT_THAT(refusal({"--seed", word}),
                     HasSubstr("is not a whole number; write for example --seed 60"));

@@ -1,6 +1,6 @@
-// The loom's properties in files (thesis 4.7.1): a commissioning engineer's values weave, are saved at the
-// end and found again; a wrong file keeps the loom from starting, with one line that says where and what to
-// do.
+// The loom's properties in files (thesis 4.7.1): the loom weaves with the values of a commissioning engineer,
+// saves them at the end and finds them again. A wrong file keeps the loom from starting; one line says where
+// the mistake is and what to do.
 #include "tests/apps/carpet_loom/program.hpp"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ struct Kept : testing::Test {
     [[nodiscard]] Ended run(const std::string& seed = "4") const {
         return run_loom({"--picks", "10", "--seed", seed, "--properties", directory.string()});
     }
-    /// The line on the terminal when this file is refused.
+    /// The line on the terminal when the loom refuses this file.
     [[nodiscard]] std::string refusal(const char* name, const std::string& members) const {
         put(name, members);
         const Ended ended = run();
@@ -40,7 +40,7 @@ struct Kept : testing::Test {
 constexpr const char* gains = R"(<struct name="gains" type="PropertyBag">
 <simple name="proportional" type="double"><value>0.006</value></simple></struct>)";
 
-TEST_F(Kept, values_weave_and_are_saved_with_all_the_others) {
+TEST_F(Kept, values_are_used_and_saved_with_all_the_others) {
     put("warp.cpf", gains);
     ASSERT_EQ(run().exit_code, 0);
     EXPECT_THAT(get("warp.cpf"), AllOf(HasSubstr("<value>0.006</value>"), HasSubstr("name=\"integral\""),
@@ -64,7 +64,7 @@ TEST_F(Kept, values_that_are_wrong_are_refused_with_their_file_their_line_and_a_
                 AllOf(StartsWith("carpet-loom: "), HasSubstr("malformed XML")));
 }
 
-TEST_F(Kept, values_that_do_not_go_together_are_refused_by_their_component) {
+TEST_F(Kept, values_that_contradict_each_other_are_refused_by_their_component) {
     EXPECT_THAT(
         refusal("warp.cpf", R"(<simple name="set_point_n" type="double"><value>60</value></simple>
 <simple name="band_n" type="double"><value>80</value></simple>)"),

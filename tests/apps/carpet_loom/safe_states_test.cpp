@@ -1,4 +1,4 @@
-// What makes the loom safe, why it says it did, and how an operator gets it weaving again.
+// The causes that make the loom safe, the reasons that it gives, and the way back to weaving.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 namespace tappet::carpet {
@@ -14,7 +14,7 @@ struct WeavingSafely : testing::TestWithParam<std::uint64_t> {
 };
 INSTANTIATE_TEST_SUITE_P(seed, WeavingSafely, seeds(6));
 
-/// The shaft stands, the brake holds, no valve is open, and the lamps say that hands are needed.
+/// Expects that the shaft stands, the brake holds, no valve is open, and the lamps ask for a person.
 void expect_safe(LoomRig& rig) {
     EXPECT_TRUE(rig.run_until_it_stands(1s));
     EXPECT_TRUE(rig.output(wires::line::brake));
@@ -24,14 +24,14 @@ void expect_safe(LoomRig& rig) {
     EXPECT_FALSE(rig.output(wires::line::lamp_stop));
 }
 
-/// Repaired, acknowledged and started by the operator of the plant.
+/// The operator of the plant repairs, acknowledges and starts the loom.
 void expect_weaves_again(LoomRig& rig) {
     EXPECT_TRUE(rig.weave(10)) << rig.told();
     expect_no_damage(rig.report());
 }
 
 TEST_P(WeavingSafely, the_emergency_stop_closes_the_valve_and_brakes_at_once) {
-    // At another angle for each seed, the open valve among them.
+    // Each seed stops at another angle, some of them with an open valve.
     rig.run_for(Duration{rig.now().time_since_epoch().count() * 7919 % 100'000'000});
     const Time pressed = rig.now();
     rig.plant().inject({.fault = Fault::emergency_stop});
@@ -52,7 +52,7 @@ TEST_P(WeavingSafely, the_loom_weaves_again_after_an_emergency_stop_was_released
     expect_weaves_again(rig);
 }
 
-TEST_P(SafeStates, an_emergency_stop_that_is_held_cannot_be_acknowledged_away) {
+TEST_P(SafeStates, a_held_emergency_stop_cannot_be_acknowledged) {
     LoomRig rig{GetParam(), nobody_there()};
     ASSERT_TRUE(rig.prepare());
     rig.plant().inject({.fault = Fault::emergency_stop, .lasts = 2s});
@@ -65,7 +65,7 @@ TEST_P(SafeStates, an_emergency_stop_that_is_held_cannot_be_acknowledged_away) {
     EXPECT_TRUE(rig.run_until_state("ready", 2s)) << rig.state();
 }
 
-TEST_P(SafeStates, an_emergency_stop_at_stand_still_is_obeyed_too) {
+TEST_P(SafeStates, an_emergency_stop_at_standstill_is_obeyed) {
     LoomRig rig{GetParam(), nobody_there()};
     ASSERT_TRUE(rig.prepare());
     rig.plant().inject({.fault = Fault::emergency_stop});
@@ -76,10 +76,10 @@ TEST_P(SafeStates, an_emergency_stop_at_stand_still_is_obeyed_too) {
     EXPECT_EQ(rig.plant().speed_rpm(), 0.0);
 }
 
-/// What fails while the loom weaves, how soon it is in state fault, and why.
+/// A fault while the loom weaves: the time until state fault, and the reason.
 struct Failing {
     loom::ScriptedFault fault;
-    Duration within, at_most; ///< until it is looked for, and until it must be so
+    Duration within, at_most; ///< until the check begins, and until the state is due
     std::string_view reason;
 };
 constexpr Failing failing[] = {
@@ -97,7 +97,7 @@ constexpr Failing failing[] = {
      "a drive reports a fault"},
     {{.fault = Fault::oil_lost}, 10s, 10s, "the oil pressure is lost"}};
 
-TEST_P(SafeStates, what_fails_stops_the_loom_which_weaves_again_when_it_is_repaired) {
+TEST_P(SafeStates, a_failed_part_stops_the_loom_which_weaves_again_after_repair) {
     for (const Failing& row : failing) {
         SCOPED_TRACE(testing::Message{} << row.reason << ", node " << int{row.fault.node});
         LoomRig rig{GetParam()};
@@ -134,7 +134,7 @@ TEST_P(WeavingSafely, a_low_oil_level_alone_stops_nothing) {
     EXPECT_EQ(rig.state(), "weave");
 }
 
-TEST_P(WeavingSafely, a_bus_that_went_off_stops_the_loom_by_its_lines_alone) {
+TEST_P(WeavingSafely, the_loom_stops_by_its_lines_alone_when_the_bus_is_off) {
     const Time off = rig.now();
     rig.bus().bus_off(rig.machine_can());
     ASSERT_TRUE(rig.run_until_state("fault", 100ms));
@@ -144,7 +144,7 @@ TEST_P(WeavingSafely, a_bus_that_went_off_stops_the_loom_by_its_lines_alone) {
     EXPECT_EQ(rig.report().damage.total(), 0u);
 }
 
-TEST_P(WeavingSafely, a_bus_on_which_nobody_acknowledges_stops_the_loom) {
+TEST_P(WeavingSafely, a_bus_without_acknowledgements_stops_the_loom) {
     rig.bus().set_acknowledged(false);
     ASSERT_TRUE(rig.run_until_state("fault", 100ms));
     EXPECT_TRUE(rig.reason() == "the CAN bus is off" || rig.reason() == "the encoder is stale")

@@ -1,4 +1,4 @@
-// However the machine ended before, a start moves nothing until somebody at the machine has acknowledged.
+// After any kind of end, a start moves nothing until somebody at the machine has acknowledged.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 namespace tappet::carpet {
@@ -17,7 +17,8 @@ struct Start : LoomRig {
         for (const std::int64_t word : {main.controlword.last(), warp.controlword.last()})
             EXPECT_NE(word & 0xF, canopen::controlword::enable_operation) << "enabled";
     }
-    /// For so long nothing is driven, however often start is pressed and whatever the plant does.
+    /// Expects that nothing is driven for that long, however often start is pressed and whatever the plant
+    /// does.
     void expect_nothing_moves(Duration time) {
         for (const Time end = now() + time; now() < end; run_for(1ms)) {
             expect_drives_at_rest();
@@ -27,7 +28,7 @@ struct Start : LoomRig {
             if (testing::Test::HasFailure()) return;
         }
     }
-    /// From a start to the acknowledgement and on.
+    /// Runs from a start to the acknowledgement and beyond.
     void expect_locked_until_acknowledged() {
         expect_drives_at_rest();
         run_for(5ms); // the lines follow at once, whatever they were
@@ -42,7 +43,7 @@ struct Start : LoomRig {
         EXPECT_EQ(state(), "locked") << "time and the other buttons unlock nothing";
         EXPECT_EQ(plant().position_deg(), stood_at);
         EXPECT_EQ(plant().let_off_drive().target(), 0);
-        plant().repair(); // and what the end left broken is seen to
+        plant().repair(); // repairs what the end left broken
         run_for(500ms);
         acknowledge();
         EXPECT_TRUE(run_until_state("ready", 5s)) << state() << ": " << reason();
@@ -77,14 +78,14 @@ TEST_P(AfterAnEnding, the_next_start_moves_nothing_until_acknowledged) {
     rig.end_and_start_again(GetParam());
 }
 
-TEST_P(AfterAnEnding, that_came_while_it_was_prepared_the_next_start_moves_nothing_either) {
+TEST_P(AfterAnEnding, the_next_start_of_a_prepared_loom_moves_nothing) {
     Start rig;
     ASSERT_TRUE(rig.prepare());
     rig.end_and_start_again(GetParam());
 }
 
-/// Gone without a word: the lines stay as they are, and the drives follow what they were last told.
-TEST(AfterADeath, the_next_start_stops_what_turns_and_moves_nothing_until_acknowledged) {
+/// After a sudden death the lines stay as they are, and the drives follow their last commands.
+TEST(AfterADeath, the_next_start_stops_the_loom_and_moves_nothing_until_acknowledged) {
     for (const Duration later : {Duration{0}, Duration{37ms}}) {
         Start rig;
         ASSERT_TRUE(rig.weave_by_hand());
@@ -98,8 +99,8 @@ TEST(AfterADeath, the_next_start_stops_what_turns_and_moves_nothing_until_acknow
     }
 }
 
-/// It trips again on its way to follow, after the acknowledgement has reset it.
-TEST(AnAcknowledgement, is_asked_for_again_when_a_drive_does_not_follow) {
+/// The drive trips again after the acknowledgement has reset it, before it follows.
+TEST(AnAcknowledgement, is_required_again_when_a_drive_does_not_follow) {
     const loom::ScriptedFault trip{.fault = loom::Fault::drive_fault, .node = wires::node::main_drive};
     Start rig;
     rig.run_for(500ms); // its nodes boot
@@ -128,12 +129,12 @@ TEST(AnAcknowledgement, releases_no_brake_that_holds_a_turning_shaft) {
     rig.run_for(1ms);
     ASSERT_GT(rig.plant().speed_rpm(), 500.0);
     rig.plant().press(Button::acknowledge, 20ms);
-    rig.run_for(30ms); // debounced, it comes to the loom while the shaft is being braked
+    rig.run_for(30ms); // the debounced signal reaches the loom while the shaft brakes
     EXPECT_EQ(rig.state(), "locked");
     rig.expect_nothing_moves(500ms);
 }
 
-TEST(AnAcknowledgement, that_is_held_down_before_the_start_is_none) {
+TEST(AnAcknowledgement, does_not_count_when_held_down_before_the_start) {
     Start rig;
     rig.plant().press(Button::acknowledge, 10s);
     rig.run_for(100ms);

@@ -1,5 +1,5 @@
-// The swarm of the loom finds what is wrong with it: each row that keeps the loom safe is taken out in turn,
-// and some seed breaks a rule.
+// The swarm of the loom finds faults: each row that keeps the loom safe is removed in turn, and some seed
+// then breaks a rule.
 #include "apps/carpet_loom/swarm.hpp"
 #include "toolchain/machine/swarm.hpp"
 
@@ -24,11 +24,11 @@ SwarmOf swarm_of(const AcceptedMachine& machine) {
         }};
 }
 
-/// A row of the table's reactions that is missing.
+/// A missing row of the table's reactions.
 struct Hazard {
     const char* event;
     const char* operation;
-    std::uint64_t seed; ///< where the search begins: most of the seeds before it do not find it
+    std::uint64_t seed; ///< start of the search: most earlier seeds do not find it
 };
 void PrintTo(const Hazard& hazard, std::ostream* out) { *out << hazard.event << " -> " << hazard.operation; }
 
@@ -67,7 +67,7 @@ TEST_P(Planted, is_found_by_a_seed) {
     std::cout << "seed " << seed << ": " << broken.view() << "\n";
 }
 
-TEST(Swarm, of_one_seed_is_the_same_again) {
+TEST(Swarm, repeats_its_run_for_the_same_seed) {
     const SwarmOf of = swarm_of(on_host());
     std::vector<std::string> told[2];
     for (auto& each : told)

@@ -26,7 +26,7 @@ TEST_P(Weaving, prepares_runs_up_weaves_and_obeys_the_operators_stop) {
     EXPECT_TRUE(rig.run_until_state("run_up", 5s));
     EXPECT_TRUE(rig.run_until_state("weave", 3s));
     EXPECT_TRUE(rig.run().weave(30, 20s));
-    EXPECT_TRUE(rig.run_until_state("ready", 1s)); // a shaft that stands shows so only by staying where it is
+    EXPECT_TRUE(rig.run_until_state("ready", 1s)); // only time shows that a shaft stands
     EXPECT_EQ(rig.cause(), StopCause::operator_stop);
     EXPECT_EQ(rig.reason(), "the operator pressed stop");
     EXPECT_TRUE(rig.output(wires::line::lamp_stop));
@@ -47,8 +47,7 @@ TEST_P(Weaving, stops_for_broken_wefts_and_warp_ends_within_ten_degrees_of_the_s
     expect_no_damage(report);
     EXPECT_GT(report.weft_breaks_injected, 0u);
     EXPECT_GT(report.warp_breaks_injected, 0u);
-    // The weft is laid by hand where it was missing, and nowhere is a gap woven in but in the parked first
-    // turn.
+    // The operator lays a missing weft by hand; the only gap in the cloth is in the parked first turn.
     EXPECT_LE(report.picks_by_hand, report.weft_breaks_injected);
     EXPECT_LE(report.empty_turns, 1u);
     EXPECT_EQ(report.patterns_repeated, 0u);
@@ -65,8 +64,8 @@ TEST_P(Weaving, learns_the_brake_from_its_stops) {
     ASSERT_TRUE(rig.run().weave(150, 400s)) << rig.told();
     const loom::Report report = rig.report();
     ASSERT_GE(report.stops.size(), 9u);
-    // The data sheet is believed for the first stop only; what the machine then believes is what the plant
-    // measured.
+    // The machine trusts the data sheet for the first stop only; afterwards it uses the brake distances that
+    // the plant measured.
     const std::size_t last = report.stops.size();
     EXPECT_LE(mean_size_of_errors(report, last / 2, last), 1.5);
     const double believed = rig.component<MainShaft>("shaft").brake_distance_deg.last();
@@ -81,7 +80,7 @@ TEST_P(Weaving, learns_the_brake_from_its_stops) {
 }
 
 TEST_P(Weaving, follows_a_brake_that_wears) {
-    // All of the wear there is within twenty stops.
+    // All wear happens within twenty stops.
     LoomRig rig{GetParam(), {.weft_break_one_in = 6, .last_pick = 150, .brake_wear_per_stop = 0.008}};
     ASSERT_TRUE(rig.run().weave(150, 400s)) << rig.told();
     const loom::Report report = rig.report();

@@ -1,6 +1,6 @@
-// The carpet loom on bad wires: frames and edges lost, repeated, torn and late, a babbling node, a line that
-// is stuck, a Modbus server that is silent. What can be woven through is woven through and counted; the rest
-// is safe.
+// The carpet loom on bad wires: frames and edges lost, repeated, torn and late, a babbling node, a stuck
+// line, a silent Modbus server. The loom weaves through tolerable faults and counts them; every other fault
+// makes it safe.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
 
 namespace tappet::carpet {
@@ -34,29 +34,29 @@ void expect_woven(LoomRig& rig, std::uint64_t picks) {
 
 // --- CAN
 
-TEST_P(Wires, one_lost_frame_in_fifty_is_woven_through) {
+TEST_P(Wires, the_loom_weaves_through_one_lost_frame_in_fifty) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
     rig.bus().faults.lose.one_in = 50;
     expect_woven(rig, 60);
     EXPECT_GT(rig.bus().frames_lost(), 1000u);
-    // What is lost on the wire reaches no counter of this machine: the kernel never had it.
+    // No counter of this machine shows a frame lost on the wire: the kernel never had it.
     EXPECT_EQ(rig.machine_can().counters().lost_in_kernel, 0u);
 }
 
-TEST_P(Wires, repeated_frames_are_woven_through) {
+TEST_P(Wires, the_loom_weaves_through_repeated_frames) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
     rig.bus().faults.duplicate.one_in = 10;
     expect_woven(rig, 60);
 }
 
-TEST_P(Wires, frames_of_a_wrong_length_are_refused_and_counted_and_the_loom_weaves_on) {
+TEST_P(Wires, frames_of_a_wrong_length_are_counted_and_the_loom_weaves_on) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
     rig.bus().faults.corrupt_length.one_in = 50;
     expect_woven(rig, 60);
     EXPECT_GT(rig.component<CanBus>("can").decoding().wrong_lengths, 100u);
 }
 
-TEST_P(Wires, frames_that_come_late_are_woven_through) {
+TEST_P(Wires, the_loom_weaves_through_late_frames) {
     LoomRig rig{GetParam(), breaks_of_yarn(60)};
     rig.bus().faults.delay.one_in = 100;
     rig.bus().faults.delay_by = 1500us;
@@ -64,7 +64,7 @@ TEST_P(Wires, frames_that_come_late_are_woven_through) {
     expect_woven(rig, 60);
 }
 
-TEST_P(Wires, frames_of_unknown_identifiers_are_counted_and_nobodys_business) {
+TEST_P(Wires, frames_of_unknown_identifiers_are_counted_and_ignored) {
     LoomRig rig{GetParam(), breaks_of_yarn(30)};
     can::Frame strange;
     strange.id = 0x333;
@@ -73,8 +73,8 @@ TEST_P(Wires, frames_of_unknown_identifiers_are_counted_and_nobodys_business) {
     expect_woven(rig, 30);
 }
 
-TEST_P(WeavingWires, a_second_voice_in_the_encoders_frame_makes_the_loom_safe) {
-    can::Frame lie; // the shaft stands at code 0, it says
+TEST_P(WeavingWires, a_second_sender_of_the_encoders_frame_makes_the_loom_safe) {
+    can::Frame lie; // it claims that the shaft stands at code 0
     lie.id = cob::encoder_position;
     lie.length = 4;
     rig.bus().babble(lie, 300us, rig.now());
@@ -82,13 +82,13 @@ TEST_P(WeavingWires, a_second_voice_in_the_encoders_frame_makes_the_loom_safe) {
     EXPECT_EQ(rig.reason(), "the encoder is stale");
     EXPECT_TRUE(rig.run_until_it_stands(500ms));
     rig.run_for(5s);
-    EXPECT_NE(rig.state(), "weave"); // acknowledged by the operator, and still contradicted
+    EXPECT_NE(rig.state(), "weave"); // the operator acknowledges, and the contradiction remains
     rig.bus().babble(lie, 0us, rig.now());
     EXPECT_TRUE(rig.weave()) << rig.told();
     expect_no_damage(rig.report());
 }
 
-TEST_P(WeavingWires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_loom_safe) {
+TEST_P(WeavingWires, a_frozen_encoder_on_a_turning_drive_makes_the_loom_safe) {
     can::Frame frozen;
     frozen.id = cob::encoder_position;
     frozen.length = 4;
@@ -103,7 +103,7 @@ TEST_P(WeavingWires, an_encoder_that_is_frozen_while_the_drive_turns_makes_the_l
     expect_no_damage(rig.report());
 }
 
-TEST_P(WeavingWires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
+TEST_P(WeavingWires, a_receive_buffer_overflow_counts_every_lost_frame) {
     rig.bus().overflow(rig.machine_can(), 3);
     rig.run_for(200ms);
     EXPECT_EQ(rig.component<CanBus>("can").frames_lost.last(), 3);
@@ -115,7 +115,7 @@ TEST_P(WeavingWires, a_receive_buffer_that_overflowed_is_counted_to_the_frame) {
     expect_no_damage(rig.report());
 }
 
-TEST_P(WeavingWires, a_burst_of_lost_encoder_frames_is_the_stale_encoder_it_is) {
+TEST_P(WeavingWires, a_burst_of_lost_encoder_frames_is_reported_as_a_stale_encoder) {
     rig.bus().faults.lose.next = 20;
     rig.bus().faults.only = can::standard(cob::encoder_position);
     ASSERT_TRUE(rig.run_until_state("fault", 30ms));
@@ -124,7 +124,7 @@ TEST_P(WeavingWires, a_burst_of_lost_encoder_frames_is_the_stale_encoder_it_is) 
     expect_no_damage(rig.report());
 }
 
-TEST_P(WeavingWires, two_lost_encoder_frames_are_no_reason_to_stop) {
+TEST_P(WeavingWires, two_lost_encoder_frames_do_not_stop_the_loom) {
     rig.bus().faults.lose.next = 2;
     rig.bus().faults.only = can::standard(cob::encoder_position);
     rig.run_for(1s);
@@ -132,21 +132,21 @@ TEST_P(WeavingWires, two_lost_encoder_frames_are_no_reason_to_stop) {
     EXPECT_LE(rig.report().cam_error_max_deg, 1.0);
 }
 
-TEST_P(Wires, commands_that_are_lost_are_said_again) {
+TEST_P(Wires, lost_commands_are_sent_again) {
     LoomRig rig{GetParam(), breaks_of_yarn(40)};
     rig.bus().faults.lose.one_in = 4;
     rig.bus().faults.only = can::standard(cob::main_drive_command);
     expect_woven(rig, 40);
 }
 
-TEST_P(Wires, a_start_command_to_a_node_that_is_lost_is_said_again) {
+TEST_P(Wires, a_lost_start_command_to_a_node_is_sent_again) {
     LoomRig rig{GetParam()};
     rig.bus().faults.lose.next = 5;
     rig.bus().faults.only = can::standard(canopen::cob::nmt);
     EXPECT_TRUE(rig.run_until_state("ready", 5s)) << rig.state();
 }
 
-TEST_P(Wires, a_configuration_whose_frames_are_lost_now_and_then_comes_to_its_end) {
+TEST_P(Wires, a_configuration_completes_although_frames_are_lost) {
     LoomRig rig{GetParam()};
     rig.bus().faults.lose.one_in = 20;
     ASSERT_TRUE(rig.run_until([&] { return rig.component<Network>("network").operational.last(); }, 10s))
@@ -157,7 +157,7 @@ TEST_P(Wires, a_configuration_whose_frames_are_lost_now_and_then_comes_to_its_en
 
 // --- GPIO
 
-TEST_P(Wires, bouncing_lines_are_one_edge_each) {
+TEST_P(Wires, a_bouncing_line_counts_as_one_edge) {
     LoomRig rig{GetParam(), breaks_of_yarn(40)};
     for (const unsigned each : {line::drop_wire, line::button_start, line::button_stop,
                                 line::button_acknowledge, line::emergency_stop})
@@ -173,7 +173,7 @@ TEST_P(WeavingWires, a_bouncing_emergency_stop_is_an_emergency_stop) {
     expect_no_damage(rig.report());
 }
 
-TEST_P(WeavingWires, lost_edges_are_counted_and_the_levels_read_anew) {
+TEST_P(WeavingWires, lost_edges_are_counted_and_the_levels_are_read_again) {
     // The edge of the emergency stop itself is lost; the next edge of any line shows the gap.
     rig.lines().faults(LoomRig::line_index(line::emergency_stop)).lose_next = 1;
     rig.plant().inject({.fault = Fault::emergency_stop});
@@ -194,7 +194,7 @@ TEST_P(WeavingWires, a_lost_pulse_of_the_weft_detector_stops_the_loom_at_its_ang
     expect_no_damage(rig.report());
 }
 
-TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
+TEST_P(Wires, a_stuck_weft_detector_stops_the_loom) {
     for (const bool active : {false, true}) {
         LoomRig rig{GetParam()};
         ASSERT_TRUE(rig.weave());
@@ -207,7 +207,7 @@ TEST_P(Wires, a_weft_detector_that_is_stuck_stops_the_loom_either_way) {
     }
 }
 
-TEST_P(WeavingWires, a_drop_wire_that_is_stuck_keeps_the_loom_from_starting) {
+TEST_P(WeavingWires, a_stuck_drop_wire_keeps_the_loom_from_starting) {
     rig.lines().stick(LoomRig::line_index(line::drop_wire), true, rig.now());
     ASSERT_TRUE(rig.run_until_state("stopped", 1s));
     EXPECT_EQ(rig.cause(), StopCause::warp);
@@ -219,7 +219,7 @@ TEST_P(WeavingWires, a_drop_wire_that_is_stuck_keeps_the_loom_from_starting) {
 
 // --- Modbus
 
-TEST_P(Wires, an_outage_of_the_utility_unit_of_ten_seconds_is_survived) {
+TEST_P(Wires, the_loom_survives_a_ten_second_outage_of_the_utility_unit) {
     for (const modbus::Fault fault : {modbus::Fault::down, modbus::Fault::silent}) {
         LoomRig rig{GetParam()};
         ASSERT_TRUE(rig.weave());
@@ -237,7 +237,7 @@ TEST_P(Wires, an_outage_of_the_utility_unit_of_ten_seconds_is_survived) {
     }
 }
 
-TEST_P(WeavingWires, an_outage_that_lasts_makes_the_loom_safe_because_nobody_knows_the_oil_pressure) {
+TEST_P(WeavingWires, a_lasting_outage_of_the_utility_unit_makes_the_loom_safe) {
     rig.utility().inject(modbus::Fault::down);
     ASSERT_TRUE(rig.run_until_state("fault", 20s));
     EXPECT_EQ(rig.reason(), "the oil pressure is lost");
@@ -245,7 +245,7 @@ TEST_P(WeavingWires, an_outage_that_lasts_makes_the_loom_safe_because_nobody_kno
     EXPECT_TRUE(rig.weave()) << rig.told();
 }
 
-TEST_P(Wires, slow_answers_and_exceptions_of_the_utility_unit_are_woven_through) {
+TEST_P(Wires, the_loom_weaves_through_slow_answers_and_exceptions_of_the_utility_unit) {
     for (const modbus::Fault fault : {modbus::Fault::slow, modbus::Fault::exception,
                                       modbus::Fault::wrong_transaction, modbus::Fault::garbage_length}) {
         LoomRig rig{GetParam()};

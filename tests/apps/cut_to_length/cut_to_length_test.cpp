@@ -1,4 +1,5 @@
-// The cutter with its plant under virtual time: each piece has its length, and nothing cuts that should not.
+// The cutter with its plant under virtual time: each piece has its length, and nothing is cut that should not
+// be.
 #include "apps/cut_to_length/line.hpp"
 #include "toolchain/machine/test.hpp"
 
@@ -21,7 +22,7 @@ TEST_P(Cutter, cuts_each_piece_to_its_length_while_the_web_runs_up_runs_and_stop
     EXPECT_EQ(state(), "ready");
 }
 
-TEST_P(Cutter, stands_after_an_emergency_stop_and_goes_on_when_it_is_released_and_started) {
+TEST_P(Cutter, stops_in_an_emergency_and_resumes_when_released_and_started) {
     ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 5; }, 20s));
     plant.press_emergency_stop(true);
     ASSERT_TRUE(run.run_until([this] { return plant.web_stands(); }, 3s));
@@ -59,7 +60,7 @@ TEST_P(Cutter, goes_to_emergency_when_the_wheel_falls_silent) {
     EXPECT_EQ(state(), "emergency");
 }
 
-TEST_P(Cutter, does_not_run_a_web_that_nobody_measures) {
+TEST_P(Cutter, does_not_run_a_web_without_a_measurement) {
     ASSERT_TRUE(run.run_until([this] { return plant.is_done(); }, 60s));
     plant.silence_wheel();
     run.run_for(100ms);
@@ -70,7 +71,7 @@ TEST_P(Cutter, does_not_run_a_web_that_nobody_measures) {
     EXPECT_EQ(run.instance().find<Line>("line")->obstacle(), "the measuring wheel is not to be relied on");
 }
 
-TEST_P(Cutter, does_not_cut_a_web_that_somebody_pulls_by_hand) {
+TEST_P(Cutter, does_not_cut_a_web_that_is_pulled_by_hand) {
     ASSERT_TRUE(run.run_until([this] { return plant.pieces() >= 2; }, 20s));
     plant.press_emergency_stop(true);
     ASSERT_TRUE(run.run_until([this] { return plant.web_stands(); }, 3s));

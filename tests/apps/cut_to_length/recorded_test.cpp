@@ -1,5 +1,5 @@
-// The cutter in real time, recorded by a program beside it from the first look to the end: the thesis' report
-// (3.3) as people use it.
+// A second program records the cutter in real time, from the first cycle to the end: the thesis' report (3.3)
+// as users see it.
 #include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 
@@ -21,7 +21,7 @@ using tappet::run_line;
 using tappet::test::Folder;
 using testing::HasSubstr;
 
-/// The machine runs while the shell does what is said, with `browse` for tappet-browse.
+/// Runs the machine and a shell script beside it; `browse` is tappet-browse.
 Ended beside_the_cutter(const Folder& folder, const std::string& what) {
     return run_line("cd " + folder.string() +
                     " && browse() { " TAPPET_BROWSE " --directory browsers \"$@\"; }"
@@ -32,7 +32,7 @@ Ended beside_the_cutter(const Folder& folder, const std::string& what) {
                     what + "; kill -TERM $machine; wait $machine; true");
 }
 
-TEST(RecordedCutter, tells_in_a_file_what_it_did_step_by_step) {
+TEST(RecordedCutter, records_each_step_in_a_file) {
     const Folder folder;
     const Ended ended = beside_the_cutter(folder, "cat list; browse report start a.mcap --for 2s"
                                                   "; browse report convert a.mcap a.csv; echo converted: $?");
@@ -79,7 +79,7 @@ TEST(RecordedCutter, tells_in_a_file_what_it_did_step_by_step) {
     EXPECT_LE(rows, messages);
 }
 
-TEST(RecordedCutter, is_recorded_until_somebody_ends_it_or_it_ends_itself) {
+TEST(RecordedCutter, is_recorded_until_the_recording_or_the_machine_ends) {
     const Folder folder;
     const Ended ended = beside_the_cutter(
         folder, "browse report start a.mcap > a & recorder=$!"
@@ -98,7 +98,7 @@ TEST(RecordedCutter, is_recorded_until_somebody_ends_it_or_it_ends_itself) {
     EXPECT_THAT(ended.text, HasSubstr("nobody records into 'a.mcap'"));
     EXPECT_THAT(ended.text, HasSubstr("nobody: 2"));
     EXPECT_THAT(ended.text, HasSubstr("'report convert' makes a file that ends with .csv, not 'a.txt'"));
-    EXPECT_THAT(ended.text, HasSubstr("'machine' is no MCAP file"));
+    EXPECT_THAT(ended.text, HasSubstr("'machine' is not an MCAP file"));
     EXPECT_THAT(ended.text, HasSubstr("'report stop' takes the file of 'report start'"));
     for (const char* name : {"a.mcap", "b.mcap"}) {
         const Ended read = run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder / name).string());
@@ -106,14 +106,14 @@ TEST(RecordedCutter, is_recorded_until_somebody_ends_it_or_it_ends_itself) {
     }
 }
 
-TEST(RecordedCutter, leaves_a_file_that_is_good_as_far_as_it_goes_when_the_recorder_is_killed) {
+TEST(RecordedCutter, leaves_a_readable_file_when_the_recorder_is_killed) {
     const Folder folder;
     const Ended ended = beside_the_cutter(
         folder,
         "browse report start a.mcap > a & recorder=$!"
         "; for i in $(seq 300); do test $(stat -c %s a.mcap || echo 0) -gt 20000 && break; sleep 0.1; done"
         "; kill -KILL $recorder; wait $recorder; browse report convert a.mcap a.csv; echo converted: $?");
-    EXPECT_THAT(ended.text, HasSubstr("the recording was cut off, and is good up to there"));
+    EXPECT_THAT(ended.text, HasSubstr("the recording was cut off, and is good up to that point"));
     EXPECT_THAT(ended.text, HasSubstr("converted: 0"));
     const Ended read =
         run_line("/usr/bin/python3 " TAPPET_MCAP_READER " " + (folder / "a.mcap").string() + " --cut");

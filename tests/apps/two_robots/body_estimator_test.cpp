@@ -1,5 +1,5 @@
-// Packets of LEDs become a body: any four of them that are not hidden, from wherever it lies; what is no
-// packet of this camera is none.
+// Packets of LEDs become the pose of a body, from any four visible LEDs at any pose; foreign packets are
+// refused.
 #include "apps/two_robots/tool/body_estimator.hpp"
 #include "kernel/base/random.hpp"
 
@@ -52,7 +52,7 @@ TEST(Packet, is_read_as_it_was_written) {
     EXPECT_EQ(read.at[5], leds.at[5]);
 }
 
-TEST(Packet, that_is_cut_invalid_or_of_another_body_is_none) {
+TEST(Packet, is_refused_when_truncated_invalid_or_of_another_body) {
     Leds read;
     const auto good = led_packet::write(seen_of({}, 0b111111), false);
     EXPECT_FALSE(led_packet::read(led_packet::write(seen_of({}, 0b111111), true), read))
@@ -66,7 +66,7 @@ TEST(Packet, that_is_cut_invalid_or_of_another_body_is_none) {
     }
 }
 
-TEST(Packet, hides_leds_at_no_place_or_out_of_reach) {
+TEST(Packet, hides_leds_with_impossible_positions) {
     for (const double place :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200, -10.1}) {
         Leds leds = seen_of({}, 0b111111), read;
@@ -76,7 +76,7 @@ TEST(Packet, hides_leds_at_no_place_or_out_of_reach) {
     }
 }
 
-TEST(Packet, of_any_bytes_breaks_nothing) {
+TEST(Packet, may_contain_any_bytes) {
     Random random{5};
     for (int i = 0; i < 20000; ++i) {
         std::array<std::byte, led_packet::most> bytes = led_packet::write(seen_of({}, 0b111111), false);

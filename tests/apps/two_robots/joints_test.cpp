@@ -1,5 +1,5 @@
-// The joints' sensor, alone: what somebody says of a joint's angle is taken only when a joint can have it;
-// and the controllers, which take over where the joints stand.
+// The joints' sensor, alone: it accepts a calibration only for an angle that a joint can have. The
+// controllers take over at the joints' present angles.
 #include "apps/two_robots/controllers.hpp"
 #include "apps/two_robots/joints.hpp"
 
@@ -31,7 +31,7 @@ struct Sensed : testing::Test {
     }
 };
 
-TEST_F(Sensed, joints_have_no_angle_that_is_beyond_all_turns) {
+TEST_F(Sensed, joints_refuse_impossible_calibration_angles) {
     using Real = std::numeric_limits<double>;
     for (const double none :
          {Real::max(), -Real::max(), Real::infinity(), Real::quiet_NaN(), 1e306, 1e4 + 1}) {
@@ -48,7 +48,7 @@ TEST_F(Sensed, joints_have_no_angle_that_is_beyond_all_turns) {
     EXPECT_EQ(joints.rates.last(), Joints::Zero()) << "which is no motion";
 }
 
-TEST_F(Sensed, joints_whose_counts_mean_no_angle_are_not_written) {
+TEST_F(Sensed, joints_keep_their_angles_while_counts_per_rad_is_zero) {
     const Joints before = joints.positions.last();
     Joints none = joints.counts_per_rad.get();
     none[2] = 0.0;
@@ -58,7 +58,7 @@ TEST_F(Sensed, joints_whose_counts_mean_no_angle_are_not_written) {
     EXPECT_EQ(joints.positions.last(), before);
 }
 
-TEST_F(Sensed, joints_have_the_rate_of_the_time_that_passed) {
+TEST_F(Sensed, joints_compute_rates_over_the_time_that_passed) {
     const auto turn = [&](int ms) {
         for (int i = 0; i < ms; ++i) {
             counts[0].write(++count);
@@ -112,7 +112,7 @@ double most_after_a_far_target(double far) {
     return most;
 }
 
-TEST(JointControllers, do_not_move_for_a_target_that_was_far_at_the_hand_over) {
+TEST(JointControllers, ignore_a_target_that_was_far_at_the_hand_over) {
     for (const double far : {5.0, -5.0, 1e300}) {
         EXPECT_EQ(most_after_a_far_target<JointPid>(far), 0.0) << far;
         EXPECT_EQ(most_after_a_far_target<JointFeedForward>(far), 0.0) << far;

@@ -1,5 +1,4 @@
-// The robot that holds the body, with its plant under virtual time: homing, states, set points, ends of
-// joints.
+// The robot that holds the body, with its plant under virtual time: homing, states, set points, end stops.
 #include "tests/apps/two_robots/states.hpp"
 #include "toolchain/machine/test.hpp"
 
@@ -12,20 +11,20 @@ struct K160 : MachineTest, testing::WithParamInterface<std::uint64_t> {
     bool comes_to(std::string_view wanted, Duration within = 60s) {
         return MachineTest::comes_to("robot", wanted, within);
     }
-    /// From here on, each as it is entered.
+    /// Records each state that is entered from here on.
     void note_states() {
         run.judge_by([this](Time) {
             if (const auto now = state(); !now.empty() && (entered.empty() || entered.back() != now))
                 entered.emplace_back(now);
         });
     }
-    /// Nobody but the test presses a button.
+    /// Only the test presses buttons.
     bool waits_alone() {
         plant.leave_alone();
         plant.press("start", run.now() + 200ms);
         return comes_to("Waiting");
     }
-    /// What is believed of the joints beside what they are.
+    /// The error of the believed joint angles against the true ones.
     [[nodiscard]] Joints error() { return of<JointSensor>("joints").positions.last() - plant.joints(); }
     void runs(std::string_view chain) {
         run.run_for(50ms); // its state has been entered
@@ -51,7 +50,7 @@ TEST_P(K160, goes_from_power_on_through_homing_to_the_breath) {
 }
 
 // Thesis 3.4.7: state machines are (un-)loaded at run-time as scripts.
-TEST_P(K160, stands_without_its_states_and_goes_on_with_them_when_they_are_loaded_again) {
+TEST_P(K160, stops_without_its_states_and_resumes_once_they_are_reloaded) {
     LoadedStates states{run};
     EXPECT_EQ(states.slot().phase(), SlotPhase::steady) << "the compiled ones are there from the start";
     ASSERT_TRUE(comes_to("Waiting")) << state();
@@ -86,7 +85,7 @@ TEST_P(K160, stands_without_its_states_and_goes_on_with_them_when_they_are_loade
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
 }
 
-TEST_P(K160, finds_its_zeros_by_states_that_were_loaded) {
+TEST_P(K160, homes_with_states_that_were_loaded) {
     plant.leave_alone();
     LoadedStates states{run};
     EXPECT_EQ(states.load("k160/body_robot.osd"), "");
@@ -102,7 +101,7 @@ TEST_P(K160, finds_its_zeros_by_states_that_were_loaded) {
     EXPECT_TRUE(comes_to("Waiting", 2s)) << state();
 }
 
-TEST_P(K160, knows_its_joints_within_what_a_switch_repeats) {
+TEST_P(K160, knows_its_joints_within_the_repeatability_of_its_switches) {
     ASSERT_TRUE(comes_to("Waiting")) << state();
     run.run_for(100ms);
     EXPECT_LT(error().cwiseAbs().maxCoeff(), 2.0 * Plant::repeatability) << error().transpose();
@@ -118,12 +117,12 @@ TEST_P(K160, is_safe_when_a_joint_is_jammed) {
     EXPECT_EQ(of<JointEffector>("drives").sent.last(), Joints{Joints::Zero()});
     EXPECT_TRUE(plant.stands());
     EXPECT_FALSE(of<Homing>("homing").homed.last());
-    plant.jam(0); // it was mended, and somebody starts it again
+    plant.jam(0); // it was repaired, and somebody starts it again
     plant.press("start", run.now() + 200ms);
     EXPECT_TRUE(comes_to("Waiting")) << state();
 }
 
-TEST_P(K160, stops_looking_for_its_zeros_when_stop_is_pressed) {
+TEST_P(K160, stops_homing_when_stop_is_pressed) {
     ASSERT_TRUE(comes_to("Homing"));
     plant.leave_alone();
     run.run_for(Duration{137ms} * static_cast<int>(GetParam()));
@@ -132,15 +131,15 @@ TEST_P(K160, stops_looking_for_its_zeros_when_stop_is_pressed) {
     EXPECT_TRUE(run.run_until([this] { return plant.stands() && plant.brakes_are_on(); }, 1s));
 }
 
-TEST_P(K160, does_not_breathe_where_it_is_not_ready) {
+TEST_P(K160, does_not_breathe_before_it_is_ready) {
     ASSERT_TRUE(waits_alone());
     plant.press("work", run.now() + 200ms);
     run.run_for(1s);
     EXPECT_EQ(state(), "Waiting");
 }
 
-// Thesis 3.4.3: PID and feed-forward. The rate that is known beforehand leaves less to the error.
-TEST_P(K160, follows_a_ramp_closer_with_feed_forward_and_both_come_to_the_step) {
+// Thesis 3.4.3: PID and feed-forward. A known rate leaves a smaller error.
+TEST_P(K160, follows_a_ramp_better_with_feed_forward_and_both_reach_a_step) {
     ASSERT_TRUE(waits_alone());
     const auto worst_on_the_way = [&](std::string_view chain, double to) {
         runs(chain);

@@ -1,5 +1,5 @@
-// Both arms: the K361 as it was measured, its wrist of two cones, and both kinematics against their inverses
-// and their derivatives.
+// Both arms: the K361 as measured, its wrist of two cones, and both kinematics against their inverses and
+// their derivatives.
 #include "apps/two_robots/kinematics.hpp"
 #include "kernel/base/random.hpp"
 
@@ -14,7 +14,7 @@ Joints any(Random& random, double most) {
     return q;
 }
 
-TEST(K361, stands_where_its_makers_program_says) { // KDL 1.5, and the cones multiplied out
+TEST(K361, has_the_pose_that_kdl_computes) { // KDL 1.5, and the cones multiplied out
     K361Kinematics arm;
     const auto flange = arm.posture(SixNumbers{Joints{.1, .2, 1.2426, 1.0373, 1.197, -1.0373}}).frame();
     EXPECT_NEAR(flange.position.x(), -.172757547383, 1e-11);
@@ -31,7 +31,7 @@ TEST(K361, has_a_wrist_of_two_cones_that_bends_by_120_degrees_at_most) {
     EXPECT_NEAR(ConeWrist::angles(q)[4], 1.142269598239, 1e-11);
     q[4] = std::numbers::pi;
     EXPECT_NEAR(ConeWrist::angles(q)[4], 2.0 * std::numbers::pi / 3.0, 1e-12);
-    q[4] = 3.0; // asked to bend further it goes to that end
+    q[4] = 3.0; // beyond its range it goes to the end stop
     EXPECT_NEAR(ConeWrist::joints(q)[4], std::numbers::pi, 1e-9);
 }
 

@@ -16,7 +16,7 @@ struct Operation : MachineTest, testing::WithParamInterface<std::uint64_t> {
     bool comes_to(std::string_view wanted, Duration within = 120s) {
         return MachineTest::comes_to("robot", wanted, within);
     }
-    /// Of the tip from the path that was recorded, across and along the shaft, m.
+    /// Distance of the tip from the recorded path, across and along the shaft, in m.
     [[nodiscard]] double beside_path() const {
         const Eigen::Vector3d& tip = plant.now().tip;
         const double round = std::sqrt(tip.x() * tip.x() + tip.y() * tip.y()) - recorded_radius;
@@ -43,7 +43,7 @@ struct Operation : MachineTest, testing::WithParamInterface<std::uint64_t> {
     }
 };
 
-TEST_P(Operation, leads_the_tip_along_its_path_in_a_body_that_moves) {
+TEST_P(Operation, moves_the_tip_along_its_path_in_a_moving_body) {
     sways();
     ASSERT_TRUE(comes_to("Operating")) << state();
     run.run_for(4s);
@@ -54,7 +54,7 @@ TEST_P(Operation, leads_the_tip_along_its_path_in_a_body_that_moves) {
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
 }
 
-TEST_P(Operation, needs_an_estimate_of_now_because_the_camera_tells_the_past) {
+TEST_P(Operation, needs_prediction_because_the_camera_shows_the_past) {
     sways();
     of<BodyEstimator>("body").predicts.set(false);
     ASSERT_TRUE(comes_to("Operating")) << state();
@@ -66,7 +66,7 @@ TEST_P(Operation, needs_an_estimate_of_now_because_the_camera_tells_the_past) {
 
 // Thesis 3.3: one component can replace another one, without their clients having to adapt to, or even be
 // aware of, the replacement.
-TEST_P(Operation, does_not_notice_that_another_estimator_tells_where_the_body_is) {
+TEST_P(Operation, is_undisturbed_when_another_estimator_takes_over) {
     sways();
     ASSERT_TRUE(comes_to("Operating")) << state();
     run.run_for(4s);
@@ -94,7 +94,7 @@ TEST_P(Operation, does_not_notice_that_another_estimator_tells_where_the_body_is
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
 }
 
-TEST_P(Operation, keeps_its_estimator_when_the_other_one_cannot_know_the_body) {
+TEST_P(Operation, keeps_its_estimator_when_the_other_one_sees_no_leds) {
     ASSERT_TRUE(comes_to("Operating")) << state();
     plant.camera.faults.covered = true;
     ASSERT_TRUE(comes_to("Holding", 1s)) << state();
@@ -105,7 +105,7 @@ TEST_P(Operation, keeps_its_estimator_when_the_other_one_cannot_know_the_body) {
     EXPECT_EQ(of<ChainSwitch>("estimation").hindered.last().view(), "body_kalman.leds");
 }
 
-TEST_P(Operation, does_not_notice_who_answers_what_is_asked_of_the_arm) {
+TEST_P(Operation, is_undisturbed_when_other_kinematics_take_over) {
     sways();
     ASSERT_TRUE(comes_to("Operating")) << state();
     run.run_for(4s);
@@ -130,7 +130,7 @@ TEST_P(Operation, does_not_notice_who_answers_what_is_asked_of_the_arm) {
 }
 
 // Thesis 3.4.7: state machines are (un-)loaded at run-time as scripts.
-TEST_P(Operation, is_led_by_states_that_were_loaded_while_it_stood) {
+TEST_P(Operation, runs_on_states_that_were_loaded_at_standstill) {
     ASSERT_TRUE(comes_to("Waiting")) << state();
     run.run_for(500ms); // the button was let go
     LoadedStates states{run};
@@ -147,16 +147,16 @@ TEST_P(Operation, is_led_by_states_that_were_loaded_while_it_stood) {
     EXPECT_TRUE(plant.fault().empty()) << plant.fault().view();
 }
 
-// Thesis 3.3, time: whenever several processors are used they synchronise their clocks. What is told of the
-// other robot's clock is compared with what it is.
-TEST_P(Operation, knows_the_other_robots_clock_as_well_as_it_says) {
+// Thesis 3.3, time: whenever several processors are used they synchronise their clocks. The test compares the
+// estimate of the other robot's clock with the truth.
+TEST_P(Operation, knows_the_other_robots_clock_within_its_stated_error) {
     const auto& clock = of<udp::PeerClock>("body_clock");
     const auto wrong = [&] { return (clock.ahead.last() - plant.time_link.ahead(run.now())); };
     const auto looks_for = [&](Duration time) {
         Duration worst{};
         for (const Time end = run.now() + time; run.now() < end;) {
             run.run_for(50ms);
-            // Since it was told the clocks drifted apart a little further.
+            // Since the last exchange the clocks have drifted a little further.
             EXPECT_LE(std::abs(wrong().count()), (clock.error.last() + 30us).count());
             worst = std::max(worst, clock.error.last());
         }
@@ -193,7 +193,7 @@ TEST_P(Operation, knows_where_the_body_is) {
     EXPECT_GT(camera.invalid.last() + camera.late.last(), 0);
 }
 
-TEST_P(Operation, believes_a_camera_that_restarts_soon_and_its_times_at_once) {
+TEST_P(Operation, trusts_a_restarted_camera_within_a_second) {
     ASSERT_TRUE(comes_to("Operating")) << state();
     plant.camera.restart();
     run.run_for(1s);
@@ -207,7 +207,7 @@ TEST_P(Operation, believes_a_camera_that_restarts_soon_and_its_times_at_once) {
     }
 }
 
-TEST_P(Operation, goes_on_while_one_led_is_hidden) {
+TEST_P(Operation, continues_while_one_led_is_hidden) {
     ASSERT_TRUE(comes_to("Operating")) << state();
     plant.camera.faults.hidden_led = static_cast<int>(GetParam() % 6);
     run.run_for(5s);
@@ -215,7 +215,7 @@ TEST_P(Operation, goes_on_while_one_led_is_hidden) {
     EXPECT_LT(worst_beside_path(5s), 0.5e-3);
 }
 
-TEST_P(Operation, stands_still_in_the_hole_when_the_body_is_not_seen_and_goes_on_when_it_is) {
+TEST_P(Operation, stops_in_the_hole_while_the_body_is_not_seen_and_then_continues) {
     ASSERT_TRUE(comes_to("Operating")) << state();
     run.run_for(Duration{531ms} * static_cast<int>(GetParam()));
     plant.forget_worst();
@@ -251,7 +251,7 @@ TEST_P(Operation, never_leaves_the_hole_when_the_other_robot_stops_at_any_phase)
     EXPECT_LT(worst_beside_path(5s), 0.4e-3) << "the body lies still";
 }
 
-TEST_P(Operation, comes_out_of_the_hole_when_it_is_told_to_stop) {
+TEST_P(Operation, leaves_the_hole_when_stop_is_pressed) {
     ASSERT_TRUE(comes_to("Operating")) << state();
     run.run_for(Duration{731ms} * static_cast<int>(GetParam()));
     plant.leave_alone();
@@ -321,15 +321,15 @@ std::uint64_t digest_of_a_run(std::uint64_t seed) {
     return digest_of(run.instance(), plant);
 }
 
-TEST(TwoRobots, run_alike_for_one_seed) {
+TEST(TwoRobots, run_identically_for_the_same_seed) {
     const std::uint64_t first = digest_of_a_run(3);
     EXPECT_EQ(digest_of_a_run(3), first);
     EXPECT_NE(digest_of_a_run(4), first);
 }
 
-// Thesis 3.4.3: both robots have the same components, but differ in state machines; and the one has its zeros
-// to find and a body to move.
-TEST(TwoRobots, have_their_components_of_one_set_of_types) {
+// Thesis 3.4.3: both robots have the same components but differ in their state machines; only one of them has
+// to home and to move a body.
+TEST(TwoRobots, share_one_set_of_component_types) {
     const auto types_of = [](const MachineView& table) {
         std::set<std::string_view> names;
         for (const ComponentRow& each : table.components) names.insert(each.type->tag->name);

@@ -1,4 +1,4 @@
-// The program of both robots draws their run, or says why not; and it keeps properties in files.
+// The program of both robots draws their run, or says why not; and it keeps its properties in files.
 #include "apps/two_robots/host/picture.hpp"
 #include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
@@ -24,9 +24,9 @@ TEST(Picture, shows_the_states_of_both_and_the_tip) {
         EXPECT_THAT(picture, HasSubstr(word));
 }
 
-TEST(Picture, of_nothing_is_a_picture) { EXPECT_THAT(picture_of({}), HasSubstr("</svg>")); }
+TEST(Picture, is_complete_without_data) { EXPECT_THAT(picture_of({}), HasSubstr("</svg>")); }
 
-// With every compiler and on every processor.
+// The picture is the same with every compiler and on every processor.
 TEST(Program, draws_the_picture_of_its_page_or_says_why_not) {
     const Folder folder;
     const std::string file = folder / "two_robots_test.svg";

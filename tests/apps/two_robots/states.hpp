@@ -1,4 +1,4 @@
-// The states of a robot, unloaded and loaded again while it runs, as a browser does it.
+// Unloads and reloads the states of a robot while it runs, as a browser does.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -17,7 +17,7 @@ class LoadedStates {
 public:
     explicit LoadedStates(tappet::VirtualRun& run) : run_{run}, slot_{*run.instance().slot_of("robot")} {}
 
-    /// From a file of the application's folder; what was wrong with it.
+    /// Loads a file of the application's folder; returns the refusal, empty: loaded.
     std::string load(const std::string& file) {
         std::ifstream in{SCRIPTS "/" + file};
         const std::string script{std::istreambuf_iterator<char>{in}, {}};

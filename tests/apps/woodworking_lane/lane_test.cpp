@@ -1,5 +1,5 @@
-// The lane as a whole: boards are worked on as they ask for, whatever the wire does; who falls silent stops
-// the belt in the time that was proven.
+// The lane as a whole: each board gets the work that it asks for, whatever the wire does; a silent node stops
+// the belt within the proven time.
 #include "apps/woodworking_lane/host/lane_run.hpp"
 #include "apps/woodworking_lane/lane.hpp"
 
@@ -29,7 +29,7 @@ TEST(Lane, works_on_every_board_as_its_programme_says) {
     }
 }
 
-TEST(Lane, works_likewise_when_frames_are_spoilt_omitted_and_doubled) {
+TEST(Lane, works_on_every_board_despite_corrupt_lost_and_repeated_frames) {
     for (std::uint64_t seed = 1; seed <= SEEDS; ++seed) {
         Random random{seed};
         LaneRun run{seed, 8};
@@ -59,7 +59,7 @@ TEST(Lane, is_the_same_for_the_same_seed) {
     EXPECT_EQ(digest(), digest());
 }
 
-/// How long after a node's death the belt is told to stop.
+/// Time from a node's death until the belt is told to stop.
 Duration stop_time(std::uint64_t seed) {
     Random random{seed};
     LaneRun run{seed, 4};
@@ -78,7 +78,7 @@ Duration stop_time(std::uint64_t seed) {
     return took;
 }
 
-TEST(Lane, stops_within_the_time_that_was_proven_for_each_node_that_dies) {
+TEST(Lane, stops_within_the_proven_time_when_a_node_dies) {
     const auto& promised = systems::promises_of<lane>.proven;
     const Duration proven = *std::max_element(promised.begin() + 2, promised.end());
     Duration longest{};
@@ -92,7 +92,7 @@ TEST(Lane, stops_within_the_time_that_was_proven_for_each_node_that_dies) {
     EXPECT_GE(to_seconds(longest), 0.7 * to_seconds(proven)) << longest.count();
 }
 
-TEST(Lane, goes_on_when_a_dead_node_is_back_and_somebody_acknowledges) {
+TEST(Lane, continues_once_a_dead_node_is_back_and_acknowledged) {
     LaneRun run{3, 8};
     ASSERT_TRUE(run.start());
     run.run_for(30s);
@@ -111,7 +111,7 @@ TEST(Lane, goes_on_when_a_dead_node_is_back_and_somebody_acknowledges) {
     run.system.stop();
 }
 
-TEST(Lane, a_node_that_babbles_is_outlived_and_its_frames_are_nobodys) {
+TEST(Lane, outlives_a_babbling_node_and_ignores_its_frames) {
     LaneRun run{5, 4};
     ASSERT_TRUE(run.start());
     run.run_for(5s);
@@ -123,7 +123,7 @@ TEST(Lane, a_node_that_babbles_is_outlived_and_its_frames_are_nobodys) {
     EXPECT_TRUE(run.hall.runs);
     int missed = 0;
     EXPECT_EQ(fault_of(run.hall, missed).view(), "");
-    // In the name of another one: no protection fits.
+    // A frame in the name of another node: its protection does not fit.
     frame.id = systems::plan_of<lane>.frames[systems::NodeRows<lane, 1>::beat_frame].id;
     run.system.wire().babble(frame, 3ms, run.system.now());
     run.run_for(1s);
@@ -133,7 +133,7 @@ TEST(Lane, a_node_that_babbles_is_outlived_and_its_frames_are_nobodys) {
     run.system.stop();
 }
 
-TEST(Lane, every_frame_comes_as_fast_as_was_proven) {
+TEST(Lane, delivers_every_frame_within_its_proven_time) {
     double nearest = 0;
     for (std::uint64_t seed = 1; seed <= SEEDS; ++seed) {
         LaneRun run{seed, 6};

@@ -1,5 +1,5 @@
-// tappet-browse beside the running loom on the bench: it lists, watches, sets, sends and forces, each for
-// whom it is allowed, and whatever it does the machine keeps its times (thesis 4.8).
+// tappet-browse with the running loom on the bench: it lists, watches, sets, sends and forces with the rights
+// of its user, and the machine always meets its deadlines (thesis 4.8).
 #include "tests/bench/loom/loom_rig.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
 
-constexpr uid_t an_observer = 1000; ///< whom the bench's board does not list
+constexpr uid_t an_observer = 1000; ///< a user whom the bench's board does not list
 constexpr uid_t an_operator = 1001;
 
 Outcome browse(std::vector<std::string> words, uid_t user = root) {
@@ -24,7 +24,7 @@ Outcome browse(std::vector<std::string> words, uid_t user = root) {
 }
 double value_of(const std::string& name) { return Browser{}.value_of(name); }
 
-/// One loom for all that a browser asks of it; the last test ends it.
+/// One loom for all requests of a browser; the last test ends it.
 class LoomBrowser : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -61,7 +61,7 @@ TEST_F(LoomBrowser, watches_the_angle) {
     EXPECT_GT(values.size(), 5u) << "the shaft turns, but it is seen to stand:\n" << seen.text;
 }
 
-TEST_F(LoomBrowser, sets_the_tensions_gains_in_one_transaction_while_the_loom_weaves) {
+TEST_F(LoomBrowser, sets_both_tension_gains_in_one_transaction_while_the_loom_weaves) {
     const double before = value_of("weft.picks_woven");
     const Outcome set = browse({"set", "warp.gains.proportional", "0.02", "warp.gains.integral", "0.05"});
     EXPECT_EQ(set.code, 0) << set.text;
@@ -73,14 +73,14 @@ TEST_F(LoomBrowser, sets_the_tensions_gains_in_one_transaction_while_the_loom_we
     EXPECT_TRUE(soon([&] { return value_of("weft.picks_woven") > before; })) << "it weaves on";
 }
 
-TEST_F(LoomBrowser, tells_each_beat_up) {
+TEST_F(LoomBrowser, reports_each_beat_up) {
     const Outcome events = browse({"events", "shaft.beat_up", "--count", "3"});
     EXPECT_EQ(events.code, 0) << events.text;
     EXPECT_THAT(events.text, HasSubstr("shaft.beat_up"));
     EXPECT_EQ(std::ranges::count(events.text, '\n'), 3) << events.text;
 }
 
-TEST_F(LoomBrowser, shows_the_worst_cycle_and_what_ran_in_it_while_the_loom_weaves) {
+TEST_F(LoomBrowser, shows_the_worst_cycle_and_its_activities_while_the_loom_weaves) {
     const Outcome all = browse({"scope"}, an_observer);
     EXPECT_EQ(all.code, 0) << all.text;
     EXPECT_THAT(all.text, HasSubstr("a stamp costs "));
@@ -110,7 +110,7 @@ TEST_F(LoomBrowser, forces_a_lamp_and_shows_that_it_is_forced) {
     EXPECT_EQ(browse({"forced"}).text, "");
 }
 
-TEST_F(LoomBrowser, lets_an_observer_look_and_refuses_clearly_what_is_not_his) {
+TEST_F(LoomBrowser, lets_an_observer_read_and_refuses_other_requests_clearly) {
     EXPECT_EQ(browse({"get", "shaft.angle_deg"}, an_observer).code, 0);
     EXPECT_THAT(browse({"info"}, an_observer).text, HasSubstr("you are its observer"));
     const double before = value_of("warp.set_point_n");
@@ -126,14 +126,14 @@ TEST_F(LoomBrowser, lets_an_observer_look_and_refuses_clearly_what_is_not_his) {
     EXPECT_THAT(browse({"info"}, an_operator).text, HasSubstr("you are its operator"));
 }
 
-TEST_F(LoomBrowser, tells_the_nearest_name_for_a_misspelt_one) {
+TEST_F(LoomBrowser, suggests_the_nearest_name_for_a_misspelt_one) {
     const Outcome outcome = browse({"get", "shaft.angle_dge"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.text, HasSubstr("did you mean \"shaft.angle_deg\"?"));
 }
 
 /// Thesis 5.2.4: state machines are loaded into a running system.
-TEST_F(LoomBrowser, loads_a_weave_at_an_angle_refuses_a_faulty_one_and_sees_a_misbehaving_one_taken_back) {
+TEST_F(LoomBrowser, loads_a_weave_and_refuses_or_reverts_faulty_ones) {
     const double before = value_of("weft.picks_woven");
     const auto list = [] { return browse({"behaviour", "list", "weft"}).text; };
     EXPECT_EQ(browse({"behaviour", "load", "/bin/twill.osd", "weft"}, an_operator).code, 1);
@@ -158,7 +158,7 @@ TEST_F(LoomBrowser, loads_a_weave_at_an_angle_refuses_a_faulty_one_and_sees_a_mi
 
 /// An observer reads everything without a pause, another is stopped in the middle, a third is killed, a
 /// fourth asks without listening.
-TEST_F(LoomBrowser, may_flood_hang_and_die_and_the_loom_keeps_its_times) {
+TEST_F(LoomBrowser, may_flood_hang_and_die_without_delaying_the_loom) {
     const double before = value_of("weft.picks_woven");
     Foreign reader{"tappet-browse watch can io shaft weft main warp loom --every 1ms"};
     Foreign stopped{"tappet-browse watch shaft --every 1ms"};
@@ -178,14 +178,13 @@ TEST_F(LoomBrowser, may_flood_hang_and_die_and_the_loom_keeps_its_times) {
     deaf.signal(SIGCONT);
 }
 
-TEST_F(LoomBrowser, sends_the_stop_with_its_angle_and_follows_it_to_done) {
+TEST_F(LoomBrowser, sends_a_stop_at_an_angle_and_follows_it_until_done) {
     const Outcome sent = browse({"send", "shaft.stop_at", "300", "--follow", "--timeout", "5s"}, an_operator);
     EXPECT_EQ(sent.code, 0) << sent.text;
     EXPECT_THAT(sent.text, HasSubstr("shaft.stop_at: executing"));
     EXPECT_THAT(sent.text, HasSubstr("shaft.stop_at: done ["));
     EXPECT_EQ(value_of("shaft.speed_rpm"), 0.0);
-    // The first stop of a brake that has learned nothing yet may be some degrees off; the command says how
-    // many.
+    // The first stop with an untrained brake may be some degrees off; the command says how many.
     const double off = value_of("shaft.angle_deg") - 300.0;
     EXPECT_LT(std::abs(off), 15.0) << "it stands, but not at the angle that was asked for";
     const double told = std::strtod(sent.text.c_str() + sent.text.find("done [") + 6, nullptr);

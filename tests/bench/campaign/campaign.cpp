@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// While the loom weaves, at a random moment, something ends it or a part of it, or nearly; the wires are
+// While the loom weaves, a fault ends it or a part of it at a random moment, or nearly does; the wires are
 // judged.
 //
 //   loom_campaign [--runs N] [--seed S] [--only FAULT] [--no-guardian]
 //
-// The lines are pulled to what is not safe: whoever lets go of them shows. Times are the guest's. Exit 1: a
-// run was not safe in time, or the loom did not weave again.
+// The lines are pulled to their unsafe levels, so that a released line shows. Times are the guest's. Exit 1:
+// a run was not safe in time, or the loom did not weave again.
 #include "tests/bench/campaign/held_output.hpp"
 #include "tests/bench/loom/loom_rig.hpp"
 
@@ -23,13 +23,13 @@
 namespace tappet::bench {
 namespace {
 
-// Of what hangs: the board's life_sign_within. Of a bus that is down: the drives' time-out.
-// Of who is asked by a browser: until that has started, and the loom stands.
+// For a hang: the life_sign_within of the board. For a bus that is down: the time-out of the drives. For a
+// request of a browser: until the browser has started, and the loom stands.
 constexpr auto death = 10ms, hang = 210ms, silence = 110ms, orderly = 110ms, guardian_hangs = 1310ms,
                exhausted = 1500ms, asked = 3000ms;
-constexpr auto weaves_on = 2s; // so long at least, when it is to take no notice
+constexpr auto weaves_on = 2s; // at least this long, when the fault must not disturb it
 
-/// Brake on, valve closed: read from files that stay open, so that looking costs the machine little.
+/// Brake on, valve closed: read from files that stay open, so that reading costs the machine little.
 class SafeLines {
 public:
     [[nodiscard]] bool now() const { return is_high(brake_) && !is_high(valve_); }
@@ -69,8 +69,8 @@ void spin(std::chrono::milliseconds time) {
     ::_exit(0);
 }
 
-/// Takes what memory there is, until the kernel ends it. Below every activity: above them it keeps the kernel
-/// from finding any, and the watchdog resets the box.
+/// Takes all free memory, until the kernel kills it. Runs below every activity: above them, it keeps the
+/// kernel from finding memory, and the watchdog resets the box.
 void exhaust_memory() {
     if (::fork() != 0) return;
     be_fifo(0);
@@ -92,7 +92,7 @@ void set_interface(const char* name, bool up) {
 }
 
 constexpr const char* chip = "/sys/kernel/config/gpio-sim/io";
-/// Below every activity: above them the kernel's work for it keeps them from running.
+/// Runs below every activity: above them, the kernel's work for it keeps them from running.
 void unplug_chip() {
     be_fifo(0);
     std::ofstream{std::string{chip} + "/live"} << 0;
@@ -115,13 +115,13 @@ void plug_chip() {
 }
 
 enum class After : std::uint8_t {
-    dead,      ///< the guardian acted and handed the code on
+    dead,      ///< the guardian acted and forwarded the code
     stopped,   ///< the machine stopped itself
     goes_on,   ///< it waits for the operator
-    misses,    ///< the same, but acknowledged it prepares itself, with its brake off, and waits for its part
-    unplugged, ///< it stopped what it still reaches, and ends in order; its lines are nobody's
+    misses,    ///< the same; once acknowledged it prepares itself without brake, and waits for its part
+    unplugged, ///< it stopped everything within reach, and ends in order; nobody drives its lines
     untouched, ///< it weaves on
-    either,    ///< untouched or dead: who asks the kernel for memory waits, in real time too
+    either,    ///< untouched or dead: a process that asks the kernel for memory waits, even in real time
 };
 
 struct Victims {
@@ -136,7 +136,7 @@ struct Fault {
     After after;
     int code = 0;                           ///< dead: the exit code
     const char* mended_by = nullptr;        ///< misses: the command that starts the part again
-    void (*mend)(const Victims&) = nullptr; ///< untouched: it is as before
+    void (*mend)(const Victims&) = nullptr; ///< untouched: undoes the fault
 };
 
 // clang-format off
@@ -201,7 +201,7 @@ public:
         pull(wires::line::brake, false);
         pull(wires::line::weft_release, true);
         const pid_t machine = machine_of(*machine_), guardian = machine_->number();
-        be_fifo(95); // the judge must see what a thread that spins keeps from everybody else
+        be_fifo(95); // the judge must see how a spinning thread blocks all others
         const WallTime committed = wall_now();
         const Victims victims{guardian, machine == 0 ? guardian : machine, *output_};
         fault.commit(victims);
@@ -248,7 +248,7 @@ private:
             },
             20s, 20ms);
     }
-    /// Until it weaves, perhaps after it stood for a weft that came late; false: it ended, or does neither.
+    /// Waits until it weaves, perhaps after a stop for a late weft; false: it ended, or does neither.
     bool comes_back() {
         seen_ = said().size();
         bool ended = false;
@@ -268,19 +268,19 @@ private:
                !content_of("/proc/" + std::to_string(process) + "/status").contains("State:\tZ");
     }
 
-    /// Of who drives the lines: the guardian, or, when that is the victim, the machine.
+    /// Judges the driver of the lines: the guardian, or, when that is the victim, the machine.
     Verdict judge_lines(const Fault& fault, WallTime committed, pid_t machine) {
         Verdict verdict;
         const pid_t holder = fault.after == After::stopped && machine != 0 ? machine : machine_->number();
         bool safe = false;
         while (wall_now() - committed < fault.within + 60ms) {
             const bool now_safe = lines_->now();
-            // Nobody holds them any more once the holder has ended, which takes a while.
+            // Once the holder has ended, nobody holds the lines, after a short delay.
             if (!now_safe && !lives(holder)) break;
             if (!now_safe && safe && soon([&] { return !lives(holder); }, 20ms)) break;
             if (now_safe && !safe)
                 verdict.lines = std::chrono::duration_cast<WallDuration>(wall_now() - committed);
-            // A machine that still lives may have stopped for a weft, and weave again.
+            // A machine that still lives may have stopped for a weft, and may weave again.
             const bool may_weave = fault.after == After::stopped || fault.after == After::either;
             if (!now_safe && safe && !may_weave && fault.after != After::misses)
                 verdict.fault = "the lines did not stay safe";
@@ -344,17 +344,17 @@ private:
 
     void judge_drives(const Fault& fault, WallTime committed, Foreign& listener, Verdict& verdict) {
         int told = 0;
-        // What comes after is another start, whose first command that turns a drive follows an
+        // Later commands belong to another start, whose first command that turns a drive follows an
         // acknowledgement.
         const WallTime end = committed + fault.within + 100ms;
         soon([&] { return wall_now() > end; });
-        listener.signal(SIGINT); // it writes what it kept back
+        listener.signal(SIGINT); // it writes its buffered output
         listener.wait();
         for (const Logged& f : frames_of(listener.output())) {
             if (!is_drive_command(f) || f.at < committed || f.at > end) continue;
             ++told;
-            // Who prepares itself has its drives hold, and tightens the warp; a shaft without its brake
-            // coasts, and the let-off follows it.
+            // A machine that prepares itself holds its drives and tightens the warp; a shaft without its
+            // brake coasts, and the let-off follows it.
             const bool turns = fault.after != After::misses && fault.after != After::unplugged
                                    ? !drives_stand(f)
                                    : f.id == wires::cob::main_drive_command && f.target() != 0;
@@ -391,7 +391,7 @@ int campaign(int runs, std::uint32_t seed, std::string_view only, bool guarded) 
     std::map<std::string_view, Times> times;
     int unsafe = 0;
     for (int i = 0; i < runs; ++i) {
-        // Each once, from another one on for each seed; then at random.
+        // Each fault once, starting at another one for each seed; then at random.
         const auto place = static_cast<std::size_t>(i);
         const std::size_t chosen = place < std::size(faults) ? place + seed : random();
         const Fault* fault = only.empty() ? &faults[chosen % std::size(faults)] : find_fault(only);

@@ -1,4 +1,4 @@
-// What a program writes goes through a small pipe into a file, unless it is held: then the pipe fills.
+// The output of a program goes through a small pipe into a file; while it is held, the pipe fills.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ public:
         for (const int end : ends_) ::close(end);
         ::close(file_);
     }
-    /// For the program.
+    /// The writing end, for the program.
     [[nodiscard]] int entry() const { return ends_[1]; }
     void flow_into(const std::string& path) {
         file_ = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0600);
@@ -41,7 +41,7 @@ public:
         ::ioctl(ends_[0], FIONREAD, &bytes);
         return bytes;
     }
-    /// Until what was written so far stands in the file.
+    /// Waits until everything written so far stands in the file.
     void settle() {
         for (;; std::this_thread::sleep_for(std::chrono::milliseconds{1})) {
             const std::scoped_lock all{passing_};
@@ -60,7 +60,7 @@ private:
             }
             const std::scoped_lock all{passing_};
             const ssize_t got = ::read(ends_[0], part.data(), part.size());
-            // A box without memory has no room in its files either.
+            // A box without memory cannot write its files either.
             if (got > 0 && ::write(file_, part.data(), static_cast<std::size_t>(got)) != got) continue;
         }
     }

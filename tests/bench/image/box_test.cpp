@@ -1,5 +1,5 @@
-// What is flashed onto a box, on an emulated one with UEFI: it boots and works, a new version stays once it
-// has proven itself, and one that does not is gone at the next boot, whatever it did instead.
+// A flashed image on an emulated box with UEFI: it boots and works, a new version stays once it has proven
+// itself, and any other one is gone at the next boot, whatever it did instead.
 #include "board/box/update.hpp"
 #include "tests/bench/image/data_partition.hpp"
 #include "tests/bench/image/written_images.hpp"
@@ -28,7 +28,7 @@ double seconds_after(const std::string& text, const std::string& words) {
 constexpr const char* kernel_words =
     "console=ttyS0 quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests rdinit=/init";
 
-TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
+TEST(Box, works_from_the_first_boot_and_keeps_a_working_update) {
     EmulatedBox box{image("loom") / "disk.img"};
     ASSERT_EQ(image::install(box.disk(), image("loom") / "tappet.efi"), 3u);
     box.switch_on({"-no-reboot", "-m", "160"}); // MB, of which its UEFI takes most
@@ -49,8 +49,8 @@ TEST(Box, works_from_the_first_boot_and_keeps_a_new_version_that_works) {
     EXPECT_EQ(slot(box, 2).revision, 3u);
 }
 
-/// What ci/test has time for.
-TEST(Box, arms_and_works_when_its_kernel_begins) {
+/// The part that is short enough for ci/test.
+TEST(Box, arms_and_works_when_started_at_its_kernel) {
     EmulatedBox box{image("loom") / "disk.img"};
     box.switch_on_at_kernel(cache_folder() / "kernel/box/vmlinuz", image("loom") / "root.cpio.zst",
                             kernel_words);
@@ -61,7 +61,7 @@ TEST(Box, arms_and_works_when_its_kernel_begins) {
     EXPECT_THAT(said, HasSubstr(" picks=1")) << "it weaves: 1, or 10 to 19";
 }
 
-TEST(Box, says_what_is_missing_and_goes_back_when_the_new_version_refuses_to_work) {
+TEST(Box, rolls_back_and_names_missing_hardware_when_an_update_cannot_arm) {
     EmulatedBox box{image("loom") / "disk.img"};
     image::install(box.disk(), image("production") / "tappet.efi");
     box.switch_on({"-object", "can-bus,id=bus", "-device", "kvaser_pci,canbus=bus"});
@@ -76,7 +76,7 @@ TEST(Box, says_what_is_missing_and_goes_back_when_the_new_version_refuses_to_wor
     EXPECT_EQ(slot(box, 2).state, SlotState::failed);
 }
 
-TEST(Box, goes_back_by_its_watchdog_when_the_new_version_hangs) {
+TEST(Box, rolls_back_by_its_watchdog_when_an_update_hangs) {
     EmulatedBox box{image("loom") / "disk.img"};
     image::install(box.disk(), image("hanging") / "tappet.efi");
     box.switch_on();
@@ -100,11 +100,11 @@ TEST(Box, is_reset_by_its_watchdog_when_machine_and_guardian_die_at_once) {
     EXPECT_THAT(said, Not(HasSubstr("it is started again")));
 }
 
-TEST(Box, goes_back_when_the_new_version_crashes_at_work_and_tells_why) {
+TEST(Box, rolls_back_and_reports_why_when_an_update_crashes) {
     EmulatedBox box{image("lonely") / "disk.img"}; // its old version does not end while it is asked
     image::install(box.disk(), image("crashing") / "tappet.efi");
     box.switch_on();
-    const std::string said = box.await("what lies in the other slot failed its trial");
+    const std::string said = box.await("the version in the other slot failed its trial");
     SCOPED_TRACE(said);
     EXPECT_THAT(said, HasSubstr("it was on trial: the box goes back to the other slot"));
     box.forget();
@@ -116,26 +116,26 @@ TEST(Box, goes_back_when_the_new_version_crashes_at_work_and_tells_why) {
         << "what the version that is gone said last";
 }
 
-TEST(Box, goes_back_when_the_new_version_is_late) {
+TEST(Box, rolls_back_when_an_update_misses_a_deadline) {
     EmulatedBox box{image("loom") / "disk.img"};
     image::install(box.disk(), image("late") / "tappet.efi");
     box.switch_on({"-no-shutdown"});
-    const std::string said = box.await("what lies in the other slot failed its trial");
+    const std::string said = box.await("the version in the other slot failed its trial");
     SCOPED_TRACE(said);
     EXPECT_THAT(said, HasSubstr("missed its deadline on trial: the machine is stopped"));
     box.switch_off();
     EXPECT_EQ(slot(box, 2).state, SlotState::failed);
 }
 
-TEST(Box, takes_a_signed_update_over_its_network_when_its_power_button_is_pressed) {
+TEST(Box, installs_a_signed_update_over_the_network_on_a_button_press) {
     EmulatedBox box{image("lonely") / "disk.img"};
     const std::string update = (image("newer") / "update.tap").string();
     box.switch_on();
     box.await(is_complete);
     const std::string there = "update " + box.address() + " ";
 
-    // What is no update, or was changed on its way.
-    EXPECT_THAT(asked(there + TAPPET_IMAGE), HasSubstr("is no whole update"));
+    // Invalid updates, and updates changed in transit.
+    EXPECT_THAT(asked(there + TAPPET_IMAGE), HasSubstr("is not a complete update"));
     const fs::path changed = box / "changed.tap";
     std::string bytes = image::read_file(update);
     bytes[bytes.size() / 2] ^= 1;
@@ -149,7 +149,7 @@ TEST(Box, takes_a_signed_update_over_its_network_when_its_power_button_is_presse
     EXPECT_THAT(run_line("bash -c '" + raw + "; echo weave >&3; cat <&3'").text,
                 HasSubstr("there are status, update"));
     run_line("bash -c '" + raw +
-             "; echo update >&3; head -c 5000 /dev/urandom >&3'"); // hangs up without an end
+             "; echo update >&3; head -c 5000 /dev/urandom >&3'"); // hangs up without completing
 
     EXPECT_THAT(asked(there + update), HasSubstr("version 2 is here and its signature fits"));
     EXPECT_THAT(asked("box " + box.address()), HasSubstr("an update waits for the power button"));
@@ -162,7 +162,7 @@ TEST(Box, takes_a_signed_update_over_its_network_when_its_power_button_is_presse
     EXPECT_TRUE(has_kept(box, 2));
 }
 
-TEST(Box, obeys_orders_that_are_signed_when_its_power_button_is_pressed) {
+TEST(Box, obeys_signed_orders_when_its_power_button_is_pressed) {
     EmulatedBox box{image("lonely") / "disk.img"};
     box.switch_on();
     box.await(is_complete);
@@ -190,21 +190,21 @@ TEST(Box, is_measured_when_its_power_button_is_pressed) {
     EXPECT_THAT(asked(there + " measure --key " + image("keys").string()),
                 HasSubstr("measure; press the power button"));
     box.press_power_button();
-    box.await("it is measured; tappet box shows the figures");
+    box.await("the box is measured; tappet box shows the figures");
     box.forget();
     box.await(is_complete);
     const std::string status = asked(there);
     SCOPED_TRACE(status);
     EXPECT_THAT(status, HasSubstr("gaps of the hardware: "));
     EXPECT_THAT(status, HasSubstr("processor 0: woke at most "));
-    EXPECT_THAT(status, HasSubstr("beside its worst response of "));
+    EXPECT_THAT(status, HasSubstr("in addition to its worst response of "));
     EXPECT_THAT(status, HasSubstr("hold the table's claims"))
         << "it can, or it cannot: here time is emulated";
 }
 
-TEST(Box, with_secure_boot_boots_nothing_but_what_its_owner_signed) {
+TEST(Box, boots_only_software_of_its_owner_under_secure_boot) {
     const fs::path keys = image("keys");
-    { // a new version with a changed byte, then one that somebody else signed
+    { // a new version with a changed byte, then one signed by another owner
         EmulatedBox box{image("production") / "disk.img", keys};
         const fs::path changed = box / "changed.efi";
         std::string bytes = image::read_file(image("production") / "tappet.efi");
@@ -213,22 +213,22 @@ TEST(Box, with_secure_boot_boots_nothing_but_what_its_owner_signed) {
         for (const fs::path& kernel : {changed, image("foreign") / "tappet.efi"}) {
             image::install(box.disk(), kernel);
             box.switch_on();
-            const std::string said = box.await("what lies in the other slot failed its trial");
+            const std::string said = box.await("the version in the other slot failed its trial");
             SCOPED_TRACE(said);
             EXPECT_THAT(said, HasSubstr("Access Denied"));
-            EXPECT_THAT(said, HasSubstr("Secure Boot is on: nothing but signed code runs"));
+            EXPECT_THAT(said, HasSubstr("Secure Boot is on: only signed code runs"));
             EXPECT_THAT(said, Not(HasSubstr("is on trial")));
             box.switch_off();
         }
     }
-    { // a disk whose loader somebody else signed
+    { // a disk whose loader another owner signed
         EmulatedBox box{image("foreign") / "disk.img", keys};
         box.switch_on({"-no-reboot"});
         EXPECT_THAT(box.await("Access Denied"), Not(HasSubstr("EFI Boot Guard")));
     }
 }
 
-TEST(Box, that_is_switched_off_in_order_has_its_trial_once_more) {
+TEST(Box, repeats_a_trial_after_an_orderly_shutdown) {
     EmulatedBox box{image("loom") / "disk.img"};
     image::install(box.disk(), image("lonely") / "tappet.efi");
     box.switch_on({"-no-reboot"});
@@ -241,7 +241,7 @@ TEST(Box, that_is_switched_off_in_order_has_its_trial_once_more) {
     EXPECT_EQ(slot(box, 2).state, SlotState::installed);
 }
 
-TEST(Box, that_is_switched_off_when_a_trial_has_failed_asks_for_it_no_more) {
+TEST(Box, does_not_repeat_a_failed_trial_after_a_shutdown) {
     EmulatedBox box{image("lonely") / "disk.img"};
     image::install(box.disk(), image("crashing") / "tappet.efi");
     box.switch_on({"-no-reboot"});
@@ -253,9 +253,9 @@ TEST(Box, that_is_switched_off_when_a_trial_has_failed_asks_for_it_no_more) {
     EXPECT_EQ(slot(box, 2).state, SlotState::testing) << "the loader goes back from there";
 }
 
-// A stick is a disk that came later. Without its plant's end the machine works until somebody presses the
-// button.
-TEST(Box, takes_a_signed_update_from_a_stick_when_its_power_button_is_pressed) {
+// A stick is a disk that was plugged in later. Since its plant does not end, the machine works until the
+// button is pressed.
+TEST(Box, installs_a_signed_update_from_a_stick_on_a_button_press) {
     EmulatedBox box{image("lonely") / "disk.img"};
     const fs::path stick = image("newer") / "update.tap";
     box.switch_on({"-drive", "if=none,id=stick,readonly=on,format=raw,file=" + stick.string(), "-device",
@@ -272,18 +272,18 @@ TEST(Box, takes_a_signed_update_from_a_stick_when_its_power_button_is_pressed) {
     EXPECT_TRUE(has_kept(box, 2));
 }
 
-TEST(Box, boots_with_whatever_became_of_its_data_partition) {
+TEST(Box, boots_with_a_damaged_data_partition) {
     EmulatedBox box{image("lonely") / "disk.img"};
     const DataPartition data{box.disk(), box / "data"};
     const std::string there = "box " + box.address() + " ", keys = " --key " + image("keys").string();
-    { // its head and its table of groups, of which it has copies
+    { // the superblock and its table of groups, of which there are copies
         data.write("/kept", "whole");
         data.damage(0, 3 * 1024);
         box.switch_on();
         const std::string said = box.await("armed on board");
         SCOPED_TRACE(said);
-        EXPECT_THAT(said, HasSubstr("the data partition is mended"));
-        EXPECT_THAT(said, Not(HasSubstr("is made anew")));
+        EXPECT_THAT(said, HasSubstr("the data partition is repaired"));
+        EXPECT_THAT(said, Not(HasSubstr("was created anew")));
         box.switch_off();
         EXPECT_EQ(data.read("/kept"), "whole");
     }
@@ -292,10 +292,11 @@ TEST(Box, boots_with_whatever_became_of_its_data_partition) {
         box.switch_on();
         const std::string said = box.await("armed on board");
         SCOPED_TRACE(said);
-        EXPECT_THAT(said, HasSubstr("the data partition was beyond mending, and is made anew: SETTINGS"));
+        EXPECT_THAT(said,
+                    HasSubstr("the data partition could not be repaired, and was created anew: SETTINGS"));
         EXPECT_THAT(said, Not(HasSubstr("is full")));
         box.switch_off();
-        EXPECT_THAT(data.read("/box.log"), HasSubstr("and is made anew"));
+        EXPECT_THAT(data.read("/box.log"), HasSubstr("and was created anew"));
     }
     { // full to the last block
         data.fill();
@@ -321,7 +322,7 @@ std::string property(const char* name, int value) {
            "</value></simple>\n";
 }
 
-/// Once its button is pressed, until it stands or has started again.
+/// Waits, once the button is pressed, until the box is off or has started again.
 std::string after_the_button(EmulatedBox& box, const char* wanted) {
     box.forget();
     box.press_power_button();
@@ -343,7 +344,7 @@ TEST(Box, keeps_the_settings_of_each_layout_of_properties) {
     box.switch_on();
     box.await(is_complete);
     EXPECT_THAT(asked("update " + box.address() + " " + (image("milling_newer") / "update.tap").string()),
-                HasSubstr("its properties are others"));
+                HasSubstr("its properties differ"));
     after_the_button(box, is_complete);
     const std::string updated = box.await("has proven itself and stays");
     SCOPED_TRACE(updated);
@@ -358,7 +359,7 @@ TEST(Box, keeps_the_settings_of_each_layout_of_properties) {
     EXPECT_THAT(data.read(older + "/mill.cpf"), AllOf(HasSubstr("<value>7<"), HasSubstr("<value>4<")));
 }
 
-TEST(Box, has_an_image_that_is_the_same_when_it_is_written_again) {
+TEST(Box, has_a_reproducible_image) {
     const EmulatedBox elsewhere{image("loom") / "disk.img"};
     const fs::path again = elsewhere / "again";
     const Ended ended = run_line(std::string{WRITE_LOOM} + " --to " + again.string());

@@ -1,5 +1,4 @@
-// The power fails at any instant of what a box writes to its disk. The writer's marks say what may then be
-// found.
+// Power fails at any instant while a box writes to its disk. The writer's marks say what may then be found.
 #include "tests/bench/image/emulated_box.hpp"
 #include "tests/bench/image/instants.hpp"
 
@@ -17,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
 
-/// By the writer's phases: "sound", or the file whose fsync it forgot.
+/// Keyed by the writer's phases: "sound", or the file whose fsync it omitted.
 std::map<std::string, std::vector<Stretch>> stretches_of(const WriteLog& log) {
     std::map<std::string, std::vector<Stretch>> all;
     std::vector<Stretch>* phase = nullptr;
@@ -43,7 +42,7 @@ void switch_on(EmulatedBox& box, const char* name) {
     box.switch_on_with(bench::cache_folder() / "kernel/box/vmlinuz", image(name) / "root.cpio.zst");
 }
 
-/// The writer writes once for all.
+/// The writer runs once for all tests.
 struct Cuts : testing::Test {
     static constexpr std::uint64_t seed = 7;
     static std::unique_ptr<EmulatedBox> box;
@@ -90,8 +89,8 @@ TEST_F(Cuts, harm_nothing_at_any_instant) {
     }
 }
 
-/// Of the file that a setting is renamed from, ext4 itself writes what it holds before it takes the name.
-TEST_F(Cuts, harm_where_one_fsync_is_forgotten) {
+/// ext4 itself writes the contents of a file before it renames it, so that file needs no test.
+TEST_F(Cuts, do_harm_when_one_fsync_is_missing) {
     for (const char* file : {"/run/slot/tappet.efi", "/run/slot/BGENV.DAT", "/data"}) {
         const bool is_slot = std::string_view{file}.starts_with("/run/slot");
         std::string harm;
@@ -108,9 +107,9 @@ TEST_F(Cuts, harm_where_one_fsync_is_forgotten) {
     }
 }
 
-/// The real loader boots a disk of which a cut left the tables of a slot torn, and the writer goes on with
+/// The real loader boots a disk on which a cut left the tables of a slot torn, and the writer continues on
 /// it.
-TEST_F(Cuts, are_no_hindrance_to_the_next_update) {
+TEST_F(Cuts, do_not_prevent_the_next_update) {
     std::vector<Stretch> installing;
     bool is_trial = false;
     for (const Stretch& each : phases["sound"])
@@ -136,9 +135,9 @@ TEST_F(Cuts, are_no_hindrance_to_the_next_update) {
     EXPECT_EQ(lives, 1);
 }
 
-TEST_F(Cuts, are_as_little_harm_as_a_full_disk) {
+TEST_F(Cuts, a_full_disk_keeps_the_old_settings) {
     EXPECT_THAT(said, HasSubstr("on a full disk: /data/settings.cpf: component \"settings\": its properties "
-                                "cannot be saved and the old file stands"));
+                                "cannot be saved and the old file remains"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// The data partition of a box that is switched off, by the tools of its file system: what a box finds there,
-// and what it left.
+// The data partition of a box that is switched off, accessed by the tools of its file system: what the box
+// will find there, and what it left.
 #pragma once
 
 #include "tests/toolchain/program.hpp"
@@ -16,7 +16,7 @@ namespace tappet::bench {
 
 class DataPartition {
 public:
-    /// `work` is for its files alone.
+    /// The folder `work` is used for its files alone.
     DataPartition(std::filesystem::path disk, std::filesystem::path work)
         : disk_{std::move(disk)}, work_{std::move(work)} {
         std::filesystem::create_directories(work_);
@@ -28,7 +28,7 @@ public:
     }
     void make_folder(const std::string& folder) const { change("mkdir " + folder); }
 
-    /// Empty when there is no such file. As it was left, also without an orderly end.
+    /// The file as it was left, even without an orderly shutdown. Empty when there is no such file.
     [[nodiscard]] std::string read(const std::string& file) const {
         copy_out();
         std::filesystem::remove(work_ / "file");
@@ -37,7 +37,7 @@ public:
         return std::filesystem::exists(work_ / "file") ? image::read_file(work_ / "file") : std::string{};
     }
 
-    /// So that not one block is left.
+    /// Fills it so that not one block is left.
     void fill() const {
         copy_out();
         run_line("/usr/sbin/e2fsck -p " + partition());

@@ -1,5 +1,5 @@
-// An emulated industrial PC with UEFI, one disk and a watchdog, as a box comes from its maker. What it says
-// on its serial port is the text of a run.
+// An emulated industrial PC with UEFI, one disk and a watchdog, as delivered by its maker. The output of its
+// serial port is the text of a run.
 #pragma once
 
 #include "tests/toolchain/folder.hpp"
@@ -25,8 +25,8 @@ namespace tappet::bench {
 
 class EmulatedBox {
 public:
-    /// With a copy of the disk, which is gone with this. `keys`: what an engineer has given to its setup,
-    /// after which it boots nothing but what they signed.
+    /// Uses a copy of the disk, which is deleted with this object. `keys`: keys enrolled in its setup, after
+    /// which it boots only what they signed.
     explicit EmulatedBox(const std::filesystem::path& disk, const std::filesystem::path& keys = {}) {
         copy(disk, this->disk());
         copy("/usr/share/OVMF/OVMF_VARS_4M.fd", folder_ / "vars");
@@ -40,9 +40,9 @@ public:
     [[nodiscard]] std::filesystem::path disk() const { return folder_ / "disk"; }
     [[nodiscard]] std::filesystem::path operator/(const char* name) const { return folder_ / name; }
 
-    /// At which its service is reached.
+    /// The address of its service.
     [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
-    /// From here on all that is written to its disk is also in the log, and every flush.
+    /// From now on, everything written to its disk is also logged, and every flush.
     std::filesystem::path record() {
         std::filesystem::remove(folder_ / "log");
         const int log = ::open((folder_ / "log").c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
@@ -52,7 +52,7 @@ public:
         return folder_ / "log";
     }
 
-    /// From power on. `more`: further words for the emulator.
+    /// Starts from power on. `more`: further arguments for the emulator.
     void switch_on(std::vector<std::string> more = {}) {
         more.insert(more.end(),
                     {"-drive", "if=pflash,format=raw,readonly=on,file=/usr/share/OVMF/OVMF_CODE_4M.fd",
@@ -66,16 +66,16 @@ public:
         start_counting({"-kernel", kernel.string(), "-initrd", root.string(), "-append", command_line});
     }
 
-    /// Another kernel and its root, without the loader, and in the host's time; the disk is at a SATA port,
-    /// whose driver flushes where the emulated NVMe disk would forget that a write was to be on the disk when
-    /// it ended.
+    /// Boots another kernel and its root, without the loader, and in the host's time. The disk is at a SATA
+    /// port, whose driver flushes; the emulated NVMe disk would forget at a kill which writes must be on the
+    /// disk.
     void switch_on_with(const std::filesystem::path& kernel, const std::filesystem::path& root) {
         start({"-device", "ide-hd,drive=disk,bus=ide.0", "-kernel", kernel.string(), "-initrd", root.string(),
                "-append", "console=ttyS0 quiet panic=-1 rdinit=/init", "-no-reboot"});
     }
 
-    /// What it has said, once that holds `wanted`, or all when it switched itself off. Empty words never
-    /// come.
+    /// Returns its output once that contains `wanted`, or all output when it switched itself off. An empty
+    /// `wanted` never matches.
     const std::string& await(const std::string& wanted) {
         std::array<char, 4096> piece{};
         while (said_.find(wanted) == std::string::npos) {
@@ -85,7 +85,7 @@ public:
         }
         return said_;
     }
-    /// What comes now counts, for await().
+    /// From now on, await() counts only new output.
     void forget() { said_.clear(); }
     const std::string& await_end() {
         await(std::string(1, '\0') + "never");
@@ -99,7 +99,8 @@ public:
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
         (folder_ / "monitor").string().copy(address.sun_path, sizeof address.sun_path - 1);
-        // What is asked after it is answered once it is done; who hangs up before takes the order along.
+        // The monitor answers the second command once the first one is done; hanging up earlier would cancel
+        // it.
         const std::string command = "system_powerdown\ninfo status\n";
         if (::connect(monitor, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
             ::write(monitor, command.data(), command.size()) != static_cast<ssize_t>(command.size()))
@@ -110,7 +111,7 @@ public:
         ::close(monitor);
     }
 
-    /// The plug is pulled.
+    /// Pulls the plug.
     void switch_off() {
         if (pid_ > 0) {
             ::kill(pid_, SIGKILL);
@@ -138,7 +139,7 @@ private:
         if (std::system(line.c_str()) != 0) throw std::runtime_error(line); // NOLINT: a test's own words
     }
 
-    /// Nobody's now; who takes it before the emulator does makes the test fail, not pass.
+    /// A free port; a process that takes it before the emulator does makes the test fail, not pass.
     static unsigned free_port() {
         const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
         sockaddr_in address{};
@@ -159,7 +160,7 @@ private:
             // no flushing, and no bounds.
             "-icount", "shift=1,sleep=off", "-device", "nvme,drive=disk,serial=1", "-netdev",
             "user,id=net,hostfwd=tcp:127.0.0.1:" + std::to_string(port_) + "-:4848",
-            // Without the card's own program, which would boot from the network when nothing else may.
+            // Without the card's own program, which would boot from the network as the last choice.
             "-device", "e1000e,netdev=net,romfile="};
         words.insert(words.end(), more.begin(), more.end());
         start(words);

@@ -1,4 +1,4 @@
-// A PID 1 that does nothing: what a new version may come to that its makers never started.
+// A PID 1 that does nothing, like a new version that its makers never started.
 #include <cstdio>
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// When the power goes: instants by lot in stretches of a log, in each of which something else may be found.
+// Times of a power cut: random instants in stretches of a log; each stretch has its own allowed results.
 #pragma once
 
 #include "tests/bench/image/judge.hpp"
@@ -10,18 +10,18 @@
 
 namespace tappet::bench {
 
-/// What is written from one mark to the next.
+/// The writes from one mark to the next.
 struct Stretch {
     std::size_t begin = 0, end = 0; ///< entries
     Allowed allowed{};
 };
 
 struct Instant {
-    std::size_t entry = 0; ///< before which the power goes
+    std::size_t entry = 0; ///< the power goes before this entry
     Allowed allowed{};
 };
 
-/// In their order. Half of them before a flush, when most is on its way.
+/// Instants in order. Half of them lie before a flush, when most writes are pending.
 inline std::vector<Instant> draw(const WriteLog& log, const std::vector<Stretch>& stretches,
                                  std::size_t count, std::mt19937_64& lot) {
     std::vector<Instant> all, before_flush, drawn;

@@ -1,5 +1,5 @@
-// What a box finds on its disk after a power cut: which slot its loader boots and what stands in it, and
-// whether the data partition keeps the settings.
+// The disk of a box after a power cut: which slot its loader boots and with which contents, and whether the
+// data partition keeps the settings.
 #pragma once
 
 #include "board/box/slot.hpp"
@@ -24,7 +24,7 @@
 
 namespace tappet::bench {
 
-/// What may be there.
+/// The allowed contents.
 struct Allowed {
     std::int64_t least_settings = 0, most_settings = 0; ///< 0: none yet
     std::uint32_t least_version = 0, most_version = 0;
@@ -37,10 +37,10 @@ public:
     Judge(const Judge&) = delete;
     Judge& operator=(const Judge&) = delete;
 
-    /// Another than kernel_of_version() makes.
+    /// Registers a kernel other than that of kernel_of_version().
     void knows(std::uint32_t version, std::string kernel) { kernels_[version] = std::move(kernel); }
 
-    /// Empty: it boots one that may be, whole.
+    /// Empty: it boots an allowed version, whole.
     [[nodiscard]] std::string harm_to_slots(const Allowed& allowed) {
         const auto slot = slot_that_boots();
         if (!slot) return "no slot boots";
@@ -52,7 +52,7 @@ public:
                " bytes is none that may be there";
     }
 
-    /// Empty: the file system is in order after its journal, and holds settings that may be, whole.
+    /// Empty: after its journal, the file system is in order and holds allowed settings, whole.
     [[nodiscard]] std::string harm_to_settings(const Allowed& allowed) {
         const std::string partition = copy_out(image::partitions()[3]);
         Ended mended = run_line("/usr/sbin/e2fsck -p " + partition);
@@ -72,8 +72,8 @@ public:
                " bytes that may not be there: " + text.substr(0, 200);
     }
 
-    /// The loader's rule: the highest revision whose state is whole; one that it finds in its trial had it,
-    /// and then the one before. Then init's, which may go back to the other one.
+    /// The loader's rule: the highest revision with a whole state boots; a slot found in its trial has had
+    /// it, and the previous one boots. Then init's rule, which may return to the other slot.
     [[nodiscard]] std::optional<std::size_t> slot_that_boots() const {
         std::array<box::Slot, 2> slots{slot(1), slot(2)};
         const auto newest = [&] { return slots[0].state.revision >= slots[1].state.revision ? 0U : 1U; };
@@ -89,7 +89,7 @@ public:
                                                                                                : running + 1;
     }
 
-    /// A table of clusters in which one is of no file, or of a file that has less or more of them.
+    /// Whether a table of clusters is torn: a cluster belongs to no file, or a file has too few or too many.
     [[nodiscard]] bool has_torn_tables() const {
         for (const std::size_t slot : {1U, 2U}) {
             const std::string said =
@@ -111,7 +111,7 @@ private:
         return slot;
     }
 
-    /// As the loader reads it, by the first table; less than there was when its chain of clusters breaks.
+    /// The file as the loader reads it, by the first table; shorter when its chain of clusters breaks.
     [[nodiscard]] std::string file_in(const image::Partition& partition, std::string_view name) const {
         const char* const slot = disk_bytes_.data() + partition.first_sector * image::sector_bytes;
         const auto number = [slot](std::size_t at, std::size_t bytes) {
@@ -136,7 +136,7 @@ private:
         return text;
     }
 
-    /// Into memory, where e2fsck's own flushes take no time. Zeros stay holes. Its path.
+    /// Copies into memory, where e2fsck's own flushes take no time; zeros stay holes. Returns the path.
     std::string copy_out(const image::Partition& partition) const {
         const std::string_view from{disk_bytes_.data() + partition.first_sector * image::sector_bytes,
                                     partition.bytes()};

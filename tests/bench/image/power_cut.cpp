@@ -1,4 +1,4 @@
-// The log as QEMU writes it, of the form of dm-log-writes; a disk as a cut leaves it.
+// The log as QEMU writes it, in the form of dm-log-writes; a disk as a cut leaves it.
 #include "tests/bench/image/power_cut.hpp"
 
 #include <algorithm>
@@ -68,8 +68,8 @@ void CutDisk::cut(std::size_t instant, std::mt19937_64& lot) {
     while (flush > flushed_ && !entries[flush - 1].is_flush) --flush;
     for (; flushed_ < flush; ++flushed_) put(entries[flushed_].at_byte, entries[flushed_].bytes);
 
-    // Every sector by lot, every write by lot, all, none; and, since a disk may take the last first, all of
-    // the end and little of what came before.
+    // Random sectors, random writes, all, none; and, since a disk may write the last first, all of the end
+    // and little of the earlier writes.
     enum { each_sector, each_write, all_or_none, the_end_first };
     const auto way = std::min<std::uint64_t>(lot() % 5, the_end_first);
     const std::size_t pending = instant - flushed_;

@@ -1,6 +1,5 @@
-// What a power cut may leave on a disk, made of the log of all that was written to it: what was flushed
-// stands, of what came after the last flush each sector may be there or not, whatever came before or after
-// it.
+// Possible contents of a disk after a power cut, from the log of all writes: flushed writes stand; after the
+// last flush, each sector may be there or not, independently of its neighbours.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +27,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// As QEMU's blklogwrites writes it, which is the form of Linux' dm-log-writes. An emulator that was ended
-/// at once leaves its count of entries behind: entries are read up to the first that is empty.
+/// As QEMU's blklogwrites writes it, in the form of Linux' dm-log-writes. An emulator that was killed leaves
+/// an old count of entries: entries are read up to the first empty one.
 class WriteLog {
 public:
     struct Entry {
@@ -50,7 +49,7 @@ class CutDisk {
 public:
     CutDisk(const std::filesystem::path& disk, const WriteLog& log);
 
-    /// When the power goes before the entry `instant`. Instants come in order; the same may come again.
+    /// Cuts the power before the entry `instant`. Instants come in order; the same one may come again.
     void cut(std::size_t instant, std::mt19937_64& lot);
 
 private:
@@ -59,7 +58,7 @@ private:
     MappedFile disk_;
     const WriteLog& log_;
     std::size_t flushed_ = 0;                       // entries that stand for good
-    std::map<std::uint64_t, std::string> before_{}; // of sectors that the last cut changed
+    std::map<std::uint64_t, std::string> before_{}; // earlier contents of sectors that the last cut changed
 };
 
 } // namespace tappet::bench

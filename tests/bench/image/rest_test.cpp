@@ -1,5 +1,5 @@
-// What becomes of a slot of which a byte changes, or whose start is cut short: the other one takes over, and
-// gives back what is whole.
+// A slot with a changed byte, or with an interrupted start: the other slot takes over, and hands back to a
+// slot that is whole.
 #include "tests/bench/image/written_images.hpp"
 #include "toolchain/tools/bench/folders.hpp"
 
@@ -16,7 +16,7 @@ using testing::Not;
 
 std::string kernel() { return image::read_file(image("lonely") / "tappet.efi"); }
 
-TEST(Box, boots_the_other_slot_when_the_loaders_file_of_one_is_torn) {
+TEST(Box, boots_the_other_slot_when_one_boot_file_is_torn) {
     EmulatedBox box{image("loom") / "disk.img"};
     std::string name;
     for (const char character : image::kernel_of(image::partitions()[1])) name += {character, '\0'};
@@ -28,8 +28,8 @@ TEST(Box, boots_the_other_slot_when_the_loaders_file_of_one_is_torn) {
     EXPECT_THAT(said, HasSubstr("Tappet, carpet-loom on board bench"));
 }
 
-/// In a part of its header that nothing reads: it boots, and works.
-TEST(Box, gives_up_a_slot_of_which_a_byte_changed_on_the_disk) {
+/// Changes an unused part of the kernel's header: it boots, and works.
+TEST(Box, gives_up_a_slot_whose_kernel_changed_on_the_disk) {
     EmulatedBox box{image("lonely") / "disk.img"};
     change_byte(box, 1, kernel().substr(0, 512), 0x20);
     box.switch_on();
@@ -44,7 +44,7 @@ TEST(Box, gives_up_a_slot_of_which_a_byte_changed_on_the_disk) {
 
 constexpr const char* has_started = "the start is over";
 
-/// Nobody is there: loader and watchdog do it.
+/// No operator is there: loader and watchdog act.
 void works_on_the_other_slot(const EmulatedBox& started, const std::string& bytes, std::size_t behind,
                              const char* symptom) {
     EmulatedBox box{started.disk()};
@@ -60,7 +60,7 @@ void works_on_the_other_slot(const EmulatedBox& started, const std::string& byte
                       HasSubstr("other: version 1, revision 0, given up: its kernel is not what was")));
 }
 
-TEST(Box, whose_proven_kernel_does_not_boot_any_more_works_on_the_other_slot) {
+TEST(Box, falls_back_when_its_proven_kernel_no_longer_boots) {
     EmulatedBox box{image("lonely") / "disk.img"};
     box.switch_on();
     box.await(has_started);
@@ -75,7 +75,7 @@ TEST(Box, whose_proven_kernel_does_not_boot_any_more_works_on_the_other_slot) {
                             "Failed to decompress kernel");
 }
 
-TEST(Box, whose_start_a_power_cut_ends_comes_back_to_the_same_version) {
+TEST(Box, returns_to_the_same_version_after_a_power_cut_during_its_start) {
     EmulatedBox box{image("lonely") / "disk.img"};
     box.switch_on();
     box.await(has_started);
@@ -92,7 +92,7 @@ TEST(Box, whose_start_a_power_cut_ends_comes_back_to_the_same_version) {
         const std::size_t there = said.find("Starting C:SLOTB"), back = said.find("Starting C:SLOTA");
         EXPECT_LT(there, back);
         EXPECT_THAT(said.substr(there, back - there),
-                    AllOf(HasSubstr("did not come to its end"), HasSubstr("the box goes back to it"),
+                    AllOf(HasSubstr("did not finish"), HasSubstr("the box goes back to it"),
                           Not(HasSubstr("armed on board"))));
         EXPECT_THAT(said.substr(back), HasSubstr("armed on board"));
         EXPECT_EQ(slot(box, 1).state, SlotState::installed);

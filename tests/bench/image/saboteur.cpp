@@ -1,5 +1,4 @@
-// The plant of an image whose firmware comes to harm: it is what a new version may do that its makers never
-// saw.
+// The plant of an image whose firmware is harmed, like faults of a new version that its makers never saw.
 //     --sabotage crash|late|both, then the plant's own words
 #include <cstdio>
 #include <cstring>
@@ -32,8 +31,7 @@ pid_t parent_of(pid_t process) {
     return parent;
 }
 
-/// Of the two processes of a firmware the one that runs the machine: the guardian is its parent, and init's
-/// child.
+/// Finds the process of a firmware that runs the machine: the guardian is its parent, and init's child.
 pid_t find_machine() {
     for (const auto& each : std::filesystem::directory_iterator{"/proc"}) {
         const pid_t pid = std::atoi(each.path().filename().c_str());
@@ -54,14 +52,14 @@ double now_s() {
 void do_harm(const char* which) {
     pid_t machine = 0;
     while ((machine = find_machine()) == 0) ::usleep(100'000);
-    ::sleep(1); // it weaves, and has not proven itself
+    ::sleep(1); // it weaves, and has not yet proven itself
     if (std::strcmp(which, "crash") == 0) {
         ::kill(machine, SIGSEGV);
         return;
     }
     sched_param above_all{99};
     ::sched_setscheduler(0, SCHED_FIFO, &above_all);
-    if (std::strcmp(which, "both") == 0) { // nobody is left who could write safe values
+    if (std::strcmp(which, "both") == 0) { // no process is left to write safe values
         ::kill(parent_of(machine), SIGKILL);
         ::kill(machine, SIGKILL);
         return;

@@ -1,5 +1,5 @@
-// Settings of a machine, and versions of its kernel image, each told by its number: what the writer brings to
-// the disk and what must be found there.
+// Settings of a machine, and versions of its kernel image, each identified by its number: the writer writes
+// them, and the judge must find them.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet::bench {
 
-/// On the disk behind the last partition, where nobody writes: the writer's marks, in the order of its
+/// Behind the last partition of the disk, which nothing else writes: the writer's marks, in the order of its
 /// writes.
 inline constexpr std::uint64_t marks_at_byte = 177ULL * 1024 * 1024;
 
@@ -24,8 +24,7 @@ struct Settings {
     }
 };
 
-/// As the firmware saves them; their file takes one block or several. What was refused, in the firmware's
-/// words.
+/// Saves like the firmware; the file takes one block or several. Returns the firmware's refusal.
 inline std::string save_settings(std::string_view folder, std::int64_t number) {
     static Settings settings;
     static PropertyFiles files{""};
@@ -44,7 +43,7 @@ inline std::string save_settings(std::string_view folder, std::int64_t number) {
     return std::string{files.save(row, all).view()};
 }
 
-/// No kernel could be told from another by less: each byte is the version's own.
+/// Random bytes of the version, so that any mix of two kernels is detected.
 inline std::string kernel_of_version(std::uint32_t version) {
     std::mt19937_64 lot{version};
     std::string bytes(3'000'000 + version * 77'777 % 500'000, '\0');

@@ -1,6 +1,6 @@
-// A PID 1 that writes to a box's disk what init and firmware write there, by their own code and the real
-// kernel's file systems, and says between by marks what a power cut may leave. Then the same with one fsync
-// forgotten, each of them once: that must be found.
+// A PID 1 that writes to a box's disk like init and firmware, by their own code and the real kernel's file
+// systems, and marks in between what a power cut may leave. Then it repeats this with one fsync omitted, each
+// of them once: that must be found.
 #include "board/box/disk.hpp"
 #include "board/box/modules.hpp"
 #include "board/box/slots.hpp"
@@ -90,7 +90,7 @@ private:
         return mark();
     }
 
-    /// What may be on the disk from here on, up to the next mark.
+    /// Marks the allowed contents of the disk from here to the next mark.
     init::Done mark() {
         alignas(512) static std::array<char, 512> sector;
         const std::string text = phase_ + " " + std::to_string(settings_.least) + " " +
@@ -114,7 +114,7 @@ private:
         return mark();
     }
 
-    /// What nobody waits for, as a black box: it keeps the journal busy.
+    /// Writes without waiting, like a black box: it keeps the journal busy.
     static bool write_history(std::size_t bytes) {
         const int file = ::open((data + "/history").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
         const bool written =
@@ -123,7 +123,7 @@ private:
         return written;
     }
 
-    /// Until nothing more goes onto the partition: then saving is refused, and what was saved stays.
+    /// Fills the partition: then saving is refused, and the saved settings stay.
     init::Done fill() {
         for (std::size_t piece = 1 << 20; piece != 0; piece /= 2)
             while (write_history(piece)) {
@@ -146,7 +146,7 @@ private:
         const std::uint32_t before = version_.least;
         version_.least = version_.most;
         if (auto marked = mark(); !marked) return marked;
-        version_.least = before; // a cut in the trial goes back
+        version_.least = before; // a cut during the trial leads back
         if (auto marked = mark(); !marked) return marked;
         if (auto begun = loader_makes(init::SlotState::testing, init::SlotState::installed); !begun)
             return begun;
@@ -157,8 +157,8 @@ private:
         return mark();
     }
 
-    /// Of the version that has proven itself, which is the only one that may boot then. Twice, since from
-    /// the first time on the loader writes too.
+    /// Starts the proven version, the only one that may boot then. Twice, since after the first time the
+    /// loader writes too.
     static init::Done start() {
         for (int i = 0; i < 2; ++i) {
             if (auto begun = loader_makes(init::SlotState::testing, init::SlotState::installed); !begun)
@@ -171,7 +171,7 @@ private:
         return {};
     }
 
-    /// The loader goes to the other slot, and init there back.
+    /// The loader changes to the other slot, and init changes back.
     static init::Done cut_start_short() {
         for (const auto from : {init::SlotState::installed, init::SlotState::testing}) {
             const auto to =
@@ -185,7 +185,7 @@ private:
         return start();
     }
 
-    /// What the loader does to the slot that it boots, or did not boot to its end.
+    /// The loader's change to the state of the slot that it boots, or did not boot completely.
     static init::Done loader_makes(init::SlotState to, init::SlotState from) {
         for (const char* name : box::slot_partitions) {
             const auto partition = box::find_partition(name);

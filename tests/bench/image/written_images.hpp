@@ -1,5 +1,5 @@
-// The images that the tests' fixtures wrote, what stands in the slots of a box that is switched off, and what
-// an engineer asks.
+// The images that the tests' fixtures wrote, the slots of a box that is switched off, and an engineer's
+// requests.
 #pragma once
 
 #include "board/box/slot.hpp"
@@ -22,13 +22,13 @@ inline init::BootState slot(const EmulatedBox& box, std::size_t number) {
     return image::read_slot(box.disk(), image::partitions()[number]).value_or(init::BootState{});
 }
 
-/// It has proven itself: the start that follows is a trial, or will be when both slots have been read.
+/// The version has proven itself: the next start is a trial, or will be when both slots have been read.
 inline bool has_kept(const EmulatedBox& box, std::size_t number) {
     const init::SlotState state = slot(box, number).state;
     return state == init::SlotState::good || state == init::SlotState::installed;
 }
 
-/// A byte changes while the box is off: so many behind the first place of a slot where these bytes are.
+/// Changes a byte while the box is off: `behind` bytes after the first occurrence of these bytes in a slot.
 inline void change_byte(const EmulatedBox& box, std::size_t number, const std::string& bytes,
                         std::size_t behind) {
     const image::Partition& partition = image::partitions()[number];
@@ -43,12 +43,12 @@ inline void change_byte(const EmulatedBox& box, std::size_t number, const std::s
     disk.put(static_cast<char>(slot[at + behind] ^ 0x55));
 }
 
-/// tappet-image, as an engineer says it at his desk.
+/// Runs tappet-image like an engineer at a desk.
 inline std::string asked(const std::string& words) {
     return run_line(std::string{TAPPET_IMAGE} + " " + words).text;
 }
 
-/// Its last words at a start: slots, buttons and the service are there, after the machine has armed.
+/// The last line of a start: slots, buttons and the service are ready, and the machine has armed.
 inline constexpr const char* is_complete = "service: it listens";
 
 } // namespace tappet::bench

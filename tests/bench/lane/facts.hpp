@@ -1,4 +1,4 @@
-// What the compiler derived of the lane, for who looks at its wire.
+// The compiler's results for the lane, for a test that reads its wire.
 #pragma once
 
 #include <chrono>

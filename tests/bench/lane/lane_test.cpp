@@ -1,5 +1,5 @@
-// The lane as five firmwares and a hall in one box, on one vcan: it works, a machine is killed and started
-// again while it does, and the belt stops in the time that was proven, at the wires.
+// The lane as five firmwares and a hall in one box, on one vcan: it works, a machine is killed and restarted
+// meanwhile, and the belt stops within the proven time, measured on the wires.
 //     lane_on_bench [KILLS]
 #include "tests/bench/lane/facts.hpp"
 #include "tests/bench/processes.hpp"
@@ -22,7 +22,7 @@ const Browser conveyor{"conveyor"}, saw{"saw"}, drill{"drill"};
 int kills = 4;
 constexpr const char* names[] = {"conveyor", "saw", "drill", "polish", "glue"};
 
-/// One lane for all cases, which go on where the one before stood.
+/// One lane for all cases; each continues where the previous one ended.
 class Lane : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -48,7 +48,7 @@ protected:
     static inline bool are_armed = true;
 };
 
-TEST_F(Lane, runs_once_all_are_heard_and_somebody_acknowledges) {
+TEST_F(Lane, runs_once_every_machine_is_connected_and_acknowledged) {
     ASSERT_TRUE(soon(
         [] { return conveyor.run({"get", "lane.glue.is_there"}).text.find("true") != std::string::npos; }));
     EXPECT_FALSE(runs()) << "nothing moves before an acknowledgement";
@@ -57,7 +57,7 @@ TEST_F(Lane, runs_once_all_are_heard_and_somebody_acknowledges) {
     EXPECT_TRUE(soon([] { return conveyor.value_of("belt.boards_in") >= 1; }, 10s));
 }
 
-/// The last time that a line of candump's log has the identifier; -1: never.
+/// The last time of a line with the identifier in candump's log; -1: never.
 double last_of(const std::string& log, const std::string& identifier) {
     double at = -1;
     std::istringstream lines{log};
@@ -66,7 +66,7 @@ double last_of(const std::string& log, const std::string& identifier) {
             at = std::strtod(line.c_str() + line.find('(') + 1, nullptr);
     return at;
 }
-/// The first time after `from` that the drive is told to stand.
+/// The first time after `from` at which the drive is commanded to stand.
 double told_to_stand(const std::string& log, double from) {
     std::istringstream lines{log};
     for (std::string line; std::getline(lines, line);)
@@ -76,7 +76,7 @@ double told_to_stand(const std::string& log, double from) {
     return -1;
 }
 
-TEST_F(Lane, stops_in_the_time_that_was_proven_when_a_machine_is_killed_and_goes_on_when_it_is_back) {
+TEST_F(Lane, stops_within_the_proven_time_when_a_machine_is_killed) {
     const double proven = std::chrono::duration<double>(proven_stop_time()).count();
     std::vector<double> took_ms;
     for (int kill = 0; kill < kills; ++kill) {
@@ -101,7 +101,7 @@ TEST_F(Lane, stops_in_the_time_that_was_proven_when_a_machine_is_killed_and_goes
         took_ms.push_back(1000 * (stands - sign_of_life));
         std::printf("%s: the drive is told to stand %.1f ms after its last beat; proven %.1f ms\n", names[n],
                     took_ms.back(), 1000 * proven);
-        // The drive's own frame leaves every 5 ms, in time of its own.
+        // The drive's own frame leaves every 5 ms, on its own grid.
         EXPECT_LE(stands - sign_of_life, proven + 0.006);
         machines[n].reset();
         start(n);
@@ -119,13 +119,13 @@ TEST_F(Lane, stops_in_the_time_that_was_proven_when_a_machine_is_killed_and_goes
                 took_ms.size(), took_ms.front(), took_ms[took_ms.size() / 2], took_ms.back(), 1000 * proven);
 }
 
-TEST_F(Lane, a_board_reaches_the_saw_and_is_worked_on) {
+TEST_F(Lane, a_board_reaches_the_saw_and_is_processed) {
     EXPECT_TRUE(soon([] { return saw.value_of("station.boards_done") >= 1; }, 60s, 200ms));
     for (const char* name : {"lane.frames_refused", "lane.events_lost", "lane.beyond"})
         EXPECT_EQ(conveyor.value_of(name), 0.0) << name;
 }
 
-TEST_F(Lane, all_machines_are_seen_and_addressed_in_one_command) {
+TEST_F(Lane, one_command_lists_and_addresses_all_machines) {
     const Outcome found = Browser{}.run({"list"});
     EXPECT_EQ(found.code, 0) << found.text;
     for (const char* name : names) EXPECT_THAT(found.text, HasSubstr(name));
@@ -134,7 +134,7 @@ TEST_F(Lane, all_machines_are_seen_and_addressed_in_one_command) {
     EXPECT_EQ(values.text, "saw.station.number = 0\nglue.station.number = 3\n");
 }
 
-TEST_F(Lane, ends_when_it_is_told_to) {
+TEST_F(Lane, ends_on_request) {
     for (auto& each : machines) {
         each->signal(SIGTERM);
         EXPECT_EQ(each->wait(), 0) << each->output();

@@ -1,5 +1,5 @@
-// The GPIO chip is taken from a loom that weaves, as an expander that is unplugged: what it can still reach
-// stops the loom, it says why, and it takes no processor for itself.
+// The GPIO chip is removed from a weaving loom, like an unplugged expander: the loom stops by the remaining
+// wires, reports why, and does not spin.
 #include "tests/bench/loom/loom_rig.hpp"
 
 #include <array>
@@ -8,7 +8,7 @@
 namespace tappet::bench {
 namespace {
 
-/// Ticks of processor time that the machine's process has used, of all its threads.
+/// Ticks of processor time used by all threads of the machine's process.
 long processor_ticks(const Foreign& firmware) {
     std::ifstream stat{"/proc/" + std::to_string(machine_of(firmware)) + "/stat"};
     std::string word;
@@ -18,7 +18,7 @@ long processor_ticks(const Foreign& firmware) {
     return used[0] + used[1];
 }
 
-TEST(LoomChip, that_is_removed_while_it_weaves_is_an_emergency_and_spins_nothing) {
+TEST(LoomChip, causes_an_emergency_stop_without_spinning_when_removed) {
     Loom loom;
     Foreign listener{listen_to_the_machine};
     ASSERT_TRUE(loom.weaves()) << loom.machine->output();

@@ -1,13 +1,12 @@
-// Faults that the loom must see through or end safely with: the bus goes off, the plant dies.
+// Faults that the loom must survive or end safely with: the bus goes off, the plant dies.
 #include "tests/bench/loom/loom_rig.hpp"
 
 namespace tappet::bench {
 namespace {
 
-constexpr const char* bus_off = "cansend can0 20000040#0000000000000000"; // as the controller tells it
+constexpr const char* bus_off = "cansend can0 20000040#0000000000000000"; // as the controller reports it
 
-TEST(LoomBus,
-     goes_safe_when_the_bus_is_off_and_weaves_again_after_one_restart_and_the_operators_acknowledge) {
+TEST(LoomBus, becomes_safe_at_bus_off_and_weaves_again_after_an_acknowledgement) {
     Loom loom;
     Foreign listener{listen_to_the_machine};
     ASSERT_TRUE(loom.weaves()) << loom.machine->output();
@@ -46,12 +45,12 @@ TEST(LoomBus,
     ASSERT_NE(fault, frames.end());
     const auto again = std::find_if(fault + 1, frames.end(), [&](const Logged& f) {
         return f.at > fault->at + 2ms;
-    }); // what was in the controller already
+    }); // frames that were in the controller already
     ASSERT_NE(again, frames.end());
     EXPECT_GE(again->at - fault->at, 900ms) << "a deliberate restart comes after a pause";
     int early = 0;
     int commands = 0;
-    // The button was seen pressed at most a look after it was: some milliseconds.
+    // The press was seen at most one poll after it happened: some milliseconds.
     for (auto f = again; f != frames.end() && f->at < acknowledged - 3ms; ++f) {
         if (f->id != wires::cob::main_drive_command && f->id != wires::cob::let_off_drive_command) continue;
         ++commands;
@@ -64,14 +63,14 @@ TEST(LoomBus,
     expect_undisturbed(loom);
 }
 
-TEST(LoomBus, ends_safe_when_the_plant_dies_and_can_still_be_stopped) {
+TEST(LoomBus, becomes_safe_when_the_plant_dies_and_can_still_be_stopped) {
     Loom loom;
     ASSERT_TRUE(loom.weaves()) << loom.machine->output();
     loom.forget();
     loom.plant.signal(SIGKILL);
     EXPECT_TRUE(soon(is_safe, 200ms)) << "brake on, valve closed";
     EXPECT_TRUE(loom.says("state=fault")) << loom.since();
-    EXPECT_NE(loom.since().find("encoder"), std::string::npos) << loom.since(); // what is waited for
+    EXPECT_NE(loom.since().find("encoder"), std::string::npos) << loom.since(); // the awaited part
     EXPECT_NE(loom.machine->output().find("the loom goes to \"fault\": the encoder is stale"),
               std::string::npos)
         << loom.machine->output();

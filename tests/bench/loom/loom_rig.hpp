@@ -1,5 +1,5 @@
-// The carpet loom's firmware and its plant as processes of the bench, and what a test sees of them: their
-// words, the levels on the lines, and every frame as a foreign listener logged it.
+// The carpet loom's firmware and its plant as processes of the bench, and their observation by a test: their
+// output, the levels on the lines, and every frame in the log of a foreign listener.
 #pragma once
 
 #include "apps/carpet_loom/wires.hpp"
@@ -17,17 +17,17 @@
 namespace tappet::bench {
 
 namespace wires = loom::wires;
-using WallTime = std::chrono::system_clock::time_point; ///< candump stamps with it
+using WallTime = std::chrono::system_clock::time_point; ///< candump's time stamps use it
 using WallDuration = std::chrono::microseconds;
 
 inline WallTime wall_now() { return std::chrono::system_clock::now(); }
 
-/// The level that stands on a line of the simulated chip, whoever drives it.
+/// The level on a line of the simulated chip, whatever drives it.
 inline bool level(unsigned line) {
     return content_of("/sim/io/sim_gpio" + std::to_string(line) + "/value").starts_with('1');
 }
 
-/// From the outside, as a button or a sensor would.
+/// Sets a line from outside, like a button or a sensor.
 inline void pull(unsigned line, bool high) {
     std::ofstream{"/sim/io/sim_gpio" + std::to_string(line) + "/pull"} << (high ? "pull-up" : "pull-down");
 }
@@ -41,7 +41,7 @@ struct Logged {
     [[nodiscard]] unsigned word() const {
         return data.size() < 2 ? 0u : data[0] | static_cast<unsigned>(data[1]) << 8;
     }
-    /// Of a drive's command: its target.
+    /// The target in a drive's command.
     [[nodiscard]] std::int32_t target() const {
         std::uint32_t value = 0;
         for (std::size_t i = 2; i < 6 && i < data.size(); ++i)
@@ -51,7 +51,7 @@ struct Logged {
     [[nodiscard]] bool enables_operation() const { return (word() & 0x8Fu) == 0x0Fu; }
 };
 
-/// "(1700000000.123456) can0 201#0F0070170000", one a line; what is no such line is left out.
+/// "(1700000000.123456) can0 201#0F0070170000", one a line; other lines are skipped.
 inline std::vector<Logged> frames_of(const std::string& log) {
     std::vector<Logged> frames;
     std::istringstream lines{log};
@@ -71,8 +71,8 @@ inline std::vector<Logged> frames_of(const std::string& log) {
     return frames;
 }
 
-/// The loom, weaving or about to. The plant samples the lines each millisecond: the emulator is slow enough
-/// as it is, and no test here asks for more. Its priority keeps the test's own work from holding it up.
+/// The loom, weaving or about to. The plant samples the lines each millisecond: the emulator is slow, and no
+/// test here needs more. Its priority keeps the test's own work from delaying it.
 class Loom {
 public:
     static constexpr const char* summary_file = "/tmp/summary.json";
@@ -87,7 +87,7 @@ public:
         machine.emplace("carpet_loom --summary " + std::string{summary_file} + " " + options);
     }
 
-    /// The machine wrote it, after what was seen last; then that is seen, too.
+    /// Whether the machine wrote `text` after the last match; then the match moves there.
     bool says(std::string_view text, std::chrono::milliseconds patience = 6s) {
         return soon(
             [&] {
@@ -100,9 +100,9 @@ public:
             patience, 20ms); // the console speaks four times a second
     }
     bool weaves() { return says("state=weave"); }
-    /// What was written until now does not count for says() any more.
+    /// says() ignores all output until now.
     void forget() { seen_ = machine->output().size(); }
-    /// What is told after what was seen last.
+    /// The output after the last match.
     [[nodiscard]] std::string since() const { return machine->output().substr(seen_); }
     /// The last value the console printed after "KEY=".
     [[nodiscard]] std::string last(const std::string& key) const {
@@ -114,7 +114,7 @@ public:
     }
     [[nodiscard]] long picks() const { return std::strtol(last("picks").c_str(), nullptr, 10); }
 
-    /// SIGTERM; its exit code.
+    /// Sends SIGTERM; returns the exit code.
     int end() {
         machine->signal(SIGTERM);
         const int code = machine->wait();
@@ -130,7 +130,7 @@ private:
     std::size_t seen_ = 0;
 };
 
-/// What must hold whatever came on the wires.
+/// The conditions that hold whatever came on the wires.
 inline void expect_undisturbed(const Loom& loom) {
     EXPECT_EQ(number_in(loom.summary, "deadline_misses"), 0);
     EXPECT_EQ(number_in(loom.summary, "heap_allocations_after_arming"), 0);
@@ -140,7 +140,7 @@ inline void expect_undisturbed(const Loom& loom) {
 
 inline bool is_safe() { return level(wires::line::brake) && !level(wires::line::weft_release); }
 
-/// Everything the machine sends, and error frames: not what the plant floods the bus with.
+/// Everything the machine sends, and error frames, without the frames with which the plant floods the bus.
 /// -D: a restart takes the interface down and up, and a listener stays.
 inline constexpr const char* listen_to_the_machine =
     "candump -D -L can0,000:7FF,201:7FF,202:7FF,205:7FF,206:7FF,#FFFFFFFF";

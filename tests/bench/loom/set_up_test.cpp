@@ -1,4 +1,4 @@
-// A box that is not as the board says: the firmware names what is missing and the cure, and moves nothing.
+// A box that differs from its board: the firmware names the missing part and the cure, and moves nothing.
 #include "tests/bench/loom/loom_rig.hpp"
 
 #include <cstring>
@@ -12,7 +12,7 @@ namespace {
 constexpr int wrong_set_up = 2;
 constexpr int refused_to_arm = 3;
 
-/// Runs the firmware until it ends, and what it said.
+/// Runs the firmware until it ends; returns its output.
 struct Attempt {
     explicit Attempt(const std::string& options = {})
         : firmware{"carpet_loom " + options}, code{firmware.wait()}, said{firmware.output()} {}
@@ -50,7 +50,7 @@ TEST(LoomSetUp, names_a_can_interface_that_is_down) {
         << attempt.said;
 }
 
-TEST(LoomSetUp, names_a_can_interface_that_is_not_there) {
+TEST(LoomSetUp, names_a_missing_can_interface) {
     set_up("can0", false);
     rename_interface("can0", "can7");
     const Attempt attempt;
@@ -61,7 +61,7 @@ TEST(LoomSetUp, names_a_can_interface_that_is_not_there) {
         << attempt.said;
 }
 
-TEST(LoomSetUp, names_a_gpio_chip_that_is_not_there) {
+TEST(LoomSetUp, names_a_missing_gpio_chip) {
     ASSERT_EQ(::rename("/dev/io", "/dev/elsewhere"), 0);
     const Attempt attempt;
     EXPECT_EQ(::rename("/dev/elsewhere", "/dev/io"), 0);
@@ -70,7 +70,7 @@ TEST(LoomSetUp, names_a_gpio_chip_that_is_not_there) {
         << attempt.said;
 }
 
-TEST(LoomSetUp, names_a_line_that_the_chip_does_not_have) {
+TEST(LoomSetUp, names_a_line_missing_on_the_chip) {
     ASSERT_EQ(::rename("/dev/io", "/dev/elsewhere"), 0);
     ASSERT_EQ(::symlink("/dev/small", "/dev/io"), 0);
     const Attempt attempt;
@@ -82,7 +82,7 @@ TEST(LoomSetUp, names_a_line_that_the_chip_does_not_have) {
         << attempt.said;
 }
 
-TEST(LoomSetUp, names_lines_that_another_program_holds) {
+TEST(LoomSetUp, names_lines_held_by_another_program) {
     Foreign holder{"gpiomon -c /dev/io 3"};
     std::this_thread::sleep_for(200ms);
     const Attempt attempt;
@@ -90,7 +90,7 @@ TEST(LoomSetUp, names_lines_that_another_program_holds) {
     EXPECT_NE(attempt.said.find("device \"loom-io\""), std::string::npos) << attempt.said;
 }
 
-TEST(LoomSetUp, refuses_an_option_it_does_not_know) {
+TEST(LoomSetUp, refuses_an_unknown_option) {
     const Attempt attempt{"--fast"};
     EXPECT_EQ(attempt.code, wrong_set_up);
     EXPECT_NE(attempt.said.find("option --fast is unknown"), std::string::npos) << attempt.said;
@@ -107,7 +107,7 @@ TEST(LoomSetUp, refuses_to_arm_while_real_time_threads_are_throttled) {
         << attempt.said;
 }
 
-TEST(LoomSetUp, arms_without_its_modbus_device_but_never_gets_ready_and_says_why) {
+TEST(LoomSetUp, arms_without_its_modbus_device_but_does_not_become_ready) {
     Loom loom{"--stop-servers-at 0s/1h"};
     EXPECT_TRUE(loom.says("waits_for=oil-pressure")) << loom.machine->output();
     std::this_thread::sleep_for(2s);

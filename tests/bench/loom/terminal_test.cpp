@@ -1,5 +1,4 @@
-// What people do to the terminal of a loom that weaves: it is held up by nobody, and whatever asks it to end
-// sets its brake.
+// User actions on the terminal of a weaving loom: none delays it, and every request to end it sets its brake.
 #include "tests/bench/loom/loom_rig.hpp"
 
 #include <array>
@@ -9,7 +8,7 @@
 namespace tappet::bench {
 namespace {
 
-constexpr auto limit = 100ms; ///< from what was done to it to the brake and the valve
+constexpr auto limit = 100ms; ///< from the action to the brake and the valve
 
 /// The firmware with a reader of its own in place of a file, and the plant.
 class WatchedLoom {
@@ -43,7 +42,7 @@ public:
     WatchedLoom(const WatchedLoom&) = delete;
     WatchedLoom& operator=(const WatchedLoom&) = delete;
 
-    /// Reads until it weaves; false when its words end before.
+    /// Reads until it weaves; false when its output ends before.
     bool weaves() {
         std::string words;
         std::array<char, 512> part{};
@@ -84,7 +83,7 @@ private:
     int code_ = -1;
 };
 
-TEST(LoomTerminal, TERM_brakes_while_nobody_takes_what_stands_in_the_pipe) {
+TEST(LoomTerminal, SIGTERM_brakes_while_the_output_pipe_is_full) {
     WatchedLoom loom{WatchedLoom::Reader::of_a_small_pipe};
     ASSERT_TRUE(loom.weaves());
     ASSERT_TRUE(soon([&] { return loom.unread() > 3600; }, 20s, 50ms)) << "no more than a line fits";
@@ -96,7 +95,7 @@ TEST(LoomTerminal, TERM_brakes_while_nobody_takes_what_stands_in_the_pipe) {
     EXPECT_GT(number_in(content_of(Loom::summary_file), "texts_dropped"), 0);
 }
 
-TEST(LoomTerminal, a_reader_that_goes_away_ends_nothing_and_TERM_still_brakes) {
+TEST(LoomTerminal, a_closed_pipe_stops_nothing_and_SIGTERM_still_brakes) {
     WatchedLoom loom{WatchedLoom::Reader::of_a_small_pipe};
     ASSERT_TRUE(loom.weaves());
     loom.close();
@@ -108,7 +107,7 @@ TEST(LoomTerminal, a_reader_that_goes_away_ends_nothing_and_TERM_still_brakes) {
     EXPECT_EQ(loom.wait(), 0);
 }
 
-TEST(LoomTerminal, a_terminal_that_hangs_up_brakes) {
+TEST(LoomTerminal, a_hang_up_of_the_terminal_brakes) {
     WatchedLoom loom{WatchedLoom::Reader::at_a_terminal};
     ASSERT_TRUE(loom.weaves());
     loom.close();
@@ -116,7 +115,7 @@ TEST(LoomTerminal, a_terminal_that_hangs_up_brakes) {
     EXPECT_EQ(loom.wait(), 0);
 }
 
-TEST(LoomTerminal, control_Z_brakes_and_freezes_nothing) {
+TEST(LoomTerminal, control_Z_brakes_and_does_not_freeze_the_loom) {
     WatchedLoom loom{WatchedLoom::Reader::at_a_terminal};
     ASSERT_TRUE(loom.weaves());
     loom.press('\x1a');
@@ -124,7 +123,7 @@ TEST(LoomTerminal, control_Z_brakes_and_freezes_nothing) {
     EXPECT_EQ(loom.wait(), 0);
 }
 
-TEST(LoomTerminal, control_S_holds_up_neither_the_loom_nor_its_stop) {
+TEST(LoomTerminal, control_S_delays_neither_the_loom_nor_its_stop) {
     WatchedLoom loom{WatchedLoom::Reader::at_a_terminal};
     ASSERT_TRUE(loom.weaves());
     loom.press('\x13');

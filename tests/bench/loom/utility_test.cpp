@@ -1,5 +1,5 @@
-// The climate and lubrication unit goes away for some seconds: the loom weaves on with the last oil pressure
-// it heard of. How long it may be away is tested in virtual time.
+// The climate and lubrication unit disappears for some seconds: the loom weaves on with the last known oil
+// pressure. The longest allowed absence is tested in virtual time.
 #include "tests/bench/loom/loom_rig.hpp"
 
 namespace tappet::bench {
@@ -10,7 +10,7 @@ TEST(LoomUtility, survives_seconds_without_its_modbus_device_and_counts_the_outa
     ASSERT_TRUE(loom.weaves()) << loom.machine->output();
     loom.forget();
     EXPECT_TRUE(loom.says("outages=1")) << "told when it begins:\n" << loom.since();
-    std::this_thread::sleep_for(4s); // its end, and the client's pause before it tries again
+    std::this_thread::sleep_for(4s); // its end, and the client's pause before it retries
     loom.forget();
     EXPECT_TRUE(loom.weaves());
     EXPECT_EQ(loom.machine->output().find("the loom goes to"), std::string::npos) << loom.machine->output();

@@ -1,5 +1,5 @@
-// What must not upset a weaving loom, and what must stop it at once. One loom for all of these tests, in this
-// order: a start takes seconds of the bench.
+// Disturbances that a weaving loom must ignore, and those that must stop it at once. One loom for all of
+// these tests, in this order: a start takes seconds of the bench.
 #include "tests/bench/loom/loom_rig.hpp"
 
 #include <memory>
@@ -9,7 +9,7 @@ namespace {
 
 struct LoomWires : testing::Test {
     static void SetUpTestSuite() {
-        // One test stops its process for a while, which a guardian would end.
+        // One test stops its process for a while; a guardian would end it.
         loom = std::make_unique<Loom>("", "--no-guardian");
         ASSERT_TRUE(loom->weaves()) << loom->machine->output();
     }
@@ -19,7 +19,7 @@ struct LoomWires : testing::Test {
         loom->forget();
         ASSERT_TRUE(loom->weaves()) << loom->machine->output();
     }
-    /// So many picks more, in the state it is in.
+    /// Weaves this many more picks, in its current state.
     static bool keeps_weaving(long picks) {
         const long from = loom->picks();
         return soon([&] { return loom->picks() >= from + picks; }) && loom->last("state") == "weave";
@@ -27,37 +27,37 @@ struct LoomWires : testing::Test {
     static inline std::unique_ptr<Loom> loom;
 };
 
-TEST_F(LoomWires, does_not_decode_what_is_not_on_its_map_and_keeps_weaving) {
+TEST_F(LoomWires, ignores_unmapped_frames_and_keeps_weaving) {
     loom->forget();
     for (const char* frame :
          {"183#0102", "183#0102030405060708", "181#00", "703#0000", "184#"}) // wrong lengths: counted
         ASSERT_EQ(run_foreign(std::string{"cansend can0 "} + frame), 0) << frame;
     for (const char* frame :
-         {"7A5#DEADBEEF", "187#0102030405060708", // of nobody
+         {"7A5#DEADBEEF", "187#0102030405060708", // unknown identifiers
           "00000183#01020304", "00000703#00",
           "00000181#0800000000000000", // an extended frame's low bits are no standard identifier
           "183#R", "703#R"})           // a request carries no data
         ASSERT_EQ(run_foreign(std::string{"cansend can0 "} + frame), 0) << frame;
     ASSERT_EQ(run_foreign("cansend can0 205#01DC05"),
-              0); // the machine's own identifier, from somebody else: the feeder's usual command
+              0); // the machine's own identifier from another node: the feeder's usual command
     ASSERT_EQ(run_foreign("cangen can0 -e -g 1 -n 200 -L r"), 0);
     EXPECT_TRUE(keeps_weaving(5)) << loom->since();
     EXPECT_EQ(loom->last("bus"), "0");
     EXPECT_EQ(loom->since().find("the loom goes to"), std::string::npos) << loom->since();
 }
 
-TEST_F(LoomWires, takes_a_burst_of_edges_without_losing_one_in_silence) {
+TEST_F(LoomWires, survives_a_burst_of_edges_without_an_unreported_loss) {
     loom->forget();
     for (int i = 0; i < 100; ++i) {
         pull(wires::line::button_acknowledge, i % 2 == 0); // debounced: no press lasts long enough
         pull(wires::line::weft_detector, i % 2 == 0);      // the detector chatters, and ends without a weft
     }
-    // A weft that seems to come early counts as missed: then the loom stops for it, which is right, too.
+    // A weft that seems early counts as missed: then the loom stops for it, which is right, too.
     EXPECT_TRUE(loom->weaves()) << loom->since();
     EXPECT_EQ(loom->last("edges_lost"), "0") << "the driver outruns whoever pulls a line";
 }
 
-TEST_F(LoomWires, stops_at_once_at_the_emergency_stop_and_counts_edges_that_were_lost_while_nobody_looked) {
+TEST_F(LoomWires, stops_at_once_at_the_emergency_stop_and_counts_lost_edges) {
     Foreign listener{listen_to_the_machine};
     std::this_thread::sleep_for(100ms);
     const WallTime pressed = wall_now();
@@ -81,7 +81,7 @@ TEST_F(LoomWires, stops_at_once_at_the_emergency_stop_and_counts_edges_that_were
     EXPECT_LT(stop->at - pressed, 10ms);
     EXPECT_EQ(stop->target(), 0);
 
-    // The whole firmware sleeps while the emergency stop flutters: more edges than the kernel keeps. The last
+    // The whole firmware sleeps while the emergency stop bounces: more edges than the kernel keeps. The last
     // level counts.
     loom->machine->signal(SIGSTOP);
     constexpr int kept_by_the_kernel = 1024;
@@ -95,7 +95,7 @@ TEST_F(LoomWires, stops_at_once_at_the_emergency_stop_and_counts_edges_that_were
     EXPECT_TRUE(loom->weaves()) << loom->since();
 }
 
-TEST_F(LoomWires, leaves_safe_values_on_every_wire_when_it_is_told_to_stop) {
+TEST_F(LoomWires, leaves_safe_values_on_every_wire_at_its_stop) {
     Foreign listener{listen_to_the_machine};
     std::this_thread::sleep_for(100ms);
     ASSERT_EQ(loom->last("state"), "weave");
@@ -123,7 +123,7 @@ TEST_F(LoomWires, leaves_safe_values_on_every_wire_when_it_is_told_to_stop) {
     EXPECT_EQ(first->word() & 0x06u, 0x02u)
         << "a drive at speed gets its quick stop, it is not left to coast";
 
-    EXPECT_EQ(number_in(loom->summary, "can.wrong_lengths"), 4); // a heartbeat is the network's to judge
+    EXPECT_EQ(number_in(loom->summary, "can.wrong_lengths"), 4); // the network judges heartbeats
     EXPECT_EQ(number_in(loom->summary, "can_impostors"), 1);
     EXPECT_EQ(number_in(loom->summary, "can_faults"), 0);
     EXPECT_GT(number_in(loom->summary, "gpio_edges_lost"), 0);

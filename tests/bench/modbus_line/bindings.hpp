@@ -1,4 +1,4 @@
-// Where the device of this machine is reached on the bench.
+// The place of this machine's device on the bench.
 #pragma once
 
 #include "drivers/modbus/kind.hpp"

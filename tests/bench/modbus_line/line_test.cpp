@@ -1,6 +1,5 @@
-// Modbus RTU on a pair of pseudo-terminals (socat), between a firmware and devices that are not ours:
-// pymodbus serves, mbpoll looks. What the device does is seen from outside, by what tappet-browse shows of
-// the machine.
+// Modbus RTU on a pair of pseudo-terminals (socat), between a firmware and foreign programs: pymodbus serves,
+// mbpoll reads. tappet-browse shows the machine's view of the device.
 #include "tests/bench/processes.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +29,7 @@ bool is(const std::string& name, double value) {
     return soon([&] { return browser.value_of(name) == value; }, patience, 50ms);
 }
 
-/// One line for all cases, which go on where the one before stood.
+/// One line for all cases; each continues where the previous one ended.
 class ModbusLine : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -62,18 +61,18 @@ void expect_every_order() {
     }
 }
 
-TEST_F(ModbusLine, brings_values_in_each_order_of_bytes) {
+TEST_F(ModbusLine, reads_values_in_each_byte_order) {
     EXPECT_TRUE(is("unit.orders.dcba_real", -12.625)) << shown("unit.reason");
     expect_every_order();
     EXPECT_EQ(browser.value_of("unit.tank.level"), 1010);
 }
 
-TEST_F(ModbusLine, brings_what_the_machine_wants_to_the_device) {
+TEST_F(ModbusLine, writes_the_values_of_the_machine_to_the_device) {
     EXPECT_TRUE(is("unit.kept.flow", -123456));
     EXPECT_TRUE(shows("pump.runs", "true"));
 }
 
-TEST_F(ModbusLine, says_which_row_the_device_refuses_and_goes_on_with_the_others) {
+TEST_F(ModbusLine, names_a_refused_row_and_continues_with_the_others) {
     EXPECT_TRUE(
         shows("unit.reason", "nowhere\\\": the server refuses it, exception 2 (illegal data address)"))
         << shown("unit.reason");
@@ -81,25 +80,25 @@ TEST_F(ModbusLine, says_which_row_the_device_refuses_and_goes_on_with_the_others
     EXPECT_EQ(browser.value_of("unit.outages"), 0);
 }
 
-TEST_F(ModbusLine, stands_while_the_device_is_silent_and_runs_when_it_is_back) {
+TEST_F(ModbusLine, waits_while_the_device_is_silent_and_resumes_when_it_is_back) {
     device->signal(SIGSTOP);
     EXPECT_TRUE(shows("pump.runs", "false"));
     EXPECT_TRUE(shows("unit.reason", "no answer in time")) << shown("unit.reason");
     EXPECT_EQ(browser.value_of("unit.outages"), 1);
     EXPECT_EQ(browser.run({"set", "pump.wanted", "4711"}).code, 0);
-    device->signal(SIGCONT); // and answers at once what it was asked meanwhile
+    device->signal(SIGCONT); // it answers the waiting requests at once
     EXPECT_TRUE(shows("pump.runs", "true")) << shown("unit.reason");
     EXPECT_TRUE(is("unit.kept.flow", 4711)) << shown("unit.reason");
     EXPECT_EQ(browser.value_of("unit.outages_survived"), browser.value_of("unit.outages"));
     expect_every_order();
 }
 
-TEST_F(ModbusLine, takes_no_value_from_a_line_that_is_disturbed_and_recovers) {
+TEST_F(ModbusLine, accepts_no_value_from_a_disturbed_line_and_recovers) {
     const double before = browser.value_of("unit.outages");
     const int line = ::open(theirs, O_WRONLY | O_NOCTTY);
     ASSERT_GE(line, 0);
     {
-        // All the time: bytes between two requests are drained and disturb nobody.
+        // All the time: bytes between two requests are drained and disturb nothing.
         const std::jthread disturber{[line](const std::stop_token& end) {
             std::mt19937 any{1};
             while (!end.stop_requested()) {
@@ -109,7 +108,7 @@ TEST_F(ModbusLine, takes_no_value_from_a_line_that_is_disturbed_and_recovers) {
                 std::this_thread::sleep_for(5ms);
             }
         }};
-        EXPECT_TRUE(shows("unit.reason", "no answer to it")) << shown("unit.reason");
+        EXPECT_TRUE(shows("unit.reason", "does not match the request")) << shown("unit.reason");
     }
     ::close(line);
     EXPECT_TRUE(shows("unit.reason", "the server refuses it")) << shown("unit.reason");
@@ -120,7 +119,7 @@ TEST_F(ModbusLine, takes_no_value_from_a_line_that_is_disturbed_and_recovers) {
     expect_every_order();
 }
 
-TEST_F(ModbusLine, told_it_all_in_its_summary_and_disturbed_nothing_else) {
+TEST_F(ModbusLine, reports_the_outages_in_its_summary_without_deadline_misses) {
     machine->signal(SIGTERM);
     EXPECT_EQ(machine->wait(), 0) << machine->output();
     const std::string summary = content_of(summary_file);
@@ -130,14 +129,14 @@ TEST_F(ModbusLine, told_it_all_in_its_summary_and_disturbed_nothing_else) {
     EXPECT_EQ(number_in(summary, "heap_allocations_after_arming"), 0);
 }
 
-/// What a second foreign program reads in the device: words in the order of its own.
+/// The device's registers as a second foreign program reads them: words in its own order.
 std::string seen_by_mbpoll() {
     Foreign looks{std::string{"mbpoll -1 -m rtu -b 19200 -P none -a 1 -t 4:int -0 -r 20 -c 1 "} + ours};
     static_cast<void>(looks.wait());
     return looks.output();
 }
 
-TEST_F(ModbusLine, leaves_the_safe_values_of_its_map_in_the_device) {
+TEST_F(ModbusLine, writes_the_safe_values_of_its_map_to_the_device) {
     EXPECT_THAT(seen_by_mbpoll(), HasSubstr("[20]: \t-2"));
 }
 

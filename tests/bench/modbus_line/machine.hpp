@@ -1,5 +1,5 @@
-// A machine with one Modbus device on a serial line: values in every order of bytes, a row that the device
-// does not have, a set point, and a pump that runs while what it reads is no older than it may be.
+// A machine with one Modbus device on a serial line: values in every byte order, a row that the device does
+// not have, a set point, and a pump that runs while the value it reads is good.
 #pragma once
 
 #include "drivers/modbus/client.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::modbus_line {
 
-/// What tests/drivers/modbus/foreign_server.py has.
+/// The registers of tests/drivers/modbus/foreign_server.py.
 inline constexpr auto registers = modbus::register_map(
     modbus::read("tank", modbus::input_registers(10, 1), modbus::every(100ms), modbus::word("level", 0)),
     modbus::read("orders", modbus::input_registers(40, 16), modbus::every(200ms),
@@ -54,7 +54,7 @@ inline constexpr auto table = machine("modbus-line",
         component<modbus::Client<registers>>("unit", device("line")),
         component<Pump>("pump"),
         component<BrowserService>("browser")),
-    activities( // the pump stops first, so that what it writes last reaches the device
+    activities( // the pump stops first, so that its last value reaches the device
         activity("unit",    every(50ms), runs("unit"),    not_real_time),
         activity("pump",    every(10ms), runs("pump"),    budget(50us)),
         activity("browser", every(20ms), runs("browser"), not_real_time, stack(224 * 1024))),

@@ -1,7 +1,7 @@
-// bench-arming: compares what the checks of arming say on this kernel with what is measured of their claims,
-// on the box as it boots and after each cure. A check that passes while its claim does not hold ends it with
-// 1, and so does a row of the table that names this kernel and is not measured here, or the reverse. With the
-// word "unfit" it looks at a kernel that must not pass.
+// bench-arming: compares the checks of arming on this kernel with measurements of their claims, on the box as
+// it boots and after each cure. It ends with 1 when a check passes while its claim does not hold, and when
+// the table's rows for this kernel and the measurements differ. With the word "unfit" it examines a kernel
+// that must not pass.
 #include "kernel/os/arming.hpp"
 #include "board/init/system.hpp"
 #include "kernel/base/contract.hpp"
@@ -80,7 +80,7 @@ Measured at_most(std::int64_t measured_ns, std::int64_t limit_ns, const std::str
     return {measured_ns <= limit_ns, what + " " + std::to_string(measured_ns / us) + " us"};
 }
 
-/// The longest time that a thread under SCHED_FIFO which never sleeps does not run.
+/// The longest time during which a never-sleeping thread under SCHED_FIFO does not run.
 std::int64_t largest_gap_ns(std::int64_t for_ns, std::int64_t enough_ns) {
     set_policy(SCHED_FIFO);
     std::int64_t largest = 0;
@@ -93,13 +93,13 @@ std::int64_t largest_gap_ns(std::int64_t for_ns, std::int64_t enough_ns) {
     return largest;
 }
 
-/// More than two of the periods in which a thread is stopped.
+/// Longer than two of the periods in which a thread is stopped.
 Measured measure_throttling() {
     const Competitor competitor;
     return at_most(largest_gap_ns(2'200 * ms, 20 * ms), 5 * ms, "a thread that spins is stopped for");
 }
 
-/// So many timers are due at once that to handle them takes milliseconds.
+/// So many timers expire at once that handling them takes milliseconds.
 Measured measure_interrupts() {
     constexpr int timers = 2'000;
     const rlimit many{timers + 100, timers + 100};
@@ -128,7 +128,7 @@ Measured measure_interrupts() {
     return at_most(gap, 500 * us, std::to_string(timers) + " timers stop a real-time thread for");
 }
 
-/// The median, since the box does other things too.
+/// The median, since the box has other work too.
 std::int64_t late_ns(std::int64_t sleep_ns) {
     std::vector<std::int64_t> late;
     for (int i = 0; i < 51; ++i) {
@@ -214,7 +214,7 @@ const os::SystemCheck& row_of(std::string_view name) {
     std::exit(1);
 }
 
-/// `wanted` processor: of the plan.
+/// `wanted` processor: that of the plan.
 void compare(std::string_view name, const char* situation, const Measured& found, int wanted = processor) {
     const os::SystemCheck& check = row_of(name);
     const std::array plan{wanted};
@@ -231,7 +231,7 @@ void compare(std::string_view name, const char* situation, const Measured& found
     std::fflush(stdout);
 }
 
-/// In a process that may do nothing, as some service without rights.
+/// Runs in a process without rights, like an unprivileged service.
 void compare_without_rights() {
     std::fflush(stdout);
     const pid_t pid = fork();
@@ -263,7 +263,7 @@ void compare_throttling() {
     compare_here("as a box boots");
 }
 
-/// What only another boot changes.
+/// The part that only another boot changes.
 void compare_kernel() {
     compare("realtime-kernel", "as booted", measure_interrupts());
     compare("clock-resolution", "as booted", measure_resolution());
@@ -287,12 +287,12 @@ void compare_rest() {
     os::heap::seal();
     const Measured sealed = measure_seal();
     os::heap::release();
-    os::heap::seal(); // what is said below allocates
+    os::heap::seal(); // the output below allocates
     compare("heap-sealed", "sealed", sealed);
     os::heap::release();
 }
 
-/// On a kernel on which every check can pass, the table says what was measured, and no more.
+/// On a kernel on which every check can pass, the table lists exactly the measured claims.
 void compare_table() {
     const std::string release = init::read_line("/proc/sys/kernel/osrelease");
     const std::string series = release.substr(0, release.find('.', release.find('.') + 1));

@@ -1,4 +1,4 @@
-// The forbidden things themselves.
+// The forbidden actions.
 #include "tests/bench/probe/probe.hpp"
 
 #include <cstdlib>
@@ -29,7 +29,7 @@ void commit(Fault fault) noexcept {
     case Fault::break_contract: return; // the component itself breaks it
     case Fault::allocate: {
         void* volatile piece =
-            std::malloc(1000); // volatile: a pair of malloc and free may be left out otherwise
+            std::malloc(1000); // volatile: the compiler may omit a pair of malloc and free otherwise
         std::free(piece);
         return;
     }
@@ -39,7 +39,7 @@ void commit(Fault fault) noexcept {
         if (piece != MAP_FAILED) ::munmap(piece, page_bytes);
         return;
     }
-    case Fault::touch: // a locked page cannot be given back
+    case Fault::touch: // a locked page cannot be released
         ::munlock(page.data(), page.size());
         ::madvise(page.data(), page.size(), MADV_DONTNEED);
         *static_cast<volatile char*>(page.data()) = 1;

@@ -1,4 +1,4 @@
-// bench-probe FAULT: which fault is committed, and what the machine noticed of it.
+// bench-probe FAULT: the fault to commit, and the machine's observations of it.
 #pragma once
 
 #include "kernel/os/heap.hpp"

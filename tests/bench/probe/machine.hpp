@@ -1,5 +1,5 @@
-// The smallest machine that can go wrong: one component that does, one that does not, in one real-time
-// activity; and a browser's service, so that a black box holds their values.
+// The smallest machine that can fail: one component that does, one that does not, in one real-time activity;
+// and a browser's service, so that a black box holds their values.
 #pragma once
 
 #include "kernel/machine/table/machine.hpp"

@@ -1,4 +1,4 @@
-// A component that does one forbidden thing, once, when its machine has been running for a while.
+// A component that does one forbidden thing, once, some time after its machine has started.
 #pragma once
 
 #include "kernel/base/contract.hpp"
@@ -14,11 +14,11 @@ enum class Fault : std::uint8_t { nothing, allocate, map, touch, overrun, break_
 inline constexpr std::array<std::string_view, 8> fault_names{"nothing", "allocate",       "map",   "touch",
                                                              "overrun", "break-contract", "crash", "hang"};
 
-/// What is forbidden needs the operating system, or the very calls that the compiler would not let pass: they
-/// are in faults.cpp.
+/// Forbidden actions need the operating system, or calls that the compiler would refuse: they are in
+/// faults.cpp.
 void commit(Fault fault) noexcept;
 
-/// Says when it left its safe value, so that a test sees that it did.
+/// Reports that it left its safe value, so that a test sees it.
 struct Culprit {
     Property<std::int64_t> after_cycles{100};
     Output<std::int64_t> cycles;

@@ -1,6 +1,6 @@
 // Both robots' firmwares with their plants in one box: one moves the body, the other one operates on it,
-// under loops of 500 Hz that keep their deadlines while values are recorded and people look on
-// (thesis 3.4.3, 3.4.5).
+// under loops of 500 Hz that meet their deadlines while values are recorded and users watch (thesis 3.4.3,
+// 3.4.5).
 #include "tests/bench/processes.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using testing::Not;
 
 const Browser k160{"k160"}, k361{"k361"};
 
-/// One pair of robots for all tests, which go on where the one before stood; the last test ends them.
+/// One pair of robots for all tests; each continues where the previous one ended, and the last one ends them.
 class Robots : public testing::Test {
 protected:
     static constexpr const char* recording = "/tmp/operation.mcap";
@@ -71,7 +71,7 @@ protected:
     static inline bool are_armed = false;
 };
 
-TEST_F(Robots, keep_their_times_while_they_are_recorded_and_looked_at) {
+TEST_F(Robots, meet_their_deadlines_while_recorded_and_observed) {
     Foreign recorder{"tappet-browse --socket " + k361.socket() + " report start " + recording};
     Foreign looker{"tappet-browse --socket " + k160.socket() + " watch joints drives robot --every 20ms"};
     Foreign other{"tappet-browse --socket " + k361.socket() + " watch joints drives replay --every 20ms"};
@@ -93,8 +93,8 @@ TEST_F(Robots, keep_their_times_while_they_are_recorded_and_looked_at) {
     EXPECT_EQ(table.code, 0) << table.text;
 }
 
-/// Both run by the clock of one box: it is ahead of itself by nothing.
-TEST_F(Robots, know_each_others_clock) {
+/// Both use the clock of one box, so the true offset is zero.
+TEST_F(Robots, know_the_offset_of_each_others_clock) {
     const auto ahead = time_of("body_clock.ahead"), error = time_of("body_clock.error");
     EXPECT_LE(std::abs(ahead.count()), error.count());
     EXPECT_GT(error, 0ns);
@@ -102,7 +102,7 @@ TEST_F(Robots, know_each_others_clock) {
     EXPECT_GT(k160.value_of("time.answers"), 20.0);
 }
 
-TEST_F(Robots, are_given_their_states_anew_while_they_run) {
+TEST_F(Robots, reload_their_states_at_run_time) {
     const auto states = [] { return k160.run({"behaviour", "list", "robot"}).text; };
     EXPECT_THAT(states(), HasSubstr("body_robot.osd"));
     EXPECT_EQ(k160.run({"behaviour", "unload", "robot"}).code, 0);
@@ -114,7 +114,7 @@ TEST_F(Robots, are_given_their_states_anew_while_they_run) {
     EXPECT_THAT(states(), HasSubstr("Off"));
 }
 
-TEST_F(Robots, end_when_they_are_told_to) {
+TEST_F(Robots, end_on_request) {
     tool->signal(SIGTERM);
     EXPECT_EQ(tool->wait(), 0) << tool->output();
     body->signal(SIGTERM);

@@ -1,5 +1,5 @@
-// What init does with a firmware that ends badly, or not at all: told by a box whose time, processes and
-// watchdog the test has in hand.
+// How init handles a firmware that ends badly, or not at all, on a box whose time, processes and watchdog the
+// test controls.
 #include "board/box/custody.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -53,7 +53,7 @@ protected:
         if (device.kicks() != kicks_seen) last_kick = time;
         kicks_seen = device.kicks();
     }
-    /// As init does while nothing happens.
+    /// Kicks and listens, as init does while nothing happens.
     void live_for(Duration span) {
         for (const Time end = time + span; time < end;) {
             pause(milliseconds{250});
@@ -62,7 +62,7 @@ protected:
         }
     }
 
-    // ---- what custody asks for
+    // ---- the services that custody uses
     Time now() override { return time; }
     void pause(milliseconds span) override {
         note_kicks();
@@ -90,7 +90,7 @@ protected:
     void reset_box() override { throw Reset{}; }
 };
 
-TEST_F(ABox, ends_a_firmware_that_ends_when_it_is_asked_to) {
+TEST_F(ABox, ends_a_firmware_that_stops_on_request) {
     start();
     when_asked = [&] {
         after(100ms, [&] { guardian_says_safe(); });
@@ -112,14 +112,14 @@ TEST_F(ABox, kills_the_machine_first_and_lets_its_guardian_act) {
     EXPECT_LE(time - begin, Custody::stop_patience + 3s);
 }
 
-TEST_F(ABox, waits_for_no_black_box_of_a_guardian_that_has_said_so) {
+TEST_F(ABox, does_not_wait_for_the_black_box_of_a_guardian_that_reported) {
     start();
     when_its_machine_dies = [&] { after(1s, [&] { guardian_says_safe(); }); };
     custody.end_everything();
     EXPECT_THAT(done, ElementsAre("ask 40", "kill children of 40", "kill others"));
 }
 
-TEST_F(ABox, is_reset_when_its_guardian_says_nothing_and_never_kills_that) {
+TEST_F(ABox, is_reset_and_never_kills_its_guardian_when_that_is_silent) {
     start();
     EXPECT_THROW(custody.end_everything(), Reset);
     EXPECT_THAT(done, ElementsAre("ask 40", "kill children of 40"));
@@ -138,7 +138,7 @@ TEST_F(ABox, is_reset_when_its_guardian_dies_while_it_is_asked_to_end) {
     EXPECT_GT(time - last_kick, within);
 }
 
-TEST_F(ABox, starts_nothing_and_kicks_no_more_after_an_end_without_a_guardians_word) {
+TEST_F(ABox, stops_kicking_after_an_end_that_no_guardian_confirmed) {
     start();
     guardian_ends(killed);
     live_for(1h);
@@ -150,7 +150,7 @@ TEST_F(ABox, starts_nothing_and_kicks_no_more_after_an_end_without_a_guardians_w
     const auto held = custody.hold_watchdog();
     ASSERT_FALSE(held);
     EXPECT_THAT(held.error(), HasSubstr("the outputs may not be safe"));
-    // A firmware that refuses to arm says nothing of what the one before left.
+    // A firmware that refuses to arm says nothing about the outputs of the one before.
     custody.firmware_started(guardian);
     guardian_ends(2);
     live_for(1h);
@@ -159,7 +159,7 @@ TEST_F(ABox, starts_nothing_and_kicks_no_more_after_an_end_without_a_guardians_w
     EXPECT_THROW(custody.end_everything(), Reset);
 }
 
-TEST_F(ABox, kicks_on_after_a_firmware_that_touched_nothing) {
+TEST_F(ABox, keeps_kicking_after_a_firmware_that_touched_nothing) {
     start();
     guardian_ends(2);
     live_for(1h);
@@ -178,7 +178,7 @@ TEST_F(ABox, kicks_again_after_a_guardian_made_the_outputs_safe) {
     EXPECT_TRUE(custody.hand_over());
 }
 
-TEST_F(ABox, believes_nobody_else) {
+TEST_F(ABox, trusts_only_its_guardian) {
     start();
     for (const char* notice : {"READY=1", "X_TAPPET_OUTPUTS=unsafe", "X_TAPPET_OUTPUTS", ""})
         custody.hear(notice);
@@ -188,7 +188,7 @@ TEST_F(ABox, believes_nobody_else) {
     EXPECT_FALSE(custody.outputs_are_safe()) << "of a firmware that has ended there is no guardian";
 }
 
-TEST_F(ABox, kicks_for_a_worker_and_tells_its_code) {
+TEST_F(ABox, kicks_for_a_worker_and_returns_its_exit_code) {
     ASSERT_TRUE(custody.hold_watchdog());
     after(30s, [&] { custody.worker_ended(worker + 1, 7); });
     after(1min, [&] { custody.worker_ended(worker, 1); });
@@ -215,7 +215,7 @@ TEST_F(ABox, is_reset_when_a_worker_cannot_even_be_killed) {
     EXPECT_GT(time - last_kick, within) << "the watchdog comes first";
 }
 
-TEST_F(ABox, kicks_for_what_may_never_end_only_so_long) {
+TEST_F(ABox, limits_the_time_for_which_it_kicks) {
     ASSERT_TRUE(custody.hold_watchdog());
     const Time begin = time;
     for (const Time until = time + 5min; time < begin + 1h;) {

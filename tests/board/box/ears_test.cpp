@@ -1,4 +1,4 @@
-// What PID 1 hears.
+// Which messages PID 1 accepts.
 #include "board/box/ears.hpp"
 
 #include "kernel/os/notify.hpp"
@@ -15,7 +15,7 @@
 namespace tappet::box {
 namespace {
 
-/// In a process and a network of its own, since a box has one init only.
+/// Runs in a process and a network of its own, since a box has only one init.
 std::string heard_of(uid_t sender) {
     Ears ears;
     if (::unshare(CLONE_NEWNET) != 0 || !ears.open()) return "nothing could be heard";
@@ -31,15 +31,15 @@ std::string heard_of(uid_t sender) {
     return heard;
 }
 
-TEST(Ears, take_no_notice_of_a_process_that_is_not_their_own_users) {
+TEST(Ears, ignore_processes_of_other_users) {
     if (::getuid() != 0) GTEST_SKIP() << "needs two users";
     const auto hears = [](uid_t sender, const char* wanted) { ::_exit(heard_of(sender) == wanted ? 0 : 1); };
     EXPECT_EXIT(hears(0, "X_TAPPET_PROVEN=1"), testing::ExitedWithCode(0), "");
     EXPECT_EXIT(hears(65534, ""), testing::ExitedWithCode(0), "");
 }
 
-/// As much as a pipe holds is more than is taken: whoever prints without end does not hold up the rest.
-TEST(Ears, take_some_of_what_is_printed_at_a_time) {
+/// A pipe holds more than init reads at a time: a program that prints without end does not delay the rest.
+TEST(Ears, read_printed_text_in_bounded_portions) {
     if (::getuid() != 0) GTEST_SKIP() << "needs a network of its own";
     const auto takes_some = [] {
         Ears ears;
@@ -51,7 +51,7 @@ TEST(Ears, take_some_of_what_is_printed_at_a_time) {
             if (::write(ears.mouth(), text.data(), text.size()) < 0) ::_exit(3);
         ears.take_prints([&](std::string_view piece) {
             taken += piece.size();
-            // Somebody who prints as fast as he is heard.
+            // A program that prints as fast as init reads.
             if (++times > 1000 || ::write(ears.mouth(), text.data(), text.size()) < 0) ::_exit(4);
         });
         ::_exit(taken > 0 ? 0 : 5);

@@ -1,5 +1,5 @@
-// Who has nothing that the key has signed keeps nobody from the box, whatever he sends and however slowly.
-// The sockets are real, time is the test's.
+// A client without a valid signature cannot block the box, whatever it sends and however slowly. The sockets
+// are real; the test controls the time.
 #include "board/box/reception.hpp"
 
 #include "tests/toolchain/folder.hpp"
@@ -37,7 +37,7 @@ struct Receptions : testing::Test {
         for (const int each : ends) ::close(each);
         std::filesystem::current_path(before);
     }
-    /// The client's end; greeted by then.
+    /// Returns the client's end, after the greeting.
     int come(std::uint32_t address) {
         std::array<int, 2> pair{-1, -1};
         EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair.data()), 0);
@@ -100,7 +100,7 @@ TEST_F(Receptions, answer_others_while_a_stranger_sends_bytes_now_and_then) {
     EXPECT_TRUE(decode(init::read_text(offered_update), keys.open));
 }
 
-TEST_F(Receptions, refuse_a_header_that_the_key_has_not_signed_before_more_is_read) {
+TEST_F(Receptions, refuse_an_unsigned_header_before_reading_more) {
     for (const std::string& header :
          {header_of(update(2, 9'000'000), nullptr), encode(update(2, 0), new_keys().secret),
           std::string(update_header_bytes, 'x')}) {
@@ -124,7 +124,7 @@ TEST_F(Receptions, keep_one_address_from_turning_others_away) {
     EXPECT_EQ(std::ranges::count_if(many, is_hung_up), 100 - 14);
 }
 
-TEST_F(Receptions, keep_an_update_whoever_comes) {
+TEST_F(Receptions, keep_receiving_an_update_while_others_connect) {
     const std::string whole = signed_update(2);
     const int engineer = begin(whole);
     for (std::uint32_t address = 10; address < 60; ++address) come(address);
@@ -132,7 +132,7 @@ TEST_F(Receptions, keep_an_update_whoever_comes) {
     EXPECT_THAT(heard(engineer), HasSubstr("ok\nversion 2 is here"));
 }
 
-TEST_F(Receptions, hang_up_on_a_client_that_asks_nothing_and_tell_one_that_pauses) {
+TEST_F(Receptions, drop_silent_clients_and_refuse_pausing_ones) {
     const int silent = come(strangers), pausing = begin(signed_update(2)),
               in_header = begin(signed_update(2), 99);
     for (int n = 0; n < 11; ++n) {
@@ -154,7 +154,7 @@ TEST_F(Receptions, take_an_update_over_a_slow_line) {
     EXPECT_THAT(heard(engineer), HasSubstr("ok\nversion 2 is here"));
 }
 
-TEST_F(Receptions, take_one_update_at_a_time_the_newer_one_or_the_faster_one) {
+TEST_F(Receptions, accept_one_update_at_a_time_the_newer_or_the_faster_one) {
     const std::string second = signed_update(2), third = signed_update(3);
     const int slow = begin(second);
     const int other = begin(second);
@@ -171,7 +171,7 @@ TEST_F(Receptions, take_one_update_at_a_time_the_newer_one_or_the_faster_one) {
     EXPECT_THAT(heard(begin(second)), HasSubstr("refused\nit is version 2, and version 3 waits"));
 }
 
-TEST_F(Receptions, say_what_is_wrong_with_what_came) {
+TEST_F(Receptions, report_what_is_wrong_with_a_request) {
     std::string changed = signed_update(2);
     changed[changed.size() / 2] ^= 1;
     const std::string order = "roll-back " + sign({"roll-back", "loom", "ipc", "0123"}, keys.secret);
@@ -187,7 +187,7 @@ TEST_F(Receptions, say_what_is_wrong_with_what_came) {
     const int cut = begin(signed_update(2));
     ::shutdown(cut, SHUT_WR);
     reception.hear(now);
-    EXPECT_THAT(heard(cut), HasSubstr("refused\nit is not whole"));
+    EXPECT_THAT(heard(cut), HasSubstr("refused\nit is incomplete"));
     const int endless = come(strangers);
     say(endless, std::string(600, 'x'));
     EXPECT_TRUE(is_hung_up(endless));

@@ -1,5 +1,4 @@
-// What a box knows of a slot: told from each other are a trial that failed, a start that was cut short, and a
-// version that is given up.
+// How a box judges a slot: it distinguishes a failed trial, an interrupted start, and a rejected version.
 #include "board/box/slot.hpp"
 
 #include <gmock/gmock.h>
@@ -24,7 +23,7 @@ TEST(Records, are_read_as_they_were_written_and_fill_one_sector) {
         }
 }
 
-TEST(Records, of_anything_else_are_of_a_version_that_nobody_tried) {
+TEST(Records, are_those_of_an_untried_version_when_malformed) {
     for (const char* bytes : {"", "standing", "standing mine 1", "proven"})
         EXPECT_EQ(record_of(bytes), Record{}) << bytes;
     EXPECT_EQ(record_of(std::string(512, '\0')), Record{});
@@ -38,7 +37,7 @@ TEST(Slots, are_on_trial_until_they_have_proven_themselves) {
     EXPECT_FALSE(slot(SlotState::good, Standing::untried).is_on_trial()) << "as a box comes from its maker";
 }
 
-TEST(Fallbacks, follow_from_a_start_that_was_cut_short) {
+TEST(Fallbacks, follow_from_an_interrupted_start) {
     const Slot runs = slot(SlotState::good, Standing::proven);
     EXPECT_TRUE(is_fallback(runs, slot(SlotState::failed, Standing::proven)));
     EXPECT_TRUE(
@@ -46,7 +45,7 @@ TEST(Fallbacks, follow_from_a_start_that_was_cut_short) {
         << "as a box comes from its maker";
 }
 
-TEST(Fallbacks, do_not_follow_from_a_trial_that_failed_nor_from_what_was_given_up) {
+TEST(Fallbacks, do_not_follow_from_a_failed_trial_or_a_rejected_version) {
     const Slot runs = slot(SlotState::good, Standing::proven);
     for (const Standing standing : {Standing::untried, Standing::harmed, Standing::silent})
         EXPECT_FALSE(is_fallback(runs, slot(SlotState::failed, standing)));
@@ -56,7 +55,7 @@ TEST(Fallbacks, do_not_follow_from_a_trial_that_failed_nor_from_what_was_given_u
         << "the newest runs, and the loader's file of the older one is torn";
 }
 
-TEST(Starts, that_were_cut_short_are_begun_again_twice) {
+TEST(Starts, are_repeated_twice_when_interrupted) {
     Record record{Standing::proven, 0};
     for (const unsigned times : {1U, 2U}) {
         record = after_cut_short(record, false);
@@ -66,7 +65,7 @@ TEST(Starts, that_were_cut_short_are_begun_again_twice) {
     EXPECT_EQ(after_cut_short({Standing::proven, 0}, true).standing, Standing::harmed) << "at once";
 }
 
-TEST(Standings, are_told_with_their_reason) {
+TEST(Standings, are_shown_with_their_reason) {
     EXPECT_EQ(standing_of(slot(SlotState::installed, Standing::proven)), "good")
         << "what the loader does is its own";
     EXPECT_EQ(standing_of(slot(SlotState::testing, Standing::untried)), "on trial");

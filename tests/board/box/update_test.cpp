@@ -1,4 +1,4 @@
-// A signed update: taken as it was made, and nothing else, whatever byte of it is another.
+// The box accepts a signed update exactly as it was made: any changed byte is refused.
 #include "board/box/update.hpp"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ TEST_F(Updates, are_read_as_they_were_made) {
     EXPECT_EQ(claimed_bytes(bytes), bytes.size());
 }
 
-TEST_F(Updates, with_one_byte_changed_are_refused_wherever_it_is) {
+TEST_F(Updates, are_refused_when_any_byte_is_changed) {
     for (std::size_t at = 0; at < bytes.size(); ++at) {
         std::string changed = bytes;
         changed[at] = static_cast<char>(changed[at] ^ 1);
@@ -36,13 +36,13 @@ TEST_F(Updates, with_one_byte_changed_are_refused_wherever_it_is) {
     }
 }
 
-TEST_F(Updates, have_headers_that_are_believed_when_the_key_signed_them) {
+TEST_F(Updates, have_headers_that_are_trusted_only_with_a_valid_signature) {
     const std::string header = bytes.substr(0, update_header_bytes);
     EXPECT_TRUE(has_signed_header(header, keys.open));
     EXPECT_FALSE(has_signed_header(header, new_keys().open));
     EXPECT_FALSE(has_signed_header(header_of(update, nullptr), keys.open));
     EXPECT_FALSE(has_signed_header("anything", keys.open));
-    // The other signature stands behind the lines, and is judged with the kernel.
+    // The second signature follows the lines and is checked with the kernel.
     for (std::size_t at = 0; at < update_header_bytes - 64; ++at) {
         std::string changed = header;
         changed[at] = static_cast<char>(changed[at] ^ 1);
@@ -50,15 +50,15 @@ TEST_F(Updates, have_headers_that_are_believed_when_the_key_signed_them) {
     }
 }
 
-TEST_F(Updates, of_somebody_else_or_cut_short_are_refused) {
+TEST_F(Updates, are_refused_when_truncated_or_signed_by_another_key) {
     EXPECT_THAT(decode(bytes, new_keys().open).error(), HasSubstr("does not fit this box's key"));
     EXPECT_THAT(decode(std::string_view{bytes}.substr(0, bytes.size() - 1), keys.open).error(),
-                HasSubstr("not whole"));
-    EXPECT_THAT(decode("anything", keys.open).error(), HasSubstr("no update"));
+                HasSubstr("it is incomplete"));
+    EXPECT_THAT(decode("anything", keys.open).error(), HasSubstr("it is not an update"));
     EXPECT_EQ(claimed_bytes(std::string(update_header_bytes, 'x')), 0u);
 }
 
-TEST_F(Updates, that_claim_more_than_a_slot_holds_claim_no_more_than_that) {
+TEST_F(Updates, never_claim_more_bytes_than_a_slot_holds) {
     for (const char* number : {"50331648", "18446744073709551615", "18446744073709547520", "-1", "1e9"}) {
         std::string header = header_of(update, nullptr);
         const std::string line = "kernel " + std::to_string(update.kernel.size());
@@ -69,7 +69,7 @@ TEST_F(Updates, that_claim_more_than_a_slot_holds_claim_no_more_than_that) {
     }
 }
 
-TEST_F(Updates, are_taken_by_the_box_they_are_for_when_they_are_newer) {
+TEST_F(Updates, are_accepted_only_when_newer_and_meant_for_this_box) {
     const Manifest own{"carpet-loom", "ipc-x86_64", "a5", 6, 0};
     EXPECT_EQ(refusal_of(update.manifest, own), "");
     EXPECT_THAT(refusal_of({"carpet-loom", "bench", "a5", 7, 3}, own),
@@ -82,7 +82,7 @@ TEST_F(Updates, are_taken_by_the_box_they_are_for_when_they_are_newer) {
                 HasSubstr("it wants version 7 before it"));
 }
 
-TEST_F(Updates, without_a_signature_tell_what_they_are_and_are_refused) {
+TEST_F(Updates, are_readable_but_refused_without_a_signature) {
     const std::string header = header_of(update, nullptr);
     EXPECT_EQ(manifest_of(header).version, 7u);
     EXPECT_TRUE(is_of(header, update.kernel));
@@ -92,7 +92,7 @@ TEST_F(Updates, without_a_signature_tell_what_they_are_and_are_refused) {
     EXPECT_EQ(manifest_of("anything").version, 0u);
 }
 
-TEST(Orders, hold_for_one_box_while_it_is_on) {
+TEST(Orders, are_valid_for_one_box_and_one_boot) {
     const KeyPair keys = new_keys();
     const Order order{"roll-back", "carpet-loom", "ipc-x86_64", "0123"};
     const std::string signature = sign(order, keys.secret);

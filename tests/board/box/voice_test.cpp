@@ -1,4 +1,4 @@
-// What init says, and the file that keeps it.
+// The messages of init, and the file that keeps them.
 #include "board/box/voice.hpp"
 
 #include "tests/toolchain/folder.hpp"
@@ -22,7 +22,7 @@ struct AVoice : testing::Test {
     std::string kept() const { return test::contents_of(file); }
 };
 
-TEST_F(AVoice, keeps_what_was_said_before_there_was_a_file_and_since) {
+TEST_F(AVoice, keeps_messages_from_before_and_after_its_file_opened) {
     Voice voice;
     voice.say("first");
     ASSERT_TRUE(voice.keep_in(file));
@@ -32,8 +32,8 @@ TEST_F(AVoice, keeps_what_was_said_before_there_was_a_file_and_since) {
     voice.say("nobody keeps this");
 }
 
-TEST_F(AVoice, waits_for_no_disk_that_does_not_answer) {
-    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0); // nobody reads it: when it is full its writer stands
+TEST_F(AVoice, does_not_wait_for_a_hung_disk) {
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0); // nobody reads it: when it is full its writer blocks
     const int reader = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     Voice voice;
     ASSERT_TRUE(voice.keep_in(file));

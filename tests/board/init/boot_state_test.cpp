@@ -1,4 +1,4 @@
-// What the loader reads of a slot: byte for byte as its own tool writes it, and nothing of a torn file.
+// The state of a slot that the loader reads: byte for byte as its own tool writes it; torn files are refused.
 #include "board/init/boot_state.hpp"
 
 #include "tests/toolchain/folder.hpp"
@@ -34,7 +34,7 @@ TEST(BootState, is_read_as_it_was_written) {
     EXPECT_EQ(read->state, SlotState::installed);
 }
 
-TEST(BootState, that_is_torn_is_refused) {
+TEST(BootState, is_refused_when_it_is_torn) {
     const std::string good = encode(new_version);
     for (const std::size_t at : {std::size_t{0}, std::size_t{1021}, std::size_t{1024}, good.size() - 1}) {
         std::string torn = good;

@@ -1,4 +1,4 @@
-// A kernel's module without its maker's signature: that and no byte more is taken away.
+// Removing the signature of a kernel module removes exactly those bytes.
 #include "board/init/devices.hpp"
 
 #include <gtest/gtest.h>
@@ -12,17 +12,17 @@ std::string signed_module(const std::string& module, const std::string& signatur
     return module + signature + row + "~Module signature appended~\n";
 }
 
-TEST(Module, is_what_stands_before_its_signature) {
+TEST(Module, ends_before_its_signature) {
     const std::string module = "\177ELF and so on", signature(683, 's');
     EXPECT_EQ(without_signature(signed_module(module, signature, signature.size())), module);
 }
 
-TEST(Module, without_a_signature_stays_as_it_is) {
+TEST(Module, stays_unchanged_without_a_signature) {
     EXPECT_EQ(without_signature("\177ELF"), "\177ELF");
     EXPECT_EQ(without_signature(""), "");
 }
 
-TEST(Module, whose_signature_says_that_it_is_longer_than_the_file_stays_as_it_is) {
+TEST(Module, stays_unchanged_when_its_signature_claims_too_many_bytes) {
     for (const std::size_t length : {20u, 0xffffffffu}) {
         const std::string torn = signed_module("\177ELF", "s", length);
         EXPECT_EQ(without_signature(torn), torn);

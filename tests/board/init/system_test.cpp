@@ -1,4 +1,4 @@
-// What init knows of processes.
+// How init looks at processes.
 #include "board/init/system.hpp"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@
 namespace tappet::init {
 namespace {
 
-TEST(Children, are_those_of_one_process_and_not_those_of_its_children) {
+TEST(Children, exclude_grandchildren) {
     int ready[2];
     ASSERT_EQ(::pipe(ready), 0);
     const pid_t child = ::fork();

@@ -1,5 +1,5 @@
 // The activities of a processor take more than all of its time.
-// refused: loom: activity "motion" is not schedulable on processor 1 of board "bench": the activities there take more than all of its time; lower budgets, lengthen periods, or place it elsewhere
+// refused: loom: activity "motion" is not schedulable on processor 1 of board "bench": the activities there need more than all of its time; lower budgets, lengthen periods, or place it elsewhere
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

@@ -1,5 +1,5 @@
 // A row of components(...) is misspelt; all the other rows are right.
-// refused: loom: component "encodr" is named by no other row, but 4 rows name "encoder", which components(...) has not; rename it to that
+// refused: loom: component "encodr" is named in no other row, but 4 rows name "encoder", which is not in components(...); rename it to that
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

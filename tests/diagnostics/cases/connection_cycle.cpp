@@ -1,5 +1,5 @@
 // The data flow of an activity closes a ring.
-// refused: loom: connection "tension.torque" -> "shaft.reference" closes a data-flow cycle inside activity "motion" (shaft -> tension -> shaft); add delayed to the row whose reader shall see the last cycle's value
+// refused: loom: connection "tension.torque" -> "shaft.reference" closes a data-flow cycle inside activity "motion" (shaft -> tension -> shaft); add delayed to the row whose reader may use the last cycle's value
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

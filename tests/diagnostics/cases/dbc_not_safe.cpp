@@ -1,5 +1,5 @@
 // A DBC file says that the machine sends a message, and the machine does not say how that becomes safe.
-// refused: wrong-file: component "can": press.dbc:5:9: message "command" is sent by "controller", which does not say how it becomes safe; write transmit("command", signal("..").safe(..)) into its node, or .safe_by_silence() behind that
+// refused: wrong-file: component "can": press.dbc:5:9: message "command" is sent by "controller" but has no safe values; write transmit("command", signal("..").safe(..)) into its node, or .safe_by_silence() behind that
 #include "drivers/can/bus.hpp"
 #include "drivers/can/from_dbc.hpp"
 #include "tests/diagnostics/small_machine.hpp"

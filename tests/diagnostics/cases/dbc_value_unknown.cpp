@@ -1,5 +1,5 @@
 // An enumeration takes its values from a DBC file, in which one is called otherwise now.
-// refused: signal "gearbox.gear" calls no value "Reverse"; did you mean "Reversed"?
+// refused: signal "gearbox.gear" has no value "Reverse"; did you mean "Reversed"?
 #include "drivers/can/from_dbc.hpp"
 #include "drivers/can/value_names.hpp"
 

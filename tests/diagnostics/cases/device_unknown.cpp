@@ -1,5 +1,5 @@
 // The binding says nothing of a device of that name.
-// refused: loom: component "encoder": the binding to board "bench" does not say where device "main_encodr" stands; did you mean "main_encoder"?
+// refused: loom: component "encoder": the binding to board "bench" has no wired(...) for device "main_encodr"; did you mean "main_encoder"?
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

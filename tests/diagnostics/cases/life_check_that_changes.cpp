@@ -1,5 +1,5 @@
 // A check of properties that could change its component.
-// refused: loom: component "horn": Horn::accepts looks like a function of its life but would never run; that is public and spelled "Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME": spell it so, or rename it
+// refused: loom: component "horn": Horn::accepts looks like a life-cycle function but would never run; declare it public as "Sentence accepts(const Proposal&) const noexcept TAPPET_REALTIME", or rename it
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

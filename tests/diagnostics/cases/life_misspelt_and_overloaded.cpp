@@ -1,5 +1,5 @@
 // Two functions of a name that is misspelt, one of them private.
-// refused: loom: component "horn": Horn::finalize looks like a function of its life but would never run; that is public and spelled "void finalise()": spell it so, or rename it
+// refused: loom: component "horn": Horn::finalize looks like a life-cycle function but would never run; declare it public as "void finalise()", or rename it
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

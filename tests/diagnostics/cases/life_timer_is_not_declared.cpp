@@ -1,4 +1,4 @@
-// What a timer runs may throw.
+// The function that a timer runs may throw.
 // refused by name: a timer runs a member function void f(const Cycle&), declared noexcept TAPPET_REALTIME
 #include "tests/diagnostics/small_machine.hpp"
 

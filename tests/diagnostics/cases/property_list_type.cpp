@@ -1,5 +1,5 @@
 // A list has elements of another type.
-// refused: loom: component "shaft" sets property "offsets" to a list of 2, but it is a list, each a number; write set<values>(...) with an array of such, constant at namespace scope
+// refused: loom: component "shaft" sets property "offsets" to a list of 2, but it is a list, each a number; write set<values>(...) with a constant array of them at namespace scope
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;

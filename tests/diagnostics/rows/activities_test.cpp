@@ -1,4 +1,4 @@
-// Activities: what wakes them, what they run, whether all of it can be done in time, and who watches them.
+// Activities: their wake-up, their functions, their schedulability, and their watchdogs.
 #include "kernel/services/time/timed_event.hpp"
 #include "kernel/services/time/watchdog.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
@@ -38,14 +38,14 @@ void field(Table& m, const auto&... options) {
 constexpr Fault activity_faults[] = {
     {"activity_twice",
      [](Table& m) { m.activities[3] = activity("motion", every(250ms), not_real_time, runs("climate")); },
-     R"(loom: activity "motion" stands in activities(...) twice (rows 2 and 4); rename or remove one)"},
+     R"(loom: activity "motion" appears twice in activities(...), rows 2 and 4; rename or remove one)"},
     {"activity_two_triggers", [](Table& m) { motion(m, every(1ms), on_work(), budget(120us)); },
-     R"(loom: activity "motion" is given a trigger twice; keep one)"},
+     R"(loom: activity "motion" has more than one trigger; keep one)"},
     {"activity_budget_twice", [](Table& m) { motion(m, every(1ms), budget(120us), budget(80us)); },
-     R"(loom: activity "motion" is given a budget twice; keep one)"},
+     R"(loom: activity "motion" has more than one budget; keep one)"},
     {"activity_runs_twice",
      [](Table& m) { m.put(activity("motion", every(1ms), budget(120us), runs("shaft"), runs("tension"))); },
-     R"(loom: activity "motion" is given runs twice; keep one)"},
+     R"(loom: activity "motion" has more than one runs(...); keep one)"},
     {"activity_phase_beyond_its_period", [](Table& m) { motion(m, every(1ms, phase(1ms)), budget(120us)); },
      R"(loom: activity "motion": its phase of 1000 us does not lie within its period; write one from 0 us to below 1000 us)"},
     {"activity_runs_nothing", [](Table& m) { m.add(activity("idle", every(10ms), budget(1us))); },
@@ -149,12 +149,12 @@ constexpr Fault watch_faults[] = {
      R"(loom: component "dog" watches nothing; add watches("...") with an activity or an output)"},
     {"watch_of_an_unknown_name",
      [](Table& m) { m.put(component<Watchdog>("dog", watches("thunder"), set("limit", 20ms))); },
-     R"(loom: component "dog" watches "thunder", which no activity is called; name an activity, or an output as component.output)"},
+     R"(loom: component "dog" watches "thunder", but no activity has this name; name an activity, or an output as component.output)"},
     {"watch_by_another", [](Table& m) { m.put(component<TimedEvent>("dog", watches("motion"))); },
-     R"(loom: component "dog" is no watchdog; remove watches("motion"))"},
+     R"(loom: component "dog" is not a watchdog; remove watches("motion"))"},
     {"watch_activity_unknown",
      [](Table& m) { m.put(component<Watchdog>("dog", watches("moton"), set("limit", 20ms))); },
-     R"(loom: component "dog" watches "moton", which no activity is called; did you mean "motion"?)"},
+     R"(loom: component "dog" watches "moton", but no activity has this name; did you mean "motion"?)"},
     {"watch_output_unknown",
      [](Table& m) { m.put(component<Watchdog>("dog", watches("encoder.angel"), set("limit", 20ms))); },
      R"(loom: component "dog" watches "encoder.angel": component "encoder" has no output "angel"; did you mean "angle"?)"},
@@ -163,7 +163,7 @@ constexpr Fault watch_faults[] = {
      R"(loom: component "dog" watches "weft.broken", which is an event; name an activity, or an output of last values)"},
     {"watch_without_a_connection",
      [](Table& m) { m.put(component<Watchdog>("dog", watches("shaft.speed"), set("limit", 20ms))); },
-     R"(loom: component "dog" watches "shaft.speed", which no connection leads to another activity; connect it there, or watch activity "motion")"},
+     R"(loom: component "dog" watches "shaft.speed", which no connection carries to another activity; connect it there, or watch activity "motion")"},
     {"watch_limit_too_short",
      [](Table& m) { m.put(component<Watchdog>("dog", watches("hall"), set("limit", 200ms))); },
      R"(loom: component "dog" watches activity "hall" with a limit of 200000 us, not longer than its period of 250000 us; lengthen the limit)"},
@@ -172,10 +172,10 @@ constexpr Fault watch_faults[] = {
          m.put(activity("motion", every(1ms), budget(120us), runs("shaft", "tension", "dog")));
          m.activities.pop_back();
      },
-     R"(loom: component "dog" runs in activity "motion", which it watches: when that is silent, so is it; run it in another one)"},
+     R"(loom: component "dog" runs in activity "motion", which it watches, and would fall silent with it; run it in another activity)"},
     {"watch_that_may_sleep",
      [](Table& m) { m.put(activity("kennel", on_work(), not_real_time, runs("dog"))); },
-     R"(loom: component "dog" looks once in each cycle, but activity "kennel" may sleep for ever; run it in one that is every(...))"},
+     R"(loom: component "dog" checks once in each cycle, but activity "kennel" may never be woken; run it in a periodic activity, every(...))"},
 };
 INSTANTIATE_TEST_SUITE_P(watches, Refusal, planted_into(guarded_loom, watch_faults), name_of);
 

@@ -1,4 +1,4 @@
-// Behaviours: state machine tables, what they hear, and the slots for what is loaded.
+// Behaviours: state machine tables, the events they wait for, and the slots for loaded scripts.
 #include "kernel/script/compiled.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
 #include "tests/diagnostics/small_machine.hpp"
@@ -17,7 +17,7 @@ struct Observer {
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 
-/// Drives the shaft, hears the weft and tells the tension.
+/// Commands the shaft, waits for the weft and sets the tension.
 constexpr ScriptSource checking{"checking.osd", R"(
 StateMachine Checking {
     initial state Good { entry { do tension.relax(); } transition weft.broken() select Bad }
@@ -34,7 +34,7 @@ constexpr Fault behaviour_faults[] = {
     {"behaviour_missing", [](Table& m) { m.behaviours.clear(); },
      R"(loom: component "weft": no behaviour drives it; add behaviour("weft", ...) to behaviours(...))"},
     {"behaviour_twice", [](Table& m) { m.add(behaviour("weft", weft_cycle)); },
-     R"(loom: behaviour of "weft" stands in behaviours(...) twice; a component has one behaviour: remove one)"},
+     R"(loom: behaviour of "weft" appears twice in behaviours(...); a component has one behaviour: remove one)"},
     {"behaviour_component_unknown", [](Table& m) { m.behaviours[0].component = "wefd"; },
      R"(loom: behaviour of "wefd": there is no component "wefd"; did you mean "weft"?)"},
     {"behaviour_of_another_type", [](Table& m) { m.add(behaviour("tension", weft_cycle)); },
@@ -77,7 +77,7 @@ constexpr Fault cycle_faults[] = {
 };
 INSTANTIATE_TEST_SUITE_P(cycles, Refusal, planted_into(loom_with_a_cycle, cycle_faults), name_of);
 
-/// Room in the shaft, and what it may reach.
+/// A slot in the shaft, and the facets that it may reach.
 constexpr Slot small_slot(const auto&... options) {
     return slot(nodes(10), data_bytes(64), depth(4), options...);
 }
@@ -95,36 +95,36 @@ constexpr Fault slot_faults[] = {
      },
      R"(loom: component "weft": no slot is reserved for it; add behaviour("weft", slot(...)) to behaviours(...))"},
     {"slot_peer_unknown", [](Table& m) { reserve(m, peers("wefft")); },
-     R"(loom: slot of "shaft": among its peers, there is no component "wefft"; did you mean "weft"?)"},
+     R"(loom: slot of "shaft": peers(...): there is no component "wefft"; did you mean "weft"?)"},
     {"slot_reach_unknown", [](Table& m) { reserve(m, operations("weft.relase")); },
-     R"(loom: slot of "shaft": among its operations, component "weft" has no operation "relase"; did you mean "release"?)"},
+     R"(loom: slot of "shaft": operations(...): component "weft" has no operation "relase"; did you mean "release"?)"},
     {"slot_event_unknown", [](Table& m) { reserve(m, events("weft.release")); },
-     R"(loom: slot of "shaft": among its events, "weft.release" is an operation, not an event; name an event)"},
+     R"(loom: slot of "shaft": events(...): "weft.release" is an operation, not an event; name an event)"},
     {"slot_operation_is_an_output", [](Table& m) { reserve(m, operations("weft.reference")); },
-     R"(loom: slot of "shaft": among its operations, "weft.reference" is an output, not an operation; name an operation)"},
+     R"(loom: slot of "shaft": operations(...): "weft.reference" is an output, not an operation; name an operation)"},
     {"slot_angle_unknown", [](Table& m) { reserve(m, angle_of("encoder.angel")); },
-     R"(loom: slot of "shaft": its angle: component "encoder" has no output "angel"; did you mean "angle"?)"},
+     R"(loom: slot of "shaft": angle_of(...): component "encoder" has no output "angel"; did you mean "angle"?)"},
     {"slot_angle_is_no_angle", [](Table& m) { reserve(m, angle_of("encoder.turns")); },
-     R"(loom: slot of "shaft": its angle "encoder.turns" is an output of int; name an output of double, in degrees)"},
+     R"(loom: slot of "shaft": angle_of("encoder.turns") is an output of int; name an output of double, in degrees)"},
     {"slot_angle_of_another_activity", [](Table& m) { reserve(m, angle_of("encoder.angle")); },
-     R"(loom: slot of "shaft": its angle "encoder.angle" is written in another activity; name an output of activity "motion")"},
+     R"(loom: slot of "shaft": angle_of("encoder.angle") is written in another activity; name an output of activity "motion")"},
     {"slot_without_room", [](Table& m) { m.add(behaviour("shaft", Slot{})); },
-     R"(loom: slot of "shaft" reserves no nodes, data or depth; state all three)"},
+     R"(loom: slot of "shaft" does not reserve nodes, data and depth; state all three)"},
     {"slot_of_all",
      [](Table& m) { m.add(behaviour("shaft", slot(nodes(0xffff'ffff), data_bytes(64), depth(4)))); },
-     R"(loom: slot of "shaft" reserves more than 16777216 of something; write smaller numbers)"},
+     R"(loom: slot of "shaft" reserves more than 16777216 of one resource; write smaller numbers)"},
     {"slot_of_all_commands", [](Table& m) { reserve(m, command_slots(0x8000'0001)); },
-     R"(loom: slot of "shaft" reserves more than 16777216 of something; write smaller numbers)"},
+     R"(loom: slot of "shaft" reserves more than 16777216 of one resource; write smaller numbers)"},
     {"slot_begins_beyond_its_peers", [](Table& m) { begin_with_checks(m); },
-     R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft", and what is loaded does not; add it to peers(...) of the slot)"},
+     R"(loom: slot of "shaft": its first script "checking.osd" reaches "weft", but loaded scripts cannot; add it to peers(...) of the slot)"},
     {"slot_begins_beyond_its_operations",
      [](Table& m) { begin_with_checks(m, peers("weft", "tension"), operations("tension.pre_tension")); },
-     R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "tension.relax", and what is loaded does not; add it to operations(...) of the slot)"},
+     R"(loom: slot of "shaft": its first script "checking.osd" reaches "tension.relax", but loaded scripts cannot; add it to operations(...) of the slot)"},
     {"slot_begins_beyond_its_events",
      [](Table& m) {
          begin_with_checks(m, peers("weft", "tension"), operations("tension.relax"), events("weft.inserted"));
      },
-     R"(loom: slot of "shaft": script "checking.osd", with which it begins, reaches "weft.broken", and what is loaded does not; add it to events(...) of the slot)"},
+     R"(loom: slot of "shaft": its first script "checking.osd" reaches "weft.broken", but loaded scripts cannot; add it to events(...) of the slot)"},
     {"slot_stack",
      [](Table& m) {
          m.add(component<Observer>("browser"), "hall");

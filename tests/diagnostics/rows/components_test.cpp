@@ -1,4 +1,4 @@
-// Components: their rows, the functions of their life, and the devices that the board has for them.
+// Components: their rows, their life-cycle functions, and the devices that the board has for them.
 #include "drivers/udp/kind.hpp"
 #include "kernel/machine/instance/line_functions.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
@@ -7,7 +7,7 @@
 using namespace small;
 using namespace tappet::diagnostics;
 
-// In no namespace: the sentences say their names.
+// Outside of any namespace: the sentences contain their names.
 
 struct Twin {
     Output<double> one;
@@ -65,7 +65,7 @@ struct Recorder {
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 
-/// What most horns have to say of themselves.
+/// The interface that most horns share.
 struct Silent {
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
@@ -120,7 +120,7 @@ struct ReaderAndWorker {
 
 constexpr Fault component_faults[] = {
     {"component_twice", [](Table& m) { m.add(component<Tension>("shaft")); },
-     R"(loom: component "shaft" stands in components(...) twice (rows 2 and 7); rename or remove one)"},
+     R"(loom: component "shaft" appears twice in components(...), rows 2 and 7; rename or remove one)"},
     {"component_name_dotted", [](Table& m) { m.components[1] = component<Shaft>("main.shaft"); },
      R"(loom: component "main.shaft": a component's name is not empty and has no dot; rename it)"},
     {"component_in_no_activity",
@@ -145,7 +145,7 @@ constexpr Fault component_faults[] = {
      },
      R"(loom: component "second_scope" records the machine's cycles as "scope" does already; remove one of them)"},
     {"interface_without_text", [](Table& m) { m.add(component<Mute>("horn")); },
-     R"(loom: component "horn": its facet "tone" has no text, by which people know it; say in Mute what it is)"},
+     R"(loom: component "horn": its facet "tone" has no description; add one in Mute)"},
     {"interface_without_name", [](Table& m) { m.add(component<Unnamed>("horn")); },
      R"(loom: component "horn": its interface has a facet without a name; name it in Unnamed)"},
 };
@@ -158,21 +158,21 @@ template <class Horn> void blow(Table& m) {
 
 constexpr Fault life_faults[] = {
     {"life_in_private", blow<PrivateHorn>,
-     R"(loom: component "horn": PrivateHorn::step looks like a function of its life but would never run; that is public and spelled "void step(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+     R"(loom: component "horn": PrivateHorn::step looks like a life-cycle function but would never run; declare it public as "void step(const Cycle&) noexcept TAPPET_REALTIME", or rename it)"},
     {"life_misspelt", blow<MisspeltHorn>,
-     R"(loom: component "horn": MisspeltHorn::strat looks like a function of its life but would never run; that is public and spelled "void start(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+     R"(loom: component "horn": MisspeltHorn::strat looks like a life-cycle function but would never run; declare it public as "void start(const Cycle&) noexcept TAPPET_REALTIME", or rename it)"},
     {"life_otherwise_named", blow<UpdatedHorn>,
-     R"(loom: component "horn": UpdatedHorn::update looks like a function of its life but would never run; that is public and spelled "void step(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+     R"(loom: component "horn": UpdatedHorn::update looks like a life-cycle function but would never run; declare it public as "void step(const Cycle&) noexcept TAPPET_REALTIME", or rename it)"},
     {"life_that_answers_nothing", blow<AnswerlessHorn>,
-     R"~(loom: component "horn": AnswerlessHorn::initialise looks like a function of its life but would never run; that is public and spelled "Sentence initialise()": spell it so, or rename it)~"},
+     R"~(loom: component "horn": AnswerlessHorn::initialise looks like a life-cycle function but would never run; declare it public as "Sentence initialise()", or rename it)~"},
     {"life_that_is_a_value", blow<ValueHorn>,
-     R"(loom: component "horn": ValueHorn::stop looks like a function of its life but would never run; that is public and spelled "void stop(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+     R"(loom: component "horn": ValueHorn::stop looks like a life-cycle function but would never run; declare it public as "void stop(const Cycle&) noexcept TAPPET_REALTIME", or rename it)"},
     {"life_that_may_throw", blow<ThrowingHorn>,
-     R"(loom: component "horn": ThrowingHorn::start looks like a function of its life but would never run; that is public and spelled "void start(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+     R"(loom: component "horn": ThrowingHorn::start looks like a life-cycle function but would never run; declare it public as "void start(const Cycle&) noexcept TAPPET_REALTIME", or rename it)"},
     {"life_with_another_cycle", blow<CycleChangingHorn>,
-     R"(loom: component "horn": CycleChangingHorn::step looks like a function of its life but would never run; that is public and spelled "void step(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+     R"(loom: component "horn": CycleChangingHorn::step looks like a life-cycle function but would never run; declare it public as "void step(const Cycle&) noexcept TAPPET_REALTIME", or rename it)"},
     {"life_without_its_cycle", blow<CyclelessHorn>,
-     R"(loom: component "horn": CyclelessHorn::stop looks like a function of its life but would never run; that is public and spelled "void stop(const Cycle&) noexcept TAPPET_REALTIME": spell it so, or rename it)"},
+     R"(loom: component "horn": CyclelessHorn::stop looks like a life-cycle function but would never run; declare it public as "void stop(const Cycle&) noexcept TAPPET_REALTIME", or rename it)"},
 };
 INSTANTIATE_TEST_SUITE_P(life, Refusal, planted_into(small_loom, life_faults), name_of);
 
@@ -187,7 +187,7 @@ constexpr Fault observer_faults[] = {
      },
      R"(loom: component "store" sees the machine from activity "attic", but "browser" does so from activity "hall"; run both in one activity)"},
 };
-/// With a stack that holds it.
+/// Adds the stack for it.
 void compile_lines(Table& m) {
     m.add(component<Interpreter>("interpreter"));
     m.put(activity("hall", every(250ms), not_real_time, stack(256 * 1024), runs("climate", "interpreter")));
@@ -230,7 +230,7 @@ constexpr Fault interpreter_faults[] = {
              m.add(row);
          }
      },
-     R"(loom: component "interpreter" needs a mailbox into each engine, and 63 activities have all of them; merge two activities)"},
+     R"(loom: component "interpreter" needs a mailbox to each engine, but 63 activities use all mailboxes; merge two activities)"},
 };
 INSTANTIATE_TEST_SUITE_P(interpreters, Refusal, planted_into(small_loom, interpreter_faults), name_of);
 INSTANTIATE_TEST_SUITE_P(observers, Refusal, planted_into(small_loom, observer_faults), name_of);
@@ -265,10 +265,10 @@ constexpr Fault device_faults[] = {
      R"(loom: component "encoder": binding to board "bench", wired("panel"): it drives a can device but "io" is of kind gpio; name another)"},
     {"device_trusted_while_it_stands",
      [](Table& m) { m.put(component<Trusted>("encoder", device("main_encoder"))); },
-     R"(loom: component "encoder" is a driver, and its output "connected" does not say what it is while the driver is stopped; write while_stopped(false), while_stopped(true) or as_it_was behind its doc)"},
+     R"(loom: component "encoder" is a driver, but its output "connected" has no value for a stopped driver; add while_stopped(false), while_stopped(true) or as_it_was after its description)"},
     {"device_left_as_it_may_be",
      [](Table& m) { m.put(component<Unsure>("encoder", device("main_encoder"))); },
-     R"(loom: component "encoder" drives a can device and does not say whether its stop() reached it; write bool stopped_safely() const noexcept TAPPET_REALTIME, true where nothing is driven)"},
+     R"(loom: component "encoder" drives a can device but does not say whether stop() reached it; write bool stopped_safely() const noexcept TAPPET_REALTIME, which returns true if nothing is driven)"},
     {"device_shared_with_nobody",
      [](Table& m) { m.add(component<Restarter>("restarter", device("spare_encoder")), "hall"); },
      R"(loom: component "restarter" shares device "spare_encoder", which no component drives; correct the name)"},
@@ -277,7 +277,7 @@ constexpr Fault device_faults[] = {
 };
 INSTANTIATE_TEST_SUITE_P(devices, Refusal, planted_into(small_loom, device_faults), name_of);
 
-/// Board and binding are those that the faults change.
+/// The faults change this board and this binding.
 Table loom_on_an_old_box() {
     Table m = small_loom();
     m.board.name = "old box";
@@ -287,7 +287,7 @@ Table loom_on_an_old_box() {
 void rebind(Table& m, const auto& panel) {
     m.binding = binding(wired("main_encoder", "can0"), wired("hall", "192.168.7.2:502"), panel);
 }
-/// The climate's server stands elsewhere.
+/// Binds the climate's server to another place.
 void rebind_hall(Table& m, std::string_view to, const auto&... options) {
     m.binding = binding(wired("main_encoder", "can0"), wired("hall", to, options...),
                         wired("panel", "io", line("red", 4), line("green", 5)));
@@ -303,7 +303,7 @@ constexpr Fault board_faults[] = {
      R"(loom: component "lamps": binding to board "old box", wired("panel"): line "blue" is not in the component's map; add it there or remove it here)"},
     {"line_beyond_the_chip",
      [](Table& m) { rebind(m, wired("panel", "io", line("red", 4), line("green", 8))); },
-     R"(loom: component "lamps": binding to board "old box", wired("panel"): line "green" stands at 8 but device "io" has lines 0 to 7; correct it)"},
+     R"(loom: component "lamps": binding to board "old box", wired("panel"): line "green" has offset 8 but device "io" has lines 0 to 7; correct it)"},
     {"board_device_unknown",
      [](Table& m) { rebind(m, wired("panel", "oi", line("red", 4), line("green", 5))); },
      R"(loom: component "lamps": binding to board "old box", wired("panel"): the board has no device "oi"; did you mean "io"?)"},
@@ -355,34 +355,34 @@ constexpr Fault board_faults[] = {
      },
      R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): unit(...) is for a modbus device, and this is a can device; remove it)"},
     {"word_twice", [](Table& m) { rebind_hall(m, "192.168.7.2:502", unit(3), unit(4)); },
-     R"(loom: component "climate": binding to board "old box", wired("hall"): unit(...) stands there twice; remove one)"},
+     R"(loom: component "climate": binding to board "old box", wired("hall"): unit(...) appears twice; remove one)"},
     {"board_word_of_another_kind",
      [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0", bit_rate(500'000)); },
      R"(loom: board "old box", device "io": bit_rate(...) is for a can device, and this is a gpio device; remove it)"},
     {"board_word_twice",
      [](Table& m) { m.board.devices[1] = board_device("io", "gpio", "/dev/gpiochip0", lines(8), lines(16)); },
-     R"(loom: board "old box", device "io": lines(...) stands there twice; remove one)"},
+     R"(loom: board "old box", device "io": lines(...) appears twice; remove one)"},
     {"server_unit", [](Table& m) { rebind_hall(m, "192.168.7.2:502", unit(300)); },
-     R"(loom: component "climate": binding to board "old box", wired("hall"): unit(300) is no server; write 1 to 247, over TCP also 255)"},
+     R"(loom: component "climate": binding to board "old box", wired("hall"): unit(300) is not a server address; write 1 to 247, over TCP also 255)"},
     {"server_that_may_never_answer", [](Table& m) { rebind_hall(m, "192.168.7.2:502", answer_within(0ms)); },
      R"(loom: component "climate": binding to board "old box", wired("hall"): answer_within is not above 0; write for example answer_within(300ms))"},
     {"server_on_a_serial_line", [](Table& m) { rebind_hall(m, "serial1", serial_line(0, 'E', 1)); },
-     R"(loom: component "climate": binding to board "old box", wired("hall"): no serial line is set so; write for example serial_line(19'200, 'E', 1))"},
+     R"(loom: component "climate": binding to board "old box", wired("hall"): no serial line has these settings; write for example serial_line(19'200, 'E', 1))"},
     {"line_missing", [](Table& m) { rebind(m, wired("panel", "io", line("red", 4))); },
      R"(loom: component "lamps": binding to board "old box", wired("panel"): it has no line "green"; add line("...", offset) to it)"},
     {"device_missing",
      [](Table& m) { m.binding = binding(wired("panel", "io", line("red", 4), line("green", 5))); },
-     R"(loom: component "encoder": the binding to board "old box" does not say where device "main_encoder" stands; add wired("...", "a device of the board") to it)"},
+     R"(loom: component "encoder": the binding to board "old box" has no wired(...) for device "main_encoder"; add wired("...", "a device of the board") to it)"},
     {"binding_too_long", [](Table& m) { m.binding.too_many = true; },
      R"(loom: binding to board "old box": it has more rows than a binding holds: 16 devices, 256 words of them, 64 placements; raise the bound in kernel/machine/table/binding.hpp)"},
     {"proof_unknown", [](Table& m) { m.binding.proof = proven_by("encoder.angel", 100); },
      R"(loom: binding to board "old box", proven_by("encoder.angel"): component "encoder" has no output "angel"; did you mean "angle"?)"},
     {"proof_that_counts_nothing", [](Table& m) { m.binding.proof = proven_by("encoder.angle", 100); },
-     R"(loom: binding to board "old box", proven_by("encoder.angle"): it is no output of whole numbers; name one that counts what the machine makes)"},
+     R"(loom: binding to board "old box", proven_by("encoder.angle"): it is not an integer output; name one that counts what the machine makes)"},
     {"placement_of_nothing", [](Table& m) { m.binding.placement[0] = place("thunder", 0); },
      R"(loom: binding to board "old box", place("thunder"): the table has no such activity; remove the placement)"},
     {"placement_twice", [](Table& m) { static_cast<void>(m.binding.placement.push(place("hall", 1))); },
-     R"(loom: binding to board "old box": place("hall") stands there twice; remove one)"},
+     R"(loom: binding to board "old box": place("hall") appears twice; remove one)"},
     {"board_can_bit_rate", [](Table& m) { m.board.devices[0] = board_device("can0", "can", "can0"); },
      R"(loom: component "encoder": binding to board "old box", wired("main_encoder"): device "can0" states no bit rate; add bit_rate(500'000), or what its bus runs at, to the board's row)"},
     {"board_can_data_bit_rate",

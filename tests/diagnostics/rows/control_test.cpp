@@ -1,4 +1,4 @@
-// The control kernel: who is what in which level, and who reads, writes and calls whom.
+// The control kernel: the roles in each level, and the reads, writes and calls between them.
 #include "tests/diagnostics/controlled.hpp"
 
 namespace {
@@ -10,22 +10,22 @@ constexpr Fault level_faults[] = {
     {"level_of_nobody", [](Table& m) { m.control.levels.push_back(level("empty")); },
      R"(axis: level "empty": it names no component; give it its Sensor, Generator, Controller and Effector)"},
     {"level_twice", [](Table& m) { m.control.levels.push_back(axis_level); },
-     R"(axis: level "axis": there are two of that name; rename one)"},
+     R"(axis: level "axis": another level has this name; rename one)"},
     {"role_of_nobody", [](Table& m) { m.control.levels[0].roles[0] = sensor("encodre"); },
      R"(axis: level "axis": there is no component "encodre"; did you mean "encoder"?)"},
     {"role_twice", [](Table& m) { seat(m, sensor("encoder")); },
      R"(axis: level "axis": "encoder" is a Sensor twice; name it once, and read it where it is needed)"},
     {"role_in_two_levels",
      [](Table& m) { m.control.levels.push_back(level("second", estimator("encoder"))); },
-     R"(axis: level "second": "encoder" sits in level "axis" already; a component runs in one level)"},
+     R"(axis: level "second": "encoder" is in level "axis" already; a component runs in one level)"},
     {"level_with_too_many", [](Table& m) { m.control.levels[0].too_many = true; },
-     R"(axis: level "axis": it has more than the 24 components that it may have; make two of it)"},
+     R"(axis: level "axis": it has more than 24 components; split it in two)"},
     {"role_and_process", [](Table& m) { m.control.processes.push_back(process("encoder")); },
-     R"(axis: control: "encoder" writes the data flow and cannot be a process component too; name it once)"},
+     R"(axis: control: "encoder" is part of the data flow and cannot also be a process component; name it once)"},
     {"process_in_a_level", [](Table& m) { seat(m, process("slide")); },
      R"(axis: level "axis": "slide" is a process component, which serves all levels; write it beside the levels, in control(...))"},
     {"sensor_of_no_level", [](Table& m) { m.control.processes.push_back(sensor("slide")); },
-     R"(axis: control: "slide" is a Sensor of no level; write it into a level(...))"},
+     R"(axis: control: "slide" is a Sensor outside of a level; move it into a level(...))"},
     {"level_in_two_activities",
      [](Table& m) {
          seat(m, estimator("watcher"));
@@ -38,7 +38,7 @@ constexpr Fault level_faults[] = {
              "motion", every(1ms), not_real_time,
              runs("mode", "slide", "encoder", "standing", "jogging", "position", "gentle", "limiter")));
      },
-     R"(axis: level "axis": its activity "motion" does not run in real time with a period; a control action has one: write every(...))"},
+     R"(axis: level "axis": its activity "motion" is not a periodic real-time activity, which control needs; write every(...))"},
     {"level_without_sensor", [](Table& m) { m.control.levels[0].roles[0] = estimator("encoder"); },
      R"(axis: control: no level has a Sensor, so that nothing is fed back; add sensor("..."))"},
     {"level_without_controller",
@@ -63,7 +63,7 @@ constexpr Fault cascade_faults[] = {
          m.put(activity("slow", every(500us), budget(50us), runs("path", "outer")));
          m.put(data("outer.velocity", "ramp.measured", scaled(1.0), stale_after(20ms), stop_machine));
      },
-     R"(cascade: level "inside": it runs every 1000 us, slower than level "outside" above it, which runs every 500 us; an inner loop is the faster one: exchange the levels, or their periods)"},
+     R"(cascade: level "inside": it runs every 1000 us, slower than level "outside" above it, which runs every 500 us; an inner loop must be faster: exchange the levels, or their periods)"},
 
     {"one_chain",
      [](Table& m) {
@@ -72,7 +72,7 @@ constexpr Fault cascade_faults[] = {
                         runs("mode", "slide", "encoder", "ramp", "inner", "limiter")));
          m.control.exclusives = {exclusive("mode", fallback("stand", "ramp"))};
      },
-     R"(cascade: exclusive "mode": it has no two chains between which to hand over; add one, or leave it out)"},
+     R"(cascade: exclusive "mode": it has fewer than two chains to switch between; add one, or leave it out)"},
     {"loop_late_by_a_row",
      [](Table& m) {
          m.components[5] = component<Follower>("inner", set("kp", 300.0));
@@ -97,36 +97,36 @@ constexpr Fault cascade_faults[] = {
          m.put(activity("slow", every(2500us), budget(50us), runs("path", "outer")));
          m.put(data("outer.velocity", "ramp.measured", scaled(1.0), stale_after(20ms), stop_machine));
      },
-     R"(cascade: level "inside": its period of 1000 us does not divide that of level "outside" above it, 2500 us, so that not every command would hold for as many steps; choose periods of which one is a multiple of the other)"},
+     R"(cascade: level "inside": its period of 1000 us does not divide that of level "outside" above it, 2500 us, so that commands would hold for different numbers of steps; choose periods of which one is a multiple of the other)"},
     {"cascade_without_staleness",
      [](Table& m) { m.put(data("outer.velocity", "ramp.measured", scaled(1.0))); },
-     R"(cascade: connection "outer.velocity" -> "ramp.measured": it leads from activity "slow" to "fast" in a loop and does not say what holds when the writer falls silent; add stale_after(...) with hold, substitute(...) or stop_machine)"},
+     R"(cascade: connection "outer.velocity" -> "ramp.measured": it leads from activity "slow" to "fast" in a loop but does not say what to do when the writer falls silent; add stale_after(...) with hold, substitute(...) or stop_machine)"},
     {"command_in_steps",
      [](Table& m) { m.put(data("outer.velocity", "ramp.measured", scaled(1.0), stale_after(20ms), hold)); },
-     R"(cascade: connection "outer.velocity" -> "ramp.measured": a command of a slower level reaches the faster one in steps or on a line; add in_steps, interpolated (later by a period) or extrapolated)"},
+     R"(cascade: connection "outer.velocity" -> "ramp.measured": it does not say how the faster level reads a command of the slower one; add in_steps, interpolated (one period later) or extrapolated)"},
     {"interpolated_to_a_slower_reader",
      [](Table& m) {
          m.put(data("encoder.position", "path.measured", interpolated, stale_after(20ms), hold));
      },
-     R"(cascade: connection "encoder.position" -> "path.measured": in_steps, interpolated and extrapolated are for a reader whose period divides the longer one of the writer; activity "fast" and activity "slow" are not such; remove it, or change a period)"},
+     R"(cascade: connection "encoder.position" -> "path.measured": in_steps, interpolated and extrapolated need a writer whose period is a larger multiple of the reader's; this is not the case from activity "fast" to activity "slow"; remove the option, or change a period)"},
     {"interpolated_whole_numbers",
      [](Table& m) {
          m.add(component<Cycles>("counter"), "slow");
          m.add(component<CyclesShown>("shown"), "fast");
          m.add(data("counter.count", "shown.count", interpolated));
      },
-     R"(cascade: connection "counter.count" -> "shown.count": between two values of int lie none; write in_steps, or connect a floating number)"},
+     R"(cascade: connection "counter.count" -> "shown.count": int cannot be interpolated; write in_steps, or connect a floating-point value)"},
     {"set_point_across_levels",
      [](Table& m) { m.put(data("path.target", "inner.target", stale_after(20ms), stop_machine)); },
-     R"(cascade: connection "path.target" -> "inner.target": a Generator of level "outside" does not write for a Controller of level "inside"; set points stay in their level; let a Controller of the outer level command the inner Generator)"},
+     R"(cascade: connection "path.target" -> "inner.target": a Generator of level "outside" must not write to a Controller of level "inside"; set points stay in their level; let a Controller of the outer level command the inner Generator)"},
     {"outer_controller_to_effector",
      [](Table& m) { m.put(data("outer.velocity", "limiter.velocity", stale_after(20ms), stop_machine)); },
-     R"(cascade: connection "outer.velocity" -> "limiter.velocity": a Controller of level "outside" does not write for an Effector of level "inside"; a level has its own Controller; let the outer one command the inner Generator)"},
+     R"(cascade: connection "outer.velocity" -> "limiter.velocity": a Controller of level "outside" must not write to an Effector of level "inside"; a level has its own Controller; let the outer one command the inner Generator)"},
     {"inner_controller_commands_outer_generator",
      [](Table& m) {
          m.put(data("inner.velocity", "path.measured", scaled(1.0), stale_after(20ms), stop_machine));
      },
-     R"(cascade: connection "inner.velocity" -> "path.measured": a Controller of level "inside" does not write for a Generator of level "outside"; a Controller commands the Generator of the level right below its own)"},
+     R"(cascade: connection "inner.velocity" -> "path.measured": a Controller of level "inside" must not write to a Generator of level "outside"; a Controller commands the Generator of the level below its own: connect that one)"},
 };
 INSTANTIATE_TEST_SUITE_P(control_cascades, Refusal, planted_into(cascade, cascade_faults), name_of);
 
@@ -143,48 +143,48 @@ constexpr Fault flow_faults[] = {
          m.add(data("standing.target", "position.target"));
          m.add(data("jogging.target", "gentle.target"));
      },
-     R"(axis: connection "encoder.position" -> "limiter.velocity": a Sensor does not write for an Effector; put a Controller between them, which makes outputs of inputs)"},
+     R"(axis: connection "encoder.position" -> "limiter.velocity": a Sensor must not write to an Effector; put a Controller between them, which turns inputs into outputs)"},
     {"generator_to_effector",
      [](Table& m) {
          seat(m, component<Limiter>("second"), effector("second"),
               data("standing.target", "second.velocity", scaled(1.0)));
      },
-     R"(axis: connection "standing.target" -> "second.velocity": a Generator does not write for an Effector; put a Controller between them, be it one that passes set points on)"},
+     R"(axis: connection "standing.target" -> "second.velocity": a Generator must not write to an Effector; put a Controller between them, even if it only passes set points on)"},
     {"generator_to_generator",
      [](Table& m) {
          seat(m, component<Mover>("path"), generator("path"), data("standing.target", "path.measured"));
      },
-     R"(axis: connection "standing.target" -> "path.measured": a Generator does not write for a Generator; make one Generator of both, or let a Controller of the level above command it)"},
+     R"(axis: connection "standing.target" -> "path.measured": a Generator must not write to a Generator; merge both into one Generator, or let a Controller of the level above command it)"},
     {"controller_to_controller",
      [](Table& m) {
          seat(m, component<Asked>("second"), controller("second"),
               data("position.velocity", "second.target", scaled(1.0)));
      },
-     R"(axis: connection "position.velocity" -> "second.target": a Controller does not write for a Controller; make two levels of it: the outer Controller commands the inner Generator)"},
+     R"(axis: connection "position.velocity" -> "second.target": a Controller must not write to a Controller; make two levels of it: the outer Controller commands the inner Generator)"},
     {"generator_to_estimator",
      [](Table& m) {
          seat(m, component<Observer>("model"), estimator("model"), data("standing.target", "model.measured"));
      },
-     R"(axis: connection "standing.target" -> "model.measured": a Generator does not write for an Estimator; an Estimator sees inputs and the outputs of the step before; read those)"},
+     R"(axis: connection "standing.target" -> "model.measured": a Generator must not write to an Estimator; an Estimator reads inputs and the outputs of the previous step; connect those)"},
     {"outputs_of_this_step_to_estimator",
      [](Table& m) {
          seat(m, component<Observer>("model"), estimator("model"), data("position.velocity", "model.sent"));
      },
-     R"(axis: connection "position.velocity" -> "model.sent": outputs reach an Estimator from the step before; add delayed)"},
+     R"(axis: connection "position.velocity" -> "model.sent": an Estimator reads outputs only from the previous step; add delayed)"},
     {"sensor_reads_the_kernel",
      [](Table& m) { m.put(data("limiter.sent", "encoder.counted", scaled(1.0), delayed)); },
-     R"(axis: connection "limiter.sent" -> "encoder.counted": an Effector does not write for a Sensor; a Sensor reads hardware only)"},
+     R"(axis: connection "limiter.sent" -> "encoder.counted": an Effector must not write to a Sensor; a Sensor reads hardware only; remove the row)"},
     {"process_writes_the_data_flow",
      [](Table& m) {
          seat(m, component<Mover>("path"), generator("path"),
               data("watcher.seen", "path.measured", stale_after(20ms)));
      },
-     R"(axis: connection "watcher.seen" -> "path.measured": a process component reads all of the data flow and writes none of it, so that nobody looks for the writer of a value in two places; let "watcher" command "path" by an operation)"},
+     R"(axis: connection "watcher.seen" -> "path.measured": a process component may read the data flow but must not write to it; let "watcher" command "path" with an operation)"},
     {"from_outside_past_the_sensor",
      [](Table& m) {
          seat(m, component<Mover>("path"), generator("path"), data("slide.place", "path.measured"));
      },
-     R"(axis: connection "slide.place" -> "path.measured": what comes from outside of the control kernel comes by a Sensor, and "path" is a Generator; give "slide" its role in control(...), or let a Sensor bring it)"},
+     R"(axis: connection "slide.place" -> "path.measured": a value from outside of control(...) must enter through a Sensor, but "path" is a Generator; give "slide" a role in control(...), or read the value with a Sensor)"},
     {"controller_to_the_hardware",
      [](Table& m) {
          m.board = wired_box;
@@ -193,13 +193,13 @@ constexpr Fault flow_faults[] = {
          m.add(activity("wire", every(1ms), budget(10us), runs("drive")));
          m.add(data("position.velocity", "drive.driven", stale_after(20ms)));
      },
-     R"(axis: connection "position.velocity" -> "drive.driven": only an Effector reaches the hardware, within its limits, and "position" is a Controller; let it write for an Effector)"},
+     R"(axis: connection "position.velocity" -> "drive.driven": only an Effector may write to hardware, within its limits, but "position" is a Controller; let it write to an Effector)"},
     {"reader_without_a_role",
      [](Table& m) {
          place(m, component<Observer>("model"));
          m.add(data("encoder.position", "model.measured"));
      },
-     R"(axis: connection "encoder.position" -> "model.measured": "model" has no role in control(...), so that nobody sees where the value goes on to; if it only looks add process(...))"},
+     R"(axis: connection "encoder.position" -> "model.measured": "model" has no role in control(...), so that the value cannot be followed further; if it only observes, add process(...))"},
     {"driver_that_falls_silent",
      [](Table& m) {
          m.put(activity("motion", every(1ms), budget(100us),
@@ -208,7 +208,7 @@ constexpr Fault flow_faults[] = {
          for (ConnectionRow& row : m.connections)
              if (row.to == "slide.driven") row = data(row.from, row.to, stale_after(5ms), substitute(0.0));
      },
-     R"(axis: connection "slide.place" -> "encoder.counted": it leads from activity "wire" to "motion" in a loop and does not say what holds when the writer falls silent; add stale_after(...) with hold, substitute(...) or stop_machine)"},
+     R"(axis: connection "slide.place" -> "encoder.counted": it leads from activity "wire" to "motion" in a loop but does not say what to do when the writer falls silent; add stale_after(...) with hold, substitute(...) or stop_machine)"},
     {"controller_called_by_generator",
      [](Table& m) {
          place(m, component<Careless>("path"));
@@ -219,7 +219,7 @@ constexpr Fault flow_faults[] = {
          seat(m, generator("path"));
          seat(m, controller("second"));
      },
-     R"(axis: use "path.ask" -> "second.far": a Generator does not call a Controller, so that each can be replaced alone; let a process component call it, or exchange the value by ports)"},
+     R"(axis: use "path.ask" -> "second.far": a Generator must not call a Controller, so that each can be replaced alone; call it from a process component, or exchange the value through ports)"},
     {"nothing_leads_to_generator",
      [](Table& m) {
          place(m, component<Careless>("path"));
@@ -228,13 +228,13 @@ constexpr Fault flow_faults[] = {
          seat(m, generator("path"));
          seat(m, controller("second"));
      },
-     R"(axis: level "axis": nothing leads to the Generator "path"; connect an input of it with what it makes its values of)"},
+     R"(axis: level "axis": no connection leads to the Generator "path"; connect one of its inputs)"},
     {"nobody_reads_estimator",
      [](Table& m) {
          seat(m, component<Observer>("model"), estimator("model"),
               data("encoder.position", "model.measured"));
      },
-     R"(axis: level "axis": nobody reads what the Estimator "model" writes; connect an output of it, or leave it out)"},
+     R"(axis: level "axis": no component reads the outputs of the Estimator "model"; connect one of them, or leave it out)"},
     {"no_safe_values",
      [](Table& m) {
          place(m, component<Careless>("path"));
@@ -246,7 +246,7 @@ constexpr Fault flow_faults[] = {
          m.add(data("second.velocity", "watcher.measured", scaled(1.0)));
          m.connections.erase(m.connections.begin() + 14);
      },
-     R"(axis: level "axis": the Generator "path" has no stop(), so that others would go on with its last value when it has stopped; write safe values there: void stop(const Cycle&) noexcept TAPPET_REALTIME)"},
+     R"(axis: level "axis": the Generator "path" has no stop(), so that its readers would continue with its last value after it stopped; add one that writes safe values: void stop(const Cycle&) noexcept TAPPET_REALTIME)"},
 };
 INSTANTIATE_TEST_SUITE_P(control_flow, Refusal, planted_into(axis, flow_faults), name_of);
 

@@ -1,4 +1,4 @@
-// What controls something else: the tasks of behaviours, and the lives of components.
+// Components that control others: the tasks of behaviours, and the lives of components.
 #include "kernel/machine/table/compiled.hpp"
 #include "kernel/script/compiled.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
@@ -17,7 +17,7 @@ constexpr const ScriptUnit& weaving = compiled_script<weaving_source, weft_reach
 constexpr ScriptSource other_source{"other.osd", "program feed(int picks) { yield; }"};
 constexpr const ScriptUnit& other = compiled_script<other_source, weft_reach>;
 
-// What stands in the reach of a script and not so in the machine.
+// Facets that the script may reach and that the machine declares differently.
 constexpr ScriptSource lifting_source{"lifting.osd", "program lift(int picks) { yield; }"};
 constexpr auto unknown_reach = script_reach(reachable<Weft>("weft"), reachable<Lamps>("lanterns", false));
 constexpr const ScriptUnit& with_unknown_peer = compiled_script<lifting_source, unknown_reach>;
@@ -29,12 +29,12 @@ constexpr ScriptUnit empty_script{.name = "empty.osd"};
 
 constexpr Fault script_faults[] = {
     {"script_peer_unknown", [](Table& m) { m.behaviours[0] = behaviour("weft", with_unknown_peer, {}); },
-     R"(loom: behaviour of "weft": script "lifting.osd": among its peers, there is no component "lanterns"; add it to components(...))"},
+     R"(loom: behaviour of "weft": script "lifting.osd": its reach: there is no component "lanterns"; add it to components(...))"},
     {"script_peer_of_another_type",
      [](Table& m) { m.behaviours[0] = behaviour("weft", with_other_peer, {}); },
      R"(loom: behaviour of "weft": script "lifting.osd" was compiled for small::Encoder but "lamps" is a small::Lamps; give its reach that type)"},
     {"script_peer_elsewhere", [](Table& m) { m.behaviours[0] = behaviour("weft", with_near_peer, {}); },
-     R"(loom: behaviour of "weft": script "lifting.osd" touches "shaft" as one of its own activity, but activity "motion" runs it; compile it with a reach that says so, or run both in one activity)"},
+     R"(loom: behaviour of "weft": script "lifting.osd" uses "shaft" as a component of its own activity, but activity "motion" runs it; compile it with a reach that says so, or run both in one activity)"},
     {"script_with_nothing_to_run", [](Table& m) { m.behaviours[0] = behaviour("weft", empty_script, {}); },
      R"(loom: behaviour of "weft": script "empty.osd" has nothing to run; add a RootStateMachine or a program)"},
 };
@@ -55,7 +55,7 @@ constexpr Fault control_faults[] = {
     {"control_of_nothing", [](Table& m) { m.put(component<ComponentLife>("lighting")); },
      R"(loom: component "lighting" controls nothing; add controls("...") with a component)"},
     {"control_by_another", [](Table& m) { m.put(component<Weft>("weft", controls("lamps"))); },
-     R"(loom: component "weft" is nothing that controls; remove controls("lamps"), or make it a BehaviourTask or a ComponentLife)"},
+     R"(loom: component "weft" cannot control another component; remove controls("lamps"), or make it a BehaviourTask or a ComponentLife)"},
     {"control_of_an_unknown_component",
      [](Table& m) { m.put(component<ComponentLife>("lighting", controls("lamp"))); },
      R"(loom: component "lighting" controls "lamp": there is no component "lamp"; did you mean "lamps"?)"},
@@ -63,7 +63,7 @@ constexpr Fault control_faults[] = {
      R"(loom: component "lighting" controls itself; name another component)"},
     {"life_that_may_sleep",
      [](Table& m) { m.put(activity("light", on_work(), not_real_time, runs("lighting"))); },
-     R"(loom: component "lighting" looks once in each cycle for the answer, but activity "light" may sleep for ever; run it in one that is every(...))"},
+     R"(loom: component "lighting" polls for the answer once in each cycle, but activity "light" may never be woken; run it in a periodic activity, every(...))"},
     {"task_of_what_has_no_behaviour",
      [](Table& m) { m.put(component<BehaviourTask<>>("feeding", controls("lamps"))); },
      R"(loom: component "feeding" controls "lamps", which no behaviour drives; add behaviour("lamps", ...) to behaviours(...))"},

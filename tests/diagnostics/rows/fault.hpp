@@ -1,6 +1,5 @@
-// A golden row: a fault, planted into a machine that is good, and the sentence that refuses it. The check
-// runs on the rows as in the compiler; that its sentence reaches a compiler's message is what
-// tests/diagnostics/cases show.
+// A golden row: a fault, planted into a good machine, and the sentence that refuses it. The check runs on the
+// rows as in the compiler; tests/diagnostics/cases show that its sentence reaches a compiler's message.
 #pragma once
 
 #include "kernel/control/control.hpp"
@@ -17,7 +16,7 @@
 
 namespace tappet::diagnostics {
 
-/// The section control(...) with rows that a fault may change. It is checked, and never comes to life.
+/// The section control(...) with rows that a fault may change. It is checked but never started.
 struct ControlRows final : ExtraSection {
     std::vector<LevelRow> levels;
     std::vector<RoleRow> processes;
@@ -39,7 +38,7 @@ struct ControlRows final : ExtraSection {
     }
 };
 
-/// The section reporting(...), likewise.
+/// The section reporting(...), also checked but never started.
 struct ReportRows final : ExtraSection {
     std::vector<ReportRow> rows;
 
@@ -55,64 +54,65 @@ struct ReportRows final : ExtraSection {
     }
 };
 
-/// Those of a table that are there.
+/// The sections that a table has.
 struct Sections final : ExtraList {
     std::vector<const ExtraSection*> all;
     [[nodiscard]] std::size_t size() const noexcept override { return all.size(); }
     [[nodiscard]] const ExtraSection* at(std::size_t number) const noexcept override { return all[number]; }
 };
 
-/// The rows of a machine, its board and the binding, as a fault may change them.
+/// The rows of a machine, its board and its binding; a fault may change them.
 struct Table : Copy {
     Board board;
     Binding binding;
     std::vector<StateRow> states;           ///< of the first behaviour
-    std::vector<TransitionRow> transitions; ///< likewise
+    std::vector<TransitionRow> transitions; ///< of the first behaviour
     bool is_controlled = false;             ///< the section is there
     ControlRows control;
-    std::vector<ReportRows> reports; ///< as often as the section stands there
+    std::vector<ReportRows> reports; ///< one for each such section
 
     Table(const MachineView& machine, const Board& on, const Binding& bound);
-    /// What the check says; empty: it is accepted.
+    /// The sentence with which the check refuses it; empty: it is accepted.
     [[nodiscard]] std::string refusal() const;
 
     void add(const ComponentRow& row);
-    /// The last to run in that activity.
+    /// Adds a component that runs last in that activity.
     void add(const ComponentRow& row, std::string_view activity);
     void add(const ActivityRow& row);
     void add(const ConnectionRow& row);
     void add(const ReactionRow& row);
     void add(const BehaviourRow& row);
 
-    /// In place of the row of that name.
+    /// Replaces the row of that name.
     void put(const ComponentRow& row);
     void put(const ActivityRow& row);
-    /// In place of the row into that input.
+    /// Replaces the row into that input.
     void put(const ConnectionRow& row);
-    /// In place of the row of that event, or of that call.
+    /// Replaces the row of that event, or of that call.
     void put(const ReactionRow& row);
 };
 
 /// The machine of small_machine.hpp.
 Table small_loom();
-/// The one of peers.hpp: a press, and two desks that call it.
+/// The machine of peers.hpp: a press, and two desks that call it.
 Table mill();
 
-/// As a row of a test spells it: its name, what plants it, and what the check then says.
+/// A fault as the row of a test spells it: its name, the function that plants it, and the sentence of the
+/// check.
 struct Fault {
     std::string_view name;
     void (*plant)(Table&);
     std::string_view sentence;
 };
 
-/// One row of a test: the fault and the machine that is good without it.
+/// One row of a test: the fault, and the machine that is good without it.
 struct Refused {
     Fault fault;
     Table (*good)();
 };
 std::ostream& operator<<(std::ostream& out, const Refused& row);
 
-/// refusals_test.cpp says what holds for each row.
+/// refusals_test.cpp states the property of each row.
 class Refusal : public testing::TestWithParam<Refused> {};
 
 inline auto planted_into(Table (*good)(), std::span<const Fault> faults) {

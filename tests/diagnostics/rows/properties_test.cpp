@@ -1,11 +1,11 @@
-// Properties: what a row sets, what an interface declares, and the files they are kept in.
+// Properties: their values in rows, their declarations in interfaces, and their files.
 #include "tests/diagnostics/rows/fault.hpp"
 #include "tests/diagnostics/small_machine.hpp"
 
 using namespace small;
 using namespace tappet::diagnostics;
 
-/// In no namespace: a sentence says its name.
+/// Outside of any namespace: a sentence contains its name.
 struct Named : Tension {
     static constexpr auto interface() {
         return facets(input<&Tension::speed>("speed", "rpm", "of the shaft"),
@@ -92,7 +92,7 @@ constexpr Fault setting_faults[] = {
      R"(loom: component "shaft" sets property "filter" to 2, but it is a time; write it with its unit, like 2ms)"},
     {"property_enumerator",
      [](Table& m) { m.put(component<Gated>("tension", set("gate", static_cast<Gate>(7)))); },
-     R"(loom: component "tension" sets property "gate" to Gate 7, which is none of the 2 values of Gate that have a name; set one of them)"},
+     R"(loom: component "tension" sets property "gate" to Gate 7, which is not one of the 2 named values of Gate; set one of them)"},
     {"property_enumeration", [](Table& m) { m.put(component<Shaft>("shaft", set("turn", 1))); },
      R"(loom: component "shaft" sets property "turn" to 1, but it is an enumeration; write a value of small::Turn)"},
     {"property_range", [](Table& m) { m.put(component<Shaft>("shaft", set("gain", 12.5))); },
@@ -101,16 +101,16 @@ constexpr Fault setting_faults[] = {
      [](Table& m) {
          m.put(component<Open>("tension", set("wanted", std::numeric_limits<double>::infinity())));
      },
-     R"(loom: component "tension" sets property "wanted" to infinity, which is no number; set a finite one)"},
+     R"(loom: component "tension" sets property "wanted" to infinity, which is not a finite number; set a finite one)"},
     {"property_not_a_number",
      [](Table& m) {
          m.put(component<Open>("tension", set("wanted", std::numeric_limits<double>::quiet_NaN())));
      },
-     R"(loom: component "tension" sets property "wanted" to NaN, which is no number; set a finite one)"},
+     R"(loom: component "tension" sets property "wanted" to NaN, which is not a finite number; set a finite one)"},
     {"property_float_without_end", [](Table& m) { m.put(component<Open>("tension", set("share", 1e300))); },
      R"(loom: component "tension" sets property "share" to more than 1e15, which is more than float holds; set a value it can hold)"},
     {"property_list_no_number", [](Table& m) { m.put(component<Open>("tension", set<endless>("few"))); },
-     R"(loom: component "tension" sets property "few" to infinity, which is no number; set a finite one)"},
+     R"(loom: component "tension" sets property "few" to infinity, which is not a finite number; set a finite one)"},
     {"property_too_large", [](Table& m) { m.put(component<Shaft>("shaft", set("teeth", 128))); },
      R"(loom: component "shaft" sets property "teeth" to 128, which is more than signed char holds; set a value it can hold)"},
     {"property_text_too_long", [](Table& m) { m.put(component<Shaft>("shaft", set("label", "main shaft"))); },
@@ -119,9 +119,9 @@ constexpr Fault setting_faults[] = {
      R"(loom: component "shaft" sets property "offsets" to -2, which is under its least value -1; set a value in its range, or widen range(...) in the interface of small::Shaft)"},
     {"property_list_too_long",
      [](Table& m) { m.put(component<Shaft>("shaft", set<four_halves>("offsets"))); },
-     R"(loom: component "shaft" sets property "offsets" to a list of 4, but it has at most 3; give it so many)"},
+     R"(loom: component "shaft" sets property "offsets" to a list of 4, but it has at most 3; correct the number of elements)"},
     {"property_bag", [](Table& m) { m.put(component<Shaft>("shaft", set("angles.window", 2.0))); },
-     R"(loom: component "shaft" sets "angles.window", which is a bag; set the properties in it, each by its whole name)"},
+     R"(loom: component "shaft" sets "angles.window", which is a bag; set its properties, each by its full name)"},
     {"property_in_bag_unknown",
      [](Table& m) { m.put(component<Shaft>("shaft", set("angles.window.hihg", 2.0))); },
      R"(loom: component "shaft" has no property "angles.window.hihg"; did you mean "angles.window.high"?)"},
@@ -137,9 +137,9 @@ constexpr Fault declaration_faults[] = {
     {"properties_too_many", [](Table& m) { m.put(component<Noted>("tension")); },
      R"(loom: component "tension" has 1 properties of 2064 bytes, but a transaction holds 64 of 2048; divide the component)"},
     {"property_under_two_names", [](Table& m) { m.put(component<Twice>("tension")); },
-     R"(loom: component "tension": its properties "wanted" and "wish" are one member; remove one of them from the interface of Twice)"},
+     R"(loom: component "tension": its properties "wanted" and "wish" use the same member; remove one of them from the interface of Twice)"},
     {"setter_of_no_property", [](Table& m) { m.put(component<Peerless>("tension")); },
-     R"(loom: component "tension": its command "set_wanted" sets or gets a member that is no property of it; add property<..>(..) to the interface of Peerless)"},
+     R"(loom: component "tension": its command "set_wanted" sets or gets a member that is not one of its properties; add property<..>(..) to the interface of Peerless)"},
     {"bag_of_an_operation", [](Table& m) { m.put(component<Deeds>("tension")); },
      R"(loom: component "tension": its bag "deeds" holds "deeds.stop", which is an operation; a bag holds properties and bags)"},
 };
@@ -151,7 +151,7 @@ constexpr Fault file_faults[] = {
      R"(loom: component "weft" has no properties but a properties file "weft.cpf"; remove properties_file(...))"},
     {"properties_file_path",
      [](Table& m) { m.put(component<Shaft>("shaft", properties_file("/etc/shaft.cpf"))); },
-     R"(loom: component "shaft": its properties file "/etc/shaft.cpf" is not the plain name of a file; the board's properties_directory says where it lies)"},
+     R"(loom: component "shaft": its properties file "/etc/shaft.cpf" is not a plain file name; remove the directory, which is the board's properties_directory)"},
     {"properties_file_shared",
      [](Table& m) {
          m.put(component<Shaft>("shaft", properties_file("shaft.cpf")));

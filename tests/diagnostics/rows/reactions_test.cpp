@@ -1,4 +1,4 @@
-// Reactions: what runs upon an event, and what a call of a component reaches.
+// Reactions: the operations that run upon an event, and the targets of a component's calls.
 #include "tests/diagnostics/peers.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
 
@@ -39,7 +39,7 @@ constexpr Fault end_faults[] = {
      R"(loom: component "shaft": no reaction names its required operation "on_index"; add when("...", tell("shaft.on_index")))"},
     {"reaction_twice",
      [](Table& m) { m.reactions = {m.reactions[0], m.reactions[3], m.reactions[4], m.reactions[3]}; },
-     R"(loom: reaction "weft.broken" -> "shaft.clear" stands in reactions(...) twice (rows 2 and 4); remove one)"},
+     R"(loom: reaction "weft.broken" -> "shaft.clear" appears twice in reactions(...), rows 2 and 4; remove one)"},
     {"reaction_component_unknown", [](Table& m) { m.put(when("shaft.window", call("tenison.pre_tension"))); },
      R"(loom: reaction "shaft.window" -> "tenison.pre_tension": there is no component "tenison"; did you mean "tension"?)"},
     {"reaction_event_unknown", [](Table& m) { m.add(when("shaft.windwo", call("tension.pre_tension"))); },
@@ -55,16 +55,16 @@ constexpr Fault end_faults[] = {
     {"reaction_signature_empty", [](Table& m) { m.add(when("weft.broken", tell("shaft.on_index"))); },
      R"(loom: reaction "weft.broken" -> "shaft.on_index": the event carries () but the operation takes (double); give both the same arguments)"},
     {"reaction_queue_of_nothing", [](Table& m) { m.put(when("weft.broken", tell("shaft.clear", queue(0)))); },
-     R"(loom: reaction "weft.broken" -> "shaft.clear": no emission may wait; write queue(n) with n of at least 1)"},
+     R"(loom: reaction "weft.broken" -> "shaft.clear": queue(0) has no room for an emission; write queue(n) with n of at least 1)"},
     {"reaction_queue_of_all",
      [](Table& m) { m.put(when("weft.broken", tell("shaft.clear", queue(0xffff'ffff)))); },
-     R"(loom: reaction "weft.broken" -> "shaft.clear": 4294967295 emissions may wait, more than the 65536 of a row; write a smaller queue(n))"},
+     R"(loom: reaction "weft.broken" -> "shaft.clear": queue(4294967295) is larger than the limit of 65536; write a smaller queue(n))"},
     {"event_unheard",
      [](Table& m) {
          m.add(component<Watch>("watch"));
          m.add(activity("all", every(1ms), budget(1us), runs("watch")));
      },
-     R"(loom: component "watch": its event "broken" is heard by 0 of at least 1 reactions; add when("watch.broken", ...) to reactions(...))"},
+     R"(loom: component "watch": its event "broken" has 0 reactions but needs at least 1; add when("watch.broken", ...) to reactions(...))"},
 };
 INSTANTIATE_TEST_SUITE_P(reactions, Refusal, planted_into(small_loom, end_faults), name_of);
 
@@ -136,7 +136,7 @@ constexpr Fault handle_faults[] = {
          m.put(component<HeardPanel>("panel"));
          m.add(when("panel.broken", tell("panel.show"), handled_by("panel.indexes")));
      },
-     R"(loom: component "panel": its event "broken" is heard by 0 of at least 1 reactions; add when("panel.broken", ...) to reactions(...))"},
+     R"(loom: component "panel": its event "broken" has 0 reactions but needs at least 1; add when("panel.broken", ...) to reactions(...))"},
     {"reaction_handle_unknown",
      [](Table& m) { m.add(when("encoder.index", tell("panel.show"), handled_by("panel.index"))); },
      R"(loom: reaction "encoder.index" -> "panel.show": component "panel" has no handle of a reaction "index"; did you mean "indexes"?)"},
@@ -148,7 +148,7 @@ constexpr Fault handle_faults[] = {
          m.add(when("encoder.index", tell("panel.show"), handled_by("panel.indexes")));
          m.add(when("encoder.index", tell("panel.next_index"), handled_by("panel.indexes")));
      },
-     R"(loom: reaction "encoder.index" -> "panel.next_index": its handle "panel.indexes" is the one of reaction "encoder.index" -> "panel.show" too; give each row a handle of its own)"},
+     R"(loom: reaction "encoder.index" -> "panel.next_index": its handle "panel.indexes" is already used by reaction "encoder.index" -> "panel.show"; give each row its own handle)"},
     {"reaction_disconnected_for_ever",
      [](Table& m) { m.add(when("encoder.index", tell("panel.show"), disconnected)); },
      R"(loom: reaction "encoder.index" -> "panel.show" starts disconnected and nothing can connect it; add handled_by("component.handle"))"},
@@ -190,18 +190,18 @@ struct StrokeDial {
 
 constexpr Fault use_faults[] = {
     {"use_missing", [](Table& m) { m.reactions = {spare_close, spare_force, desk_force}; },
-     R"(mill: component "desk": no row says what its command call "close" reaches; add uses("desk.close", "...") to reactions(...), or declare it optional)"},
+     R"(mill: component "desk": nothing is connected to its command call "close"; add uses("desk.close", "...") to reactions(...), or declare it optional)"},
     {"use_of_a_method_missing", [](Table& m) { m.reactions = {spare_close, desk_close, desk_force}; },
-     R"(mill: component "spare": no row says what its method call "force" reaches; add uses("spare.force", "...") to reactions(...), or declare it optional)"},
+     R"(mill: component "spare": nothing is connected to its method call "force"; add uses("spare.force", "...") to reactions(...), or declare it optional)"},
     {"use_twice", [](Table& m) { m.add(desk_force); },
-     R"(mill: use "desk.force" -> "press.force" stands in reactions(...) twice (rows 4 and 5); remove one)"},
+     R"(mill: use "desk.force" -> "press.force" appears twice in reactions(...), rows 4 and 5; remove one)"},
     {"use_of_two_goals",
      [](Table& m) {
          m.components = {component<Press>("left"), component<Press>("right"), component<Gauge>("desk")};
          m.activities = {activity("motion", every(1ms), budget(100us), runs("left", "right", "desk"))};
          m.reactions = {uses("desk.force", "left.force"), uses("desk.force", "right.force")};
      },
-     R"(mill: use "desk.force" -> "right.force": row 1 gives "desk.force" another goal already, "left.force"; a call has one: remove a row, or give "desk" a second call)"},
+     R"(mill: use "desk.force" -> "right.force": row 1 already connects "desk.force" to "left.force"; a call has one target: remove a row, or give "desk" a second call)"},
     {"use_component_unknown", [](Table& m) { m.put(uses("desk.force", "pres.force")); },
      R"(mill: use "desk.force" -> "pres.force": there is no component "pres"; did you mean "press"?)"},
     {"use_call_unknown", [](Table& m) { m.add(uses("desk.closs", "press.close")); },
@@ -239,11 +239,11 @@ constexpr Fault use_faults[] = {
      },
      R"(mill: component "archive": its command "store" may block, but its activity "archive" is real-time; run it in an activity that is not_real_time)"},
     {"use_sent_by_its_own", [](Table& m) { m.put(uses("desk.close", "press.close", sent_by("desk"))); },
-     R"(mill: use "desk.close" -> "press.close": sent_by(...) names the component whose command it is; remove it)"},
+     R"(mill: use "desk.close" -> "press.close": sent_by(...) names the component that has the command; remove it)"},
     {"use_sent_by_unknown", [](Table& m) { m.put(uses("desk.close", "press.close", sent_by("spar"))); },
      R"(mill: use "desk.close" -> "press.close": in sent_by(...), there is no component "spar"; did you mean "spare"?)"},
     {"use_sent_by_of_a_method", [](Table& m) { m.put(uses("desk.force", "press.force", sent_by("spare"))); },
-     R"(mill: use "desk.force" -> "press.force": sent_by("spare") is of commands; remove it)"},
+     R"(mill: use "desk.force" -> "press.force": sent_by("spare") is for commands only; remove it)"},
 };
 INSTANTIATE_TEST_SUITE_P(uses, Refusal, planted_into(mill, use_faults), name_of);
 

@@ -1,4 +1,4 @@
-// What holds for every golden row: the machine is good, and with the fault in it the check says the sentence.
+// Every golden row: the machine is good, and with the fault in it the check refuses with that sentence.
 #include "tests/diagnostics/peers.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
 

@@ -1,4 +1,5 @@
-// Scripts: what their compiler says. It is one piece of code, compiled with the firmware or on the target.
+// Scripts: the sentences of their compiler. It is one piece of code, which runs while the firmware is
+// compiled or on the target.
 #include "kernel/script/load.hpp"
 #include "tests/diagnostics/script_case.hpp"
 

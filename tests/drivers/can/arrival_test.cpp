@@ -17,13 +17,13 @@ struct ArrivalsTest : testing::Test {
     Time read(Time stamp, Duration now) { return arrivals.of(stamp, wall(now), at(now)); }
 };
 
-TEST_F(ArrivalsTest, are_when_the_kernel_stamped_them_however_late_they_are_read) {
+TEST_F(ArrivalsTest, use_the_time_stamp_of_the_kernel_however_late_they_are_read) {
     EXPECT_EQ(read(wall(10ms), 10ms + 40us), at(10ms));
     EXPECT_EQ(read(wall(20ms), 25ms), at(20ms));
     EXPECT_EQ(read(wall(30ms), 5s), at(30ms)) << "an old frame is not made young";
 }
 
-TEST_F(ArrivalsTest, do_not_move_with_a_clock_that_is_steered) {
+TEST_F(ArrivalsTest, do_not_move_with_a_slewed_clock) {
     EXPECT_EQ(read(wall(10ms), 11ms), at(10ms));
     for (int i = 2; i < 100; ++i) { // 500 us a second, as an NTP daemon steers at most
         ahead += 500us;
@@ -31,7 +31,7 @@ TEST_F(ArrivalsTest, do_not_move_with_a_clock_that_is_steered) {
     }
 }
 
-TEST_F(ArrivalsTest, are_now_when_the_clock_was_set_between_stamp_and_reading) {
+TEST_F(ArrivalsTest, use_the_current_time_when_the_clock_was_set_before_reading) {
     for (const Duration step :
          {Duration{400ms}, Duration{2ms}, Duration{-2ms}, Duration{3600s}, Duration{-3600s}}) {
         arrivals.begin(wall(0s), at(0s));
@@ -43,7 +43,7 @@ TEST_F(ArrivalsTest, are_now_when_the_clock_was_set_between_stamp_and_reading) {
     }
 }
 
-TEST_F(ArrivalsTest, keep_their_order_when_several_waited_while_the_clock_was_set) {
+TEST_F(ArrivalsTest, keep_their_order_though_the_clock_was_set_meanwhile) {
     for (const Duration step : {Duration{3600s}, Duration{-3600s}}) {
         arrivals.begin(wall(0s), at(0s));
         const Time first = wall(10ms);
@@ -56,7 +56,7 @@ TEST_F(ArrivalsTest, keep_their_order_when_several_waited_while_the_clock_was_se
     }
 }
 
-TEST_F(ArrivalsTest, are_never_after_now) { EXPECT_EQ(read(wall(12ms), 11ms), at(11ms)); }
+TEST_F(ArrivalsTest, are_never_later_than_now) { EXPECT_EQ(read(wall(12ms), 11ms), at(11ms)); }
 
 } // namespace
 } // namespace tappet::can

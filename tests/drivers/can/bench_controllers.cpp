@@ -71,7 +71,7 @@ struct Controllers : testing::Test {
         EXPECT_FALSE(opened);
         return opened ? "" : std::string{opened.error().view()};
     }
-    /// Without its stamp, and without what a receiver learns of it.
+    /// Omits the stamp and what only a receiver learns of a frame.
     static void expect_same(const Frame& got, const Frame& sent) {
         EXPECT_EQ(got.id, sent.id);
         EXPECT_EQ(got.extended, sent.extended);
@@ -90,7 +90,7 @@ struct Sja1000 : Controllers {
     Sja1000() : Controllers{"kvaser_pci"} {}
 };
 
-TEST_F(Sja1000, runs_at_the_bit_rate_that_a_boxs_init_set) {
+TEST_F(Sja1000, runs_at_the_bit_rate_set_by_the_box) {
     open();
     EXPECT_EQ(machine.found().view(),
               "CAN interface \"" + at_machine + "\" runs at 500000 bit/s, error active");
@@ -103,7 +103,7 @@ TEST_F(Sja1000, runs_at_the_bit_rate_that_a_boxs_init_set) {
     open();
 }
 
-TEST_F(Sja1000, takes_no_bit_rate_that_its_clock_cannot_make_and_none_for_can_fd) {
+TEST_F(Sja1000, refuses_bit_rates_that_its_clock_cannot_make_and_can_fd) {
     EXPECT_TRUE(init::set_link(at_machine, false));
     const auto slow = init::set_bit_rates(at_machine, 7, 0);
     ASSERT_FALSE(slow);
@@ -143,7 +143,7 @@ TEST_F(Sja1000, carries_frames_both_ways_and_confirms_them) {
     EXPECT_EQ(machine.counters().impostors + node.counters().impostors, 0u);
 }
 
-TEST_F(Sja1000, is_restarted_by_down_and_up_with_its_bit_rate) {
+TEST_F(Sja1000, restarts_by_down_and_up_with_its_bit_rate) {
     open();
     EXPECT_TRUE(init::set_link(at_machine, false));
     heard_by(machine, 5ms);
@@ -161,7 +161,7 @@ TEST_F(Sja1000, is_restarted_by_down_and_up_with_its_bit_rate) {
     EXPECT_EQ(link->bit_rate, 500'000u);
 }
 
-/// For as long as it lives, what interrupts of an interface bring waits for everybody else.
+/// While it lives, interrupts of an interface delay everything else.
 class LateInterrupts {
 public:
     explicit LateInterrupts(const std::string& interface) {
@@ -190,7 +190,7 @@ private:
     pid_t thread_ = 0;
 };
 
-TEST_F(Sja1000, tells_by_an_error_frame_that_frames_were_lost_in_the_controller) {
+TEST_F(Sja1000, reports_frames_lost_in_the_controller_by_an_error_frame) {
     open();
     {
         const LateInterrupts late{at_machine};
@@ -238,7 +238,7 @@ TEST_F(Sja1000, is_refused_for_a_map_with_can_fd_frames) {
 struct CtuCanFd : Controllers {
     CtuCanFd() : Controllers{"ctucanfd", 2'000'000} {}
     using Controllers::open;
-    /// Linux's driver calls it active when the controller tells so, which the emulated one never does.
+    /// Linux's driver reports "active" when the controller says so, which the emulated one never does.
     std::expected<void, Sentence> open(SocketCan& end, const Settings& its) override {
         auto link = find_link(its.interface);
         if (!link) return std::unexpected{link.error()};
@@ -247,7 +247,7 @@ struct CtuCanFd : Controllers {
     }
 };
 
-TEST_F(CtuCanFd, runs_at_both_bit_rates_that_a_boxs_init_set) {
+TEST_F(CtuCanFd, runs_at_both_bit_rates_set_by_the_box) {
     open();
     EXPECT_EQ(machine.found().view(), "CAN interface \"" + at_machine +
                                           "\" runs at 500000 bit/s, CAN FD at 2000000 bit/s, error active");
@@ -287,7 +287,7 @@ TEST_F(CtuCanFd, carries_frames_of_every_format_both_ways_and_confirms_them) {
     EXPECT_EQ(node.counters().sent, 1u);
 }
 
-TEST_F(CtuCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_more) {
+TEST_F(CtuCanFd, confirms_its_safe_frames_after_the_end_of_the_machine) {
     open();
     const std::array safe{frame(machine_sends[0], 64, Format::flexible_faster), frame(machine_sends[1])};
     SafeSender sender;
@@ -298,8 +298,8 @@ TEST_F(CtuCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_m
     ASSERT_EQ(got.size(), 2u);
     expect_same(got[0], safe[0]);
     expect_same(got[1], safe[1]);
-    // The emulated controller's driver may learn of the second one with the next frame only: that is sent
-    // anew.
+    // The emulated controller's driver may notice the second loss only with the next frame; that one is sent
+    // again.
     for (int i = 0; i < 10 && sender.left() != 0; ++i) {
         sender.send(SafeSender::Purpose::earnest);
         std::this_thread::sleep_for(SafeSender::repeat_after);

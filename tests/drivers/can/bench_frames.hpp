@@ -27,7 +27,7 @@ inline Frame numbered(Identifier id, Format format, std::uint8_t length = 64) {
     return f;
 }
 
-/// Reads and serves for a while; the frames that came.
+/// Reads and serves for a while; returns the frames that came.
 inline std::vector<Frame> heard_by(SocketCan& end, Duration how_long) {
     std::vector<Frame> all;
     for (const Time until = now() + how_long; now() < until;) {

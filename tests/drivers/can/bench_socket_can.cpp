@@ -14,7 +14,7 @@
 namespace tappet::can {
 namespace {
 
-TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
+TEST_F(RealCan, receives_only_filtered_frames_with_the_time_stamp_of_the_kernel) {
     open();
     const Time before = now();
     for (const char* one :
@@ -35,7 +35,7 @@ TEST_F(RealCan, receives_exactly_what_the_filter_names_with_the_kernels_time) {
     EXPECT_LT(got[0].stamp, got[1].stamp);
 }
 
-TEST_F(RealCan, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
+TEST_F(RealCan, sends_frames_that_a_foreign_listener_sees_and_confirms_them) {
     open();
     const Dump dump;
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
@@ -65,7 +65,7 @@ TEST_F(RealCan, sends_a_burst_in_the_order_of_identifiers_with_few_frames_in_fli
     }
 }
 
-TEST_F(RealCan, says_how_many_frames_an_overflow_cost) {
+TEST_F(RealCan, reports_how_many_frames_an_overflow_lost) {
     settings.receive_buffer_bytes = 8192;
     open();
     ASSERT_EQ(run_foreign("cangen can0 -g 0 -n 500 -I 123 -L 8"), 0);
@@ -77,7 +77,7 @@ TEST_F(RealCan, says_how_many_frames_an_overflow_cost) {
     EXPECT_EQ(got + can.counters().lost_in_kernel, 501u);
 }
 
-TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_clean) {
+TEST_F(RealCan, treats_bus_off_as_a_fault_until_an_explicit_restart) {
     settings.restarts_allowed = 1;
     open();
     const Dump dump;
@@ -109,7 +109,7 @@ TEST_F(RealCan, takes_bus_off_for_a_fault_and_comes_back_only_deliberately_and_c
         EXPECT_EQ(dump.output().find(never_sent), std::string::npos) << never_sent;
 }
 
-TEST_F(RealCan, notices_an_interface_that_goes_down_and_costs_nothing_meanwhile) {
+TEST_F(RealCan, detects_an_interface_that_goes_down_and_idles_meanwhile) {
     open();
     set_up(false);
     run_for(10ms);
@@ -133,7 +133,7 @@ TEST_F(RealCan, notices_an_interface_that_goes_down_and_costs_nothing_meanwhile)
     EXPECT_EQ(can.counters().sent, 1u);
 }
 
-TEST_F(RealCan, reports_passive_and_active_and_keeps_sending) {
+TEST_F(RealCan, reports_error_passive_and_active_and_keeps_sending) {
     open();
     ASSERT_EQ(run_foreign("cansend can0 20000004#0020000000008000"), 0); // transmit error passive
     run_for(10ms);
@@ -152,7 +152,7 @@ TEST_F(RealCan, is_not_woken_by_a_storm_of_bus_errors) {
     EXPECT_EQ(can.counters().error_frames, 0u);
 }
 
-TEST_F(RealCan, takes_its_own_frame_for_a_confirmation_though_it_would_receive_that_identifier_too) {
+TEST_F(RealCan, accepts_its_own_frame_as_confirmation_though_it_receives_that_identifier) {
     static constexpr std::array both{standard(0x123), standard(0x201)};
     settings.receive = both;
     open();
@@ -184,7 +184,7 @@ TEST_F(RealCan, allocates_nothing_while_it_runs) {
     EXPECT_EQ(got, 100u);
 }
 
-TEST_F(RealCan, hears_no_can_fd_frame_unless_its_map_has_one) {
+TEST_F(RealCan, receives_no_can_fd_frame_without_can_fd_in_its_map) {
     open();
     ASSERT_EQ(run_foreign("cansend can0 123##1DEADBEEF"), 0);
     ASSERT_EQ(run_foreign("cansend can0 123#DEADBEEF"), 0);
@@ -201,7 +201,8 @@ struct RealCanFd : RealCan {
         settings.takes_fd = true;
         settings.data_bit_rate = 2'000'000;
     }
-    /// The flags that it shows of that frame; newer kernels add one that says CAN FD (4). -1: it shows none.
+    /// Returns the flags shown for that frame; newer kernels add one for CAN FD (4). -1: the frame is not
+    /// shown.
     static int flags_of(const Foreign& dump, const Frame& f) {
         char head[16];
         std::snprintf(head, sizeof head, " %X##", f.id);
@@ -215,7 +216,7 @@ struct RealCanFd : RealCan {
     static std::string digits(const Frame& f) { return hex_of(f, "0123456789ABCDEF"); }
 };
 
-TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format) {
+TEST_F(RealCanFd, receives_foreign_frames_of_every_length_and_format) {
     open();
     const auto sent = [](Format format, std::uint8_t length) {
         return numbered(standard(0x123), format, length);
@@ -240,7 +241,7 @@ TEST_F(RealCanFd, receives_what_a_foreign_node_sends_of_every_length_and_format)
     EXPECT_TRUE(passive[0].error_state_indicator);
 }
 
-TEST_F(RealCanFd, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
+TEST_F(RealCanFd, sends_frames_that_a_foreign_listener_sees_and_confirms_them) {
     open();
     const Dump dump;
     const Frame fast = numbered(standard(0x201), Format::flexible_faster),
@@ -256,7 +257,7 @@ TEST_F(RealCanFd, sends_what_a_foreign_listener_sees_and_has_it_confirmed) {
     EXPECT_EQ(can.send(numbered(standard(0x201), Format::flexible, 13)), Send::refused_invalid);
 }
 
-TEST_F(RealCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_more) {
+TEST_F(RealCanFd, confirms_its_safe_frames_after_the_end_of_the_machine) {
     const std::array safe{numbered(standard(0x201), Format::flexible_faster), frame(0x202)};
     SafeSender sender;
     const auto opened = sender.open("can0", safe);
@@ -274,7 +275,7 @@ TEST_F(RealCanFd, has_its_safe_frames_sent_and_confirmed_when_the_machine_is_no_
     }
 }
 
-TEST_F(RealCanFd, refuses_an_interface_for_classical_frames_and_says_the_cure) {
+TEST_F(RealCanFd, refuses_a_classical_interface_and_says_the_cure) {
     const auto set_mtu = [](int mtu) {
         const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
         ifreq request{};

@@ -1,4 +1,5 @@
-// Whom the real SocketCAN device wakes on the bench, and what it knows of what it sent when it looks later.
+// When the real SocketCAN device wakes its waiter on the bench, and what it knows of its frames when it is
+// served late.
 #include "kernel/base/random.hpp"
 #include "tests/drivers/can/bench_bus.hpp"
 
@@ -7,7 +8,7 @@
 namespace tappet::can {
 namespace {
 
-struct WokenByCan : RealCan {
+struct WakingCan : RealCan {
     os::Waiter waiter;
     void open() {
         RealCan::open();
@@ -17,7 +18,7 @@ struct WokenByCan : RealCan {
     bool is_woken_within(Duration time) { return waiter.wait(now() + time); }
 };
 
-TEST_F(WokenByCan, by_no_confirmation_that_nobody_waits_for_and_looks_for_it_before_it_is_late) {
+TEST_F(WakingCan, checks_an_unawaited_confirmation_in_time_without_waking) {
     open();
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
     can.service(now());
@@ -33,7 +34,7 @@ TEST_F(WokenByCan, by_no_confirmation_that_nobody_waits_for_and_looks_for_it_bef
     EXPECT_LT(can.longest_response(standard(0x201)), 10ms) << "by the kernel's time, whenever it is read";
 }
 
-TEST_F(WokenByCan, by_each_confirmation_if_somebody_asked) {
+TEST_F(WakingCan, wakes_for_each_confirmation_on_request) {
     can.wake_when_confirmed();
     open();
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
@@ -44,7 +45,7 @@ TEST_F(WokenByCan, by_each_confirmation_if_somebody_asked) {
     EXPECT_FALSE(is_woken_within(10ms));
 }
 
-TEST_F(WokenByCan, by_a_confirmation_that_makes_room) {
+TEST_F(WakingCan, wakes_for_a_confirmation_that_frees_room) {
     settings.in_flight = 1;
     open();
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
@@ -52,7 +53,7 @@ TEST_F(WokenByCan, by_a_confirmation_that_makes_room) {
     EXPECT_TRUE(is_woken_within(1s));
 }
 
-TEST_F(WokenByCan, once_by_an_impostor) {
+TEST_F(WakingCan, wakes_once_for_an_impostor) {
     open();
     ASSERT_EQ(run_foreign("cansend can0 201#11"), 0);
     EXPECT_TRUE(is_woken_within(1s));
@@ -63,12 +64,12 @@ TEST_F(WokenByCan, once_by_an_impostor) {
     EXPECT_FALSE(is_woken_within(10ms));
 }
 
-/// How long after `since` the last frame with this identifier was confirmed.
+/// Time from `since` until the last frame with this identifier was confirmed.
 Duration through_after(SocketCan& can, std::uint32_t id, Time since) {
     return can.last_confirmed(standard(id)).at - since;
 }
 
-TEST_F(WokenByCan, in_the_order_of_times_though_what_was_sent_is_read_later) {
+TEST_F(WakingCan, keeps_confirmation_times_though_they_are_read_later) {
     open();
     const Time before = now();
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
@@ -87,13 +88,13 @@ TEST_F(WokenByCan, in_the_order_of_times_though_what_was_sent_is_read_later) {
     EXPECT_LE(f.stamp, both_are_there) << "not when the later one was through";
 }
 
-TEST_F(WokenByCan, late_and_what_it_sends_then_has_the_time_of_then) {
+TEST_F(WakingCan, stamps_confirmations_correctly_after_a_late_service) {
     open();
     const Dump dump;
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
     can.service(now());
     EXPECT_EQ(can.send(frame(0x202)), Send::queued);
-    std::this_thread::sleep_for(60ms); // it was held up, and the confirmation is overdue
+    std::this_thread::sleep_for(60ms); // it was delayed, and the confirmation is overdue
     EXPECT_EQ(can.send(frame(0x203)), Send::queued);
     can.service(now());
     EXPECT_EQ(can.state(), State::active) << "all was acknowledged at once";
@@ -104,7 +105,7 @@ TEST_F(WokenByCan, late_and_what_it_sends_then_has_the_time_of_then) {
     EXPECT_EQ(dump.output().find("202#ABCD"), std::string::npos) << "60 ms old";
 }
 
-TEST_F(WokenByCan, by_a_period_as_long_as_a_confirmation_may_take) {
+TEST_F(WakingCan, stays_active_with_a_period_equal_to_the_confirmation_time_out) {
     open();
     Random random{1};
     Time due = now() + 50ms;
@@ -122,7 +123,7 @@ TEST_F(WokenByCan, by_a_period_as_long_as_a_confirmation_may_take) {
     }
 }
 
-TEST_F(WokenByCan, by_impostors_until_all_are_read_and_finds_its_confirmation_behind_them) {
+TEST_F(WakingCan, finds_a_confirmation_behind_many_impostors) {
     open();
     ASSERT_EQ(run_foreign("cangen can0 -g 0 -n 100 -I 201 -L 8"), 0);
     EXPECT_EQ(can.send(frame(0x202)), Send::queued);
@@ -137,7 +138,7 @@ TEST_F(WokenByCan, by_impostors_until_all_are_read_and_finds_its_confirmation_be
     EXPECT_EQ(can.counters().impostors, 100u);
 }
 
-TEST_F(WokenByCan, late_twice_by_a_number_of_impostors_that_ends_a_look_on_the_last_one) {
+TEST_F(WakingCan, stays_active_when_impostors_fill_a_whole_service_call) {
     for (const int impostors : {7, 8, 11, 14, 15}) {
         ASSERT_TRUE(can.open(settings));
         ASSERT_EQ(run_foreign("cangen can0 -g 0 -I 201 -L 8 -n " + std::to_string(impostors)), 0);
@@ -152,7 +153,7 @@ TEST_F(WokenByCan, late_twice_by_a_number_of_impostors_that_ends_a_look_on_the_l
     }
 }
 
-TEST_F(WokenByCan, by_nothing_that_arrived_while_it_stood) {
+TEST_F(WakingCan, drops_all_frames_that_arrived_while_stopped) {
     open();
     ASSERT_EQ(run_foreign("cansend can0 123#01"), 0);
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
@@ -164,7 +165,7 @@ TEST_F(WokenByCan, by_nothing_that_arrived_while_it_stood) {
     EXPECT_EQ(can.receive(f).what, Received::none);
 }
 
-TEST_F(WokenByCan, by_confirmations_though_others_sent_our_identifiers_while_it_stood) {
+TEST_F(WakingCan, still_confirms_frames_after_foreign_use_of_its_identifiers) {
     open();
     EXPECT_TRUE(can.finish(now()));
     ASSERT_EQ(run_foreign("cangen can0 -g 0 -I 201 -L 8 -n 4000"), 0);
@@ -179,7 +180,7 @@ TEST_F(WokenByCan, by_confirmations_though_others_sent_our_identifiers_while_it_
     EXPECT_EQ(can.counters().sent, 1u);
 }
 
-TEST_F(WokenByCan, by_nothing_that_came_behind_the_word_that_the_interface_was_down) {
+TEST_F(WakingCan, drops_frames_that_arrived_after_the_interface_was_down) {
     open();
     EXPECT_TRUE(can.finish(now()));
     set_up(false);
@@ -191,7 +192,7 @@ TEST_F(WokenByCan, by_nothing_that_came_behind_the_word_that_the_interface_was_d
     EXPECT_EQ(can.receive(f).what, Received::none);
 }
 
-TEST_F(WokenByCan, by_nothing_of_its_own_while_it_is_faulted) {
+TEST_F(WakingCan, requests_no_service_while_it_is_faulted) {
     open();
     EXPECT_EQ(can.send(frame(0x201)), Send::queued);
     can.service(now());
@@ -205,7 +206,7 @@ TEST_F(WokenByCan, by_nothing_of_its_own_while_it_is_faulted) {
     set_up(true);
 }
 
-TEST_F(WokenByCan, by_what_is_said_of_the_bus_though_the_rest_of_it_is_forgotten) {
+TEST_F(WakingCan, keeps_the_bus_state_when_arrivals_are_dropped) {
     open();
     ASSERT_EQ(run_foreign("cansend can0 123#01"), 0);
     ASSERT_EQ(run_foreign("cansend can0 20000004#0010000000000000"), 0);
@@ -215,7 +216,7 @@ TEST_F(WokenByCan, by_what_is_said_of_the_bus_though_the_rest_of_it_is_forgotten
     EXPECT_EQ(can.state(), State::passive);
 }
 
-TEST_F(WokenByCan, again_until_all_that_arrived_is_taken) {
+TEST_F(WakingCan, wakes_until_every_arrival_is_read) {
     open();
     ASSERT_EQ(run_foreign("cangen can0 -g 0 -n 40 -I 123 -L 8"), 0);
     std::size_t got = 0, wakes = 0;

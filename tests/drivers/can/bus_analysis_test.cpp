@@ -1,5 +1,4 @@
-// Response times of frames against published worked cases and figures, and what the queue of this machine
-// adds.
+// Response times of frames against published examples and figures, and the share of this machine's queue.
 #include "drivers/can/bus_analysis.hpp"
 
 #include "drivers/can/frame_time.hpp"
@@ -40,7 +39,7 @@ static_assert(three.of(2).response == worst(7 * ms / 2),
               "its second instance is the worst, which the analysis of 1994 did not look at");
 static_assert(three.of(1).response.within(13 * ms / 4) && !three.of(2).response.within(13 * ms / 4));
 
-TEST(FrameTime, of_classical_frames) {
+TEST(FrameTime, is_right_for_classical_frames) {
     EXPECT_EQ(classical_ns(0, 1'000'000), 55 * us);
     EXPECT_EQ(classical_ns(8, 1'000'000), 135 * us);
     EXPECT_EQ(classical_ns(0, 1'000'000, true), 80 * us);
@@ -49,8 +48,8 @@ TEST(FrameTime, of_classical_frames) {
     EXPECT_EQ(classical_ns(0, 300'000), 183'334) << "rounded up where the rate does not divide a second";
 }
 
-// Of ISO 11898-1: found by an exhaustive search over all stuffings.
-TEST(FrameTime, of_flexible_frames) {
+// From ISO 11898-1, by an exhaustive search over all stuffings.
+TEST(FrameTime, is_right_for_can_fd_frames) {
     EXPECT_EQ(flexible_us(8, 500'000, 2'000'000), 120) << "and a half";
     EXPECT_EQ(flexible_us(32, 500'000, 2'000'000), 243);
     EXPECT_EQ(flexible_us(64, 500'000, 2'000'000), 403);
@@ -62,7 +61,7 @@ TEST(FrameTime, of_flexible_frames) {
     EXPECT_EQ(frame_time_ns(Format::flexible, false, 48, {1'000'000, 0}), (32 + 33 + 5 + 480 + 1) * us);
 }
 
-TEST(FrameTime, of_what_does_not_exist) {
+TEST(FrameTime, is_negative_for_impossible_frames) {
     EXPECT_EQ(classical_ns(9, 500'000), -1);
     EXPECT_EQ(classical_ns(8, 0), -1);
     EXPECT_EQ(classical_ns(8, -500'000), -1);
@@ -71,7 +70,7 @@ TEST(FrameTime, of_what_does_not_exist) {
 }
 
 // Rox and Ernst 2010.
-TEST(BusAnalysis, of_a_published_bus) {
+TEST(BusAnalysis, agrees_with_a_published_bus) {
     const std::array frames{of_others(976 * us, 15 * ms), of_others(736 * us, 30 * ms),
                             of_others(1056 * us, 75 * ms), of_others(1056 * us, 40 * ms),
                             of_others(736 * us, 15 * ms)};
@@ -82,7 +81,7 @@ TEST(BusAnalysis, of_a_published_bus) {
 }
 
 // The frames of PSA's benchmark at 250 kbit/s: bytes and periods.
-TEST(BusAnalysis, of_a_car_with_and_without_an_error) {
+TEST(BusAnalysis, agrees_with_the_psa_benchmark_with_and_without_an_error) {
     constexpr std::array<std::array<int, 2>, 12> rows{{{8, 10},
                                                        {3, 14},
                                                        {3, 20},
@@ -108,7 +107,7 @@ TEST(BusAnalysis, of_a_car_with_and_without_an_error) {
     EXPECT_EQ(disturbed.of(11).largest, Part::errors);
 }
 
-TEST(BusAnalysis, counts_an_error_more_after_each_of_their_times) {
+TEST(BusAnalysis, counts_another_error_after_each_error_interval) {
     const std::array frames{of_others(100 * us, 1 * ms), of_others(400 * us, 2 * ms)};
     const auto at = [&](std::int64_t every_ns) {
         return BusAnalysis{frames, {.bit_ns = 1 * us, .errors = 1, .errors_every_ns = every_ns}}
@@ -120,7 +119,7 @@ TEST(BusAnalysis, counts_an_error_more_after_each_of_their_times) {
     EXPECT_FALSE(at(431 * us).bounded);
 }
 
-TEST(BusAnalysis, of_the_highest_waits_for_the_longest_frame_below) {
+TEST(BusAnalysis, blocks_the_most_urgent_frame_by_the_longest_less_urgent_one) {
     const std::array frames{of_others(55 * us, ms), of_others(65 * us, ms), of_others(160 * us, ms)};
     const FrameResponse found = BusAnalysis{frames, {.bit_ns = 1 * us}}.of(0);
     EXPECT_EQ(found.response, worst(215 * us));
@@ -129,7 +128,7 @@ TEST(BusAnalysis, of_the_highest_waits_for_the_longest_frame_below) {
     EXPECT_EQ(found.largest_ns, 160 * us);
 }
 
-TEST(BusAnalysis, of_the_lowest_is_blocked_by_nothing_but_counts_its_jitter) {
+TEST(BusAnalysis, does_not_block_the_least_urgent_frame_but_counts_its_jitter) {
     std::array frames{of_others(135 * us, ms), of_others(135 * us, ms)};
     EXPECT_EQ((BusAnalysis{frames, {.bit_ns = 1 * us}}.of(1).response), worst(270 * us));
     frames[1].jitter_ns = 40 * us;
@@ -138,7 +137,7 @@ TEST(BusAnalysis, of_the_lowest_is_blocked_by_nothing_but_counts_its_jitter) {
 
 // At 500 kbit/s, 8 bytes each: our most urgent and our least urgent frame, four of others in between. In the
 // order of identifiers the first would take 540 us.
-TEST(BusAnalysis, of_ours_waits_behind_what_is_in_flight_and_what_passes_that) {
+TEST(BusAnalysis, delays_own_frames_by_those_in_flight_and_overtaking_ones) {
     std::vector frames(6, of_others(270 * us, 10 * ms));
     frames.front() = frames.back() = ours(270 * us, 10 * ms);
     const BusAnalysis bus{frames, {.bit_ns = 2 * us, .in_flight = 4}};
@@ -148,13 +147,13 @@ TEST(BusAnalysis, of_ours_waits_behind_what_is_in_flight_and_what_passes_that) {
     EXPECT_EQ((BusAnalysis{frames, {.bit_ns = 2 * us}}.of(0).response), worst(540 * us));
 }
 
-TEST(BusAnalysis, of_ours_counts_an_error_that_spoils_what_is_in_flight) {
+TEST(BusAnalysis, counts_an_error_that_destroys_an_own_frame_in_flight) {
     const std::array frames{ours(100 * us, 10 * ms), ours(400 * us, 10 * ms)};
     const BusAnalysis bus{frames, {.bit_ns = 1 * us, .errors = 1}};
     EXPECT_EQ(bus.of(0).response, worst(100 * us + 400 * us + 431 * us + 100 * us));
 }
 
-TEST(BusAnalysis, of_ours_on_one_grid_waits_for_no_less_urgent_one_that_is_through) {
+TEST(BusAnalysis, ignores_own_frames_on_one_grid_that_are_already_sent) {
     std::vector frames(6, of_others(270 * us, 10 * ms));
     frames.front() = frames.back() = ours(270 * us, 10 * ms);
     frames.front().on_grid = frames.back().on_grid = true;
@@ -165,7 +164,7 @@ TEST(BusAnalysis, of_ours_on_one_grid_waits_for_no_less_urgent_one_that_is_throu
         << "periods of 3 and 10 ms meet within 1 ms";
 }
 
-TEST(BusAnalysis, of_others_sees_ours_as_late_as_it_waits) {
+TEST(BusAnalysis, counts_the_queueing_of_own_frames_as_jitter_for_others) {
     // Released each 2 ms, but up to 670 us late: two of them may come within 1.5 ms.
     std::vector frames{ours(270 * us, 2 * ms),       of_others(400 * us, 50 * ms),
                        of_others(400 * us, 50 * ms), of_others(400 * us, 50 * ms),
@@ -176,7 +175,7 @@ TEST(BusAnalysis, of_others_sees_ours_as_late_as_it_waits) {
     EXPECT_EQ(late.worst_ns - in_order.worst_ns, 270 * us);
 }
 
-TEST(BusAnalysis, of_ours_counts_the_time_until_more_is_handed_over) {
+TEST(BusAnalysis, counts_the_time_until_more_own_frames_are_handed_over) {
     const std::array frames{ours(100 * us, 10 * ms), ours(100 * us, 10 * ms), ours(100 * us, 10 * ms),
                             of_others(200 * us, 10 * ms)};
     const auto third = [&](std::int64_t in_flight, std::int64_t hand_over_ns) {
@@ -200,7 +199,7 @@ TEST(BusAnalysis, is_unbounded_on_an_overloaded_bus) {
     }
 }
 
-TEST(BusAnalysis, refuses_timings_without_sense) {
+TEST(BusAnalysis, refuses_invalid_timings) {
     const auto bounded = [](FrameTiming frame, BusTiming bus) {
         return BusAnalysis{std::array{frame}, bus}.of(0).response.bounded;
     };

@@ -1,5 +1,5 @@
 // No frame takes longer on a simulated wire than the analysis proves, over many seeds: random buses, frames
-// that take their bits' time, errors, a machine that comes late to its queue and to the next handing over.
+// that need their bit times, errors, a machine that serves its queue and hands over late.
 #include "drivers/can/bus_analysis.hpp"
 #include "drivers/can/frame_time.hpp"
 #include "drivers/can/signal_map.hpp"
@@ -20,7 +20,7 @@ struct Row {
     FrameTiming timing{};
 };
 
-/// What a seed makes of a bus. The first node is this machine.
+/// A bus as its seed chooses it. The first node is this machine.
 struct World {
     std::vector<Row> rows; // by priority
     BusTiming bus{};
@@ -60,7 +60,7 @@ World world_of(Random& random) {
     return world;
 }
 
-/// One node that sends what is released, in the order of its queue.
+/// One node that sends its released frames in the order of its queue.
 struct Node {
     std::unique_ptr<Twin> twin = std::make_unique<Twin>();
     std::vector<Identifier> sends, hears;
@@ -140,7 +140,7 @@ private:
         return now + Duration{world_.bus.errors_every_ns + random_.between(0, world_.bus.errors_every_ns)};
     }
     void release(Time now) {
-        // Who is late with one is late with all that it releases at that time.
+        // A node that is late with one frame is late with all frames released at that time.
         const Duration machine_late{random_.between(0, world_.bus.hand_over_ns)};
         for (std::size_t r = 0; r < next_.size(); ++r) {
             if (next_[r] > now) continue;
@@ -187,7 +187,7 @@ struct Judgement {
     double nearest = 0; ///< observed / proven
 };
 
-/// `believed`: how the analysis is told that the machine sends.
+/// `believed`: the way of sending that the analysis assumes for the machine.
 template <class Believed>
 Judgement judge(int seeds, Believed believed) {
     Judgement found;
@@ -220,7 +220,7 @@ Judgement judge(int seeds, Believed believed) {
     return found;
 }
 
-TEST(BusBound, holds_over_a_thousand_seeds_and_is_near) {
+TEST(BusBound, is_tight_and_holds_over_a_thousand_seeds) {
     const Judgement found = judge(1000, [](BusTiming&, std::vector<FrameTiming>&) {});
     EXPECT_GT(found.buses, 300);
     EXPECT_EQ(found.broken, 0);
@@ -229,8 +229,8 @@ TEST(BusBound, holds_over_a_thousand_seeds_and_is_near) {
     std::printf("%d buses, nearest %.3f\n", found.buses, found.nearest);
 }
 
-// What each part of the analysis is for: left out, a seed breaks the bound.
-TEST(BusBound, is_broken_when_a_part_is_left_out) {
+// Every part of the analysis is needed: when one is left out, a seed exceeds the bound.
+TEST(BusBound, fails_when_a_part_is_left_out) {
     const struct {
         const char* what;
         void (*leave_out)(BusTiming&, std::vector<FrameTiming>&);

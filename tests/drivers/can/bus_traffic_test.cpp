@@ -1,4 +1,4 @@
-// What a bus is refused for: the frame, its bound, the largest part of it, and the cure.
+// A refused bus: the sentence names the frame, its bound, the largest part of it, and the cure.
 #include "drivers/can/bus_traffic.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ template <class... Rows> std::string refusal(const BusUse& use, const Rows&... r
     return std::string{bus_traffic(map.frames, use.bus, use.response, {}).view()};
 }
 
-TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
+TEST(BusTraffic, lists_the_proven_frames_in_the_order_of_arbitration) {
     constexpr auto map =
         signal_map(heard(0x300, "slow", 8, 100ms), sent(0x201, "command", 6, every(2ms)),
                    heard(0x181, "status", 6, 2ms), sent(0x80, "sync", 0, on_demand(10ms)).safe_by_silence());
@@ -46,11 +46,10 @@ TEST(BusTraffic, tells_what_is_proven_in_the_order_of_the_wire) {
     EXPECT_EQ(rows[2].deadline, 100ms);
 }
 
-TEST(BusTraffic, is_refused_by_the_largest_part_of_the_time_that_a_frame_takes) {
-    EXPECT_EQ(
-        refusal(at(125'000), heard(0x181, "a", 8, 1ms), heard(0x182, "b", 8, 10ms)),
-        "frame \"a\" may never come through: what is more urgent, and itself, fill the bus, which all frames "
-        "together load by 118 % at 125000 bit/s; send less often, or run the bus faster");
+TEST(BusTraffic, is_refused_with_the_largest_part_of_the_response) {
+    EXPECT_EQ(refusal(at(125'000), heard(0x181, "a", 8, 1ms), heard(0x182, "b", 8, 10ms)),
+              "frame \"a\" may never be sent: it and more urgent frames fill the bus, which all frames "
+              "together load by 118 % at 125000 bit/s; send less often, or run the bus faster");
     EXPECT_EQ(refusal(at(125'000), heard(0x181, "a", 1, 1ms), heard(0x182, "b", 8, 100ms)),
               "frame \"a\" may take 1600 us but is due within 1000 us; most of it, 1080 us, is \"b\", which "
               "may just "
@@ -64,11 +63,10 @@ TEST(BusTraffic, is_refused_by_the_largest_part_of_the_time_that_a_frame_takes) 
               "frame \"b\" may take 810 us but is due within 800 us; most of it, 270 us, is \"busy\", which "
               "wins the "
               "bus before it; send that less often, or give this one a lower identifier");
-    EXPECT_EQ(
-        refusal(at(500'000), heard(0x100, "late", 8, 2ms, 1900us)),
-        "frame \"late\" may take 2170 us but is due within 2000 us; most of it, 1900 us, is how late it may "
-        "come to its queue; shorten the response of the activity that drives the bus, or what its node is "
-        "said to be late by");
+    EXPECT_EQ(refusal(at(500'000), heard(0x100, "late", 8, 2ms, 1900us)),
+              "frame \"late\" may take 2170 us but is due within 2000 us; most of it, 1900 us, is how late "
+              "it may enter its queue; shorten the response of the activity that drives the bus, or the "
+              "jitter of its node");
     EXPECT_EQ(
         refusal(at(500'000, 3), heard(0x100, "a", 8, 1ms)),
         "frame \"a\" may take 1266 us but is due within 1000 us; most of it, 996 us, are errors on the wire; "
@@ -82,20 +80,19 @@ TEST(BusTraffic, is_refused_by_the_largest_part_of_the_time_that_a_frame_takes) 
         "the period");
 }
 
-TEST(BusTraffic, is_refused_when_the_machine_is_too_slow_to_hand_over) {
+TEST(BusTraffic, is_refused_when_the_machine_hands_frames_over_too_slowly) {
     constexpr std::array names{"b", "c", "d", "e", "f", "g", "h", "i", "j"};
     const std::string refused = [&]<std::size_t... I>(std::index_sequence<I...>) {
         return refusal(at(1'000'000, 0, 8ms), sent(0x100, "a", 1, on_demand(100ms)),
                        sent(0x101 + I, names[I], 1, on_demand(100ms))...);
     }(std::make_index_sequence<names.size()>{});
-    EXPECT_EQ(
-        refused,
-        "frame \"b\" may take 23805 us but is due within 20000 us; most of it, 15090 us, is the time until "
-        "more frames are handed over, when those in flight are through; shorten the response of the activity "
-        "that drives the bus");
+    EXPECT_EQ(refused,
+              "frame \"b\" may take 23805 us but is due within 20000 us; most of it, 15090 us, is the time "
+              "until the next frames follow those in flight; shorten the response of the activity "
+              "that drives the bus");
 }
 
-TEST(BusTraffic, of_can_fd_is_proven_by_both_rates) {
+TEST(BusTraffic, uses_both_bit_rates_for_can_fd_frames) {
     constexpr auto map = signal_map(
         receive(standard(0x181), "fast", fd_bytes(64), every(2ms), signal("a", 0, 8)),
         receive(standard(0x182), "slow", fd_bytes(64).in_one_rate(), every(10ms), signal("a", 0, 8)),
@@ -108,19 +105,19 @@ TEST(BusTraffic, of_can_fd_is_proven_by_both_rates) {
     EXPECT_EQ(rows[2].wire_time, 270us);
     const auto often = receive(standard(0x181), "fast", fd_bytes(64), every(700us), signal("a", 0, 8));
     EXPECT_EQ(refusal({{250'000, 2'000'000, 0, 100ms}, 0us}, often), "") << "128 us and 339 us";
-    EXPECT_EQ(
-        refusal({{500'000, 1'000'000, 0, 100ms}, 0us}, often),
-        "frame \"fast\" may never come through: what is more urgent, and itself, fill the bus, which all "
-        "frames together load by 106 % at 500000 bit/s; send less often, or run the bus faster");
+    EXPECT_EQ(refusal({{500'000, 1'000'000, 0, 100ms}, 0us}, often),
+              "frame \"fast\" may never be sent: it and more urgent frames fill the bus, which all "
+              "frames together load by 106 % at 500000 bit/s; send less often, or run the bus faster");
 }
-TEST(BusTraffic, of_can_fd_is_refused_where_the_board_says_no_data_bit_rate) {
+TEST(BusTraffic, is_refused_for_can_fd_frames_without_a_data_bit_rate) {
     for (const Bytes length : {fd_bytes(8), fd_bytes(8).in_one_rate()})
         EXPECT_EQ(refusal(at(500'000), receive(standard(1), "scan", length, every(10ms), signal("a", 0, 8))),
-                  "frame \"scan\" is CAN FD, and no bit rate of CAN FD's data phase is said; add it to the "
+                  "frame \"scan\" is CAN FD, but the board states no bit rate for CAN FD's data phase; add "
+                  "it to the "
                   "device's row, bit_rate(500000, 2'000'000), or make the frame a classical one, bytes(8)");
 }
 
-TEST(BusTraffic, of_what_is_sent_ends_when_it_would_be_too_old) {
+TEST(BusTraffic, is_refused_when_a_sent_frame_may_become_too_old) {
     const std::string refused = refusal(at(10'000), sent(0x100, "slow", 8, every(100ms)));
     EXPECT_TRUE(refused.starts_with("frame \"slow\" may take 27000 us but is due within 20000 us"))
         << refused;

@@ -1,5 +1,5 @@
-// Lines of candump logs: what is written is read again, what canplayer and candump write is understood, and
-// a line that is none is refused where it goes wrong.
+// Lines of candump logs: we read our own lines and those of canplayer and candump, and refuse an invalid line
+// at its faulty column.
 #include "drivers/can/candump.hpp"
 #include "kernel/base/random.hpp"
 
@@ -46,7 +46,7 @@ TEST(Candump, reads_what_it_writes) {
     }
 }
 
-TEST(Candump, reads_each_kind_of_line_that_can_utils_write) {
+TEST(Candump, reads_each_kind_of_line_from_can_utils) {
     struct {
         const char* line;
         std::uint32_t id;
@@ -81,7 +81,7 @@ TEST(Candump, reads_each_kind_of_line_that_can_utils_write) {
     }
 }
 
-TEST(Candump, refuses_what_is_no_line_where_it_goes_wrong) {
+TEST(Candump, refuses_an_invalid_line_at_the_faulty_column) {
     struct {
         const char* line;
         std::size_t column;
@@ -104,13 +104,13 @@ TEST(Candump, refuses_what_is_no_line_where_it_goes_wrong) {
         {"(1.0) can0 123", 15, "# or"},
         {"(1.0) can0 123#A", 17, "cut off"},
         {"(1.0) can0 123#112233445566778899", 32, "CAN FD is written with ##"},
-        {"(1.0) can0 123#11.22", 18, "nothing stands behind"},
-        {"(1.0) can0 123#R9", 17, "nothing stands behind"},
+        {"(1.0) can0 123#11.22", 18, "expected nothing after"},
+        {"(1.0) can0 123#R9", 17, "expected nothing after"},
         {"(1.0) can0 123#1122334455667788_8", 33, "length code"},
         {"(1.0) can0 123##", 17, "a digit of flags"},
         {"(1.0) can0 123##8AA", 17, "a digit of flags"},
         {"(1.0) can0 123##1112233445566778899", 18, "no frame of this length"},
-        {"(1.0) can0 123##0R", 18, "nothing stands behind"},
+        {"(1.0) can0 123##0R", 18, "expected nothing after"},
         {"", 1, "begins with its time"},
     };
     for (const auto& each : cases) {
@@ -124,19 +124,19 @@ TEST(Candump, refuses_what_is_no_line_where_it_goes_wrong) {
     EXPECT_FALSE(candump::read_seconds("12.5s"));
 }
 
-TEST(Candump, writes_what_happened_between_two_microseconds_as_of_the_later_one) {
+TEST(Candump, rounds_times_up_to_the_next_microsecond) {
     EXPECT_EQ(candump::write({.stamp = at_ns(1'999'999'001)}, "can0").view(),
               "(0000000002.000000) can0 000#");
     EXPECT_EQ(candump::write({.stamp = at_ns(1'999'999'000)}, "can0").view(),
               "(0000000001.999999) can0 000#");
 }
 
-TEST(Candump, writes_names_that_linux_could_have) {
+TEST(Candump, writes_only_interface_names_valid_on_linux) {
     EXPECT_EQ(candump::write({}, "axis of the can bus").view(), "(0000000000.000000) axis_of_the_can 000#");
 }
 
 // python3-can reads our lines and writes its own, which we read.
-TEST(Candump, is_understood_by_python_can_and_understands_it) {
+TEST(Candump, is_compatible_with_python_can) {
     const std::filesystem::path folder =
         std::filesystem::path{testing::TempDir()} / ("candump." + std::to_string(getpid()));
     std::filesystem::create_directories(folder);

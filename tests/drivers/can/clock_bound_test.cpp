@@ -1,6 +1,6 @@
-// A thousand seeds of a clock that is told over a bus: clocks that drift, stamps that are late, frames that
-// wait, are lost and come twice, tellers that begin anew with another time. What is told is never further
-// from the truth than it says.
+// A clock sent over a bus, over a thousand seeds: clocks drift, stamps are late, frames wait, are lost and
+// come twice, masters restart with another time. The received clock is never further from the truth than its
+// stated error.
 #include "kernel/machine/accept.hpp"
 #include "tests/drivers/can/clock_machines.hpp"
 #include "toolchain/machine/system_run.hpp"
@@ -21,7 +21,7 @@ constexpr SystemView bus{.name = "clock",
 
 struct Judgement {
     std::int64_t looks = 0, rates = 0, exchanges = 0, discarded = 0, broken = 0, restarts = 0;
-    double nearest = 0; ///< of what is told, to its bound
+    double nearest = 0; ///< error, relative to its bound
     Duration worst_error{};
 };
 
@@ -41,7 +41,7 @@ public:
         }
     }
     void live(Judgement& found) {
-        // Late by up to a fifth of a second, either of them.
+        // Either may be late by up to a fifth of a second.
         const std::size_t first = random_.below(2);
         begin(first);
         run_.run_for(Duration{random_.between(0, 200'000'000)});
@@ -59,8 +59,8 @@ public:
             if (!random_.one_in(3)) continue;
             run_.kill(0);
             run_.run_for(Duration{random_.between(0, 1'500'000'000)});
-            judge(found); // by the clock of before
-            // Its next process counts from elsewhere.
+            judge(found); // by the clock before the restart
+            // The next process of the master counts from another time.
             clocks_[0].offset += Duration{random_.one_in(2) ? random_.between(0, 300'000)
                                                             : random_.between(0, 100'000'000'000)};
             run_.set_clock(0, clocks_[0]);
@@ -85,7 +85,7 @@ private:
     void judge(Judgement& found) {
         auto& seen = run_.instance(1).find<ClockWatcher>("watcher")->seen;
         for (const ClockWatcher::Seen& each : seen) {
-            if (each.exchanges <= exchanges_before_) continue; // not told yet, since the teller's start
+            if (each.exchanges <= exchanges_before_) continue; // no exchange since the master's start
             const Time then = clocks_[1].true_time(each.now);
             const Duration truth = clocks_[0].local(then) - clocks_[1].local(then);
             const std::int64_t wrong = std::abs((each.ahead - truth).count());
@@ -98,7 +98,7 @@ private:
         seen.clear();
     }
 
-    /// Of a teller that never began anew: both clocks go evenly.
+    /// For a master that never restarted: both clocks run evenly.
     void judge_rate(Judgement& found) {
         if (has_restarted_ || told().rate_error.last() == 0) return;
         const double truth = (1.0 + clocks_[0].drift_ppm * 1e-6) / (1.0 + clocks_[1].drift_ppm * 1e-6) - 1.0;
@@ -134,16 +134,16 @@ TEST(ClockBound, holds_over_a_thousand_seeds) {
     EXPECT_LT(found.nearest, 1.001);
 }
 
-// What each part of the bound is for.
-TEST(ClockBound, is_broken_without_drift_and_without_either_stamp) {
+// Every part of the bound is needed.
+TEST(ClockBound, fails_without_drift_and_without_either_stamp) {
     EXPECT_GT(judge(AtRunTime<told_without_drift, board>::machine(), 100).broken, 0);
     EXPECT_GT(judge(AtRunTime<told_without_own_late, board>::machine(), 100).broken, 0);
     EXPECT_GT(judge(AtRunTime<told_without_teller_late, board>::machine(), 100).broken, 0);
 }
 
-// The SYNC of one start of the teller, and the FUP of the next one with the same number, do not belong
+// The SYNC of one start of the master and the FUP of the next start with the same number do not belong
 // together.
-TEST(ClockTeller, that_begins_anew_at_once_is_not_mistaken_for_the_one_before) {
+TEST(ClockTeller, is_not_confused_with_its_previous_start) {
     const std::array machines{AtRunTime<telling_machine, board>::machine(),
                               AtRunTime<told_machine, board>::machine()};
     SystemRun run{bus, machines, {}, 1};
@@ -155,7 +155,7 @@ TEST(ClockTeller, that_begins_anew_at_once_is_not_mistaken_for_the_one_before) {
     run.set_clock(0, {.offset = 10s});
     ASSERT_TRUE(run.start(0));
     auto& watcher = *run.instance(1).find<ClockWatcher>("watcher");
-    for (int i = 0; i < 2000; ++i) { // whenever the next SYNC comes, only what follows it arrives
+    for (int i = 0; i < 2000; ++i) { // whenever the next SYNC comes, only frames after it arrive
         const std::uint64_t frames = run.wire().frames_on_wire();
         run.end(1).omits_one_in = frames < 2 ? 1 : 0;
         run.run_for(100us);

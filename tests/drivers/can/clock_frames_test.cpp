@@ -1,5 +1,5 @@
-// The frames that tell a clock: as the standard has them, read as they were written, and nothing spoilt is
-// read at all.
+// Frames that carry a clock: they have the layout of the standard, decode as they were encoded, and corrupted
+// ones are refused.
 #include "drivers/can/clock_frames.hpp"
 #include "kernel/base/random.hpp"
 
@@ -20,7 +20,7 @@ static_assert(clock_fault(row).empty());
 static_assert(clock_fault(clock(standard(0x800), every(100ms))).view() ==
               "the clock's identifier 2048 is out of range: give it another");
 static_assert(clock_fault(clock(standard(1), every(9ms))).view() ==
-              "the clock is told every 9 ms: write every(..) from 10 ms to 10 s");
+              "the clock is sent every 9 ms: write every(..) from 10 ms to 10 s");
 static_assert(!clock_fault(clock(standard(1), every(11s))).empty());
 static_assert(!clock_fault(clock(standard(1), on_demand(100ms))).empty());
 static_assert(clock_fault(clock(standard(1), every(100ms, 26ms))).view() ==
@@ -34,7 +34,7 @@ constexpr ClockFrame follow_up{.kind = ClockFrame::Kind::follow_up,
                                .number = 999'999'999, // 3B9AC9FFh
                                .seconds_more = 2};
 
-TEST(ClockFrames, lie_as_the_standard_has_them) {
+TEST(ClockFrames, have_the_layout_of_the_standard) {
     const Frame first = encode(row, sync);
     EXPECT_EQ(first.id, 0x090u);
     EXPECT_EQ(first.length, 8);
@@ -53,7 +53,7 @@ TEST(ClockFrames, lie_as_the_standard_has_them) {
     EXPECT_EQ(second.data[7], 0xFF);
 }
 
-TEST(ClockFrames, are_read_as_they_were_written) {
+TEST(ClockFrames, decode_as_they_were_encoded) {
     Random random{1};
     for (int i = 0; i < 10'000; ++i) {
         ClockFrame told;
@@ -68,7 +68,7 @@ TEST(ClockFrames, are_read_as_they_were_written) {
     }
 }
 
-TEST(ClockFrames, of_others_are_foreign) {
+TEST(ClockFrames, ignore_foreign_frames) {
     ClockFrame read;
     const Frame good = encode(row, sync);
     Frame other = good, extended = good, remote = good, offset = good;
@@ -86,7 +86,7 @@ TEST(ClockFrames, of_others_are_foreign) {
         EXPECT_EQ(decode(row, frame, read), ClockRead::foreign) << what;
 }
 
-TEST(ClockFrames, that_are_spoilt_cut_or_unsecured_are_wrong) {
+TEST(ClockFrames, are_wrong_when_corrupted_truncated_or_unsecured) {
     for (const ClockFrame& told : {sync, follow_up}) {
         const Frame good = encode(row, told);
         ClockFrame read;
@@ -117,7 +117,7 @@ TEST(ClockFrames, that_are_spoilt_cut_or_unsecured_are_wrong) {
     EXPECT_EQ(decode(row, encode(row, too_much), read), ClockRead::wrong);
 }
 
-TEST(ClockFrames, are_rows_that_the_bus_is_proven_for) {
+TEST(ClockFrames, are_part_of_the_bus_analysis) {
     constexpr auto& sent = clock_frames<row, Direction::transmit>;
     EXPECT_EQ(sent.frames[0].apart, 100ms);
     EXPECT_EQ(sent.frames[1].apart, 75ms) << "a FUP leaves within a quarter of the period";

@@ -1,4 +1,4 @@
-// Machines that tell a clock and that are told it, and one that is told whatever a test makes up.
+// Machines that send a clock and that receive it, and one that receives whatever a test makes up.
 #pragma once
 
 #include "drivers/can/bus.hpp"
@@ -12,7 +12,7 @@ namespace tappet::test {
 
 inline constexpr auto clock_row = can::clock(can::standard(0x090), can::every(100ms));
 inline constexpr auto no_signals = can::signal_map();
-/// Frames of others, which wake who tells while its own wait.
+/// Frames of other nodes, which wake the clock master while its own frame waits.
 inline constexpr auto urgent_frames = [] {
     can::Services<1, 0> heard{};
     heard.frames[0].identifier = can::standard(1);
@@ -27,7 +27,7 @@ using ToldBus = can::Bus<no_signals, can::clock_frames<clock_row, can::Direction
 using Teller = can::ClockTeller<clock_row>;
 using Told = can::ToldClock<clock_row>;
 
-/// Notes what is told, each cycle.
+/// Records the received clock in each cycle.
 struct ClockWatcher {
     struct Seen {
         Time now{};
@@ -52,7 +52,7 @@ struct ClockWatcher {
     }
 };
 
-/// Gives the frames of a test, at the stamps that they have.
+/// Delivers the frames of a test with the stamps that they have.
 struct ClockFeeder {
     BufferOutput<can::Frame> frames{};
     std::vector<can::Frame> to_give{};
@@ -74,7 +74,7 @@ inline constexpr auto telling_machine = machine("teller",
     activities(activity("can", on_device("can"), at_most(8, 1ms), runs("can", "clock"), deadline(500us), budget(20us))),
     connections(), reactions(), behaviours());
 
-/// `settings`: of the clock's properties.
+/// `settings`: for the clock's properties.
 constexpr auto told_machine_with(auto... settings) {
     return machine("told",
         components(

@@ -1,5 +1,4 @@
-// What is made of the frames that tell a clock: which exchanges count, which do not, and what is told
-// meanwhile.
+// Evaluation of clock frames: which exchanges count, which do not, and which time is reported meanwhile.
 #include "tests/drivers/can/clock_machines.hpp"
 #include "tests/drivers/components/machine_rig.hpp"
 
@@ -10,7 +9,7 @@ namespace {
 
 using Kind = can::ClockFrame::Kind;
 
-TEST(ClockRows, are_part_of_what_the_bus_is_proven_for) {
+TEST(ClockRows, are_part_of_the_proof_for_the_bus) {
     EXPECT_EQ(TellingBus::device_traffic.rows, 2u);
     EXPECT_EQ(ToldBus::device_traffic.rows, 2u);
     std::array<TrafficRow, 2> rows{};
@@ -25,7 +24,7 @@ TEST(ClockRows, are_part_of_what_the_bus_is_proven_for) {
     EXPECT_FALSE(TellingBus::analyse_traffic({"can", at_1_kbit, 500us}, rows).empty()) << "they fill the bus";
 }
 
-/// The teller's clock is 1000 s ahead, and its stamps are exact.
+/// The master's clock is 1000 s ahead, and its stamps are exact.
 struct ToldClock : MachineRig<fed_machine> {
     ToldClock() {
         EXPECT_TRUE(instance.configure({}));
@@ -71,14 +70,14 @@ struct ToldClock : MachineRig<fed_machine> {
     Time through{}, base{};
 };
 
-TEST_F(ToldClock, is_unknown_before_it_was_told) {
+TEST_F(ToldClock, is_unknown_before_the_first_exchange) {
     run(3s);
     EXPECT_FALSE(told->is_known.last());
     EXPECT_EQ(told->exchanges.last(), 0);
     EXPECT_EQ(instance.find<ClockWatcher>("watcher")->ahead.flow(), Flow::never_written);
 }
 
-TEST_F(ToldClock, knows_how_far_it_is_ahead_and_how_surely) {
+TEST_F(ToldClock, knows_its_offset_and_the_error_bound) {
     exchange(1);
     EXPECT_TRUE(told->is_known.last());
     EXPECT_EQ(told->exchanges.last(), 1);
@@ -88,7 +87,7 @@ TEST_F(ToldClock, knows_how_far_it_is_ahead_and_how_surely) {
     EXPECT_LE(told->error.last(), 100us + 23us);
 }
 
-TEST_F(ToldClock, is_less_sure_the_longer_nobody_tells_it_and_says_when_it_is_silent) {
+TEST_F(ToldClock, widens_its_error_without_exchanges_until_it_becomes_unknown) {
     exchange(1);
     const Duration before = told->error.last();
     run(800ms);
@@ -102,9 +101,9 @@ TEST_F(ToldClock, is_less_sure_the_longer_nobody_tells_it_and_says_when_it_is_si
     EXPECT_LT(told->error.last(), 130us);
 }
 
-TEST_F(ToldClock, joins_at_any_time) {
+TEST_F(ToldClock, can_join_at_any_time) {
     sync(7);
-    feeder->to_give.clear(); // before it was there
+    feeder->to_give.clear(); // before the receiver joined
     follow_up(7);
     run(100ms);
     EXPECT_EQ(told->exchanges.last(), 0);
@@ -114,7 +113,7 @@ TEST_F(ToldClock, joins_at_any_time) {
     expect_right();
 }
 
-TEST_F(ToldClock, takes_no_half_of_an_exchange) {
+TEST_F(ToldClock, ignores_half_an_exchange) {
     exchange(1);
     sync(2); // its FUP is lost
     run(100ms);
@@ -136,7 +135,7 @@ TEST_F(ToldClock, takes_no_half_of_an_exchange) {
     expect_right();
 }
 
-TEST_F(ToldClock, takes_no_follow_up_of_the_same_number_a_turn_later) {
+TEST_F(ToldClock, ignores_a_follow_up_that_is_a_full_sequence_late) {
     sync(1);
     run(1600ms);
     const Time old = through;
@@ -147,10 +146,10 @@ TEST_F(ToldClock, takes_no_follow_up_of_the_same_number_a_turn_later) {
     EXPECT_EQ(told->discarded.last(), 1);
 }
 
-TEST_F(ToldClock, gives_an_exchange_up_whose_sync_comes_twice) {
+TEST_F(ToldClock, discards_an_exchange_with_a_duplicate_sync) {
     exchange(1);
     sync(2, 4ms);
-    sync(2, 3ms); // the sender has seen an error in the last bit, and its stamp is of the second one
+    sync(2, 3ms); // the sender saw an error in the last bit, and its stamp belongs to the second SYNC
     follow_up(2);
     run(100ms);
     EXPECT_EQ(told->exchanges.last(), 1);
@@ -163,7 +162,7 @@ TEST_F(ToldClock, gives_an_exchange_up_whose_sync_comes_twice) {
     expect_right();
 }
 
-TEST_F(ToldClock, takes_what_is_out_of_order_as_a_new_beginning) {
+TEST_F(ToldClock, starts_over_after_an_exchange_out_of_order) {
     exchange(1);
     exchange(5); // three were lost
     EXPECT_EQ(told->exchanges.last(), 2);
@@ -180,7 +179,7 @@ TEST_F(ToldClock, takes_what_is_out_of_order_as_a_new_beginning) {
     expect_right();
 }
 
-TEST_F(ToldClock, follows_a_teller_whose_time_jumps_either_way_and_little) {
+TEST_F(ToldClock, follows_small_and_large_jumps_of_the_master_clock) {
     exchange(1);
     for (const Duration jump : {Duration{10s}, Duration{-500s}, Duration{190us}, Duration{-190us}}) {
         const std::int64_t exchanges = told->exchanges.last();
@@ -194,7 +193,7 @@ TEST_F(ToldClock, follows_a_teller_whose_time_jumps_either_way_and_little) {
     EXPECT_EQ(told->jumps.last(), 2) << "small ones cannot be told from what is not known";
 }
 
-TEST_F(ToldClock, uses_nothing_that_is_spoilt_or_unsecured) {
+TEST_F(ToldClock, ignores_corrupted_and_unsecured_frames) {
     exchange(1);
     for (const std::size_t of : {0U, 1U}) {
         sync(2);
@@ -214,7 +213,7 @@ TEST_F(ToldClock, uses_nothing_that_is_spoilt_or_unsecured) {
     EXPECT_EQ(told->exchanges.last(), 2);
 }
 
-TEST_F(ToldClock, reads_a_time_that_is_seconds_after_its_base) {
+TEST_F(ToldClock, accepts_a_follow_up_seconds_after_its_base) {
     sync(1);
     base -= 3s;
     feeder->to_give.back() =
@@ -228,7 +227,7 @@ TEST_F(ToldClock, reads_a_time_that_is_seconds_after_its_base) {
     expect_right();
 }
 
-TEST_F(ToldClock, knows_the_rate_of_the_teller_on_the_average) {
+TEST_F(ToldClock, measures_the_average_rate_of_the_master_clock) {
     const Duration before = ahead;
     for (unsigned i = 1; i <= 50; ++i) {
         ahead = before + Duration{to_ns(clock.now()) / 20'000}; // 50 ppm

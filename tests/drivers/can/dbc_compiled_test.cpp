@@ -7,7 +7,7 @@
 namespace tappet::can {
 namespace {
 
-TEST(DbcCompiled, is_what_the_reader_gives_at_run_time) {
+TEST(DbcCompiled, equals_the_map_read_at_run_time) {
     expect_same(generated::map_1, {generated::file_1.text, generated::node_1.view()});
     expect_same(generated::map_2, {generated::file_2.text, generated::node_2.view()});
     expect_same(generated::map_3, {generated::file_3.text, generated::node_3.view()});

@@ -1,4 +1,4 @@
-// Every fault of a DBC file, and of the rows beside it: one sentence, with line and column.
+// Every fault of a DBC file and of its rows: one sentence, with line and column.
 #include "tests/drivers/can/dbc_on_host.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ std::string fault(const std::string& text, const NodeView& node = us.view()) {
     return std::string{DbcMap{text, node}.map.fault.view()};
 }
 
-/// Line 1: a cycle time and nodes, 2: a message of theirs, 3 and 4: its signals, 5: ours, 6: its signal; then
-/// what is added.
+/// Line 1: a cycle time and nodes, 2: a foreign message, 3 and 4: its signals, 5: our message, 6: its signal;
+/// then the text under test.
 std::string with(const std::string& added) {
     return "BA_DEF_DEF_ \"GenMsgCycleTime\" 20; BU_: us them\n"
            "BO_ 1 theirs: 8 them\n"
@@ -27,16 +27,15 @@ std::string with_signal(const std::string& signal) {
     return with("BO_ 3 more: 4 them\n SG_ " + signal + "\n");
 }
 
-TEST(DbcFaults, formats_of_messages) {
+TEST(DbcFaults, name_invalid_message_formats) {
     EXPECT_EQ(fault(with("BA_ \"VFrameFormat\" BO_ 2 99;")),
               "t.dbc:7:26: 99 is too large for the number of the attribute's value, which is 63 at most; "
               "correct it");
     EXPECT_EQ(fault(with("BA_ \"CANFD_BRS\" BO_ 2 yes;")),
               "t.dbc:7:23: found \"yes;\", expected the number of the attribute's value; correct it");
-    EXPECT_EQ(
-        fault(with("BA_DEF_ BO_ \"VFrameFormat\" ENUM \"a\" \"b\";")),
-        "t.dbc:7:37: a text without its end, or one that is out of place, expected \";\", the end of the "
-        "statement; close the quotes in the same line");
+    EXPECT_EQ(fault(with("BA_DEF_ BO_ \"VFrameFormat\" ENUM \"a\" \"b\";")),
+              "t.dbc:7:37: a text is unclosed or out of place, expected \";\", the end of the "
+              "statement; close the quotes in the same line");
     EXPECT_EQ(
         fault(with(
             "BA_DEF_ BO_ \"VFrameFormat\" INT 0 15;\nBA_DEF_ BU_ \"x\" STRING ;\nBA_DEF_ \"y\" INT 0 1;")),
@@ -51,7 +50,7 @@ TEST(DbcFaults, formats_of_messages) {
               "");
 }
 
-TEST(DbcFaults, a_file_without_any) {
+TEST(DbcFaults, are_not_reported_in_a_valid_file) {
     EXPECT_EQ(fault(with("")), "");
     EXPECT_EQ(fault(with_signal("c : 0|32@1- (1E-3,-.5) [-1e+3|1000.0] \"mm/s\" us, them")), "");
     EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,0) [0|0] \"\"")), "") << "nobody receives it";
@@ -59,7 +58,7 @@ TEST(DbcFaults, a_file_without_any) {
     EXPECT_EQ(fault("", node("").view()), "");
 }
 
-TEST(DbcFaults, words) {
+TEST(DbcFaults, name_unexpected_words) {
     EXPECT_EQ(fault(with("BOO_ 3 x: 8 them")), "t.dbc:7:1: found \"BOO_\", expected a statement, which "
                                                "begins with BO_, SG_, VAL_ or the like; correct it");
     EXPECT_EQ(fault(with("BO_ x")), "t.dbc:7:5: found \"x\", expected a message's identifier; correct it");
@@ -78,13 +77,13 @@ TEST(DbcFaults, words) {
     EXPECT_EQ(fault(" SG_ c : 0|8@1+ (1,0) [0|0] \"\" us"),
               "t.dbc:1:6: a signal without a message; write BO_ before it");
     EXPECT_EQ(fault(with("CM_ \"x\";\n SG_ c : 16|8@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:8:6: signal \"c\" stands behind another statement; put it under its BO_");
+              "t.dbc:8:6: signal \"c\" is not in its message; put it under its BO_");
     EXPECT_EQ(fault(with("BO_ 3 x: 8 them SG_ c : 16|8@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:7:21: SG_ stands in the middle of a line; begin a new one");
+              "t.dbc:7:21: SG_ is in the middle of a line; begin a new one");
     EXPECT_EQ(fault(with("BU_: us")), "t.dbc:7:1: BU_ is there twice; put all nodes into one");
 }
 
-TEST(DbcFaults, numbers) {
+TEST(DbcFaults, name_invalid_numbers) {
     EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1.2.3,0) [0|0] \"\" us")),
               "t.dbc:8:18: found \"1.2.3,0)\", expected the factor; correct it");
     EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,1e999) [0|0] \"\" us")),
@@ -105,15 +104,15 @@ TEST(DbcFaults, numbers) {
         fault(with_signal("c : 0|8@1+ (0,0) [0|0] \"\" us")),
         "t.dbc:8:6: signal \"more.c\" has the factor 0: every value would be the offset; give it another");
     EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,0) [5|2] \"\" us")),
-              "t.dbc:8:6: signal \"more.c\" has a range that holds nothing: say the lesser end first");
+              "t.dbc:8:6: signal \"more.c\" has an empty range: put the lower bound first");
 }
 
-TEST(DbcFaults, texts) {
+TEST(DbcFaults, name_unclosed_texts) {
     EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,0) [0|0] \"mm us\n")),
-              "t.dbc:8:29: a text without its end, or one that is out of place, expected the unit between "
+              "t.dbc:8:29: a text is unclosed or out of place, expected the unit between "
               "quotes; close "
               "the quotes in the same line");
-    EXPECT_EQ(fault(with("CM_ \"never ends;\n")), "t.dbc:7:5: a text without its end; close its quotes");
+    EXPECT_EQ(fault(with("CM_ \"never ends;\n")), "t.dbc:7:5: a text is unclosed; close its quotes");
     EXPECT_EQ(fault(with("VAL_ 1 a 0 \"off\" 1 on ;")),
               "t.dbc:7:20: found \"on\", expected the value's name between quotes; correct it");
     EXPECT_EQ(fault(with("VAL_ 1 a 0 \"off\"\n")),
@@ -122,7 +121,7 @@ TEST(DbcFaults, texts) {
               "t.dbc:7:20: the file ends, expected \";\", the end of a statement; is it whole?");
 }
 
-TEST(DbcFaults, names) {
+TEST(DbcFaults, name_unknown_and_duplicate_names) {
     EXPECT_EQ(fault(with("BO_ 3 more: 8 then")),
               "t.dbc:7:15: BU_ names no node \"then\"; did you mean \"them\"?");
     EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,0) [0|0] \"\" us,robot")),
@@ -136,7 +135,7 @@ TEST(DbcFaults, names) {
     EXPECT_EQ(fault(with(" SG_ a : 16|8@1+ (1,0) [0|0] \"\" us")),
               "t.dbc:7:6: message \"ours\" has two signals \"a\"; rename one of them");
     EXPECT_EQ(fault(with("VAL_ 7 a 0 \"off\" ;")),
-              "t.dbc:7:6: no message has the identifier 7; define it by BO_ before it is spoken of");
+              "t.dbc:7:6: no message has the identifier 7; define it by BO_ before it is used");
     EXPECT_EQ(fault(with("VAL_ 2 aa 0 \"off\" ;")),
               "t.dbc:7:8: message \"ours\" has no signal \"aa\"; did you mean \"a\"?");
     EXPECT_EQ(fault(with("VAL_ 1 a 0 \"off\" 0 \"on\" ;")),
@@ -148,7 +147,7 @@ TEST(DbcFaults, names) {
               "t.dbc:8:10: signal \"a\" has its values named twice; keep one VAL_");
 }
 
-TEST(DbcFaults, places) {
+TEST(DbcFaults, name_signals_that_overlap_or_exceed_their_frame) {
     EXPECT_EQ(fault(with_signal("c : 30|4@1+ (1,0) [0|0] \"\" us")),
               "t.dbc:8:6: signal \"more.c\" reaches outside its frame of 4 bytes: it starts at bit 30 (its "
               "lowest) and goes up 4 "
@@ -169,7 +168,7 @@ TEST(DbcFaults, places) {
               "t.dbc:9:20: signal \"c\" has 16 bits, but a float has 32; correct one of them");
 }
 
-TEST(DbcFaults, multiplexors) {
+TEST(DbcFaults, name_invalid_multiplexors) {
     EXPECT_EQ(fault(with_signal("c m0 : 0|8@1+ (1,0) [0|0] \"\" us")),
               "t.dbc:8:6: signal \"c\" is multiplexed but its message has no multiplexor; write M behind the "
               "name of one");
@@ -183,9 +182,9 @@ TEST(DbcFaults, multiplexors) {
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 q q 1-1;\nSG_MUL_VAL_ 3 c q 0-0;")),
               "t.dbc:9:6: signal \"q\" is selected by itself, through others; correct SG_MUL_VAL_");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 c p 3-1;")),
-              "t.dbc:11:19: a range that ends before it begins; turn it round");
+              "t.dbc:11:19: an empty range; exchange its bounds");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 c c 1-1;")),
-              "t.dbc:11:17: signal \"c\" selects others but is no multiplexor; write M behind its name");
+              "t.dbc:11:17: signal \"c\" selects others but is not a multiplexor; write M behind its name");
     EXPECT_EQ(
         fault(with_signal(two + "SG_MUL_VAL_ 3 p q 1-1;")),
         "t.dbc:11:15: signal \"p\" is selected but not multiplexed; write m and a number behind its name");
@@ -197,19 +196,20 @@ TEST(DbcFaults, multiplexors) {
               "t.dbc:10:6: signal \"c\" is selected by more than 8 ranges; leave some to a second signal");
     EXPECT_EQ(
         fault(with_signal("p M : 0|8@1+ (0.5,0) [0|0] \"\" us\n SG_ c m0 : 8|8@1+ (1,0) [0|0] \"\" us")),
-        "t.dbc:9:6: signal \"more.p\" selects \"c\" but is no whole number of at most 32 bits: take factor "
-        "and offset away");
+        "t.dbc:9:6: signal \"more.p\" selects \"c\" but is not an integer of at most 32 bits: remove factor "
+        "and offset");
     EXPECT_EQ(fault(with_signal(
                   "p M : 0|8@1+ (1,0) [0|0] \"\" us\n SG_ c m0 : 8|8@1+ (1,0) [0|0] \"\" us\n SG_ d m1 : "
                   "8|16@1+ (1,0) [0|0] \"\" us\n SG_ e m0 : 12|8@1+ (1,0) [0|0] \"\" us")),
               "t.dbc:11:6: signal \"more.e\" overlaps \"c\" at bit 12: move one of them");
 }
 
-TEST(DbcFaults, rows_of_the_node) {
+TEST(DbcFaults, name_invalid_rows_of_the_node) {
     const auto of = [](const auto& node) { return fault(with(""), node.view()); };
-    EXPECT_EQ(of(node("us")), "t.dbc:5:7: message \"ours\" is sent by \"us\", which does not say how it "
-                              "becomes safe; write transmit(\"ours\", "
-                              "signal(\"..\").safe(..)) into its node, or .safe_by_silence() behind that");
+    EXPECT_EQ(
+        of(node("us")),
+        "t.dbc:5:7: message \"ours\" is sent by \"us\" but has no safe values; write transmit(\"ours\", "
+        "signal(\"..\").safe(..)) into its node, or .safe_by_silence() behind that");
     EXPECT_EQ(fault(with("BA_ \"GenMsgCycleTime\" BO_ 2 0;")),
               "t.dbc:5:7: message \"ours\" has no cycle time (GenMsgCycleTime); write can::every(..) or "
               "can::on_demand(..) into transmit(\"ours\", ..)");
@@ -238,16 +238,15 @@ TEST(DbcFaults, rows_of_the_node) {
     EXPECT_EQ(of(node("us", transmit("ours").safe_by_silence(), receive("ours"))),
               "t.dbc:5:7: message \"ours\" has two rows of \"us\"; keep one");
     EXPECT_EQ(of(node("us", transmit("ours", signal("a", 0, 8).safe(0)))),
-              "t.dbc:6:6: the row of signal \"a\" says what its file says; write signal(\"a\"), its safe "
+              "t.dbc:6:6: the row of signal \"a\" repeats its file; write signal(\"a\"), its safe "
               "value and unit");
     EXPECT_EQ(of(node("us", transmit("ours", signal("a").safe(0), signal("a").safe(1)))),
               "t.dbc:6:6: the row of message \"ours\" names \"a\" twice; keep one");
-    EXPECT_EQ(
-        of(node("us", transmit(standard(2), "ours", bytes(8), on_demand(10ms)))),
-        "t.dbc:5:7: the row of message \"ours\" says what its file says; leave identifier and length out");
+    EXPECT_EQ(of(node("us", transmit(standard(2), "ours", bytes(8), on_demand(10ms)))),
+              "t.dbc:5:7: the row of message \"ours\" repeats its file; leave identifier and length out");
 }
 
-TEST(DbcFaults, names_that_are_no_facets) {
+TEST(DbcFaults, name_names_that_cannot_be_facets) {
     const std::string long_name(56, 'x');
     const auto silent = [](const auto&... rows) {
         return node("us", transmit("ours").safe_by_silence(), rows...);

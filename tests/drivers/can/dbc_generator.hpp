@@ -1,5 +1,5 @@
-// Random DBC files of right spelling: both byte orders, signs, floats, multiplexors of both kinds, names of
-// values, code page 1252, cycle times. The same seed gives the same text everywhere.
+// Random valid DBC files: both byte orders, signs, floats, multiplexors of both kinds, names of values, code
+// page 1252, cycle times. The same seed gives the same text everywhere.
 #pragma once
 
 #include "kernel/base/random.hpp"
@@ -33,7 +33,7 @@ public:
         return text_ + tail_;
     }
 
-    std::vector<std::string> own{}; ///< what "us" sends in the last file
+    std::vector<std::string> own{}; ///< messages that "us" sends in the last file
 
 private:
     using Places = std::array<bool, 512>;
@@ -60,7 +60,7 @@ private:
         if (kind == 1) pages();
         if (kind == 2) nested_pages();
         for (std::size_t more = 1 + below(6); more != 0; --more) signal("", used_);
-        // A signal may stand before what selects it.
+        // A signal may stand before its multiplexor.
         for (std::size_t i = lines_.size(); i > 1; --i) std::swap(lines_[i - 1], lines_[below(i)]);
         for (const std::string& line : lines_) text_ += line;
         text_ += '\n';
@@ -95,7 +95,7 @@ private:
         }
         used_ = pages_;
     }
-    /// M, a second one among its pages, and ranges for all that they select.
+    /// M, a second one among its pages, and ranges for all multiplexed signals.
     void nested_pages() {
         const std::string outer = multiplexor("M", used_);
         if (outer.empty()) return;
@@ -150,14 +150,13 @@ private:
         }
         return add(word, places, bits, random_.one_in(2), scale, "");
     }
-    /// Empty: it found no room.
+    /// Returns empty when there was no room.
     std::string add(const std::string& word, Places& places, std::size_t bits, bool is_signed,
                     const std::string& scale, const std::string& value_type) {
         for (int tries = 0; tries < 12;
              ++tries, bits = value_type.empty() && word.find('M') == word.npos ? 1 + bits / 2 : bits) {
             const bool is_intel = random_.one_in(2);
-            const std::size_t first =
-                below(8 * bytes_); // of its bits, as they follow each other in their order
+            const std::size_t first = below(8 * bytes_); // counted in the signal's own bit order
             if (first + bits > 8 * bytes_) continue;
             bool is_free = true;
             const auto place = [&](std::size_t i) { return is_intel ? i : 8 * (i / 8) + 7 - i % 8; };

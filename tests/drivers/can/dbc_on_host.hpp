@@ -9,7 +9,7 @@
 
 namespace tappet::can {
 
-/// Rows that a file leaves unused are empty and behind the others.
+/// Unused rows are empty and come last.
 struct DbcMap {
     SignalMap<64, 512> map{};
     dbc::Sizes sizes{};

@@ -1,4 +1,4 @@
-# What canmatrix makes of DBC files and frames: reads orders from standard input, one a line, answers on standard output.
+# Answers what canmatrix makes of DBC files and frames: reads orders from standard input, one a line, answers on standard output.
 #   file PATH             its messages and signals
 #   decode ID EXT HEX     the signals of that frame, raw and physical
 #   encode ID EXT NAME=RAW ..   its bytes
@@ -22,7 +22,7 @@ def raw(signal, value):
 
 def describe(frame):
     senders = ",".join(frame.transmitters)
-    # An attribute that the message has not got has its default, by position or by name.
+    # A missing attribute of a message has its default, by position or by name.
     switches = int(frame.is_fd and frame.attribute("CANFD_BRS", db=matrix, default="1") == "1")
     print("frame", frame.arbitration_id.id, int(bool(frame.arbitration_id.extended)), frame.size, frame.name, int(frame.cycle_time), senders,
           int(frame.is_fd), switches, sep="\t")

@@ -1,5 +1,4 @@
-// DBC files and frames of fixed seeds: what our reader and decoder make of them, beside canmatrix, to the
-// bit.
+// Our reader and decoder agree with canmatrix to the bit, for DBC files and frames of fixed seeds.
 #include "apps/carpet_loom/maps.hpp"
 #include "drivers/can/dbc/writer.hpp"
 #include "drivers/can/signal_store.hpp"
@@ -40,7 +39,7 @@ std::string order_of(const Frame& frame) {
     return std::to_string(frame.id) + (frame.extended ? " 1 " : " 0 ");
 }
 
-/// A file, and all that its node takes; what that sends is silent when the machine is gone.
+/// A file with all messages that its node receives; its sent messages are silent when the machine is gone.
 struct Taken {
     std::string text, node;
     std::vector<std::string> own{};
@@ -54,7 +53,7 @@ struct Taken {
         for (const std::string& each : own) add(each, Direction::transmit, as_in_file);
         read = std::make_unique<DbcMap>(text, NodeView{node, rows, {}});
     }
-    /// What we wrote of a map.
+    /// The text that we wrote for a map.
     template <std::size_t F, std::size_t S>
     explicit Taken(const SignalMap<F, S>& map)
         : text{dbc::to_dbc("the-machine", map.frames, map.signals)}, node{"the_machine"} {
@@ -74,7 +73,7 @@ private:
     }
 };
 
-/// Multiplexed by hand, with names and both kinds of reals.
+/// Multiplexed, written by hand, with names and both kinds of floats.
 constexpr ValueName page_names[] = {{0, "läuft"}, {3, "say \"stop\""}};
 constexpr auto by_hand =
     signal_map(receive(extended(0x18FF0102), "pages", bytes(8), every(20ms),
@@ -170,7 +169,7 @@ const Asked& asked() {
     return once;
 }
 
-/// What our side says otherwise than canmatrix, with each map as `spoil` leaves it.
+/// The differences between our side and canmatrix, after `spoil` changed each map.
 class Comparison {
 public:
     using Map = SignalMap<64, 512>;
@@ -296,7 +295,7 @@ private:
             const double ours = to_physical(signal, raw), physical = from_bits(values[1]);
             if (std::isnan(ours) && std::isnan(physical)) continue;
             same(who, "raw", Asked::raw_text(signal, raw), values[0]);
-            // Theirs is of decimals of 28 digits.
+            // canmatrix computes with decimals of 28 digits.
             const double size = std::abs((ours - signal.offset)) + std::abs(signal.offset);
             if (ours != physical && !(std::abs(ours - physical) <= 1e-15 * 4 * size))
                 differ(who + ": physical: ", bits_of(ours) + ", canmatrix: " + values[1]);
@@ -305,7 +304,7 @@ private:
     void compare_encoded(const Map& map, const Frame& frame, const std::string& answer) {
         const std::size_t f = map.frame(Identifier{frame.id, frame.extended});
         SignalStore store{map};
-        bool is_plain = true; // a float that is no number has no text that comes back
+        bool is_plain = true; // a NaN has no text that reads back
         for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s) {
             const std::uint64_t raw = extract(frame.data, asked().taken[file_]->read->map.signals[s]);
             is_plain = is_plain && !std::isnan(to_physical(map.signals[s], raw));
@@ -332,7 +331,7 @@ TEST(DbcOracle, agrees_to_the_bit) {
     EXPECT_GT(comparison.fd, 100u);
 }
 
-/// The first signal of each map that `is_meant` is changed.
+/// Changes the first signal of each map that `is_meant` accepts.
 void expect_found(const std::function<bool(const Signal&)>& is_meant,
                   const std::function<void(Signal&)>& change) {
     std::size_t changed = 0;
@@ -348,14 +347,14 @@ void expect_found(const std::function<bool(const Signal&)>& is_meant,
     EXPECT_GE(2 * comparison.differences.size(), changed) << "not each frame shows each of them";
 }
 
-/// What was written and read back is the map that was written, so canmatrix agrees with that.
-TEST(DbcOracle, what_is_written_comes_back) {
+/// The map read back equals the written one, so canmatrix agrees with our writer.
+TEST(DbcOracle, reads_written_maps_back_unchanged) {
     expect_same(by_hand, *asked().taken[files]->read, Places::any);
     expect_same(carpet::can_signals, *asked().taken[files + 1]->read, Places::any);
     expect_same(of_can_fd, *asked().taken[files + 2]->read, Places::any);
 }
 
-TEST(DbcOracle, finds_a_format_that_is_planted_in_ours) {
+TEST(DbcOracle, detects_a_planted_format) {
     for (const auto& [from, to] : {std::pair{Format::classical, Format::flexible},
                                    {Format::flexible, Format::flexible_faster},
                                    {Format::flexible_faster, Format::classical}}) {
@@ -367,7 +366,7 @@ TEST(DbcOracle, finds_a_format_that_is_planted_in_ours) {
     }
 }
 
-TEST(DbcOracle, finds_what_is_planted_in_ours) {
+TEST(DbcOracle, detects_planted_signal_faults) {
     const auto any = [](const Signal&) { return true; };
     expect_found([](const Signal& s) { return s.start > 0 && s.start % 8 != 0; },
                  [](Signal& s) { --s.start; });

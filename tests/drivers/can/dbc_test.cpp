@@ -1,4 +1,4 @@
-// DBC files as signal maps: what the compiler makes of one, and what a node sends and receives of it.
+// DBC files as signal maps: the compiled map, and the frames that a node sends and receives with it.
 #include "drivers/can/bus.hpp"
 #include "drivers/can/from_dbc.hpp"
 #include "tests/drivers/can/press.dbc.hpp"
@@ -35,10 +35,10 @@ static_assert(found("service.flow").kind == Kind::float32 && found("diagnosis.co
 static_assert(found("drive.statusword").names.size() == 3 && found("drive.statusword").names[2].value == 15);
 static_assert(found("drive.statusword").names[1].name == "on, \"ready\"");
 static_assert(found("drive.statusword").names[2].name == "läuft");
-// What selects others stands before them.
+// Multiplexors stand before the signals that they select.
 static_assert(map.signal("service.page") < map.signal("service.pressure"));
 static_assert(map.signal("service.detail") < map.signal("service.flow"));
-// All the pages of what is sent become safe, the selected one at last.
+// All pages of a sent frame become safe, the selected one last.
 static_assert(map.safe_frames().size() == 3);
 static_assert(map.safe_frames()[0].data == Payload{2, 0, 0, 0});
 static_assert(map.safe_frames()[1].data == Payload{1, 4} && map.safe_frames()[2].data == Payload{0, 100});
@@ -53,7 +53,7 @@ Frame service(Payload data) {
     return {.id = 2566844962 & 0x1FFF'FFFF, .extended = true, .length = 8, .data = data};
 }
 
-TEST(Dbc, decodes_what_the_multiplexors_select_and_leaves_the_rest) {
+TEST(Dbc, decodes_only_signals_that_the_multiplexors_select) {
     SignalStore store{map};
     const auto is = [&](std::string_view name) {
         return store.physical(map.signal(std::string{"service."} + std::string{name}));
@@ -75,7 +75,7 @@ TEST(Dbc, decodes_what_the_multiplexors_select_and_leaves_the_rest) {
     EXPECT_EQ(is("pressure"), 100.0);
 }
 
-TEST(Dbc, sends_the_page_that_is_selected_and_keeps_within_the_range) {
+TEST(Dbc, sends_the_selected_page_and_keeps_within_the_range) {
     SignalStore store{map};
     store.set_physical(map.signal("panel_lamps.level"), 30);
     store.set_integer(map.signal("panel_lamps.Colour"), 3);
@@ -106,7 +106,7 @@ TEST(Signals, send_a_named_value_beyond_their_range) {
     EXPECT_TRUE(to_raw_integer(signal("n", 0, 8).range(0, 300), 0x1FF).saturated);
 }
 
-// By hand the same words make the same map.
+// The same rows written by hand make the same map.
 constexpr auto by_hand = signal_map(
     transmit(standard(514), "lamps", bytes(2), on_demand(10ms), signal("Which", 0, 4).range(0, 3).safe(0),
              signal("Brightness", 8, 8).times(0.5).range(0, 100).in("%").when("Which", 0).safe(50),
@@ -114,7 +114,7 @@ constexpr auto by_hand = signal_map(
 TAPPET_ACCEPTED(by_hand.fault);
 static_assert(by_hand.safe_frames().size() == 2 && by_hand.safe_frames()[0].data == Payload{1, 4});
 
-/// Of message 1, after these attributes.
+/// The format of message 1 after these attributes.
 Format format_in(const std::string& attributes) {
     static constexpr auto nobody = node("", receive("one", every(10ms)));
     const DbcMap read{"BU_: us\nBO_ 1 one: 8 us\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" us\n" + attributes,
@@ -125,7 +125,7 @@ Format format_in(const std::string& attributes) {
 const std::string formats =
     "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"ExtendedCAN_FD\",\"StandardCAN\",\"StandardCAN_FD\";\n";
 
-TEST(Dbc, says_can_fd_by_the_number_of_the_format_or_by_its_name) {
+TEST(Dbc, recognizes_can_fd_by_the_number_or_name_of_the_format) {
     EXPECT_EQ(format_in(""), Format::classical);
     EXPECT_EQ(format_in("BA_ \"VFrameFormat\" BO_ 1 14;"), Format::flexible_faster)
         << "as CANdb++ counts them";
@@ -143,7 +143,7 @@ TEST(Dbc, says_can_fd_by_the_number_of_the_format_or_by_its_name) {
               Format::classical);
 }
 
-TEST(Dbc, says_whether_the_bit_rate_switches) {
+TEST(Dbc, reads_whether_the_bit_rate_switches) {
     const std::string fd = formats + "BA_ \"VFrameFormat\" BO_ 1 2;\n";
     EXPECT_EQ(format_in(fd + "BA_ \"CANFD_BRS\" BO_ 1 0;"), Format::flexible);
     EXPECT_EQ(format_in(fd + "BA_ \"CANFD_BRS\" BO_ 1 1;"), Format::flexible_faster);
@@ -152,7 +152,7 @@ TEST(Dbc, says_whether_the_bit_rate_switches) {
     EXPECT_EQ(format_in("BA_ \"CANFD_BRS\" BO_ 1 1;"), Format::classical) << "of no CAN FD message";
 }
 
-TEST(Dbc, at_run_time_gives_what_the_compiler_made) {
+TEST(Dbc, reads_at_run_time_the_same_map_as_at_compile_time) {
     expect_same(map, {files::press_dbc.text, controller.view()});
 }
 

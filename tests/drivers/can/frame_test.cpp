@@ -1,4 +1,4 @@
-// What a frame can be, classical and CAN FD, and how long it takes on the wire.
+// Valid frames, classical and CAN FD, and their time on the wire.
 #include "drivers/can/frame_time.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ Frame of_length(unsigned length, bool fd = true) {
     return {.id = 0x123, .fd = fd, .length = static_cast<std::uint8_t>(length)};
 }
 
-TEST(Frame, has_the_lengths_of_its_format_and_no_others) {
+TEST(Frame, allows_only_the_lengths_of_its_format) {
     const std::set<unsigned> lengths{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
     for (unsigned length = 0; length < 256; ++length) {
         EXPECT_EQ(valid(of_length(length)), lengths.contains(length)) << length;
@@ -20,7 +20,7 @@ TEST(Frame, has_the_lengths_of_its_format_and_no_others) {
     }
 }
 
-TEST(Frame, is_never_remote_in_can_fd_nor_fast_in_classical_can) {
+TEST(Frame, refuses_remote_can_fd_and_fast_classical_frames) {
     Frame f = of_length(8);
     f.remote = true;
     EXPECT_FALSE(valid(f));
@@ -35,7 +35,7 @@ TEST(Frame, is_never_remote_in_can_fd_nor_fast_in_classical_can) {
     EXPECT_FALSE(valid(f));
 }
 
-TEST(Frame, keeps_the_format_that_it_was_given) {
+TEST(Frame, keeps_its_format) {
     for (const Format format : {Format::classical, Format::flexible, Format::flexible_faster}) {
         Frame f;
         set_format(f, format);
@@ -43,7 +43,7 @@ TEST(Frame, keeps_the_format_that_it_was_given) {
     }
 }
 
-TEST(FrameTime, is_that_of_the_frames_format_kind_and_length) {
+TEST(FrameTime, depends_on_format_kind_and_length) {
     constexpr BitRates rates{1'000'000'000, 0}; // a bit takes 1 ns
     Frame f = of_length(8, false);
     EXPECT_EQ(frame_time_ns(f, rates), 135); // Davis et al. 2007: 55 + 10 n for 11-bit identifiers

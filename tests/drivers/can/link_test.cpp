@@ -1,4 +1,4 @@
-// What the kernel's answer says of a CAN interface, and on which of them a machine may send.
+// The kernel's description of a CAN interface, and the interfaces on which a machine may send.
 #include "drivers/can/link.hpp"
 #include "drivers/can/netlink.hpp"
 
@@ -91,7 +91,7 @@ std::string refusal(const Controller& controller, std::uint32_t bit_rate = 500'0
     return good ? "" : std::string{good.error().view()};
 }
 
-TEST(CanLink, knows_the_state_that_the_controller_is_in_before_anything_was_received) {
+TEST(CanLink, knows_the_state_of_the_controller_before_the_first_frame) {
     EXPECT_EQ(link_of({.state = CAN_STATE_ERROR_ACTIVE}).state, State::active);
     EXPECT_EQ(link_of({.state = CAN_STATE_ERROR_WARNING}).state, State::warning);
     EXPECT_EQ(link_of({.state = CAN_STATE_ERROR_PASSIVE}).state, State::passive);
@@ -100,7 +100,7 @@ TEST(CanLink, knows_the_state_that_the_controller_is_in_before_anything_was_rece
     EXPECT_EQ(link_of({.state = CAN_STATE_SLEEPING}).state, State::down);
 }
 
-TEST(CanLink, knows_how_the_interface_is_set) {
+TEST(CanLink, knows_the_settings_of_the_interface) {
     const Link link = link_of({.bit_rate = 125'000, .restart_ms = 100});
     EXPECT_EQ(link.index, 7);
     EXPECT_TRUE(link.up);
@@ -111,11 +111,11 @@ TEST(CanLink, knows_how_the_interface_is_set) {
     EXPECT_TRUE(link_of({.kind = "vcan"}).is_virtual);
 }
 
-TEST(CanLink, refuses_what_is_no_can_interface_and_an_answer_that_is_too_short) {
+TEST(CanLink, refuses_other_interfaces_and_answers_that_are_too_short) {
     EXPECT_FALSE(read_link("eth0", answer({.type = ARPHRD_ETHER})));
     const Bytes whole = answer({});
     EXPECT_FALSE(read_link("can0", std::span{whole}.first(20)));
-    for (std::size_t n = 32; n < whole.size(); ++n) // cut anywhere else it says less, and nothing wrong
+    for (std::size_t n = 32; n < whole.size(); ++n) // truncated anywhere else it says less, and nothing wrong
         EXPECT_TRUE(read_link("can0", std::span{whole}.first(n))) << n;
 }
 
@@ -129,11 +129,11 @@ TEST(CanLink, fits_when_its_controller_runs_at_the_rate_of_the_board) {
     EXPECT_NE(refusal({}, 0).find("the board says it"), std::string::npos);
 }
 
-TEST(CanLink, has_no_rate_to_compare_when_it_is_virtual) {
+TEST(CanLink, skips_the_bit_rate_of_a_virtual_interface) {
     EXPECT_EQ(refusal({.kind = "vcan", .bit_rate = 0}), "");
 }
 
-TEST(CanLink, knows_whether_it_takes_can_fd_and_at_which_rate) {
+TEST(CanLink, knows_whether_and_at_which_bit_rate_it_accepts_can_fd) {
     const Link link = link_of({.data_bit_rate = 2'000'000});
     EXPECT_EQ(link.mtu, 72u);
     EXPECT_EQ(link.data_bit_rate, 2'000'000u);
@@ -141,7 +141,7 @@ TEST(CanLink, knows_whether_it_takes_can_fd_and_at_which_rate) {
     EXPECT_FALSE(link_of({}).takes_fd());
 }
 
-TEST(CanLink, fits_a_map_with_can_fd_frames_when_it_is_set_to_that) {
+TEST(CanLink, fits_a_can_fd_map_when_it_is_set_to_can_fd) {
     EXPECT_EQ(refusal({.data_bit_rate = 2'000'000}, 500'000, 2'000'000, true), "");
     EXPECT_EQ(refusal({.kind = "vcan", .data_bit_rate = 1}, 500'000, 2'000'000, true), "");
     EXPECT_EQ(refusal({}, 500'000, 2'000'000, true),
@@ -158,14 +158,14 @@ TEST(CanLink, fits_a_map_with_can_fd_frames_when_it_is_set_to_that) {
               std::string::npos);
 }
 
-TEST(CanLink, is_set_to_can_fd_where_the_board_says_so_though_the_map_has_classical_frames_only) {
+TEST(CanLink, is_set_to_can_fd_by_the_board_even_for_classical_frames) {
     EXPECT_NE(refusal({}, 500'000, 2'000'000).find("carries classical frames only"), std::string::npos)
         << "its controller would spoil the others' frames";
     EXPECT_EQ(refusal({.kind = "vcan"}, 500'000, 2'000'000), "");
     EXPECT_EQ(refusal({.data_bit_rate = 2'000'000}), "") << "more than is asked for";
 }
 
-TEST(CanLink, does_not_fit_while_its_controller_is_off_the_bus) {
+TEST(CanLink, does_not_fit_while_its_controller_is_bus_off) {
     EXPECT_EQ(
         refusal({.state = CAN_STATE_BUS_OFF}),
         "CAN interface \"can0\" is bus-off: look at its wiring and at the other nodes' power, then restart "
@@ -177,19 +177,19 @@ TEST(CanLink, does_not_fit_while_its_controller_is_off_the_bus) {
 
 constexpr std::uint32_t kernel = 0, asked = 5;
 
-TEST(Netlink, takes_the_kernels_answer_to_its_own_request) {
+TEST(Netlink, accepts_the_answer_of_the_kernel_to_its_own_request) {
     const NetlinkAnswer taken = judge(answer({}, asked), kernel, false, asked);
     EXPECT_TRUE(taken.ours);
     EXPECT_EQ(taken.error, 0);
 }
 
-TEST(Netlink, leaves_unread_what_another_process_sent_or_another_request_asked_for) {
+TEST(Netlink, ignores_answers_of_other_processes_and_to_other_requests) {
     EXPECT_FALSE(judge(answer({}, asked), 4711, false, asked).ours);
     EXPECT_FALSE(judge(answer({}, asked - 1), kernel, false, asked).ours);
     EXPECT_FALSE(judge({}, kernel, false, asked).ours);
 }
 
-TEST(Netlink, takes_an_answer_that_was_cut_for_an_error) {
+TEST(Netlink, treats_a_truncated_answer_as_an_error) {
     EXPECT_EQ(judge(answer({}, asked), kernel, true, asked).error, EMSGSIZE);
     const Bytes whole = answer({}, asked);
     const NetlinkAnswer taken = judge(std::span{whole}.first(whole.size() - 4), kernel, false, asked);
@@ -197,7 +197,7 @@ TEST(Netlink, takes_an_answer_that_was_cut_for_an_error) {
     EXPECT_EQ(taken.error, EPROTO);
 }
 
-TEST(Netlink, tells_the_kernels_refusal_and_its_acknowledgement) {
+TEST(Netlink, distinguishes_a_refusal_of_the_kernel_from_an_acknowledgement) {
     nlmsghdr head{};
     head.nlmsg_type = NLMSG_ERROR;
     head.nlmsg_seq = asked;

@@ -1,4 +1,4 @@
-// A signal map beside what was read of a DBC text.
+// A signal map compared with the one read from a DBC text.
 #pragma once
 
 #include "tests/drivers/can/dbc_on_host.hpp"

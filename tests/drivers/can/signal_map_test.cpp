@@ -50,7 +50,7 @@ TEST(Signals, decode_as_an_independent_decoder_does) {
     }
 }
 
-/// Of any length and order, within the first `end` bits.
+/// A signal of any length and order, within the first `end` bits.
 Signal any_signal(Random& random, int end) {
     const auto bits = static_cast<std::uint8_t>(random.between(1, 64));
     const bool motorola = random.one_in(2);
@@ -60,7 +60,7 @@ Signal any_signal(Random& random, int end) {
     return placed(static_cast<std::uint16_t>(start), bits, motorola ? Order::motorola : Order::intel, false);
 }
 
-TEST(Signals, come_back_as_they_went_in_and_touch_no_other_bit) {
+TEST(Signals, decode_as_they_were_encoded_and_touch_no_other_bit) {
     Random random{3};
     for (int round = 0; round < 2000; ++round) {
         const Signal s = any_signal(random, 64);
@@ -78,7 +78,7 @@ TEST(Signals, come_back_as_they_went_in_and_touch_no_other_bit) {
 }
 
 // By hand, bit for bit, in all 64 bytes; beyond 57 bits some reach into a ninth byte.
-TEST(Signals, lie_anywhere_in_64_bytes) {
+TEST(Signals, may_lie_anywhere_in_64_bytes) {
     Random random{4};
     for (int round = 0; round < 5000; ++round) {
         const Signal s = any_signal(random, 512);
@@ -108,7 +108,7 @@ TEST(Signals, apply_the_sign_before_factor_and_offset) {
     EXPECT_EQ(to_raw(s, 9.5).bits, 0xFFu);
 }
 
-TEST(Signals, that_are_whole_take_their_nearest_end_and_only_bits_are_cut) {
+TEST(Signals, saturate_integers_and_truncate_only_bits) {
     const Signal number = signal("speed", 16, 16).as_signed().in("rpm"), natural = signal("n", 0, 16),
                  bits = signal("word", 0, 16).as_bits(), wide = signal("w", 0, 64),
                  wide_signed = wide.as_signed();
@@ -150,7 +150,7 @@ TEST(Signals, carry_floats) {
     EXPECT_TRUE(to_raw(f, 1e300).saturated);
 }
 
-TEST(Signals, saturate_and_never_wrap) {
+TEST(Signals, saturate_and_do_not_wrap) {
     const Signal f = signal("f", 0, 32).as_float().times(0.001);
     const Signal s = signal("v", 0, 16).as_signed(), u = signal("v", 0, 16), wide = signal("w", 0, 64);
     const struct {
@@ -174,7 +174,7 @@ TEST(Signals, saturate_and_never_wrap) {
         EXPECT_EQ(to_raw(each.of, each.value).bits, each.bits) << each.of.name << " " << each.value;
         EXPECT_EQ(to_raw(each.of, each.value).saturated, each.saturated) << each.of.name << " " << each.value;
     }
-    // A number of the field's unit that has no end in that of the wire.
+    // A number that overflows to infinity in the unit of the wire.
     for (const double large : {1e306, -1e306}) {
         const bool up = large > 0;
         EXPECT_EQ(to_raw(signal("p", 0, 32).as_signed().times(0.001), large).bits,
@@ -216,7 +216,7 @@ template <class... Rows> std::string_view fault(const Rows&... rows) {
     return kept.view();
 }
 
-/// Of a frame "f" with these signals.
+/// Fault of a frame "f" with these signals.
 template <class... Signals> std::string_view fault_of(Bytes length, const Signals&... signals) {
     return fault(receive(standard(1), "f", length, every(1ms), signals...));
 }
@@ -224,7 +224,7 @@ template <class... Signals> std::string_view fault_of_sent(const Signals&... sig
     return fault(transmit(standard(1), "f", bytes(2), every(1ms), signals...));
 }
 
-TEST(SignalMap, sends_cyclic_safe_frames_first_and_leaves_out_what_is_safe_by_silence) {
+TEST(SignalMap, sends_cyclic_safe_frames_first_and_omits_rows_safe_by_silence) {
     static constexpr auto all = signal_map(
         transmit(standard(0x000), "nmt", bytes(2), on_demand(10ms), signal("command", 0, 8).safe(128),
                  signal("node", 8, 8).safe(0)),
@@ -236,7 +236,7 @@ TEST(SignalMap, sends_cyclic_safe_frames_first_and_leaves_out_what_is_safe_by_si
     EXPECT_EQ(all.safe_frames()[1].data, (Payload{128, 0}));
 }
 
-TEST(SignalMap, refuses_what_is_sent_and_says_no_safe_value) {
+TEST(SignalMap, refuses_sent_signals_without_a_safe_value) {
     EXPECT_EQ(
         fault_of_sent(signal("speed", 0, 16)),
         "signal \"f.speed\" does not say its safe value: write .safe(..) behind it, or .safe_by_silence() "
@@ -252,17 +252,17 @@ TEST(SignalMap, refuses_what_is_sent_and_says_no_safe_value) {
 
 constexpr ValueName states[]{{0, "off"}, {1, "on"}, {2, "reserved"}, {3, "reserved"}};
 
-TEST(SignalMap, refuses_a_safe_value_whose_name_says_no_value) {
+TEST(SignalMap, refuses_a_safe_value_with_an_unknown_name) {
     const auto named = [](const Signal& s) { return fault_of_sent(s); };
     const Signal lamp = signal("lamp", 0, 2).named(states);
     EXPECT_EQ(named(lamp.safe("on")), "");
-    EXPECT_EQ(named(lamp.safe("onn")), "signal \"f.lamp\" calls no value \"onn\"; did you mean \"on\"?");
+    EXPECT_EQ(named(lamp.safe("onn")), "signal \"f.lamp\" has no value \"onn\"; did you mean \"on\"?");
     EXPECT_EQ(named(lamp.safe("glowing")),
-              "signal \"f.lamp\" calls no value \"glowing\"; name it by VAL_ in its file, or by .named(..)");
+              "signal \"f.lamp\" has no value \"glowing\"; name it by VAL_ in its file, or by .named(..)");
     EXPECT_EQ(named(signal("lamp", 0, 2).safe("on")),
-              "signal \"f.lamp\" calls no value \"on\"; name it by VAL_ in its file, or by .named(..)");
-    EXPECT_EQ(named(lamp.safe("reserved")),
-              "signal \"f.lamp\" calls 2 and 3 \"reserved\"; name them apart, by VAL_ or by .named(..)");
+              "signal \"f.lamp\" has no value \"on\"; name it by VAL_ in its file, or by .named(..)");
+    EXPECT_EQ(named(lamp.safe("reserved")), "signal \"f.lamp\" has two values \"reserved\", 2 and 3; give "
+                                            "them different names, by VAL_ or by .named(..)");
     EXPECT_EQ(named(lamp.safe(0)), "") << "a number is no name";
 }
 
@@ -277,7 +277,7 @@ TEST(SignalStore, decodes_a_frame_that_fits) {
     EXPECT_EQ(store.physical(map.signal("drive.velocity")), -100.0);
 }
 
-TEST(SignalStore, counts_wrong_lengths_and_unknown_identifiers_and_decodes_neither) {
+TEST(SignalStore, counts_but_does_not_decode_wrong_lengths_and_unknown_identifiers) {
     SignalStore store{map};
     for (const std::uint8_t length : {std::uint8_t{0}, std::uint8_t{5}, std::uint8_t{7}, std::uint8_t{8}})
         EXPECT_EQ(store.decode(drive_frame(length)), Decoded::wrong_length);
@@ -308,7 +308,7 @@ TEST(SignalStore, encodes_a_row) {
     EXPECT_EQ(f.data, (Payload{0x0F, 0x00, 0x18, 0xFC, 0xFF, 0xFF, 0x00, 0x00}));
 }
 
-TEST(SignalStore, keeps_the_value_before_when_given_no_number_and_counts_saturation) {
+TEST(SignalStore, keeps_the_last_value_instead_of_nan_and_counts_saturation) {
     SignalStore store{map};
     const std::size_t target = map.signal("command.target");
     store.set_physical(target, 50);
@@ -362,7 +362,7 @@ constexpr auto fast = signal_map(
              signal("high", 128, 32).when("page", 1).as_signed().safe(-1)));
 static_assert(fast.fault.empty());
 
-TEST(SignalMap, has_can_fd_rows_with_signals_anywhere_in_them) {
+TEST(SignalMap, accepts_can_fd_rows_with_signals_anywhere) {
     SignalStore store{fast};
     Frame f{.id = 0x321, .length = 64};
     set_format(f, Format::flexible_faster);
@@ -377,7 +377,7 @@ TEST(SignalMap, has_can_fd_rows_with_signals_anywhere_in_them) {
     EXPECT_EQ(store.integer(fast.signal("scan.last")), -2);
 }
 
-TEST(SignalMap, takes_a_can_fd_row_for_no_frame_of_another_format_or_length) {
+TEST(SignalMap, refuses_can_fd_frames_of_another_format_or_length) {
     SignalStore store{fast};
     Frame f;
     f.id = 0x321;
@@ -398,7 +398,7 @@ TEST(SignalMap, takes_a_can_fd_row_for_no_frame_of_another_format_or_length) {
     EXPECT_EQ(classical.decode(drive), Decoded::wrong_length);
 }
 
-TEST(SignalMap, sends_the_pages_of_a_can_fd_row_with_zeros_between_and_both_when_the_machine_is_gone) {
+TEST(SignalMap, sends_the_pages_of_a_can_fd_row_with_zeros_between_them) {
     SignalStore store{fast};
     store.set_bits(fast.signal("pages.low"), ~std::uint64_t{0});
     store.set_bits(fast.signal("pages.high"), 0x12345678);
@@ -419,7 +419,7 @@ TEST(SignalMap, sends_the_pages_of_a_can_fd_row_with_zeros_between_and_both_when
     for (const Frame& each : fast.safe_frames()) EXPECT_EQ(format_of(each), Format::flexible);
 }
 
-TEST(SignalMap, refuses_lengths_that_there_are_not) {
+TEST(SignalMap, refuses_lengths_that_do_not_exist) {
     const auto of = [](Bytes length) { return fault_of(length, signal("a", 0, 8)); };
     EXPECT_EQ(of(fd_bytes(13)), "frame \"f\" has 13 bytes: CAN FD has no such length; make it 16, and "
                                 "what no signal covers is padding");
@@ -430,7 +430,7 @@ TEST(SignalMap, refuses_lengths_that_there_are_not) {
         EXPECT_EQ(of(fd_bytes(static_cast<std::uint8_t>(length))), "");
 }
 
-TEST(SignalMap, refuses_what_overlaps_or_reaches_outside_behind_the_eighth_byte) {
+TEST(SignalMap, refuses_invalid_signals_behind_the_eighth_byte_too) {
     EXPECT_EQ(fault_of(fd_bytes(64), signal("a", 300, 64), signal("b", 363, 8)),
               "signal \"f.b\" overlaps \"a\" at bit 363: move one of them");
     EXPECT_EQ(fault_of(fd_bytes(64), signal("a", 300, 64), signal("b", 364, 8)), "");
@@ -441,7 +441,7 @@ TEST(SignalMap, refuses_what_overlaps_or_reaches_outside_behind_the_eighth_byte)
     EXPECT_NE(fault_of(fd_bytes(48), signal("a", 383, 9).big_endian()), "");
 }
 
-TEST(SignalMap, refuses_doubled_names_and_identifiers) {
+TEST(SignalMap, refuses_duplicate_names_and_identifiers) {
     const auto row = [](std::uint32_t id, std::string_view name) {
         return receive(standard(id), name, bytes(8), every(1ms), signal("a", 0, 8));
     };
@@ -457,7 +457,7 @@ TEST(SignalMap, refuses_doubled_names_and_identifiers) {
     EXPECT_EQ(fault(row(1, "")), "frame 1 has no name: name it");
 }
 
-TEST(SignalMap, refuses_a_factor_of_zero_and_odd_floats) {
+TEST(SignalMap, refuses_a_factor_of_zero_and_16_bit_floats) {
     EXPECT_EQ(fault_of(bytes(8), signal("a", 0, 8).times(0)),
               "signal \"f.a\" has the factor 0: every value would be the offset; give it another");
     EXPECT_NE(fault_of(bytes(8), signal("a", 0, 16).as_float()), "");

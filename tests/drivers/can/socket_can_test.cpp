@@ -1,5 +1,5 @@
-// Opening a CAN interface that cannot work: each refusal names what, where and the cure. The rest is on the
-// bench.
+// Opening a CAN interface that cannot work: each refusal names the place, the fault and the cure. The rest is
+// tested on the bench.
 #include "drivers/can/socket_can.hpp"
 
 #include <gtest/gtest.h>
@@ -17,23 +17,24 @@ std::string refusal(std::string_view interface) {
     return opened ? "" : std::string{opened.error().view()};
 }
 
-TEST(SocketCan, refuses_an_interface_that_does_not_exist_and_says_how_to_make_it) {
+TEST(SocketCan, refuses_a_missing_interface_and_says_how_to_create_it) {
     EXPECT_EQ(refusal("can77"),
               "CAN interface \"can77\" does not exist: create it (ip link add dev can77 type vcan, or load "
               "its controller's driver) or name another in the board");
 }
 
-TEST(SocketCan, refuses_names_that_no_interface_can_have) {
+TEST(SocketCan, refuses_impossible_interface_names) {
     EXPECT_NE(refusal("").find("1 to 15 characters"), std::string::npos);
     EXPECT_NE(refusal("can-with-a-long-name").find("1 to 15 characters"), std::string::npos);
 }
 
-TEST(SocketCan, refuses_an_interface_that_is_no_can_bus) {
-    EXPECT_EQ(refusal("lo"),
-              "CAN interface \"lo\" is no CAN interface; name another in the board (ip link show type can)");
+TEST(SocketCan, refuses_an_interface_that_is_not_a_can_bus) {
+    EXPECT_EQ(
+        refusal("lo"),
+        "CAN interface \"lo\" is not a CAN interface; name another in the board (ip link show type can)");
 }
 
-TEST(SocketCan, refuses_a_bus_of_another_rate_than_the_board_says) {
+TEST(SocketCan, refuses_a_bit_rate_other_than_that_of_the_board) {
     SocketCan can;
     const Link link{.index = 7, .up = true, .bit_rate = 500'000};
     const auto opened = can.open({.interface = "can0", .bit_rate = 250'000}, link);

@@ -1,4 +1,4 @@
-// What waits to be sent: order, replacement, age, and the few frames that may be in flight.
+// Frames that wait to be sent: order, replacement, age, and the few frames that may be in flight.
 #include "drivers/can/transmitter.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ TEST(Arbitration, lets_the_lower_identifier_win) {
     EXPECT_LT(arbitration(frame(0x100)), arbitration(frame(0x101)));
 }
 
-TEST(Arbitration, lets_data_win_over_remote_and_standard_over_extended_of_the_same_base) {
+TEST(Arbitration, prefers_data_to_remote_and_standard_to_extended_frames) {
     Frame remote = frame(0x100);
     remote.remote = true;
     Frame long_one = frame(0x100u << 18);
@@ -30,7 +30,7 @@ TEST(Arbitration, lets_data_win_over_remote_and_standard_over_extended_of_the_sa
     EXPECT_LT(arbitration(long_remote), arbitration(frame(0x101)));
 }
 
-TEST(TransmitQueue, gives_frames_in_the_order_of_arbitration) {
+TEST(TransmitQueue, returns_frames_in_the_order_of_arbitration) {
     TransmitQueue queue;
     for (const std::uint32_t id : {0x300u, 0x100u, 0x200u})
         EXPECT_EQ(queue.push(frame(id), Keep::latest), Send::queued);
@@ -50,7 +50,7 @@ TEST(TransmitQueue, replaces_the_older_frame_of_a_cyclic_identifier) {
     EXPECT_EQ(queue.front()->data[0], 2);
 }
 
-TEST(TransmitQueue, puts_last_words_behind_all_in_their_order_and_never_drops_them) {
+TEST(TransmitQueue, keeps_last_frames_at_the_end_and_in_order) {
     TransmitQueue queue;
     for (const std::uint32_t id : {0x205u, 0x80u, 0u})
         EXPECT_EQ(queue.push(frame(id, at_ns(1)), Keep::last), Send::queued);
@@ -64,7 +64,7 @@ TEST(TransmitQueue, puts_last_words_behind_all_in_their_order_and_never_drops_th
     }
 }
 
-TEST(TransmitQueue, keeps_every_command_in_its_order) {
+TEST(TransmitQueue, keeps_every_command_in_order) {
     TransmitQueue queue;
     for (const std::uint8_t command : {std::uint8_t{0x81}, std::uint8_t{0x01}, std::uint8_t{0x02}})
         EXPECT_EQ(queue.push(frame(0, at_ns(1), command), Keep::every), Send::queued);
@@ -85,7 +85,7 @@ TEST(TransmitQueue, refuses_when_full_and_stays_in_order) {
     EXPECT_EQ(queue.front()->id, 0x700u - 63u);
 }
 
-TEST(TransmitQueue, drops_what_is_older_and_keeps_the_rest_in_order) {
+TEST(TransmitQueue, drops_older_frames_and_keeps_the_rest_in_order) {
     TransmitQueue queue;
     EXPECT_EQ(queue.push(frame(1, at_ns(10)), Keep::latest), Send::queued);
     EXPECT_EQ(queue.push(frame(2, at_ns(30)), Keep::latest), Send::queued);
@@ -107,7 +107,7 @@ struct Sending : testing::Test {
     Counters count;
 };
 
-TEST_F(Sending, hands_over_no_more_than_may_be_in_flight) {
+TEST_F(Sending, hands_over_at_most_as_many_frames_as_may_be_in_flight) {
     for (const std::uint32_t id : {1u, 2u, 3u}) transmitter.push(frame(id, at_ns(1)), Keep::latest, count);
     for (int i = 0; i < 2; ++i) {
         ASSERT_NE(transmitter.next(at_ns(1), count), nullptr);
@@ -127,7 +127,7 @@ TEST_F(Sending, never_hands_over_a_frame_older_than_its_age) {
     EXPECT_EQ(count.dropped_stale, 1u);
 }
 
-TEST_F(Sending, refuses_contents_made_before_a_restart) {
+TEST_F(Sending, refuses_frames_built_before_a_restart) {
     transmitter.restarted(Time{5ms}, count);
     EXPECT_EQ(transmitter.push(frame(1, Time{5ms}), Keep::latest, count), Send::refused_stale);
     EXPECT_EQ(transmitter.push(frame(1, Time{5ms + 1ns}), Keep::latest, count), Send::queued);
@@ -145,7 +145,7 @@ TEST_F(Sending, notices_a_missing_acknowledgement_and_counts_a_late_one) {
     EXPECT_EQ(count.sent_late, 1u);
 }
 
-TEST_F(Sending, takes_no_confirmation_from_before_a_restart_for_a_new_frame) {
+TEST_F(Sending, ignores_confirmations_from_before_a_restart) {
     transmitter.restarted(Time{5ms}, count);
     transmitter.push(frame(1, Time{6ms}), Keep::latest, count);
     ASSERT_NE(transmitter.next(Time{6ms}, count), nullptr);

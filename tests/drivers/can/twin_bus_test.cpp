@@ -1,4 +1,4 @@
-// The bus of the host world: who wins, what it costs, and every fault of it.
+// The bus of the host world: arbitration, times, and all its injected faults.
 #include "drivers/can/signal_map.hpp"
 #include "drivers/can/twin_bus.hpp"
 
@@ -29,14 +29,14 @@ struct TwinBusTest : testing::Test {
         EXPECT_TRUE(bus.attach(machine));
         EXPECT_TRUE(bus.attach(plant));
     }
-    /// As long as its bus takes it, if the test says no length.
+    /// Without a length from the test, the frame takes the default of its bus.
     [[nodiscard]] Frame frame(std::uint32_t id, Time made, std::optional<std::uint8_t> length = {}) const {
         Frame f{.id = id, .length = length.value_or(format_ == Format::classical ? 8 : 64), .stamp = made};
         set_format(f, format_);
         for (std::size_t i = 0; i < f.length; ++i) f.data[i] = static_cast<std::uint8_t>(i + 1);
         return f;
     }
-    /// One period: the machine serves, the bus carries, both ends read.
+    /// One period: the machine is served, the bus delivers, both ends read.
     void step(Time now) {
         machine.service(now);
         plant.service(now);
@@ -75,7 +75,7 @@ TEST_F(TwinBusTest, carries_a_frame_and_confirms_it) {
     EXPECT_EQ(plant.counters().received, 1u);
 }
 
-TEST_F(TwinBusTest, lets_nothing_through_that_the_filter_does_not_name) {
+TEST_F(TwinBusTest, delivers_only_frames_named_in_the_filter) {
     Twin stranger;
     constexpr std::array others{standard(0x777), extended(0x181)};
     ASSERT_TRUE(stranger.open({.interface = "stranger", .transmit = others}));
@@ -90,12 +90,12 @@ TEST_F(TwinBusTest, lets_nothing_through_that_the_filter_does_not_name) {
     EXPECT_TRUE(drain(machine).empty());
 }
 
-TEST_F(TwinBusTest, refuses_to_send_an_identifier_that_is_not_ours) {
+TEST_F(TwinBusTest, refuses_to_send_a_foreign_identifier) {
     EXPECT_EQ(machine.send(frame(0x181, Time{1ms})), Send::refused_invalid);
     EXPECT_EQ(machine.counters().refused, 1u);
 }
 
-TEST_F(TwinBusTest, counts_an_impostor_and_hands_it_to_nobody) {
+TEST_F(TwinBusTest, counts_but_does_not_deliver_an_impostor) {
     Twin impostor;
     ASSERT_TRUE(impostor.open({.interface = "impostor", .transmit = machine_sends}));
     ASSERT_TRUE(bus.attach(impostor));
@@ -106,7 +106,7 @@ TEST_F(TwinBusTest, counts_an_impostor_and_hands_it_to_nobody) {
     EXPECT_EQ(machine.counters().impostors, 1u);
 }
 
-TEST_F(TwinBusTest, takes_bit_times_and_serves_the_lower_identifier_first) {
+TEST_F(TwinBusTest, needs_the_bit_times_and_sends_the_lower_identifier_first) {
     TwinBus slow{1, {1'000'000, 0}};
     Twin a, b;
     constexpr std::array low{standard(0x100)};
@@ -162,7 +162,7 @@ TEST_F(TwinBusTest, corrupts_the_length_of_one_identifier_only) {
     EXPECT_EQ(arrived[1].length, 7);
 }
 
-TEST_F(TwinBusTest, says_how_many_frames_were_lost_before_the_next_one) {
+TEST_F(TwinBusTest, reports_how_many_frames_were_lost_before_the_next_one) {
     bus.overflow(machine, 7);
     carry(plant, 0x181, Time{1ms});
     Frame f;
@@ -172,7 +172,7 @@ TEST_F(TwinBusTest, says_how_many_frames_were_lost_before_the_next_one) {
     EXPECT_EQ(machine.counters().lost_in_kernel, 7u);
 }
 
-TEST_F(TwinBusTest, overflows_an_inbox_that_nobody_reads) {
+TEST_F(TwinBusTest, overflows_an_unread_inbox) {
     std::uint64_t sent = 0;
     for (Time now{1ms}; sent < 300; now += 1ms, ++sent) {
         carry(plant, 0x181, now);
@@ -184,7 +184,7 @@ TEST_F(TwinBusTest, overflows_an_inbox_that_nobody_reads) {
     EXPECT_EQ(machine.receive(f).lost, 300u - Twin::inbox);
 }
 
-TEST_F(TwinBusTest, goes_silent_at_bus_off_and_comes_back_only_when_restarted) {
+TEST_F(TwinBusTest, stops_at_bus_off_until_it_is_restarted) {
     EXPECT_EQ(machine.restart(), Restart::not_needed);
     EXPECT_EQ(machine.send(frame(0x201, Time{1ms})), Send::queued);
     EXPECT_EQ(machine.send(frame(0x202, Time{1ms})), Send::queued);
@@ -212,7 +212,7 @@ TEST_F(TwinBusTest, goes_silent_at_bus_off_and_comes_back_only_when_restarted) {
     EXPECT_EQ(machine.counters().dropped_stale, 3u);
 }
 
-TEST_F(TwinBusTest, drops_what_waits_when_told_to) {
+TEST_F(TwinBusTest, drops_queued_frames_when_purged) {
     for (const Identifier& one : machine_sends)
         EXPECT_EQ(machine.send(frame(one.id, Time{1ms})), Send::queued);
     machine.service(Time{1ms});
@@ -224,7 +224,7 @@ TEST_F(TwinBusTest, drops_what_waits_when_told_to) {
     EXPECT_EQ(machine.counters().dropped_stale, 3u);
 }
 
-TEST_F(TwinBusTest, begins_anew_when_it_is_opened_again) {
+TEST_F(TwinBusTest, starts_clean_when_it_is_opened_again) {
     bus.bus_off(machine);
     drain(machine);
     EXPECT_EQ(machine.state(), State::bus_off);
@@ -234,7 +234,7 @@ TEST_F(TwinBusTest, begins_anew_when_it_is_opened_again) {
     EXPECT_EQ(drain(plant).size(), 1u);
 }
 
-TEST_F(TwinBusTest, restarts_no_more_often_than_allowed) {
+TEST_F(TwinBusTest, restarts_only_as_often_as_allowed) {
     Time now{1ms};
     for (int i = 0; i < 2; ++i, now += 1ms) {
         bus.bus_off(machine);
@@ -262,7 +262,7 @@ TEST_F(TwinBusTest, stays_faulted_when_the_restart_fails) {
     EXPECT_EQ(machine.restart(), Restart::done);
 }
 
-TEST_F(TwinBusTest, takes_missing_acknowledgements_for_a_fault_and_sends_nothing_stale_afterwards) {
+TEST_F(TwinBusTest, treats_missing_acknowledgements_as_a_fault_and_drops_stale_frames) {
     bus.set_acknowledged(false);
     for (Time now{0ms}; now <= Time{60ms}; now += 1ms) {
         machine.send(frame(0x201, now));
@@ -316,7 +316,7 @@ struct TwinBusFd : TwinBusTest {
     TwinBusFd() : TwinBusTest{{500'000, 2'000'000}, Format::flexible_faster} {}
 };
 
-TEST_F(TwinBusFd, carries_64_bytes_in_the_times_of_two_rates) {
+TEST_F(TwinBusFd, carries_64_bytes_at_two_bit_rates) {
     const Frame sent = frame(0x201, Time{1ms});
     EXPECT_EQ(machine.send(sent), Send::queued);
     machine.service(Time{1ms});
@@ -332,7 +332,7 @@ TEST_F(TwinBusFd, carries_64_bytes_in_the_times_of_two_rates) {
     EXPECT_EQ(machine.counters().sent, 1u);
 }
 
-TEST_F(TwinBusFd, takes_longer_without_the_switch_and_with_classical_frames_between) {
+TEST_F(TwinBusFd, needs_more_time_without_bit_rate_switch_and_for_classical_frames) {
     Frame slow = frame(0x201, Time{1ms});
     slow.bit_rate_switch = false;
     Frame classical = frame(0x202, Time{1ms}, 8);
@@ -347,7 +347,7 @@ TEST_F(TwinBusFd, takes_longer_without_the_switch_and_with_classical_frames_betw
     EXPECT_EQ(arrived[1].stamp, Time{1ms + 1420us + 270us});
 }
 
-TEST_F(TwinBusFd, has_every_fault_of_a_classical_bus) {
+TEST_F(TwinBusFd, injects_every_fault_of_a_classical_bus) {
     bus.faults.spoil.next = 1;
     carry(machine, 0x201, Time{1ms});
     bus.deliver_until(Time{2ms});
@@ -372,7 +372,7 @@ TEST_F(TwinBusFd, has_every_fault_of_a_classical_bus) {
     EXPECT_EQ(drain(plant).size(), 1u) << "the other one is late";
 }
 
-TEST_F(TwinBusFd, corrupts_a_length_into_another_one_that_there_is) {
+TEST_F(TwinBusFd, corrupts_a_length_into_another_valid_one) {
     Time now{};
     for (const auto& [sent, corrupted] : {std::pair{64, 48}, {48, 32}, {12, 8}, {8, 7}, {0, 1}}) {
         bus.faults.corrupt_length.next = 1;
@@ -388,7 +388,7 @@ TEST_F(TwinBusFd, corrupts_a_length_into_another_one_that_there_is) {
     EXPECT_EQ(plant.counters().malformed, 0u);
 }
 
-TEST_F(TwinBusFd, is_not_for_an_end_that_has_classical_can_only) {
+TEST_F(TwinBusFd, delivers_no_can_fd_frame_to_a_classical_end) {
     Twin classical;
     constexpr std::array own{standard(0x300)};
     ASSERT_TRUE(classical.open({.interface = "old", .receive = machine_sends, .transmit = own}));
@@ -400,7 +400,7 @@ TEST_F(TwinBusFd, is_not_for_an_end_that_has_classical_can_only) {
     EXPECT_EQ(drain(plant).size(), 1u);
 }
 
-TEST_F(TwinBusFd, refuses_what_is_no_frame) {
+TEST_F(TwinBusFd, refuses_invalid_frames) {
     Frame wrong = frame(0x201, Time{1ms}, 9);
     EXPECT_EQ(machine.send(wrong), Send::refused_invalid);
     wrong.length = 8;
@@ -408,7 +408,7 @@ TEST_F(TwinBusFd, refuses_what_is_no_frame) {
     EXPECT_EQ(machine.send(wrong), Send::refused_invalid);
 }
 
-TEST_F(TwinBusTest, wakes_who_waits_for_it_when_something_is_delivered) {
+TEST_F(TwinBusTest, wakes_its_waiter_when_a_frame_is_delivered) {
     os::Waiter waiter;
     ASSERT_TRUE(machine.wakes(waiter));
     step(Time{1ms});
@@ -443,7 +443,7 @@ std::uint64_t run_of(std::uint64_t seed) {
     return digest;
 }
 
-TEST(TwinBusRuns, are_equal_for_equal_seeds_and_differ_for_others) {
+TEST(TwinBusRuns, are_equal_for_equal_seeds_and_differ_otherwise) {
     EXPECT_EQ(run_of(5), run_of(5));
     EXPECT_NE(run_of(5), run_of(6));
 }

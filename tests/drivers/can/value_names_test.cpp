@@ -57,7 +57,7 @@ constexpr std::size_t gear = map.signal("gearbox.gear"), oil = map.signal("gearb
 constexpr std::size_t wanted = map.signal("gear_command.wanted"), most = map.signal("gear_command.most");
 constexpr std::size_t command = map.frame("gear_command");
 
-TEST(ValueNames, are_what_comes_from_the_wire) {
+TEST(ValueNames, match_received_values) {
     SignalStore store{map};
     Frame frame{.id = 385, .length = 2, .data = {0xFF, 0xFF}};
     ASSERT_EQ(store.decode(frame), Decoded::yes);
@@ -69,7 +69,7 @@ TEST(ValueNames, are_what_comes_from_the_wire) {
     EXPECT_NE(store.physical(oil), (value_of<map, "gearbox.oil", "not available">));
 }
 
-TEST(ValueNames, are_what_goes_to_the_wire) {
+TEST(ValueNames, encode_sent_values) {
     SignalStore store{map};
     store.set_integer(wanted, std::to_underlying(Gear::reverse));
     store.set_physical(most, value_of<map, "gear_command.most", "not available">);

@@ -11,7 +11,7 @@ bool passes(const can_filter& filter, std::uint32_t can_id) {
     return (can_id & filter.can_mask) == (filter.can_id & filter.can_mask);
 }
 
-TEST(Filter, lets_exactly_one_standard_identifier_through) {
+TEST(Filter, passes_exactly_one_standard_identifier) {
     const can_filter filter = wire::exactly({0x181, false});
     EXPECT_EQ(filter.can_mask, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK)
         << "the mask of the kernel's fast path";
@@ -22,7 +22,7 @@ TEST(Filter, lets_exactly_one_standard_identifier_through) {
     EXPECT_FALSE(passes(filter, 0x18FF'0181 | CAN_EFF_FLAG));
 }
 
-TEST(Filter, lets_exactly_one_extended_identifier_through) {
+TEST(Filter, passes_exactly_one_extended_identifier) {
     const can_filter filter = wire::exactly({0x18FF'0102, true});
     EXPECT_TRUE(passes(filter, 0x18FF'0102 | CAN_EFF_FLAG));
     EXPECT_FALSE(passes(filter, 0x102));
@@ -63,7 +63,7 @@ TEST(Wire, carries_can_fd_frames_of_every_length) {
         }
 }
 
-TEST(Wire, says_that_the_sender_is_error_passive) {
+TEST(Wire, reports_that_the_sender_is_error_passive) {
     canfd_frame raw{};
     raw.len = 8;
     raw.flags = CANFD_ESI;
@@ -73,7 +73,7 @@ TEST(Wire, says_that_the_sender_is_error_passive) {
     EXPECT_FALSE(f.bit_rate_switch);
 }
 
-TEST(Wire, reads_no_flags_in_a_classical_frame) { // that byte is padding there
+TEST(Wire, ignores_the_flags_of_a_classical_frame) { // that byte is padding there
     canfd_frame raw{};
     raw.len = 8;
     raw.flags = 0xFF;
@@ -83,7 +83,7 @@ TEST(Wire, reads_no_flags_in_a_classical_frame) { // that byte is padding there
     EXPECT_FALSE(f.error_state_indicator);
 }
 
-TEST(Wire, refuses_a_length_that_no_frame_has) {
+TEST(Wire, refuses_a_length_that_does_not_exist) {
     for (const auto& [bytes, length] : {std::pair<std::size_t, int>{CAN_MTU, 9},
                                         {CANFD_MTU, 9},
                                         {CANFD_MTU, 63},
@@ -98,14 +98,14 @@ TEST(Wire, refuses_a_length_that_no_frame_has) {
     }
 }
 
-TEST(ErrorFrame, says_bus_off) {
+TEST(ErrorFrame, reports_bus_off) {
     canfd_frame raw{};
-    raw.can_id = 0x2000'0040; // as vcan hands it on when it is injected
+    raw.can_id = 0x2000'0040; // as vcan passes it when it is injected
     raw.len = 8;
     EXPECT_EQ(wire::decode_error(raw, State::passive).state, State::bus_off);
 }
 
-TEST(ErrorFrame, says_how_bad_it_is_and_keeps_the_state_it_does_not_mention) {
+TEST(ErrorFrame, reports_the_error_state_and_keeps_it_when_unmentioned) {
     canfd_frame raw{};
     raw.can_id = CAN_ERR_FLAG | CAN_ERR_CRTL;
     raw.len = 8;
@@ -122,7 +122,7 @@ TEST(ErrorFrame, says_how_bad_it_is_and_keeps_the_state_it_does_not_mention) {
     EXPECT_TRUE(wire::decode_error(raw, State::active).overrun);
 }
 
-TEST(ErrorFrame, is_not_asked_for_per_bus_error) {
+TEST(ErrorFrame, is_not_requested_for_single_bus_errors) {
     EXPECT_EQ(wire::error_mask & (CAN_ERR_BUSERROR | CAN_ERR_PROT | CAN_ERR_ACK | CAN_ERR_LOSTARB), 0u);
 }
 

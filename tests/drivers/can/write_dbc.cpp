@@ -1,5 +1,5 @@
-// Writes a header with DBC files of some seeds and what their node "us" says, for a test that has them
-// compiled.
+// Writes a header with DBC files of some seeds and the rows of their node "us", for a test that compiles
+// them.
 #include "tests/drivers/can/dbc_generator.hpp"
 
 #include <cstdio>

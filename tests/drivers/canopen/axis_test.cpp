@@ -1,4 +1,4 @@
-// The motions of an axis, as its commands and its set points ask for them.
+// The motions of an axis, as its commands and its set points request them.
 #include "tests/drivers/canopen/servo_axis.hpp"
 
 namespace tappet::test {
@@ -8,7 +8,7 @@ struct AxisWithoutPower : ServoAxis {
     void SetUp() override {}
 };
 
-TEST_F(ServoAxis, says_done_of_no_motion_that_was_halted) {
+TEST_F(ServoAxis, does_not_complete_a_halted_motion) {
     ASSERT_TRUE(client->move_to.send(100.0, 20.0));
     run(1s);
     EXPECT_TRUE(does(client->halt));
@@ -21,8 +21,8 @@ TEST_F(ServoAxis, says_done_of_no_motion_that_was_halted) {
     EXPECT_EQ(client->superimpose.state(), CommandState::failed);
 }
 
-TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
-    ASSERT_TRUE(client->superimpose.send(5.0, 20.0, 100.0)); // from a stand, a relative move
+TEST_F(ServoAxis, does_not_complete_a_replaced_motion) {
+    ASSERT_TRUE(client->superimpose.send(5.0, 20.0, 100.0)); // from standstill, a relative move
     run(100ms);
     EXPECT_TRUE(does(client->move_to, -50.0, 80.0));
     EXPECT_EQ(client->superimpose.state(), CommandState::failed);
@@ -36,7 +36,7 @@ TEST_F(ServoAxis, says_done_of_no_motion_that_another_took_the_place_of) {
     EXPECT_EQ(client->superimpose.state(), CommandState::failed);
 }
 
-TEST_F(ServoAxis, is_held_after_a_stop_until_it_is_released_also_without_power_in_between) {
+TEST_F(ServoAxis, stays_stopped_until_it_is_released_even_across_a_power_cycle) {
     EXPECT_TRUE(does(client->come_to_stop));
     client->power_off.emit();
     run(200ms);
@@ -46,7 +46,7 @@ TEST_F(ServoAxis, is_held_after_a_stop_until_it_is_released_also_without_power_i
     EXPECT_EQ(client->move_to.state(), CommandState::rejected);
 }
 
-TEST_F(AxisWithoutPower, goes_home_to_places_and_at_speeds_by_commands) {
+TEST_F(AxisWithoutPower, executes_homing_position_and_velocity_commands) {
     servo.set_home(3);
     power();
     EXPECT_TRUE(does(client->home));
@@ -74,7 +74,7 @@ TEST_F(ServoAxis, follows_set_points_at_each_sync) {
     EXPECT_EQ(client->errors, 0);
 }
 
-TEST_F(ServoAxis, takes_what_the_row_gives_for_a_velocity_that_grew_stale) {
+TEST_F(ServoAxis, follows_the_substitute_of_its_row_for_a_stale_velocity) {
     ASSERT_TRUE(client->synchronize.send(9));
     client->oscillates = true;
     run(2100ms); // a tenth of a period: it moves
@@ -85,7 +85,7 @@ TEST_F(ServoAxis, takes_what_the_row_gives_for_a_velocity_that_grew_stale) {
     EXPECT_NEAR(servo.velocity(), 0.0, 1e-6);
 }
 
-TEST_F(ServoAxis, comes_to_rest_when_its_velocity_is_no_number) {
+TEST_F(ServoAxis, decelerates_to_rest_when_its_velocity_is_nan) {
     ASSERT_TRUE(client->synchronize.send(9));
     run(20ms);
     client->once = 20;
@@ -96,7 +96,7 @@ TEST_F(ServoAxis, comes_to_rest_when_its_velocity_is_no_number) {
     EXPECT_EQ(axis->target_velocity.last(), 0);
 }
 
-TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
+TEST_F(ServoAxis, starts_no_motion_with_an_earlier_set_point) {
     follow_positions();
     client->once = 1;
     run(500ms);
@@ -109,7 +109,7 @@ TEST_F(ServoAxis, begins_no_motion_by_a_set_point_of_before) {
     EXPECT_EQ(axis->target_velocity.last(), 30);
 }
 
-TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_ordered) {
+TEST_F(ServoAxis, does_not_take_a_position_for_a_velocity) {
     follow_positions();
     client->oscillates = true;
     run(2200ms);
@@ -124,7 +124,7 @@ TEST_F(ServoAxis, takes_no_place_for_a_velocity_until_the_mode_of_velocities_is_
     EXPECT_EQ(axis->target_velocity.last(), 3);
 }
 
-TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
+TEST_F(ServoAxis, superimposes_a_motion_on_the_followed_set_points) {
     EXPECT_TRUE(does(client->superimpose, 1.0, 10.0, 500.0));
     EXPECT_NEAR(servo.position(), 1, 1e-3) << "from a stand: a relative motion";
     client->superimpose.reset();
@@ -142,7 +142,7 @@ TEST_F(ServoAxis, superimposes_a_motion_on_what_it_follows) {
     EXPECT_EQ(axis->state.last(), AxisMode::continuous_motion);
 }
 
-TEST_F(ServoAxis, stops_by_an_error_when_its_node_is_silent_and_comes_back_by_a_reset) {
+TEST_F(ServoAxis, enters_error_stop_for_a_silent_node_and_recovers_by_a_reset) {
     ASSERT_TRUE(client->move_at.send(20.0));
     ASSERT_TRUE(until([&] { return servo.velocity() == 20; }));
     node.cut_off(true);
@@ -161,7 +161,7 @@ TEST_F(ServoAxis, stops_by_an_error_when_its_node_is_silent_and_comes_back_by_a_
     EXPECT_EQ(client->errors, 2);
 }
 
-TEST_F(ServoAxis, rejects_what_its_state_has_no_way_for) {
+TEST_F(ServoAxis, rejects_commands_that_its_state_does_not_allow) {
     client->power_off.emit();
     EXPECT_TRUE(reaches(AxisMode::disabled));
     ASSERT_TRUE(client->move_at.send(20.0));
@@ -171,7 +171,7 @@ TEST_F(ServoAxis, rejects_what_its_state_has_no_way_for) {
     EXPECT_FALSE(ends(client->move_to));
 }
 
-TEST_F(ServoAxis, is_led_by_what_is_written_after_a_set_point_with_a_time_ahead) {
+TEST_F(ServoAxis, follows_set_points_after_one_with_a_future_time) {
     ASSERT_TRUE(client->synchronize.send(9));
     ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
     client->once = 30;
@@ -188,7 +188,7 @@ TEST_F(ServoAxis, is_led_by_what_is_written_after_a_set_point_with_a_time_ahead)
     EXPECT_EQ(stood, 0);
 }
 
-TEST_F(ServoAxis, does_not_jump_after_a_place_with_a_time_ahead) {
+TEST_F(ServoAxis, does_not_jump_after_a_position_with_a_future_time) {
     follow_positions();
     client->oscillates = true;
     run(1000ms);

@@ -19,7 +19,7 @@ struct AxisWithoutPower : Axis {
     void SetUp() override {}
 };
 
-TEST_F(AxisWithoutPower, has_power_when_the_drive_says_so_and_not_before) {
+TEST_F(AxisWithoutPower, is_powered_only_once_the_drive_confirms_it) {
     axis.power(true);
     run(2);
     EXPECT_EQ(axis.state(), AxisMode::disabled);
@@ -31,7 +31,7 @@ TEST_F(AxisWithoutPower, has_power_when_the_drive_says_so_and_not_before) {
     EXPECT_TRUE(until([&] { return servo.state() == DriveState::switch_on_disabled; }));
 }
 
-TEST_F(Axis, goes_to_a_place_by_the_handshake_of_pp) {
+TEST_F(Axis, moves_to_a_position_by_the_profile_position_handshake) {
     ASSERT_TRUE(axis.move_to(25, 50));
     EXPECT_EQ(axis.state(), AxisMode::discrete_motion);
     const int from = cycles;
@@ -39,7 +39,7 @@ TEST_F(Axis, goes_to_a_place_by_the_handshake_of_pp) {
     EXPECT_NEAR(servo.position(), 25, 1e-9);
     EXPECT_EQ(servo.set_points(), 1);
     EXPECT_GT(cycles - from, 500) << "at 50 a second";
-    // "Target reached" of this motion is still there when the next begins.
+    // "Target reached" of the previous motion is still set when this one begins.
     ASSERT_TRUE(axis.move_to(0, 50));
     run(3);
     EXPECT_EQ(axis.state(), AxisMode::discrete_motion);
@@ -48,7 +48,7 @@ TEST_F(Axis, goes_to_a_place_by_the_handshake_of_pp) {
     EXPECT_EQ(servo.set_points(), 2);
 }
 
-TEST_F(Axis, takes_a_new_place_while_it_moves) {
+TEST_F(Axis, accepts_a_new_position_while_it_moves) {
     ASSERT_TRUE(axis.move_to(50, 50));
     run(200);
     ASSERT_TRUE(axis.move_to(-10, 50));
@@ -57,7 +57,7 @@ TEST_F(Axis, takes_a_new_place_while_it_moves) {
     EXPECT_EQ(servo.set_points(), 2);
 }
 
-TEST_F(Axis, raises_the_set_point_bit_again_only_when_the_last_one_is_let_go) {
+TEST_F(Axis, raises_the_set_point_bit_only_after_the_last_acknowledgement_cleared) {
     servo.faults.keeps_acknowledgement = true;
     ASSERT_TRUE(axis.move_to(5, 50));
     run(500);
@@ -73,7 +73,7 @@ TEST_F(Axis, raises_the_set_point_bit_again_only_when_the_last_one_is_let_go) {
     EXPECT_NEAR(servo.position(), 9, 1e-9);
 }
 
-TEST_F(Axis, ends_no_motion_that_the_drive_ignores) {
+TEST_F(Axis, does_not_complete_a_motion_that_the_drive_ignores) {
     servo.faults.ignores_set_points = true;
     ASSERT_TRUE(axis.move_to(5, 50));
     run(2000);
@@ -81,7 +81,7 @@ TEST_F(Axis, ends_no_motion_that_the_drive_ignores) {
     EXPECT_NE(last.controlword & 0x10u, 0u) << "it keeps asking";
 }
 
-TEST_F(Axis, does_not_go_on_with_an_old_place_after_a_halt) {
+TEST_F(Axis, drops_an_old_target_position_after_a_halt) {
     ASSERT_TRUE(axis.move_to(50, 50));
     run(300);
     ASSERT_TRUE(axis.halt());
@@ -95,7 +95,7 @@ TEST_F(Axis, does_not_go_on_with_an_old_place_after_a_halt) {
     EXPECT_NEAR(servo.position(), there + 1, 1e-9);
 }
 
-TEST_F(Axis, turns_at_a_speed_until_it_is_halted) {
+TEST_F(Axis, moves_at_a_velocity_until_it_is_halted) {
     ASSERT_TRUE(axis.move_at(-30));
     EXPECT_EQ(axis.state(), AxisMode::continuous_motion);
     EXPECT_TRUE(until([&] { return servo.velocity() == -30; }));
@@ -106,7 +106,7 @@ TEST_F(Axis, turns_at_a_speed_until_it_is_halted) {
     EXPECT_EQ(servo.velocity(), 0);
 }
 
-TEST_F(Axis, takes_no_motion_while_it_is_stopped) {
+TEST_F(Axis, refuses_motions_while_it_is_stopped) {
     ASSERT_TRUE(axis.move_at(30));
     run(200);
     ASSERT_TRUE(axis.stop());
@@ -119,7 +119,7 @@ TEST_F(Axis, takes_no_motion_while_it_is_stopped) {
     EXPECT_TRUE(axis.move_at(30));
 }
 
-TEST_F(AxisWithoutPower, stops_by_a_homing_that_failed) {
+TEST_F(AxisWithoutPower, enters_error_stop_when_homing_fails) {
     servo.faults.fails_homing = true;
     power();
     ASSERT_TRUE(axis.home());
@@ -155,7 +155,7 @@ TEST_F(Axis, follows_positions_velocities_and_torques_cycle_by_cycle) {
     EXPECT_FALSE(axis.follows());
 }
 
-TEST_F(AxisWithoutPower, stands_when_it_does_not_move_though_nothing_is_slow_enough) {
+TEST_F(AxisWithoutPower, reaches_standstill_at_rest_even_with_a_zero_velocity_limit) {
     axis.set_standing(0);
     power();
     ASSERT_TRUE(axis.move_at(5));
@@ -164,7 +164,7 @@ TEST_F(AxisWithoutPower, stands_when_it_does_not_move_though_nothing_is_slow_eno
     EXPECT_TRUE(reaches(AxisMode::standstill));
 }
 
-TEST_F(Axis, superimposes_nothing_that_is_no_motion_from_a_stand_either) {
+TEST_F(Axis, refuses_an_invalid_superimposed_motion_at_standstill_too) {
     for (const auto& [distance, velocity, acceleration] : {std::array{10.0, 20.0, std::nan("")},
                                                            {10.0, 20.0, -5.0},
                                                            {10.0, -1.0, 5.0},
@@ -185,7 +185,7 @@ TEST_F(Axis, waits_until_the_drive_shows_its_mode) {
     EXPECT_TRUE(until([&] { return servo.velocity() == 30; }));
 }
 
-TEST_F(Axis, stops_by_a_fault_and_leaves_it_by_a_reset_alone) {
+TEST_F(Axis, enters_error_stop_on_a_fault_and_leaves_it_only_by_a_reset) {
     ASSERT_TRUE(axis.move_at(30));
     run(300);
     ASSERT_TRUE(servo.trip());
@@ -200,7 +200,7 @@ TEST_F(Axis, stops_by_a_fault_and_leaves_it_by_a_reset_alone) {
     EXPECT_TRUE(axis.move_at(30));
 }
 
-TEST_F(Axis, comes_to_rest_when_the_drive_takes_its_power_away) {
+TEST_F(Axis, enters_error_stop_when_the_drive_disables_itself) {
     ASSERT_TRUE(axis.move_at(30));
     run(300);
     servo.stop_quickly();
@@ -213,7 +213,7 @@ TEST_F(Axis, comes_to_rest_when_the_drive_takes_its_power_away) {
     EXPECT_TRUE(reaches(AxisMode::error_stop));
 }
 
-TEST_F(Axis, stops_by_a_drive_that_is_not_heard) {
+TEST_F(Axis, enters_error_stop_when_the_drive_is_silent) {
     ASSERT_TRUE(axis.move_at(30));
     run(100);
     heard = false;
@@ -227,7 +227,7 @@ TEST_F(Axis, stops_by_a_drive_that_is_not_heard) {
     EXPECT_TRUE(reaches(AxisMode::standstill));
 }
 
-TEST_F(Axis, tells_a_lag_and_a_limit_of_the_drive) {
+TEST_F(Axis, reports_a_following_error_and_a_limit_of_the_drive) {
     ASSERT_TRUE(axis.move_to(5, 50));
     servo.faults.is_blocked = servo.faults.is_at_limit = true;
     EXPECT_TRUE(until([&] { return axis.lags(); }));
@@ -237,9 +237,9 @@ TEST_F(Axis, tells_a_lag_and_a_limit_of_the_drive) {
     EXPECT_FALSE(axis.lags());
 }
 
-/// Follows a shaft with a distance superimposed on it; then what `ask` asks for, within one cycle. What leads
-/// it goes on, and begins anew where it stands only if the axis said that it did not follow: how far the
-/// place that is ordered jumps at most.
+/// Follows a shaft with a superimposed distance; then sends `ask` within one cycle. The leading shaft
+/// continues, and restarts from the last target position only if the axis reported that it did not follow.
+/// Returns the largest jump of the target position.
 template <class Ask>
 double jump_after(Ask ask, bool comes_to_a_stand = true) {
     DriveRig rig;
@@ -268,7 +268,7 @@ double jump_after(Ask ask, bool comes_to_a_stand = true) {
     return jump;
 }
 
-TEST(DriveMotion, never_jumps_by_a_superimposed_distance) {
+TEST(DriveMotion, never_jumps_because_of_a_superimposed_distance) {
     const auto anew = [](DriveRig& rig) {
         return rig.axis.synchronize(OperationMode::cyclic_position).has_value();
     };

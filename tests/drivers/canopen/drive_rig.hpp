@@ -30,7 +30,7 @@ struct DriveRig {
     void run(int count) {
         for (int i = 0; i < count; ++i) cycle();
     }
-    /// False: not within five seconds.
+    /// False: it did not happen within five seconds.
     template <class Condition> bool until(Condition condition) {
         for (int i = 0; i < 5000; ++i) {
             if (condition()) return true;
@@ -49,8 +49,8 @@ struct DriveRig {
     DriveMotion axis;
     SimulatedServo servo;
     std::size_t cycles_in = 2, cycles_out = 2;
-    bool heard = true; ///< the drive by the axis
-    bool hears = true; ///< the drive the axis
+    bool heard = true; ///< the axis hears the drive
+    bool hears = true; ///< the drive hears the axis
     bool says_nonsense = false;
     DriveOrder last;
     int cycles = 0;

@@ -1,4 +1,4 @@
-// Object dictionaries from EDS and DCF texts: what they hold, and each way in which they are refused.
+// Object dictionaries from EDS and DCF texts: their contents, and each refusal.
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "drivers/canopen/eds.hpp"
 
@@ -15,7 +15,7 @@ const Object& at(const Dictionary& in, Address address) {
     return *found;
 }
 
-TEST(Eds, holds_the_objects_of_a_drive) {
+TEST(Eds, contains_the_objects_of_a_drive) {
     const Dictionary& drive = dictionary<files::drive_eds>;
     EXPECT_EQ(drive.file, "apps/carpet_loom/nodes/drive.eds");
     EXPECT_EQ(drive.product, "Velocity drive");
@@ -36,7 +36,7 @@ TEST(Eds, holds_the_objects_of_a_drive) {
     EXPECT_EQ(drive.find(0x2000), nullptr);
 }
 
-/// What each device must have; 16 lines.
+/// The objects that each device must have; 16 lines.
 #define DEVICE_TYPE                                                                                          \
     "[DeviceInfo]\nVendorNumber=0x10\n\n"                                                                    \
     "[1000]\nParameterName=Device type\nObjectType=0x7\nDataType=0x0007\nAccessType=ro\n"                    \
@@ -59,7 +59,7 @@ constexpr SourceText odd{
                "[2006]\nObjectType=0x2\nDataType=0x000F\nAccessType=rw\n"
                "[DeviceComissioning]\nNodeID=9\nNodeName=left\n"};
 
-TEST(Eds, reads_what_files_are_really_like) {
+TEST(Eds, reads_files_as_vendors_write_them) {
     const Dictionary& d = dictionary<odd>;
     EXPECT_EQ(d.node, 9);
     EXPECT_EQ(d.identity.vendor, 16u);
@@ -80,7 +80,7 @@ TEST(Eds, reads_what_files_are_really_like) {
     EXPECT_EQ(bits_of(at(d, 0x2006).type), 0u);
 }
 
-TEST(Eds, reads_reals_as_the_compiler_does) {
+TEST(Eds, reads_floats_as_the_compiler_does) {
     EXPECT_EQ(to_real("0.1"), 0.1);
     EXPECT_EQ(to_real("-123.456e-05"), -123.456e-5);
     EXPECT_EQ(to_real("1e22"), 1e22);
@@ -88,15 +88,15 @@ TEST(Eds, reads_reals_as_the_compiler_does) {
         EXPECT_FALSE(to_real(none)) << none;
 }
 
-/// The sentence for a text, read as a program would read a file.
+/// The sentence for a text that is read at run time.
 template <std::size_t room = 64> std::string fault_of(const std::string& text) {
     return std::string{detail::EdsReader<room>{SourceText{"x.eds", text}}.fault.view()};
 }
 std::string with(const std::string& more) { return fault_of(DEVICE_TYPE IDENTITY + more); }
 std::string variable(const std::string& entries) { return with("[2000]\n" + entries + "\n"); }
 
-TEST(Eds, refuses_what_is_no_file_of_a_device) {
-    EXPECT_EQ(fault_of(""), "x.eds:1: there is no object in it; is it an EDS or DCF file of CiA 306?");
+TEST(Eds, refuses_files_that_describe_no_device) {
+    EXPECT_EQ(fault_of(""), "x.eds:1: it has no object; is it an EDS or DCF file of CiA 306?");
     EXPECT_EQ(fault_of("<xml>"),
               "x.eds:1: \"<xml>\" is neither a [section] nor an entry Key=Value; begin a comment with ;");
     EXPECT_EQ(fault_of("[1000\n"),
@@ -109,13 +109,13 @@ TEST(Eds, refuses_what_is_no_file_of_a_device) {
         "set it to 0");
 }
 
-TEST(Eds, refuses_objects_that_are_not_whole) {
+TEST(Eds, refuses_incomplete_objects) {
     EXPECT_EQ(variable("AccessType=ro"), "x.eds:25: [2000] has no DataType; write it");
     EXPECT_EQ(variable("DataType=5"), "x.eds:25: [2000] has no AccessType; write it");
     EXPECT_EQ(variable("DataType=0x1C\nAccessType=ro"),
-              "x.eds:26: DataType 0x1C is none of CiA 301's; write the number of a basic type");
+              "x.eds:26: DataType 0x1C is not one of CiA 301; write the number of a basic type");
     EXPECT_EQ(variable("DataType=0x17\nAccessType=ro"),
-              "x.eds:26: DataType 0x17 is none of CiA 301's; write the number of a basic type");
+              "x.eds:26: DataType 0x17 is not one of CiA 301; write the number of a basic type");
     EXPECT_EQ(variable("DataType=byte\nAccessType=ro"),
               "x.eds:26: DataType is \"byte\"; write a number up to 4294967295");
     EXPECT_EQ(variable("DataType=5\nAccessType=r"),
@@ -124,8 +124,9 @@ TEST(Eds, refuses_objects_that_are_not_whole) {
               "x.eds:28: PDOMapping is \"2\"; write a number up to 1");
     EXPECT_EQ(variable("DataType=5\nDataType=6"),
               "x.eds:27: DataType is there twice in [2000], first in line 26; keep one of them");
-    EXPECT_EQ(variable("ObjectType=0x5\nDataType=5\nAccessType=ro"),
-              "x.eds:26: ObjectType is 0x5, which is no object of a device; write 0x2, 0x7, 0x8 or 0x9");
+    EXPECT_EQ(
+        variable("ObjectType=0x5\nDataType=5\nAccessType=ro"),
+        "x.eds:26: ObjectType is 0x5, which is not an object type of a device; write 0x2, 0x7, 0x8 or 0x9");
 }
 
 TEST(Eds, refuses_values_that_do_not_fit) {
@@ -141,11 +142,11 @@ TEST(Eds, refuses_values_that_do_not_fit) {
         "its DataType");
     EXPECT_EQ(variable("DataType=2\nAccessType=ro\nDefaultValue=0xC8"), "") << "a bit pattern";
     EXPECT_EQ(variable("DataType=5\nAccessType=ro\nParameterValue=08"),
-              "x.eds:28: ParameterValue \"08\" is no number; write 0x1F, 31 or $NODEID+0x1F");
+              "x.eds:28: ParameterValue \"08\" is not a number; write 0x1F, 31 or $NODEID+0x1F");
     EXPECT_EQ(variable("DataType=7\nAccessType=ro\nDefaultValue=$NODEID-1"),
-              "x.eds:28: DefaultValue \"$NODEID-1\" is no number; write 0x1F, 31 or $NODEID+0x1F");
+              "x.eds:28: DefaultValue \"$NODEID-1\" is not a number; write 0x1F, 31 or $NODEID+0x1F");
     EXPECT_EQ(variable("DataType=8\nAccessType=ro\nDefaultValue=1,5"),
-              "x.eds:28: DefaultValue \"1,5\" is no number of up to 15 digits; write one");
+              "x.eds:28: DefaultValue \"1,5\" is not a number of up to 15 digits; write one");
     EXPECT_EQ(variable("DataType=5\nAccessType=ro\nLowLimit=9\nHighLimit=3"),
               "x.eds:25: LowLimit of 2000h:0 is above its HighLimit; exchange them");
     EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=-3\nHighLimit=3\nDefaultValue=-4"),
@@ -153,7 +154,7 @@ TEST(Eds, refuses_values_that_do_not_fit) {
               "HighLimit");
 }
 
-TEST(Eds, refuses_sections_that_contradict_each_other) {
+TEST(Eds, refuses_contradictory_sections) {
     EXPECT_EQ(with("[1000]\nDataType=7\nAccessType=ro\n"),
               "x.eds:25: object 1000h:0 is there twice, first in line 4; keep one of them");
     EXPECT_EQ(with("[1A00sub1]\nDataType=7\nAccessType=ro\n"),

@@ -1,11 +1,11 @@
-// An axis whose set point is forced: what it does then, and when the force ends.
+// An axis with a forced set point, during the force and when it ends.
 #include "tests/drivers/canopen/servo_axis.hpp"
 #include "tests/drivers/components/forced_port.hpp"
 
 namespace tappet::test {
 namespace {
 
-/// Its set point is forced meanwhile, for less than what stands behind it takes to grow stale.
+/// Its set point is forced for less time than the hidden value needs to become stale.
 struct ForcedAxis : ServoAxis {
     void force(double value) {
         set_point.to(value);
@@ -22,7 +22,7 @@ struct ForcedAxis : ServoAxis {
     ForcedPort set_point{instance, "axis.set_point", FacetKind::input};
 };
 
-TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {
+TEST_F(ForcedAxis, stops_when_a_force_ends_with_no_value_behind_it) {
     ASSERT_TRUE(client->synchronize.send(9));
     ASSERT_TRUE(until([&] { return axis->mode.last() == 9; }));
     force(30);
@@ -31,7 +31,7 @@ TEST_F(ForcedAxis, stands_when_nothing_stood_behind_a_force) {
     EXPECT_EQ(axis->target_velocity.last(), 0);
 }
 
-TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
+TEST_F(ForcedAxis, does_not_jump_to_a_position_hidden_by_a_force) {
     follow_positions();
     write(1);
     force(1.5);
@@ -40,7 +40,7 @@ TEST_F(ForcedAxis, jumps_to_no_place_that_stood_behind_a_force) {
     EXPECT_NEAR(axis->target_position.last(), 1.5, 1e-9);
 }
 
-TEST_F(ForcedAxis, comes_to_rest_when_the_force_of_its_velocity_ends) {
+TEST_F(ForcedAxis, stops_when_the_force_of_its_velocity_ends) {
     ASSERT_TRUE(client->synchronize.send(9));
     run(20ms);
     write(30);
@@ -50,7 +50,7 @@ TEST_F(ForcedAxis, comes_to_rest_when_the_force_of_its_velocity_ends) {
     EXPECT_EQ(axis->target_velocity.last(), 0);
 }
 
-TEST_F(ForcedAxis, is_led_by_nothing_that_was_written_before_it_follows) {
+TEST_F(ForcedAxis, ignores_values_written_before_it_follows) {
     write(30);
     force(20);
     ASSERT_TRUE(client->synchronize.send(9));
@@ -59,7 +59,7 @@ TEST_F(ForcedAxis, is_led_by_nothing_that_was_written_before_it_follows) {
     EXPECT_EQ(axis->target_velocity.last(), 0);
 }
 
-TEST_F(ForcedAxis, stands_when_its_writer_stops_behind_a_force) {
+TEST_F(ForcedAxis, stops_when_its_writer_stops_behind_a_force) {
     ASSERT_TRUE(client->synchronize.send(9));
     run(20ms);
     write(10);

@@ -1,5 +1,5 @@
-// The manager of a network: which nodes it starts, how it configures them, and what it says of those that it
-// does not start.
+// The manager of a network: which nodes it starts, how it configures them, and what it reports about the
+// others.
 #include "tests/drivers/canopen/network_machine.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST_F(Network, checks_configures_and_starts_its_nodes) {
     EXPECT_EQ(encoder.get({0x1800, 2}), 1u);
 }
 
-TEST_F(WorkingNetwork, carries_process_data_as_it_was_mapped) {
+TEST_F(WorkingNetwork, exchanges_mapped_process_data) {
     EXPECT_EQ(people->statusword.get(), 0x231);
     EXPECT_EQ(people->velocity.get(), -1234 * 0.1);
     EXPECT_EQ(people->position.get(), 0xABC);
@@ -69,7 +69,7 @@ TEST_F(Network, produces_sync_time_and_its_heartbeat) {
     EXPECT_GE(times[0].data[0] | times[0].data[1] << 8, 1500);
 }
 
-TEST_F(Network, refuses_another_device_and_says_which_one_it_wants) {
+TEST_F(Network, refuses_another_device_and_names_the_expected_one) {
     drive.replace({.device_type = 0x00020192, .vendor = 0x3E7, .product = 0x403, .revision = 0x00010002});
     run_until(2s);
     EXPECT_FALSE(operational());
@@ -94,7 +94,7 @@ TEST_F(Network, refuses_a_device_that_does_not_keep_its_mapping) {
     EXPECT_EQ(people->statusword.get(), 0) << "it was never started";
 }
 
-TEST_F(Network, tells_the_abort_code_of_a_device_that_refuses) {
+TEST_F(Network, reports_the_abort_code_of_a_device_that_refuses) {
     drive.refuse(0x605A, SdoAbort::too_high);
     run_until(1s);
     EXPECT_EQ(
@@ -104,7 +104,7 @@ TEST_F(Network, tells_the_abort_code_of_a_device_that_refuses) {
     EXPECT_EQ(phase(0), NodePhase::refused);
 }
 
-TEST_F(Network, asks_a_device_again_that_cannot_take_its_configuration_now) {
+TEST_F(Network, retries_a_device_that_cannot_be_configured_yet) {
     drive.refuse(0x605A, SdoAbort::device_state);
     run_until(1s);
     EXPECT_EQ(
@@ -130,7 +130,7 @@ TEST_F(Network, waits_for_a_node_that_does_not_answer) {
     EXPECT_TRUE(operational()) << reason();
 }
 
-TEST_F(Network, polls_a_node_whose_boot_up_nobody_heard) {
+TEST_F(Network, polls_a_node_whose_boot_up_was_missed) {
     run_until(50ms);
     encoder.cut_off(true); // its boot-up is lost, and it has no heartbeat by itself
     run_until(200ms);
@@ -139,7 +139,7 @@ TEST_F(Network, polls_a_node_whose_boot_up_nobody_heard) {
     EXPECT_TRUE(operational()) << reason();
 }
 
-TEST_F(WorkingNetwork, has_a_node_back_whose_cable_was_broken) {
+TEST_F(WorkingNetwork, restores_a_node_after_a_broken_cable) {
     encoder.cut_off(true);
     run(200ms);
     EXPECT_FALSE(operational());
@@ -152,7 +152,7 @@ TEST_F(WorkingNetwork, has_a_node_back_whose_cable_was_broken) {
     EXPECT_EQ(starts, 3) << "it was led back and started again";
 }
 
-TEST_F(WorkingNetwork, configures_a_node_anew_that_booted_while_it_worked) {
+TEST_F(WorkingNetwork, configures_a_node_again_after_it_rebooted) {
     drive.power_on(clock.now() + 5ms);
     run(8ms);
     EXPECT_FALSE(operational());
@@ -163,7 +163,7 @@ TEST_F(WorkingNetwork, configures_a_node_anew_that_booted_while_it_worked) {
     EXPECT_EQ(drive.get({0x1A00, 0}), 2u);
 }
 
-TEST_F(WorkingNetwork, refuses_a_node_that_was_replaced_while_it_was_away) {
+TEST_F(WorkingNetwork, refuses_a_node_that_was_replaced_while_absent) {
     drive.power_off();
     run(500ms);
     drive.replace({.device_type = 0x00020192, .vendor = 0x3E8, .product = 0x402, .revision = 0x00010002});
@@ -174,7 +174,7 @@ TEST_F(WorkingNetwork, refuses_a_node_that_was_replaced_while_it_was_away) {
     EXPECT_NE(reason().find("1018h:1 must be 000003E7h and is 000003E8h"), std::string::npos) << reason();
 }
 
-TEST_F(Network, leads_a_node_back_that_was_started_by_somebody_else) {
+TEST_F(Network, takes_over_a_node_that_another_master_started) {
     drive.refuse(0x605A, SdoAbort::general);
     run_until(500ms);
     ASSERT_EQ(phase(0), NodePhase::refused);
@@ -189,7 +189,7 @@ TEST_F(Network, leads_a_node_back_that_was_started_by_somebody_else) {
     EXPECT_FALSE(drive.operational());
 }
 
-TEST_F(WorkingNetwork, starts_a_node_again_that_left_its_operational_state) {
+TEST_F(WorkingNetwork, restarts_a_node_that_left_the_operational_state) {
     drive.receive(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, 5), clock.now(), *this);
     run(60ms);
     EXPECT_FALSE(operational());
@@ -198,7 +198,7 @@ TEST_F(WorkingNetwork, starts_a_node_again_that_left_its_operational_state) {
     EXPECT_TRUE(operational());
 }
 
-TEST_F(WorkingNetwork, tells_and_keeps_emergencies) {
+TEST_F(WorkingNetwork, reports_and_keeps_emergencies) {
     drive.send_emergency(0x2310, 0x03, clock.now(), *this);
     run(10ms);
     ASSERT_EQ(people->emergencies.size(), 1u);
@@ -216,7 +216,7 @@ TEST_F(WorkingNetwork, tells_and_keeps_emergencies) {
     EXPECT_EQ(manager->emergencies()[14].code, 0x8013);
 }
 
-TEST_F(WorkingNetwork, lets_nodes_notice_that_the_manager_is_gone) {
+TEST_F(WorkingNetwork, is_monitored_by_its_nodes_for_the_loss_of_the_manager) {
     const Sentence refusal = world.change_activity(1, LifeChange::stop);
     ASSERT_TRUE(refusal.empty()) << refusal.view();
     run(500ms);
@@ -224,7 +224,7 @@ TEST_F(WorkingNetwork, lets_nodes_notice_that_the_manager_is_gone) {
     EXPECT_FALSE(drive.operational());
 }
 
-TEST_F(WorkingNetwork, tells_its_nodes_at_stop_to_take_what_is_safe_and_only_then_to_leave) {
+TEST_F(WorkingNetwork, makes_its_nodes_safe_at_the_stop_before_they_leave_operational) {
     ASSERT_TRUE(operational());
     heard.clear();
     world.stop();
@@ -241,7 +241,7 @@ TEST_F(WorkingNetwork, tells_its_nodes_at_stop_to_take_what_is_safe_and_only_the
     EXPECT_EQ(phase(0), NodePhase::absent);
 }
 
-TEST_F(WorkingNetwork, gives_a_person_the_reset_of_one_node) {
+TEST_F(WorkingNetwork, lets_an_operator_reset_one_node) {
     manager->reset(7);
     run(20ms);
     EXPECT_FALSE(encoder.alive());
@@ -250,9 +250,9 @@ TEST_F(WorkingNetwork, gives_a_person_the_reset_of_one_node) {
     EXPECT_EQ(manager->reboots.last(), 1);
 }
 
-TEST_F(WorkingNetwork, resets_no_node_that_was_to_be_reset_before_it_stood) {
+TEST_F(WorkingNetwork, drops_a_reset_requested_before_its_stop) {
     static_cast<void>(world.change_activity(1, LifeChange::stop));
-    manager->reset(7); // of its last cycle, and not yet sent
+    manager->reset(7); // requested in its last cycle, and not yet sent
     run(2s);
     heard.clear();
     static_cast<void>(world.change_activity(1, LifeChange::start));
@@ -260,7 +260,7 @@ TEST_F(WorkingNetwork, resets_no_node_that_was_to_be_reset_before_it_stood) {
     for (const can::Frame& each : heard) EXPECT_FALSE(each.id == 0 && each.data[0] == 0x81) << "reset node";
 }
 
-TEST_F(WorkingNetwork, survives_frames_that_nobody_asked_for) {
+TEST_F(WorkingNetwork, survives_unexpected_frames) {
     for (const std::uint32_t id : {0x585u, 0x705u, 0x085u})
         for (std::uint8_t length = 0; length <= 8; ++length) {
             can::Frame frame{.id = id, .length = length};

@@ -1,4 +1,4 @@
-// A machine with the manager of a network, and the network's nodes at the other end of its bus. Of no test
+// A machine with the manager of a network, and the network's nodes at the other end of its bus. Uses no test
 // framework.
 #pragma once
 
@@ -34,7 +34,7 @@ inline constexpr auto nodes = canopen::network(
         .heartbeat(50ms, 120ms)
         .pdo("encoder", canopen::synchronous(), {0x2100, 0x2101}));
 
-/// Writes what the drive is told, and notes what the network tells.
+/// Writes the drive's command, and records the reports of the network.
 struct Operator {
     Input<std::int64_t> statusword{}, position{};
     Input<double> velocity{};

@@ -1,4 +1,4 @@
-// A network's table: what it makes a node do at its start, and each way in which it is refused.
+// A network's table: the configuration that it derives for a node, and each refusal.
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "apps/carpet_loom/nodes/encoder.eds.hpp"
 #include "drivers/canopen/network.hpp"
@@ -69,7 +69,7 @@ TEST(NetworkTable, configures_in_the_order_of_the_standard) {
     EXPECT_EQ(steps, wanted);
 }
 
-TEST(NetworkTable, silences_the_pdos_that_nobody_maps) {
+TEST(NetworkTable, disables_unmapped_pdos) {
     constexpr auto alone = can::signal_map(drive_frame);
     const auto table = network(alone, boss, bare.pdo("drive", {0x6041, 0x606C}));
     ASSERT_EQ(table.fault.view(), "");
@@ -77,7 +77,7 @@ TEST(NetworkTable, silences_the_pdos_that_nobody_maps) {
               (ConfigurationStep{ConfigurationStep::Kind::write, 4, {0x1400, 1}, 0x80000205}));
 }
 
-TEST(NetworkTable, takes_a_dcf_at_its_word_unless_a_row_says_otherwise) {
+TEST(NetworkTable, uses_the_values_of_a_dcf_unless_a_row_overrides_them) {
     static constexpr SourceText source{"own.dcf", R"([1000]
 DataType=7
 AccessType=ro
@@ -124,7 +124,7 @@ template <class Map, class... Nodes>
 std::string fault_of(const Map& signals, const ManagerRow& by, const Nodes&... nodes) {
     return std::string{network(signals, by, nodes...).fault.view()};
 }
-/// What is said of the drive, behind its name.
+/// The part of a sentence about the drive that follows its name.
 std::string of_drive(const std::string& said) {
     constexpr std::string_view name = "node 5 \"drive\"";
     EXPECT_TRUE(said.empty() || said.starts_with(name)) << said;
@@ -136,24 +136,25 @@ template <class Frame> std::string of_frame(const Frame& frame, const NodeRow& r
     return of_drive(fault_of(can::signal_map(frame), boss, row));
 }
 
-TEST(NetworkTable, refuses_a_heartbeat_of_the_manager_that_no_node_can_wait_for) {
+TEST(NetworkTable, refuses_a_heartbeat_of_the_manager_that_nodes_cannot_monitor) {
     for (const Duration beats : {Duration{20s}, Duration{18725ms}, Duration{1500us}, Duration{-1ms}})
         EXPECT_EQ(
             fault_of(map, manager(127).sync(10ms).heartbeat(beats), node(5, "drive", drive).heartbeat(100ms)),
-            "manager: its heartbeat is a count of ms up to 18724, since its nodes wait for three and a half "
+            "manager: its heartbeat must be a whole number of ms up to 18724, since its nodes wait for three "
+            "and a half "
             "of "
             "them; shorten it");
 }
 
-TEST(NetworkTable, refuses_nodes_that_are_not_told_apart_or_not_watched) {
+TEST(NetworkTable, refuses_indistinguishable_or_unmonitored_nodes) {
     EXPECT_EQ(fault_of(map, boss, node(0, "drive", drive)),
               "node 0 \"drive\" has no identifier from 1 to 127; give it one");
     EXPECT_EQ(fault_of(map, boss, node(127, "drive", drive)),
               "node 127 \"drive\" has the identifier of the manager; give one of them another");
     EXPECT_EQ(of_row(node(5, "drive", drive)),
-              " has no heartbeat, so that nobody would see it lost; write .heartbeat(100ms)");
+              " has no heartbeat, so that its loss would not be detected; write .heartbeat(100ms)");
     EXPECT_EQ(of_row(bare.heartbeat(1500us)),
-              " has a heartbeat that is no count of ms up to 65535; round it");
+              " has a heartbeat that is not a whole number of ms up to 65535; round it");
     EXPECT_EQ(of_row(bare.heartbeat(100ms, 100ms)),
               " would be lost before its next heartbeat comes; let heartbeat(every, lost) wait longer");
     EXPECT_EQ(fault_of(map, boss, whole, node(5, "other", encoder).heartbeat(1s)),
@@ -166,15 +167,16 @@ TEST(NetworkTable, refuses_nodes_that_are_not_told_apart_or_not_watched) {
               " has no dictionary; name it: canopen::dictionary<files::..>");
 }
 
-TEST(NetworkTable, refuses_pdos_that_the_device_or_the_map_has_not) {
+TEST(NetworkTable, refuses_pdos_missing_in_the_device_or_the_map) {
     EXPECT_EQ(of_row(bare),
-              ": frame \"drive\" is one of its PDOs and nobody configures it; write .pdo(\"drive\", {..})");
+              ": frame \"drive\" is one of its PDOs, but no row configures it; write .pdo(\"drive\", {..})");
     EXPECT_EQ(of_row(bare.pdo("drives", {0x6041})),
               ": frame \"drives\" is not in the signal map; write its row there");
-    EXPECT_EQ(fault_of(map, boss, node(6, "drive", drive).heartbeat(1s).pdo("drive", {0x6041})),
-              "node 6 \"drive\": frame \"drive\" has the identifier 185h, which is none of the node's PDOs; "
-              "its first "
-              "are 186h (it sends) and 206h (it receives)");
+    EXPECT_EQ(
+        fault_of(map, boss, node(6, "drive", drive).heartbeat(1s).pdo("drive", {0x6041})),
+        "node 6 \"drive\": frame \"drive\" has the identifier 185h, which is not one of the node's PDOs; "
+        "its first "
+        "are 186h (it sends) and 206h (it receives)");
     EXPECT_EQ(of_frame(can::receive(can::standard(0x185), "drive", can::fd_bytes(6), can::every(5ms),
                                     statusword, velocity),
                        bare.pdo("drive", {0x6041, 0x606C})),
@@ -187,21 +189,22 @@ TEST(NetworkTable, refuses_pdos_that_the_device_or_the_map_has_not) {
     EXPECT_EQ(
         of_frame(can::receive(can::standard(0x285), "drive", can::bytes(2), can::every(5ms), statusword),
                  bare.pdo("drive", {0x6041})),
-        ": frame \"drive\" is a PDO that the device has not: apps/carpet_loom/nodes/drive.eds has no 1801h "
+        ": frame \"drive\" is a PDO that the device does not have: apps/carpet_loom/nodes/drive.eds has no "
+        "1801h "
         "or no 1A01h; take another identifier");
     EXPECT_EQ(of_row(whole.pdo("drive", {0x6041})),
               ": frame \"drive\" has 6 bytes, but its objects take 16 bits; correct one of them");
     EXPECT_EQ(of_row(whole.pdo("drive", {0x6041, 0x606C})),
               ": frame \"drive\" is mapped twice; keep one row");
     EXPECT_EQ(of_row(bare.pdo("drive", synchronous(), {0x6041, 0x606C})),
-              ": frame \"drive\" is synchronous and nobody produces SYNC; write manager(..).sync(..)");
+              ": frame \"drive\" is synchronous, but nothing produces SYNC; write manager(..).sync(..)");
     EXPECT_EQ(of_row(bare.pdo("drive", synchronous(245), {0x6041, 0x606C})),
               ": frame \"drive\" is synchronous(245); the standard ends at 240");
     EXPECT_EQ(of_row(bare.pdo("drive", on_event(2500us), {0x6041, 0x606C})),
-              ": frame \"drive\" has an event timer that is no count of ms, or an inhibit time that is none "
-              "of 100 us, up to 65535; round it");
+              ": frame \"drive\" has an event timer that is not a multiple of 1 ms, or an inhibit time that "
+              "is not one of 100 us, up to 65535; round it");
     EXPECT_EQ(of_frame(command_frame, bare.pdo("command", on_event(5ms), {0x6040})),
-              ": frame \"command\" has an event timer, which the device has not: "
+              ": frame \"command\" has an event timer, which the device does not have: "
               "apps/carpet_loom/nodes/drive.eds has no 1400h:5; let it be synchronous, or send by itself");
 }
 
@@ -237,23 +240,23 @@ TEST(NetworkTable, refuses_objects_that_do_not_fit_the_frame) {
     EXPECT_EQ(with(can::signal("ready", 0, 1), can::signal("on", 1, 1)), "") << "bits of an object";
 }
 
-TEST(NetworkTable, refuses_values_that_the_device_does_not_take) {
+TEST(NetworkTable, refuses_values_that_the_device_does_not_accept) {
     const auto written = [](Address at, std::int64_t value) { return of_row(whole.write(at, value)); };
     EXPECT_EQ(
         written(0x2000, 1),
         ": write(2000h:0, 1): apps/carpet_loom/nodes/drive.eds has no such object; correct one of them");
     EXPECT_EQ(written(0x6041, 1),
               ": write(6041h:0, 1): the object is only read (" + in_file(0x6041) + "); take it away");
-    EXPECT_EQ(written(0x6060, 11), ": write(6060h:0, 11): the value is outside of what the object takes (" +
+    EXPECT_EQ(written(0x6060, 11), ": write(6060h:0, 11): the value is outside of the range of the object (" +
                                        in_file(0x6060) + "); correct it");
-    EXPECT_EQ(written(0x6040, -1), ": write(6040h:0, -1): the value is outside of what the object takes (" +
+    EXPECT_EQ(written(0x6040, -1), ": write(6040h:0, -1): the value is outside of the range of the object (" +
                                        in_file(0x6040) + "); correct it");
     EXPECT_EQ(written(0x1017, 5),
-              ": write(1017h:0, 5) is what heartbeat(), pdo() and sync() write; say it there");
+              ": write(1017h:0, 5) is written by heartbeat(), pdo() and sync(); set it there");
     EXPECT_EQ(of_row(whole.write(0x6060, 1).write(0x6060, 3)), " writes 6060h:0 twice; keep one row");
 }
 
-TEST(NetworkTable, keeps_its_own_identifiers) {
+TEST(NetworkTable, reserves_its_own_identifiers) {
     for (const std::uint32_t id : {0x000u, 0x080u, 0x0FFu, 0x100u, 0x585u, 0x605u, 0x705u}) {
         const auto own = can::signal_map(can::receive(can::standard(id), "mine", can::bytes(1),
                                                       can::every(5ms), can::signal("byte", 0, 8)));
@@ -263,7 +266,7 @@ TEST(NetworkTable, keeps_its_own_identifiers) {
     }
 }
 
-TEST(NetworkTable, refuses_a_status_word_that_comes_apart_from_its_mode) {
+TEST(NetworkTable, refuses_a_statusword_and_its_mode_in_different_frames) {
     constexpr auto apart =
         can::signal_map(can::receive(can::standard(0x185), "word", can::bytes(2), can::every(5ms),
                                      can::signal("word", 0, 16)),

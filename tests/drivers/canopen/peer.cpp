@@ -78,7 +78,7 @@ std::vector<can::Frame> Peer::move_to(std::int64_t ms) {
 
 bool Peer::has_told(const std::string& text) const { return std::ranges::find(told, text) != told.end(); }
 
-/// Empty: it is gone.
+/// Empty: the process is gone.
 std::string Peer::read_line() {
     for (;;) {
         if (const std::size_t end = arrived_.find('\n'); end != std::string::npos) {

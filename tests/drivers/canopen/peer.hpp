@@ -21,9 +21,9 @@ public:
     Peer& operator=(const Peer&) = delete;
     ~Peer();
 
-    /// Takes it before the next move.
+    /// Delivers the frame before the next move.
     void give(const can::Frame& frame);
-    /// Moves its time on, and takes what it sends and tells until then.
+    /// Advances its time, and collects the frames and reports until then.
     std::vector<can::Frame> move_to(std::int64_t ms);
     [[nodiscard]] bool has_told(const std::string& text) const;
 
@@ -38,7 +38,7 @@ private:
     std::string pending_, arrived_;
 };
 
-/// What it writes when it has no socket.
+/// The output of a peer that runs without a socket.
 std::string output_of_peer(const std::string& arguments);
 
 } // namespace tappet::test

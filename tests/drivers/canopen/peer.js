@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A CANopen device that is not ours (npm canopen), in step with the test's own time: it takes frames "f ID HEX" and times "t MS" from
-// a socket, and answers each time with its own frames and what it has to tell, "r TEXT", up to "d".
+// A foreign CANopen device (npm canopen), in step with the test's own time: it takes frames "f ID HEX" and times "t MS" from
+// a socket, and answers each time with its own frames and its reports, "r TEXT", up to "d".
 //     node peer.js values FILE.eds             the values of the file, as that package reads them
 //     node peer.js device FILE.eds ID SOCKET   the device of the file
 //     node peer.js client ID SOCKET            reads and writes the device ID by SDO
@@ -14,7 +14,7 @@ const path = require('path');
 
 const [, , mode, ...rest] = process.argv;
 
-// Its timers run in the test's time, if it has one.
+// Its timers run in the test's time, if the test has one.
 let now = 0;
 const timers = new Set();
 class Timer {
@@ -47,7 +47,7 @@ function advance(to) {
     now = to;
 }
 
-// Native code that only block transfers need, which nobody here does: the package is installed without a compiler.
+// Replaces native code for block transfers, which are not used here: the package is installed without a compiler.
 const Module = require('module');
 const load = Module._load;
 Module._load = (name, ...more) => name === 'node-crc'
@@ -55,7 +55,7 @@ Module._load = (name, ...more) => name === 'node-crc'
     : load(name, ...more);
 const { Device, Eds } = require('canopen');
 
-/// The package knows no $NODEID: it is replaced before.
+/// The package does not know $NODEID: it is replaced beforehand.
 function dictionary(file, id) {
     const text = fs.readFileSync(file, 'latin1')
         .replace(/=\$NODEID\+(0x[0-9A-Fa-f]+)/g, (all, number) => '=0x' + (Number(number) + id).toString(16));
@@ -114,7 +114,7 @@ if (mode === 'values') {
     device.start();
     const get = (index) => device.eds.getEntry(index) && device.getValue(index);
     serve(device, rest[2], () => {
-        for (const [index, value] of [[0x6041, 0x0231], [0x606C, -1234]]) // a reset takes them away
+        for (const [index, value] of [[0x6041, 0x0231], [0x606C, -1234]]) // a reset clears them
             if (device.eds.getEntry(index) && get(index) !== value) device.setValue(index, value);
         return [`state ${device.state}`, `mapped ${device.eds.getTransmitPdos().map((pdo) => pdo.dataObjects.length)}`,
             `controlword ${get(0x6040)}`, `target ${get(0x60FF)}`];

@@ -1,5 +1,5 @@
-// Our manager against a device that is not ours, a client that is not ours against our simulated node, and
-// our reading of a device's file against another one.
+// Our manager against a foreign device, a foreign client against our simulated node, and our reader of a
+// device's file against a foreign one.
 #include "tests/drivers/canopen/network_machine.hpp"
 #include "tests/drivers/canopen/peer.hpp"
 
@@ -32,7 +32,7 @@ struct WithPeer : testing::Test, NetworkRig {
     std::int64_t moved_to = -1;
 };
 
-TEST_F(WithPeer, is_configured_and_started_by_our_manager) {
+TEST_F(WithPeer, the_manager_configures_and_starts_a_foreign_device) {
     peer.emplace("device " + nodes_folder + "drive.eds 5");
     std::erase(all, &drive);
     run_until(2500ms); // it sends no boot-up message, and is polled
@@ -49,7 +49,7 @@ TEST_F(WithPeer, is_configured_and_started_by_our_manager) {
     EXPECT_EQ(reason(), "node 5 \"drive\": its heartbeat is missing; look at its supply and its cable");
 }
 
-TEST_F(WithPeer, is_refused_when_it_is_another_device) {
+TEST_F(WithPeer, the_manager_refuses_another_device) {
     peer.emplace("device " + nodes_folder + "encoder.eds 5");
     std::erase(all, &drive);
     run_until(1500ms);
@@ -59,7 +59,7 @@ TEST_F(WithPeer, is_refused_when_it_is_another_device) {
               "drive\" as apps/carpet_loom/nodes/drive.eds describes it");
 }
 
-/// Without the machine: the peer and our node alone.
+/// Without the machine: only the peer and our node.
 TEST(PeerClient, reads_and_writes_our_simulated_node) {
     struct Wire final : canopen::FrameSink {
         std::vector<can::Frame> frames;
@@ -113,7 +113,7 @@ TEST(PeerEds, reads_the_same_values_out_of_a_file) {
         const auto theirs = values_by_peer(nodes_folder + file);
         std::size_t compared = 0;
         for (const canopen::Object& object : ours.objects) {
-            // How many sub-indices there are it counts itself, and of what is not given it shows nothing.
+            // The peer counts sub-indices itself, and shows nothing for a missing value.
             const bool counts = object.at.sub == 0 && ours.find({object.at.index, 1}) != nullptr;
             const std::string key = std::to_string(object.at.index) + "|" + std::to_string(object.at.sub);
             const auto found = theirs.find(key);

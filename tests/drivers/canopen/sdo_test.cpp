@@ -1,4 +1,4 @@
-// SDO transfers between our client and our server, and each way in which one ends early.
+// SDO transfers between our client and our server, and each abort.
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "drivers/canopen/sdo_client.hpp"
 #include "drivers/canopen/simulated_node.hpp"
@@ -60,7 +60,7 @@ struct Connection : testing::Test {
         client.write(at, {reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
         return carry();
     }
-    /// Reads, of a server that answers so.
+    /// Reads from a server that answers with these frames.
     void read_answered(Address at, const sdo::Payload& with) {
         client.read(at);
         next_answered(with);
@@ -69,7 +69,7 @@ struct Connection : testing::Test {
         ASSERT_TRUE(client.next(request, now));
         client.take(with);
     }
-    /// The abort of our server.
+    /// The abort code of our server.
     SdoAbort served(const sdo::Payload& asked) {
         EXPECT_TRUE(server.serve(asked, device, answer));
         return sdo::abort_in(answer);
@@ -83,7 +83,7 @@ struct Connection : testing::Test {
     sdo::Payload request{}, answer{}; ///< the last ones
 };
 
-TEST_F(Connection, reads_and_writes_of_every_length) {
+TEST_F(Connection, transfers_data_of_every_length) {
     EXPECT_EQ(read(0x1000), SdoAbort::none);
     EXPECT_EQ(from_bytes(client.value()), 1u);
     EXPECT_EQ(read(0x2001), SdoAbort::none);
@@ -100,7 +100,7 @@ TEST_F(Connection, reads_and_writes_of_every_length) {
     }
 }
 
-TEST_F(Connection, ends_with_the_code_of_the_standard) {
+TEST_F(Connection, aborts_with_the_code_of_the_standard) {
     EXPECT_EQ(read(0x3000), SdoAbort::no_object);
     EXPECT_EQ(read({0x2000, 1}), SdoAbort::no_sub_index);
     EXPECT_EQ(read(0x2002), SdoAbort::write_only);
@@ -116,14 +116,14 @@ TEST_F(Connection, ends_with_the_code_of_the_standard) {
     EXPECT_EQ(to_text(SdoAbort{0x1234}), "a code of the device's maker");
 }
 
-TEST_F(Connection, takes_no_more_than_it_holds) {
+TEST_F(Connection, refuses_more_data_than_its_buffer_holds) {
     EXPECT_EQ(read(0x2005), SdoAbort::none) << "our server gives what fits";
-    // A foreign one says a size beyond.
+    // A foreign server announces a size beyond the buffer.
     read_answered(0x2005, sdo::with_address(0x41, 0x2005, 65));
     EXPECT_EQ(client.why(), SdoAbort::out_of_memory);
     ASSERT_TRUE(client.next(request, now)) << "and is told so";
     EXPECT_EQ(request, sdo::abort_frame(0x2005, SdoAbort::out_of_memory));
-    // One that says no size goes on and on.
+    // A server without an announced size sends without end.
     read_answered(0x2005, sdo::with_address(0x40, 0x2005));
     unsigned toggle = 0;
     for (int i = 0; i < 20 && client.state() == SdoClient::State::busy; ++i) {
@@ -136,7 +136,7 @@ TEST_F(Connection, takes_no_more_than_it_holds) {
     EXPECT_EQ(client.why(), SdoAbort::out_of_memory);
 }
 
-TEST_F(Connection, takes_no_more_and_no_less_than_was_announced) {
+TEST_F(Connection, refuses_more_or_less_data_than_announced) {
     read_answered(0x2000, sdo::with_address(0x41, 0x2000, 8));
     next_answered({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'});
     EXPECT_EQ(client.state(), SdoClient::State::aborted);
@@ -145,19 +145,19 @@ TEST_F(Connection, takes_no_more_and_no_less_than_was_announced) {
     EXPECT_EQ(served({0x01, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}), SdoAbort::wrong_length);
 }
 
-TEST_F(Connection, ends_when_segments_bring_nothing) {
+TEST_F(Connection, aborts_on_empty_segments) {
     read_answered(0x2000, sdo::with_address(0x40, 0x2000));
     next_answered({0x0E});
     EXPECT_EQ(client.state(), SdoClient::State::aborted);
 }
 
-TEST_F(Connection, says_why_when_the_server_does_not) {
+TEST_F(Connection, reports_a_reason_when_the_server_gives_none) {
     read_answered(0x2000, sdo::abort_frame(0x2000, SdoAbort::none));
     EXPECT_EQ(client.state(), SdoClient::State::aborted);
     EXPECT_EQ(client.why(), SdoAbort::general);
 }
 
-TEST_F(Connection, notices_a_missing_answer_a_wrong_toggle_and_a_strange_answer) {
+TEST_F(Connection, detects_a_missing_answer_a_wrong_toggle_and_a_foreign_answer) {
     client.read(0x1000);
     ASSERT_TRUE(client.next(request, now));
     client.tick(now + 100ms);
@@ -177,7 +177,7 @@ TEST_F(Connection, notices_a_missing_answer_a_wrong_toggle_and_a_strange_answer)
     EXPECT_EQ(client.why(), SdoAbort::unknown_command);
 }
 
-TEST_F(Connection, takes_no_confirmation_that_is_late_for_the_transfer_after_it) {
+TEST_F(Connection, ignores_a_late_confirmation_of_an_earlier_transfer) {
     const std::string one{"\x01"}, long_one{"more than four bytes"};
     const auto begin_write = [&](const std::string& value) {
         client.write(0x2000, std::span{reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
@@ -187,7 +187,7 @@ TEST_F(Connection, takes_no_confirmation_that_is_late_for_the_transfer_after_it)
     begin_write(long_one);
     client.take(written);
     ASSERT_TRUE(client.next(request, now));
-    client.take(written); // of the try before, which was given up
+    client.take(written); // a confirmation of the previous, abandoned attempt
     EXPECT_EQ(client.state(), SdoClient::State::busy);
     client.take({0x20});
     EXPECT_EQ(client.state(), SdoClient::State::busy) << "the next segment";
@@ -204,7 +204,7 @@ TEST_F(Connection, takes_no_confirmation_that_is_late_for_the_transfer_after_it)
     EXPECT_EQ(client.state(), SdoClient::State::done);
 }
 
-TEST_F(Connection, tells_the_server_of_a_time_out_before_anything_else) {
+TEST_F(Connection, first_reports_a_time_out_to_the_server) {
     client.read(0x2000);
     ASSERT_TRUE(client.next(request, now));
     client.tick(now + 101ms);
@@ -214,7 +214,7 @@ TEST_F(Connection, tells_the_server_of_a_time_out_before_anything_else) {
     EXPECT_FALSE(client.has_abort_to_send());
 }
 
-TEST_F(Connection, has_a_server_that_takes_no_segment_out_of_turn) {
+TEST_F(Connection, refuses_segments_out_of_order_on_the_server_side) {
     EXPECT_EQ(served({0x60}), SdoAbort::unknown_command);
     EXPECT_EQ(served({0x00}), SdoAbort::unknown_command);
     EXPECT_EQ(served(sdo::with_address(0xA0, 0x2000)), SdoAbort::unknown_command) << "block transfer";

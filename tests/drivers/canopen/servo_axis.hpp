@@ -46,7 +46,7 @@ inline constexpr auto servo_network =
                          .pdo("target", synchronous(), {0x607A, 0x60FF})
                          .pdo("profile", synchronous(), {0x6081, 0x6071}));
 
-/// Asks what a test asks.
+/// Sends the requests of a test.
 struct Client {
     CommandCall<> home, halt, come_to_stop;
     CommandCall<double, double> move_to;
@@ -57,7 +57,7 @@ struct Client {
     Output<double> set_point;
     bool oscillates = false;
     std::optional<double> once{};
-    Duration ahead{}; ///< of the next one
+    Duration ahead{}; ///< added to the time of the next set point
     int errors = 0;
     double worst_lag = 0;
     Input<double> position;

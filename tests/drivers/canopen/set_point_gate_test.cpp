@@ -1,5 +1,5 @@
-// What a drive is sent, and when: drives with and without a halt bit in cyclic modes, quick and
-// slow to change their mode, behind frames that take up to fifty cycles there and back.
+// Words and set points that a drive receives, and when: drives with and without a halt bit in cyclic modes,
+// with quick and slow mode changes, behind frames that take up to fifty cycles there and back.
 #include "tests/drivers/canopen/watched_drive.hpp"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,7 @@ namespace {
 using motion::AxisMode;
 using enum OperationMode;
 
-/// What `check` says of each drive: with and without a halt bit in cyclic modes, quick and slow, near and
-/// far.
+/// Runs `check` for each drive: with and without a halt bit in cyclic modes, quick and slow, near and far.
 template <class Check> void on_each_drive(Check check) {
     for (const bool knows_halt : {true, false})
         for (const int mode_steps : {0, 30})
@@ -29,7 +28,7 @@ template <class Check> void on_each_drive(Check check) {
             }
 }
 
-/// Positions at `speed`, from where it stands.
+/// Positions at `speed`, from the current one.
 void follow_positions(Watched& rig, double speed, int count) {
     ASSERT_TRUE(rig.axis.synchronize(cyclic_position));
     ASSERT_TRUE(rig.watched_until([&] { return rig.axis.follows(); }));
@@ -41,7 +40,7 @@ void follow_positions(Watched& rig, double speed, int count) {
     }
 }
 
-/// A motion in that mode, which is watched from its beginning.
+/// Starts a motion in that mode and watches it from its beginning.
 void begin(Watched& rig, OperationMode mode, double speed) {
     if (mode == cyclic_position) return follow_positions(rig, speed, 200);
     if (mode == profile_position)
@@ -57,7 +56,7 @@ void begin(Watched& rig, OperationMode mode, double speed) {
 constexpr std::array modes{profile_position, profile_velocity, cyclic_position, cyclic_velocity,
                            cyclic_torque};
 
-TEST(SetPointGate, keeps_an_axis_that_was_turned_by_hand_where_it_is) {
+TEST(SetPointGate, keeps_an_axis_that_was_turned_by_hand_in_place) {
     for (const OperationMode mode : modes)
         on_each_drive([&](Watched& rig) {
             SCOPED_TRACE(testing::Message() << "mode " << static_cast<int>(mode));
@@ -79,7 +78,7 @@ TEST(SetPointGate, keeps_an_axis_that_was_turned_by_hand_where_it_is) {
         });
 }
 
-TEST(SetPointGate, gives_no_power_while_the_drive_shows_cyclic_position) {
+TEST(SetPointGate, enables_no_power_while_the_drive_shows_cyclic_position) {
     on_each_drive([](Watched& rig) {
         rig.is(static_cast<int>(rig.cycles_out), static_cast<int>(rig.cycles_in), false, 0, cyclic_position);
         rig.servo.faults.refuses_mode = true;
@@ -96,7 +95,7 @@ TEST(SetPointGate, gives_no_power_while_the_drive_shows_cyclic_position) {
     });
 }
 
-TEST(SetPointGate, has_no_power_while_a_word_that_takes_it_is_under_way) {
+TEST(SetPointGate, enables_no_power_while_a_disabling_word_is_in_flight) {
     for (int when = 0; when < 120; ++when) {
         SCOPED_TRACE(testing::Message() << "power is lost after " << when << " cycles");
         Watched rig;
@@ -113,7 +112,7 @@ TEST(SetPointGate, has_no_power_while_a_word_that_takes_it_is_under_way) {
     }
 }
 
-TEST(SetPointGate, sends_a_place_only_to_a_drive_that_shows_profile_position) {
+TEST(SetPointGate, sends_a_target_position_only_in_profile_position) {
     on_each_drive([](Watched& rig) {
         ASSERT_TRUE(rig.gets_power());
         follow_positions(rig, 20, 200);
@@ -156,7 +155,7 @@ TEST(SetPointGate, hands_over_between_all_modes) {
             });
 }
 
-TEST(SetPointGate, takes_no_homing_before_for_the_one_asked_for) {
+TEST(SetPointGate, does_not_confuse_a_homing_with_the_previous_one) {
     on_each_drive([](Watched& rig) {
         rig.servo.faults.remembers_home = true;
         rig.servo.set_home(7);
@@ -173,7 +172,7 @@ TEST(SetPointGate, takes_no_homing_before_for_the_one_asked_for) {
     });
 }
 
-TEST(SetPointGate, calls_no_homing_done_that_the_drive_never_began) {
+TEST(SetPointGate, completes_only_a_homing_that_the_drive_has_begun) {
     on_each_drive([](Watched& rig) {
         rig.servo.faults.remembers_home = true;
         ASSERT_TRUE(rig.gets_power());
@@ -190,7 +189,7 @@ TEST(SetPointGate, calls_no_homing_done_that_the_drive_never_began) {
     });
 }
 
-TEST(SetPointGate, adds_a_superimposed_motion_to_the_one_that_runs) {
+TEST(SetPointGate, adds_a_superimposed_motion_to_the_current_one) {
     on_each_drive([](Watched& rig) {
         ASSERT_TRUE(rig.gets_power());
         ASSERT_TRUE(rig.axis.superimpose(2, 50, 500)) << "at a stand: a relative motion";
@@ -229,7 +228,7 @@ TEST(SetPointGate, adds_a_superimposed_motion_to_the_one_that_runs) {
     });
 }
 
-TEST(SetPointGate, lets_no_set_point_through_that_is_no_number) {
+TEST(SetPointGate, passes_only_finite_set_points) {
     on_each_drive([](Watched& rig) {
         ASSERT_TRUE(rig.gets_power());
         for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
@@ -251,7 +250,7 @@ TEST(SetPointGate, lets_no_set_point_through_that_is_no_number) {
     });
 }
 
-TEST(SetPointGate, gives_no_power_behind_an_error_stop) {
+TEST(SetPointGate, enables_no_power_after_an_error_stop) {
     on_each_drive([](Watched& rig) {
         ASSERT_TRUE(rig.gets_power());
         ASSERT_TRUE(rig.move_to(500, 20));

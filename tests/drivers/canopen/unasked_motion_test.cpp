@@ -1,5 +1,4 @@
-// An axis moves only when asked, and as asked: whatever is asked of it, whatever befalls its drive, its
-// frames and the hands near it.
+// An axis moves only as requested, whatever happens to its drive, its frames and its shaft.
 #include "kernel/base/random.hpp"
 #include "tests/drivers/canopen/watched_drive.hpp"
 
@@ -19,7 +18,7 @@ using enum OperationMode;
 constexpr std::array boot_modes{none,   profile_position, profile_velocity, profile_torque,
                                 homing, cyclic_position,  cyclic_velocity,  cyclic_torque};
 
-/// Somebody who asks for anything at any time, of a drive to which anything happens.
+/// Sends any request at any time, to a drive to which anything happens.
 struct Anybody : Watched {
     explicit Anybody(std::uint64_t seed) : random{seed} {
         const auto trip = random.between(0, 49);
@@ -35,7 +34,7 @@ struct Anybody : Watched {
     void live(int count) {
         for (int i = 0; i < count && breaches == 0; ++i) {
             if (quiet > 0)
-                --quiet; // lets a motion come to its end
+                --quiet; // lets a motion end
             else if (random.one_in(patience))
                 ask_anything();
             if (random.one_in(1000)) patience = std::array{8u, 60u, 500u}[random.below(3)];
@@ -108,7 +107,7 @@ struct Anybody : Watched {
                 if (axis.superimpose(place, speed, 500)) ask(speed);
             } else if (axis.superimpose(place, speed, 500)) {
                 EXPECT_EQ(axis.state(), AxisMode::synchronized_motion);
-                beside = std::max(beside, speed); // the one before may have to slow down first
+                beside = std::max(beside, speed); // the previous motion may have to slow down first
                 ask(std::abs(pace) + beside);
             }
             break;
@@ -138,7 +137,7 @@ struct Anybody : Watched {
             loss = static_cast<int>(random.between(1, 200));
             servo.trip();
             break;
-        case 7: { // its node starts anew, which takes longer than frames are under way
+        case 7: { // its node restarts, which takes longer than frames are in flight
             heard = hears = false;
             loss = 300;
             const SimulatedServo::Faults faults = servo.faults;
@@ -150,8 +149,8 @@ struct Anybody : Watched {
             homings_before.reset();
             break;
         }
-        case 8: // frames take another time; in cyclic position each one that comes together with the next is
-                // a jump
+        case 8: // frames take another time; in cyclic position a frame that arrives with the next one
+                // would be a jump
             if (last.mode == 8 || servo.mode() == 8) break;
             cycles_in = random.below(26);
             cycles_out = random.below(26);
@@ -160,7 +159,7 @@ struct Anybody : Watched {
         default: break;
         }
     }
-    /// Positions at a constant pace, from where it stands when it follows.
+    /// Positions at a constant speed, from the position where following began.
     void lead_positions() {
         if (axis.state() != AxisMode::synchronized_motion) is_led = false;
         if (!axis.follows() || last.mode != 8) return;
@@ -177,7 +176,7 @@ struct Anybody : Watched {
             EXPECT_GT(servo.homings(), *homings_before) << "done, and it never was; cycle " << cycles;
         }
         if (axis.state() == AxisMode::standstill && before == AxisMode::discrete_motion && place_asked &&
-            servo.state() == DriveState::operation_enabled) { // else somebody may have turned it since
+            servo.state() == DriveState::operation_enabled) { // otherwise someone may have turned it since
             ++places;
             EXPECT_NEAR(servo.position(), *place_asked, 1e-6) << "done, and is elsewhere; cycle " << cycles;
         }
@@ -194,7 +193,7 @@ struct Anybody : Watched {
     std::optional<int> homings_before;
 };
 
-TEST(AnyAxis, moves_never_unasked_nor_faster_than_asked) {
+TEST(AnyAxis, never_moves_unrequested_or_faster_than_requested) {
     const std::uint64_t first = std::random_device{}();
     int motions = 0, homings = 0, places = 0;
     for (std::uint64_t seed = first; seed < first + 200 && !testing::Test::HasFailure(); ++seed) {

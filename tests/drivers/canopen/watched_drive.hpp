@@ -1,4 +1,4 @@
-// A drive whose motor is looked at in each cycle: it never turns faster than was asked for.
+// A drive whose motor is checked in each cycle: it never turns faster than requested.
 #pragma once
 
 #include "tests/drivers/canopen/drive_rig.hpp"
@@ -11,7 +11,7 @@
 
 namespace tappet::canopen {
 
-/// It never turns faster than was asked last, or than it did before.
+/// It never turns faster than the last request, or than before.
 struct Watched : DriveRig {
     void is(int there, int back, bool knows_halt, int mode_steps,
             OperationMode boots_in = OperationMode::none) {
@@ -22,7 +22,7 @@ struct Watched : DriveRig {
         servo.take({.mode = static_cast<std::int64_t>(boots_in)});
         servo.faults.mode_steps = mode_steps;
     }
-    /// Of a motion that takes the place of another one the drive hears after the hand-shakes of both.
+    /// The drive hears of a replacing motion only after the handshakes of both.
     void ask(double speed) {
         expire(3 * round_trip() + servo.faults.mode_steps + 20);
         asked = speed;

@@ -1,5 +1,4 @@
-// A machine with one CAN bus under virtual time, and what stands at the other end of its wire. Of no test
-// framework.
+// A machine with one CAN bus under virtual time, and the other end of its wire. Uses no test framework.
 #pragma once
 
 #include "drivers/can/bus.hpp"
@@ -13,7 +12,7 @@
 
 namespace tappet::test {
 
-/// `Bus` is the machine's, on its device "wire".
+/// `Bus` is the type of the machine's bus, on its device "wire".
 template <const auto& table, class Bus> struct WireRig : canopen::FrameSink {
     static constexpr Duration tick = 100us;
 
@@ -68,7 +67,7 @@ template <const auto& table, class Bus> struct WireRig : canopen::FrameSink {
     can::Twin twin, far_end;
     MachineInstance instance{AtRunTime<table, board>::machine(), clock};
     VirtualWorld world{instance};
-    bool good = true; ///< all that must be so to test anything
+    bool good = true; ///< conditions without which nothing can be tested
     int refused = 0;  ///< frames of the nodes that found no room
     bool started = false;
     Time next_tick{};

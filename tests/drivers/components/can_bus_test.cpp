@@ -1,4 +1,4 @@
-// The CAN bus as a component: what leaves, when, and what must never leave.
+// The CAN bus as a component: which frames leave and when, and which must never leave.
 #include "tests/drivers/components/can_machine.hpp"
 
 #include <limits>
@@ -17,7 +17,7 @@ double target_rpm(const can::Frame& frame) {
            10.0;
 }
 
-TEST_F(CanBus, gives_values_the_time_of_their_frame) {
+TEST_F(CanBus, stamps_values_with_the_time_of_their_frame) {
     run_until(10ms);
     send(0x181, 6, {0x27, 0x02, 0x2e, 0xfb, 0xff, 0xff}); // -1234 tenths
     run_until(12ms);
@@ -38,7 +38,7 @@ TEST_F(CanBus, sends_cyclic_frames_at_exact_periods) {
     EXPECT_EQ(target_rpm(sent.back()), 100.0);
 }
 
-TEST_F(CanBus, lets_no_late_cycle_move_the_frames_after_it) {
+TEST_F(CanBus, keeps_its_grid_after_a_late_cycle) {
     run_until(20ms);
     master->overrun = 5500us;
     run_until(40ms);
@@ -48,7 +48,7 @@ TEST_F(CanBus, lets_no_late_cycle_move_the_frames_after_it) {
     EXPECT_EQ(heard_of(0x201).back().stamp, Time{40ms} - 2ms);
 }
 
-TEST_F(CanBus, sends_demands_once_and_in_their_order) {
+TEST_F(CanBus, sends_each_demand_once_and_in_order) {
     run_until(10ms);
     for (std::int64_t node = 1; node <= 6; ++node) demand(1, node);
     run_until(200ms);
@@ -70,20 +70,20 @@ TEST_F(CanBus, sends_the_same_demand_again_when_it_is_written_again) {
     EXPECT_EQ(heard_of(0x000).size(), 2u);
 }
 
-TEST_F(CanBus, counts_demands_that_follow_sooner_than_its_map_says) {
+TEST_F(CanBus, counts_demands_that_exceed_the_rate_of_its_map) {
     demand(1, 1);
     run_until(20ms);
     demand(1, 2);
     run_until(40ms);
     EXPECT_EQ(bus->sent_too_often.last(), 0);
     demand(1, 3);
-    demand(1, 4); // in the next cycle of its writer
+    demand(1, 4); // in its writer's next cycle
     run_until(60ms);
     EXPECT_EQ(heard_of(0x000).size(), 4u) << "it goes out all the same";
     EXPECT_EQ(bus->sent_too_often.last(), 1);
 }
 
-TEST_F(CanBus, keeps_the_longest_response_of_what_it_sent) {
+TEST_F(CanBus, records_the_longest_response_of_its_sent_frames) {
     run_until(40ms);
     EXPECT_EQ(bus->longest_response("drive_command"), Duration{}) << "the wire of this machine takes no time";
     wire.set_bit_rates({125'000, 0});
@@ -92,7 +92,7 @@ TEST_F(CanBus, keeps_the_longest_response_of_what_it_sent) {
     EXPECT_EQ(bus->longest_response("nmt"), Duration{}) << "nobody demanded it";
 }
 
-TEST_F(CanBus, sends_no_command_with_the_node_of_the_one_before) {
+TEST_F(CanBus, does_not_mix_signals_of_two_commands) {
     run_until(10ms);
     demand(1, 3);
     run_until(20ms);
@@ -108,7 +108,7 @@ TEST_F(CanBus, sends_no_command_with_the_node_of_the_one_before) {
     EXPECT_EQ(sent[1].data[1], 4);
 }
 
-TEST_F(CanBus, repeats_the_last_values_when_a_writer_was_interrupted_between_two_of_them) {
+TEST_F(CanBus, repeats_the_last_values_when_a_writer_was_interrupted_halfway) {
     run_until(10500us);
     master->word = 5;
     master->writes_target = false; // from 11 ms on only one of the two is new
@@ -119,7 +119,7 @@ TEST_F(CanBus, repeats_the_last_values_when_a_writer_was_interrupted_between_two
     EXPECT_EQ(controlword(sent.back()), 5) << "at 14 ms: it is how this writer writes";
 }
 
-TEST_F(CanBus, holds_a_frame_back_until_all_of_it_was_written) {
+TEST_F(CanBus, holds_a_frame_back_until_all_its_signals_were_written) {
     master->writes_target = false;
     run_until(20ms);
     EXPECT_TRUE(heard.empty());
@@ -143,7 +143,7 @@ TEST_F(CanBus, holds_a_stale_frame_back_and_resumes_on_its_grid) {
     EXPECT_EQ(resumed->stamp, Time{62ms});
 }
 
-TEST_F(CanBus, sends_what_a_row_gives_for_a_stale_value) {
+TEST_F(CanBus, sends_the_substitute_of_its_row_for_a_stale_value) {
     run_until(20ms);
     const can::Frame before = heard_of(0x201).back();
     master->writes_target = false; // written last at 20 ms, good for 10 ms
@@ -155,7 +155,7 @@ TEST_F(CanBus, sends_what_a_row_gives_for_a_stale_value) {
     EXPECT_EQ(can::extract(last.data, velocity), 0u);
 }
 
-TEST_F(CanBus, writes_no_signal_that_is_no_number) {
+TEST_F(CanBus, ignores_received_values_that_are_not_finite) {
     const auto& force = bus->physical_out[signals.signals.size() - 1];
     run_until(10ms);
     send(0x182, 4, {0x00, 0x00, 0x20, 0x40});
@@ -169,7 +169,7 @@ TEST_F(CanBus, writes_no_signal_that_is_no_number) {
     EXPECT_EQ(bus->no_numbers.last(), 2);
 }
 
-TEST_F(CanBus, sends_nothing_in_place_of_a_value_that_is_no_number) {
+TEST_F(CanBus, sends_no_frame_while_its_value_is_nan) {
     run_until(20ms);
     master->rpm = std::numeric_limits<double>::quiet_NaN();
     run_until(40ms);
@@ -180,7 +180,7 @@ TEST_F(CanBus, sends_nothing_in_place_of_a_value_that_is_no_number) {
     EXPECT_EQ(target_rpm(heard_of(0x201).back()), 50.0);
 }
 
-TEST_F(CanBus, counts_frames_of_a_wrong_length_and_takes_nothing_from_them) {
+TEST_F(CanBus, counts_frames_of_a_wrong_length_and_ignores_their_data) {
     run_until(10ms);
     send(0x181, 6, {1});
     run_until(12ms);
@@ -193,7 +193,7 @@ TEST_F(CanBus, counts_frames_of_a_wrong_length_and_takes_nothing_from_them) {
     EXPECT_EQ(master->frames, 1);
 }
 
-TEST_F(CanBus, tells_how_many_frames_were_lost) {
+TEST_F(CanBus, reports_how_many_frames_were_lost) {
     run_until(10ms);
     wire.overflow(twin, 7);
     send(0x181, 6, {1});
@@ -202,7 +202,7 @@ TEST_F(CanBus, tells_how_many_frames_were_lost) {
     EXPECT_EQ(master->statusword.get(), 1) << "the frame after the lost ones counts";
 }
 
-TEST_F(CanBus, takes_a_burst_to_its_end_without_another_frame_to_wake_it) {
+TEST_F(CanBus, reads_a_whole_burst_without_another_frame_to_wake_it) {
     run_until(10ms);
     can::Frame frame{.id = 0x181, .length = 6};
     wire.babble(frame, 250ns, clock.now() + 1us);
@@ -213,19 +213,19 @@ TEST_F(CanBus, takes_a_burst_to_its_end_without_another_frame_to_wake_it) {
     EXPECT_EQ(master->received.get(), static_cast<std::int64_t>(twin.counters().received));
 }
 
-TEST_F(CanBus, drops_at_a_fault_what_waited_and_what_is_demanded_until_the_restart) {
+TEST_F(CanBus, drops_queued_and_new_demands_from_a_fault_until_the_restart) {
     run_until(20300us); // off the grid of the frames
     const auto before = heard.size();
     wire.bus_off(twin);
     demand(1, 1); // demanded into the fault
     run_until(25ms);
-    master->sync_next = 1; // and this, which wakes nobody
+    master->sync_next = 1; // this demand wakes nobody
     EXPECT_EQ(master->faults, 1);
     EXPECT_TRUE(master->was_faulted);
     master->word = 9;
     run_until(110ms);
     EXPECT_EQ(heard.size(), before) << "nothing is sent";
-    run_until(200ms); // restarted on purpose
+    run_until(200ms); // by the restarter
     EXPECT_EQ(master->recoveries, 1);
     EXPECT_FALSE(master->was_faulted);
     EXPECT_TRUE(heard_of(0x000).empty()) << "what was demanded meanwhile is dropped";
@@ -243,7 +243,7 @@ TEST_F(CanBus, drops_at_a_fault_what_waited_and_what_is_demanded_until_the_resta
     EXPECT_EQ(heard_of(0x000)[0].data[1], 2);
 }
 
-TEST_F(CanBus, sends_nothing_that_waited_for_an_acknowledgement_when_the_bus_comes_back) {
+TEST_F(CanBus, sends_no_unacknowledged_frame_when_the_bus_recovers) {
     run_until(20ms);
     wire.set_acknowledged(false);
     run_until(40ms); // cyclic frames took the controller's four places
@@ -263,7 +263,7 @@ TEST_F(CanBus, sends_nothing_that_waited_for_an_acknowledgement_when_the_bus_com
     for (const auto& frame : heard) EXPECT_EQ(controlword(frame), 7);
 }
 
-TEST_F(CanBus, costs_next_to_nothing_while_it_is_faulted) {
+TEST_F(CanBus, uses_hardly_any_time_while_it_is_faulted) {
     restarter->attempts.set(0);
     run_until(20ms);
     wire.bus_off(twin);
@@ -273,7 +273,7 @@ TEST_F(CanBus, costs_next_to_nothing_while_it_is_faulted) {
     EXPECT_LE(bus_cycles() - before, 50u) << "one look in 20 ms";
 }
 
-TEST_F(CanBus, sends_its_safe_values_at_stop_and_repeats_no_demand) {
+TEST_F(CanBus, sends_its_safe_values_at_the_stop_and_repeats_no_demand) {
     run_until(10ms);
     demand(1, 3);
     run_until(20500us);
@@ -286,7 +286,7 @@ TEST_F(CanBus, sends_its_safe_values_at_stop_and_repeats_no_demand) {
     EXPECT_EQ(target_rpm(heard[0]), 0.0);
 }
 
-TEST_F(CanBus, sends_the_safe_values_of_its_map_at_stop_whatever_their_writer_left) {
+TEST_F(CanBus, sends_the_safe_values_of_its_map_at_every_stop) {
     master->leaves_safe = false;
     run_until(20500us);
     heard.clear();
@@ -300,7 +300,7 @@ TEST_F(CanBus, sends_the_safe_values_of_its_map_at_stop_whatever_their_writer_le
     EXPECT_EQ(instance.life().left_unsafe(), "");
 }
 
-TEST_F(CanBus, sends_its_safe_values_at_a_stop_between_a_restart_and_its_look_at_it) {
+TEST_F(CanBus, sends_its_safe_values_at_a_stop_right_after_a_bus_restart) {
     run_until(20300us);
     wire.bus_off(twin);
     restarter->attempts.set(0);
@@ -313,7 +313,7 @@ TEST_F(CanBus, sends_its_safe_values_at_a_stop_between_a_restart_and_its_look_at
     EXPECT_EQ(controlword(heard_of(0x201).back()), 2);
 }
 
-TEST_F(CanBus, begins_anew_when_it_is_stopped_and_started_again) {
+TEST_F(CanBus, works_again_after_a_stop_and_a_start) {
     run_until(10ms);
     wire.overflow(twin, 3);
     send(0x181, 6, {1});
@@ -324,7 +324,7 @@ TEST_F(CanBus, begins_anew_when_it_is_stopped_and_started_again) {
     run_until(30ms);
     heard.clear();
     master->word = 4;
-    demand(1, 2); // demanded of a bus that does not run
+    demand(1, 2); // demanded while the bus is stopped
     master->sync_next = 1;
     for (std::uint8_t i = 0; i < 100; ++i) {
         if (i == 50) wire.overflow(twin, 5);
@@ -356,13 +356,13 @@ TEST_F(CanBus, begins_anew_when_it_is_stopped_and_started_again) {
     EXPECT_EQ(heard_of(0x000)[0].data[1], 3);
 }
 
-TEST_F(CanBus, sends_no_values_of_the_time_before_its_stop) {
+TEST_F(CanBus, sends_no_values_from_before_its_stop) {
     run_until(10ms);
     demand_each_once();
     run_until(20300us);
     change(0, LifeChange::stop);
     master->word = 5;
-    master->writes_target = false; // the two no longer agree, and what agreed last is of before the stop
+    master->writes_target = false; // the two no longer agree, and the last agreement is from before the stop
     run_until(23300us);
     heard.clear();
     change(0, LifeChange::start);
@@ -371,7 +371,7 @@ TEST_F(CanBus, sends_no_values_of_the_time_before_its_stop) {
     EXPECT_EQ(controlword(heard[0]), 5);
 }
 
-TEST_F(CanBus, drops_at_its_start_what_still_waited_to_be_sent_when_it_was_stopped) {
+TEST_F(CanBus, drops_at_its_start_the_frames_queued_before_its_stop) {
     run_until(10ms);
     demand_each_once();
     run_until(20300us);
@@ -390,7 +390,7 @@ TEST_F(CanBus, drops_at_its_start_what_still_waited_to_be_sent_when_it_was_stopp
     EXPECT_EQ(master->faults, 1) << "that nobody served it";
 }
 
-TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {
+TEST_F(CanBus, reports_a_fault_again_when_it_starts_on_a_faulted_bus) {
     run_until(10ms);
     demand_each_once();
     run_until(20ms);
@@ -404,12 +404,12 @@ TEST_F(CanBus, tells_a_fault_anew_when_it_is_started_on_a_faulted_bus) {
     EXPECT_EQ(master->faults, 2);
     EXPECT_EQ(master->recoveries, 0);
     EXPECT_TRUE(master->was_faulted);
-    run_until(200ms); // restarted on purpose
+    run_until(200ms); // by the restarter
     EXPECT_EQ(master->recoveries, 1);
     EXPECT_FALSE(master->was_faulted);
 }
 
-/// A controller that asks for service in the past, or has no room for a while.
+/// A controller that requests service in the past, or has no room for a while.
 class DifficultDevice final : public can::Device {
 public:
     Time wants_service = Time::min();
@@ -446,7 +446,7 @@ private:
     int waiting_ = 0;
 };
 
-TEST_F(CanBus, does_not_spin_when_its_device_asks_for_service_in_the_past) {
+TEST_F(CanBus, does_not_spin_when_its_device_requests_service_in_the_past) {
     DifficultDevice device;
     begin(device);
     master->writes_target = false;
@@ -454,11 +454,11 @@ TEST_F(CanBus, does_not_spin_when_its_device_asks_for_service_in_the_past) {
     EXPECT_LE(bus_cycles(), 100ms / Bus::shortest_wait + 100);
 }
 
-TEST_F(CanBus, tries_again_soon_when_the_kernel_had_no_room_for_a_frame) {
+TEST_F(CanBus, retries_soon_when_the_kernel_had_no_room_for_a_frame) {
     DifficultDevice device;
     device.wants_service = never;
     begin(device);
-    master->writes_target = false; // no cyclic frame brings it out
+    master->writes_target = false; // no cyclic frame triggers its sending
     run_until(10ms);
     device.no_room_for = 4; // twice in the cycle in which it is demanded
     demand(1, 1);

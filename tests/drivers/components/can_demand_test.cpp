@@ -1,4 +1,4 @@
-// Frames on demand when what they carry is forced, when a force ends, and when a time cannot be.
+// Frames on demand while their signals are forced, when a force ends, and with impossible times.
 #include "tests/drivers/components/can_machine.hpp"
 #include "tests/drivers/components/forced_port.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 using OnDemand = CanMachine;
 
-TEST_F(OnDemand, repeats_no_demand_when_a_force_ends_or_the_machine_stops_meanwhile) {
+TEST_F(OnDemand, sends_a_demand_once_though_a_force_or_the_machine_ends) {
     demand(1, 3);
     run_until(20ms);
     ASSERT_EQ(heard_of(0x000).size(), 1u);
@@ -34,7 +34,7 @@ TEST_F(OnDemand, repeats_no_demand_when_a_force_ends_or_the_machine_stops_meanwh
     EXPECT_TRUE(heard_of(0x000).empty());
 }
 
-/// Frames on demand while what they carry is forced.
+/// Frames on demand while their signals are forced.
 struct ForcedDemand : OnDemand {
     void force(std::string_view name, FacetKind kind, std::int64_t value) {
         forced.emplace(instance, name, kind).to(value);
@@ -60,7 +60,7 @@ struct ForcedDemand : OnDemand {
     std::optional<ForcedPort> forced;
 };
 
-TEST_F(ForcedDemand, goes_back_to_what_its_component_wrote_when_the_force_of_its_output_ends) {
+TEST_F(ForcedDemand, returns_to_the_written_value_when_its_output_is_released) {
     write(1);
     force("master.sync", FacetKind::output, 99);
     write(0);
@@ -68,7 +68,7 @@ TEST_F(ForcedDemand, goes_back_to_what_its_component_wrote_when_the_force_of_its
     EXPECT_EQ(sent().back(), 0);
 }
 
-TEST_F(ForcedDemand, goes_back_to_what_was_written_before_when_the_force_of_its_input_ends) {
+TEST_F(ForcedDemand, returns_to_the_written_value_when_its_input_is_released) {
     write(7);
     force("can.sync.count", FacetKind::input, 99);
     release();
@@ -84,7 +84,7 @@ struct HalfForced : ForcedDemand {
     }
     void demand_late(std::int64_t command, std::int64_t node) {
         demand(command, node);
-        master->overrun = 10us; // the bus looks a while after it was written
+        master->overrun = 10us; // the bus reads some time after the write
         wait();
     }
     [[nodiscard]] std::vector<std::pair<int, int>> demanded() {
@@ -95,7 +95,7 @@ struct HalfForced : ForcedDemand {
     using All = std::vector<std::pair<int, int>>;
 };
 
-TEST_F(HalfForced, sends_each_demand_of_the_others_with_what_is_forced) {
+TEST_F(HalfForced, sends_each_demand_with_the_forced_signal) {
     demand_late(128, 4);
     demand_late(2, 5);
     EXPECT_EQ(demanded(), (All{{128, 7}, {2, 7}}));
@@ -103,7 +103,7 @@ TEST_F(HalfForced, sends_each_demand_of_the_others_with_what_is_forced) {
     EXPECT_EQ(demanded().back(), std::pair(2, 5)) << "what stood behind the force reaches the wire";
 }
 
-TEST_F(HalfForced, sends_nothing_of_before_when_its_bus_stops) {
+TEST_F(HalfForced, sends_no_earlier_demand_when_its_bus_stops) {
     demand_late(129, 6);
     heard.clear();
     change(0, LifeChange::stop);
@@ -111,7 +111,7 @@ TEST_F(HalfForced, sends_nothing_of_before_when_its_bus_stops) {
     EXPECT_EQ(demanded(), All{});
 }
 
-TEST_F(ForcedDemand, sends_nothing_that_was_dropped_while_it_stood_when_a_force_begins_or_ends) {
+TEST_F(ForcedDemand, sends_no_demand_dropped_while_stopped_when_a_force_changes) {
     demand_each_once();
     change(0, LifeChange::stop);
     demand(129, 6);
@@ -124,8 +124,9 @@ TEST_F(ForcedDemand, sends_nothing_that_was_dropped_while_it_stood_when_a_force_
     EXPECT_TRUE(heard_of(0x000).empty());
 }
 
-TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_lies_ahead) {
-    for (const Duration ahead : {Duration{900ms}, Duration{1h}}) { // a little, and as no time can be
+TEST_F(OnDemand, sends_demands_after_one_with_a_future_time) {
+    for (const Duration ahead :
+         {Duration{900ms}, Duration{1h}}) { // a little, and further than any valid time
         heard.clear();
         master->sync_at = clock.now() + ahead;
         master->sync_next = 1;
@@ -139,7 +140,7 @@ TEST_F(OnDemand, sends_what_is_demanded_after_a_time_that_lies_ahead) {
     }
 }
 
-TEST_F(OnDemand, sends_demands_whose_times_are_in_no_order) {
+TEST_F(OnDemand, sends_demands_whose_times_are_out_of_order) {
     run_until(100ms);
     for (const Time at : {at_ns(130'000'000), at_ns(110'000'000), at_ns(105'000'000)}) {
         master->sync_at = at;
@@ -149,7 +150,7 @@ TEST_F(OnDemand, sends_demands_whose_times_are_in_no_order) {
     EXPECT_EQ(heard_of(0x080).size(), 3u);
 }
 
-TEST_F(ForcedDemand, repeats_no_demand_with_a_time_that_lies_a_little_ahead) {
+TEST_F(ForcedDemand, sends_a_demand_once_though_its_time_lies_ahead) {
     run_until(10ms);
     for (const bool is_ahead : {false, true}) {
         heard.clear();
@@ -163,7 +164,7 @@ TEST_F(ForcedDemand, repeats_no_demand_with_a_time_that_lies_a_little_ahead) {
     }
 }
 
-TEST_F(ForcedDemand, does_not_send_after_a_force_what_a_fault_dropped_behind_it) {
+TEST_F(ForcedDemand, sends_no_demand_after_a_force_that_a_fault_dropped) {
     run_until(10ms);
     for (const bool is_ahead : {false, true}) {
         write(1);
@@ -184,7 +185,7 @@ TEST_F(ForcedDemand, does_not_send_after_a_force_what_a_fault_dropped_behind_it)
     }
 }
 
-TEST_F(HalfForced, does_not_send_after_a_force_what_a_fault_dropped_behind_it) {
+TEST_F(HalfForced, sends_no_demand_after_a_force_that_a_fault_dropped) {
     wire.bus_off(twin);
     run(20ms);
     demand(129, 6); // dropped: the bus is off
@@ -195,7 +196,7 @@ TEST_F(HalfForced, does_not_send_after_a_force_what_a_fault_dropped_behind_it) {
     EXPECT_EQ(demanded(), All{});
 }
 
-TEST_F(ForcedDemand, does_not_send_at_its_stop_what_a_force_hid) {
+TEST_F(ForcedDemand, sends_no_hidden_demand_at_its_stop) {
     demand_each_once();
     force("can.sync.count", FacetKind::input, 7);
     write(5);
@@ -206,7 +207,7 @@ TEST_F(ForcedDemand, does_not_send_at_its_stop_what_a_force_hid) {
     EXPECT_TRUE(sent().empty());
 }
 
-TEST_F(ForcedDemand, does_not_send_at_its_writers_stop_what_a_force_hid) {
+TEST_F(ForcedDemand, sends_no_hidden_demand_at_the_stop_of_its_writer) {
     demand_each_once();
     for (const bool is_ahead : {false, true}) {
         force("can.sync.count", FacetKind::input, 7);
@@ -223,7 +224,7 @@ TEST_F(ForcedDemand, does_not_send_at_its_writers_stop_what_a_force_hid) {
     }
 }
 
-TEST_F(ForcedDemand, sends_after_a_force_what_was_demanded_since_a_fault_whatever_its_time) {
+TEST_F(ForcedDemand, sends_a_demand_made_since_a_fault_whatever_its_time) {
     run_until(10ms);
     write(1);
     const Time before = clock.now();
@@ -232,14 +233,14 @@ TEST_F(ForcedDemand, sends_after_a_force_what_was_demanded_since_a_fault_whateve
     run(800ms);
     ASSERT_FALSE(bus->is_faulted.last());
     heard.clear();
-    master->sync_at = before; // as who hands on the time of what was measured
+    master->sync_at = before; // like a writer that forwards the time of a measurement
     write(9);
     release();
     EXPECT_EQ(sent(), std::vector{9});
 }
 
 /// A writer on another processor may be ahead of the cycle that reads its first half.
-TEST_F(OnDemand, sends_a_command_whose_halves_are_seen_in_two_cycles) {
+TEST_F(OnDemand, sends_a_command_once_though_its_halves_arrive_in_two_cycles) {
     run_until(10ms);
     for (const Duration ahead : {Duration{0}, Duration{5ms}, Duration{50ms}}) {
         heard.clear();
@@ -252,7 +253,7 @@ TEST_F(OnDemand, sends_a_command_whose_halves_are_seen_in_two_cycles) {
     }
 }
 
-TEST_F(OnDemand, makes_no_command_of_halves_that_have_no_time) {
+TEST_F(OnDemand, sends_no_command_whose_halves_have_no_time) {
     run_until(10ms);
     for (const Time at : {never, Time::min()}) {
         master->nmt_at = never;
@@ -260,7 +261,7 @@ TEST_F(OnDemand, makes_no_command_of_halves_that_have_no_time) {
         run(20ms);
         master->nmt_at = at;
         heard.clear();
-        master->node_next = 9; // half of the next demand, whose other half never comes
+        master->node_next = 9; // half of the next demand; the other half never comes
         run(30ms);
         EXPECT_THAT(heard_of(0x000), testing::IsEmpty()) << (at == never ? "at no time" : "now");
     }

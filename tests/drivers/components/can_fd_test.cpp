@@ -1,4 +1,4 @@
-// A machine on a bus with CAN FD frames, from its board's two bit rates to the values in its plant's hands.
+// A machine on a bus with CAN FD frames, from its board's two bit rates to the values at its plant.
 #include "drivers/can/bus.hpp"
 #include "drivers/can/far_end.hpp"
 #include "drivers/plant/simulation.hpp"
@@ -15,7 +15,7 @@ constexpr auto signals = can::signal_map(
     can::transmit(can::standard(0x201), "recipe", can::fd_bytes(24).in_one_rate(), can::every(10ms),
                   can::signal("thickness", 160, 24).times(0.001).in("mm").safe(0)));
 
-/// Planes what was scanned to half of its width.
+/// Planes the scanned board to half of its width.
 struct Planer {
     Input<double> width{};
     Output<double> thickness{};
@@ -68,7 +68,7 @@ struct PlaningMachine : MachineRig<planing_machine, box, on_box> {
     can::Bus<signals>& bus = *instance.find<can::Bus<signals>>("can");
 };
 
-TEST_F(PlaningMachine, has_values_that_lie_behind_the_eighth_byte_in_and_out) {
+TEST_F(PlaningMachine, sends_and_receives_values_behind_the_eighth_byte) {
     plant.can.set("scan.width", 123.456);
     run(100ms);
     EXPECT_NEAR(plant.can.get("recipe.thickness"), 61.728, 0.0005);
@@ -80,7 +80,7 @@ TEST_F(PlaningMachine, has_values_that_lie_behind_the_eighth_byte_in_and_out) {
     EXPECT_LT(bus.longest_response("recipe"), 10ms);
 }
 
-TEST_F(PlaningMachine, counts_frames_that_the_bus_cut_short) {
+TEST_F(PlaningMachine, counts_frames_that_the_bus_truncated) {
     run(20ms);
     devices.bus("wire").faults.only = can::standard(0x181);
     devices.bus("wire").faults.corrupt_length.next = 2;

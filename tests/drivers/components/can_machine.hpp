@@ -47,14 +47,14 @@ struct Master {
 
     bool writes_controlword = true;
     bool writes_target = true;
-    bool leaves_safe = true; ///< by its stop()
+    bool leaves_safe = true; ///< in its stop()
     std::int64_t word = 1;
     double rpm = 100;
     Bounded<Demand, 16> demands{}; // one a cycle
     Bounded<std::int64_t, 4> commands_alone{};
     int sync_next = -1;         // written in the next cycle
-    Time sync_at = Time::min(); // and true then; min: in that cycle
-    Time nmt_at = Time::min();  // likewise of demands
+    Time sync_at = Time::min(); // and its time stamp; min: the time of that cycle
+    Time nmt_at = Time::min();  // the same for demands
     int node_next = -1;         // a node without a command
     Duration overrun{};
     os::Clock* clock = nullptr;
@@ -152,7 +152,7 @@ struct CanMachine : MachineRig<can_machine> {
     static constexpr std::array machine_sends{can::standard(0x201), can::standard(0x000),
                                               can::standard(0x080)};
     static constexpr std::array machine_hears{can::standard(0x181), can::standard(0x182),
-                                              can::standard(0x555)}; // one more than its map
+                                              can::standard(0x555)}; // one more than in its map
     static constexpr std::array far_end_sends{can::standard(0x181), can::standard(0x182),
                                               can::standard(0x555)};
     static constexpr Duration tick = 50us;
@@ -182,7 +182,7 @@ struct CanMachine : MachineRig<can_machine> {
             if (!frame.error.restarted) heard.push_back(frame);
         return now + tick;
     }
-    /// From the far end, at the next tick.
+    /// Sends from the far end, at the next tick.
     void send(std::uint32_t id, std::uint8_t length, can::Payload data) {
         can::Frame frame{.id = id, .length = length, .data = data, .stamp = clock.now()};
         EXPECT_EQ(far_end.send(frame, can::Keep::every), can::Send::queued);

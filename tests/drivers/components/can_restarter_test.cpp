@@ -1,4 +1,4 @@
-// Restarts of a CAN bus are deliberate, a pause apart, and end.
+// Restarts of a CAN bus are deliberate, separated by a pause, and limited in number.
 #include "tests/drivers/components/can_machine.hpp"
 
 namespace tappet::test {
@@ -52,7 +52,7 @@ TEST_F(CanRestarter, gives_up_when_its_device_allows_no_more_restarts) {
     EXPECT_EQ(master->surrenders, 1);
 }
 
-TEST_F(CanRestarter, surrenders_at_once_to_a_new_fault_when_its_attempts_are_used_up) {
+TEST_F(CanRestarter, gives_up_at_once_on_a_new_fault_without_attempts_left) {
     for (int i = 0; i < 2; ++i) {
         wire.bus_off(twin);
         run(300ms);
@@ -64,7 +64,7 @@ TEST_F(CanRestarter, surrenders_at_once_to_a_new_fault_when_its_attempts_are_use
     EXPECT_EQ(restarter->restarts.last(), 2);
 }
 
-TEST_F(CanRestarter, tries_anew_when_it_is_stopped_and_started_again) {
+TEST_F(CanRestarter, retries_after_a_stop_and_a_start) {
     for (int i = 0; i < 2; ++i) {
         wire.bus_off(twin);
         run(300ms);
@@ -72,7 +72,7 @@ TEST_F(CanRestarter, tries_anew_when_it_is_stopped_and_started_again) {
     wire.bus_off(twin);
     run(1s);
     ASSERT_EQ(master->surrenders, 1);
-    change(2, LifeChange::stop); // somebody had a look
+    change(2, LifeChange::stop); // an operator had a look
     run(100ms);
     change(2, LifeChange::start);
     EXPECT_EQ(restarter->restarts.last(), 0);

@@ -43,14 +43,14 @@ void run(DriveControl& control, Drive& drive, int cycles) {
     for (int i = 0; i < cycles; ++i) drive.take(control.controlword(statusword(drive.state, 0xFFFF)));
 }
 
-TEST(Cia402, tells_every_state_from_the_statusword_whatever_its_other_bits_are) {
+TEST(Cia402, decodes_every_state_whatever_the_other_statusword_bits) {
     for (const DriveState state : every_state)
         for (const std::uint16_t noise :
              {std::uint16_t{0}, std::uint16_t{0xFFFF}, std::uint16_t{0x1230}, std::uint16_t{0x0290}})
             EXPECT_EQ(drive_state(statusword(state, noise)), state);
 }
 
-TEST(Cia402, leads_every_state_to_what_is_wanted) {
+TEST(Cia402, leads_every_state_to_its_goal) {
     for (const DriveState state : every_state) {
         const bool moved = state == DriveState::operation_enabled || state == DriveState::quick_stop_active;
         const bool broken = state == DriveState::fault || state == DriveState::fault_reaction_active;
@@ -76,7 +76,7 @@ TEST(Cia402, leads_every_state_to_what_is_wanted) {
     }
 }
 
-TEST(Cia402, leaves_a_fault_alone_until_it_is_acknowledged) {
+TEST(Cia402, resets_a_fault_only_after_it_is_acknowledged) {
     DriveControl control;
     Drive drive{DriveState::fault};
     control.want(DriveGoal::enabled);
@@ -89,7 +89,7 @@ TEST(Cia402, leaves_a_fault_alone_until_it_is_acknowledged) {
     EXPECT_EQ(drive.resets, 1);
 }
 
-TEST(Cia402, keeps_no_acknowledgement_for_a_later_fault) {
+TEST(Cia402, does_not_keep_an_acknowledgement_for_a_later_fault) {
     DriveControl control;
     Drive drive;
     control.want(DriveGoal::enabled);
@@ -101,7 +101,7 @@ TEST(Cia402, keeps_no_acknowledgement_for_a_later_fault) {
     EXPECT_EQ(drive.resets, 0);
 }
 
-TEST(Cia402, takes_an_acknowledgement_during_the_fault_reaction) {
+TEST(Cia402, accepts_an_acknowledgement_during_the_fault_reaction) {
     DriveControl control;
     control.want(DriveGoal::enabled);
     control.acknowledge();
@@ -109,14 +109,14 @@ TEST(Cia402, takes_an_acknowledgement_during_the_fault_reaction) {
     EXPECT_EQ(control.controlword(statusword(DriveState::fault)) & 0x80, 0x80);
 }
 
-TEST(Cia402, holds_the_reset_bit_up_so_that_a_lost_frame_loses_no_edge) {
+TEST(Cia402, holds_the_reset_bit_high_against_lost_frames) {
     DriveControl control;
     control.acknowledge();
     for (int i = 0; i < 10; ++i)
         EXPECT_EQ(control.controlword(statusword(DriveState::fault)), controlword::fault_reset);
 }
 
-TEST(Cia402, makes_a_new_edge_for_each_acknowledgement_of_a_fault_that_persists) {
+TEST(Cia402, raises_a_new_edge_for_each_acknowledgement_of_a_lasting_fault) {
     DriveControl control;
     Drive drive{DriveState::fault, true};
     control.want(DriveGoal::enabled);
@@ -133,7 +133,7 @@ TEST(Cia402, makes_a_new_edge_for_each_acknowledgement_of_a_fault_that_persists)
     EXPECT_EQ(drive.state, DriveState::operation_enabled);
 }
 
-TEST(Cia402, holds_the_reset_bit_down_long_enough_for_frames_to_show_it) {
+TEST(Cia402, holds_the_reset_bit_low_long_enough_for_the_bus) {
     DriveControl control;
     control.acknowledge();
     static_cast<void>(control.controlword(statusword(DriveState::fault)));
@@ -144,13 +144,13 @@ TEST(Cia402, holds_the_reset_bit_down_long_enough_for_frames_to_show_it) {
     EXPECT_EQ(down, DriveControl::low_cycles);
 }
 
-TEST(Cia402, resets_once_for_one_acknowledgement_though_the_drive_faults_anew) {
+TEST(Cia402, resets_once_per_acknowledgement_though_the_drive_faults_again) {
     DriveControl control;
     Drive drive{DriveState::fault};
     control.want(DriveGoal::enabled);
     control.acknowledge();
     run(control, drive, 1);
-    drive.state = DriveState::fault_reaction_active; // before anything else was seen
+    drive.state = DriveState::fault_reaction_active; // before any other state was seen
     run(control, drive, 100);
     EXPECT_EQ(drive.state, DriveState::fault);
     EXPECT_EQ(drive.resets, 1);

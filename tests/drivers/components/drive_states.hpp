@@ -1,4 +1,4 @@
-// What a drive's status word shows of each state, by CiA 402-2.
+// The statusword of a drive in each state, by CiA 402-2.
 #pragma once
 
 #include "drivers/canopen/cia402.hpp"

@@ -1,4 +1,4 @@
-// A port of a machine that somebody forces.
+// A port of a machine that a test forces.
 #pragma once
 
 #include "kernel/machine/worlds/virtual_world.hpp"

@@ -1,4 +1,4 @@
-// Digital lines as a component: edges and their times, levels, losses, and what stays behind at stop.
+// Digital lines as a component: edges and their times, levels, losses, and the values left at the stop.
 #include "drivers/gpio/line_port.hpp"
 #include "drivers/gpio/twin.hpp"
 #include "tests/drivers/components/forced_port.hpp"
@@ -21,7 +21,7 @@ static_assert(gpio::line_map(gpio::sensor("a", gpio::safe(true)), gpio::sensor("
 constexpr std::size_t stop_button = 0, weft = 1, lamp = 2, valve = 3, brake = 4;
 constexpr gpio::Mask at(std::size_t line) { return gpio::Mask{1} << line; }
 
-/// Remembers what it is told, in order.
+/// Records its events, in order.
 struct Listener {
     enum class What : std::uint8_t { stop_rose, stop_fell, weft_rose, weft_fell, edges_lost };
     struct Heard {
@@ -40,7 +40,7 @@ struct Listener {
     Event<> let_go{};
     Bounded<Heard, 512> heard{};
     int lamp_next = -1;    // 0, 1: written in the next cycle
-    Duration lamp_ahead{}; // of its time
+    Duration lamp_ahead{}; // added to its time stamp
     bool opens = false;
     bool closes = false;
     int faults = 0;
@@ -150,7 +150,7 @@ struct LinesBeforeTheStart : Lines {
     void SetUp() override {}
 };
 
-TEST_F(Lines, tell_edges_with_their_times_in_their_order) {
+TEST_F(Lines, report_edges_in_order_with_their_times) {
     EXPECT_TRUE(twin.drive(weft, true, Time{2010us}));
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2030us}));
     EXPECT_TRUE(twin.drive(weft, false, Time{2050us}));
@@ -164,7 +164,7 @@ TEST_F(Lines, tell_edges_with_their_times_in_their_order) {
     EXPECT_EQ(listener->weft_level.stamp(), Time{2050us});
 }
 
-TEST_F(LinesBeforeTheStart, tell_by_its_level_alone_a_button_that_is_pressed_before_the_start) {
+TEST_F(LinesBeforeTheStart, report_a_button_held_before_the_start_by_its_level) {
     EXPECT_TRUE(twin.drive(stop_button, true, Time{}));
     twin.deliver_until(Time{});
     run_until(5ms);
@@ -177,7 +177,7 @@ TEST_F(LinesBeforeTheStart, tell_by_its_level_alone_a_button_that_is_pressed_bef
     EXPECT_EQ(heard(), (std::vector<Heard>{{What::stop_fell, Time{6ms}}, {What::stop_rose, Time{7ms}}}));
 }
 
-TEST_F(LinesBeforeTheStart, forget_the_edges_before_the_start_however_many) {
+TEST_F(LinesBeforeTheStart, discard_all_edges_before_the_start) {
     for (int i = 0; i < 1500; ++i) { // more than the kernel's buffer holds
         EXPECT_TRUE(twin.drive(weft, i % 2 == 0, at_ns(i)));
         twin.deliver_until(at_ns(i));
@@ -188,7 +188,7 @@ TEST_F(LinesBeforeTheStart, forget_the_edges_before_the_start_however_many) {
     EXPECT_FALSE(listener->weft_level.get());
 }
 
-TEST_F(Lines, read_the_levels_anew_after_lost_edges_and_tell_the_loss_first) {
+TEST_F(Lines, report_lost_edges_first_and_then_read_the_levels_again) {
     twin.faults(stop_button).lose_next = 1;
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us})); // lost: seen when the next edge arrives
     run_until(3ms);
@@ -202,10 +202,10 @@ TEST_F(Lines, read_the_levels_anew_after_lost_edges_and_tell_the_loss_first) {
                   {What::edges_lost, {}}, {What::weft_rose, Time{3010us}}, {What::stop_rose, Time{3100us}}}));
 }
 
-TEST_F(Lines, tell_every_edge_of_a_burst_that_did_arrive_though_others_were_lost) {
+TEST_F(Lines, report_every_edge_that_arrived_though_others_were_lost) {
     twin.faults(stop_button).lose_next = 1;
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2001us}));
-    for (int i = 0; i < 200; ++i) { // more than one batch: the levels are newer than what still waits
+    for (int i = 0; i < 200; ++i) { // more than one batch: the levels are newer than the waiting edges
         EXPECT_TRUE(twin.drive(weft, i % 2 == 0, Time{2002us} + i * 100ns));
         if (i % 50 == 49) twin.deliver_until(Time{2002us} + i * 100ns);
     }
@@ -221,10 +221,10 @@ TEST_F(Lines, tell_every_edge_of_a_burst_that_did_arrive_though_others_were_lost
     EXPECT_FALSE(listener->weft_level.get());
 }
 
-TEST_F(Lines, tell_no_edge_twice_that_arrives_after_the_levels_were_read) {
+TEST_F(Lines, report_an_edge_once_though_the_levels_were_read_before) {
     twin.faults(weft).lose_next = 1;
     EXPECT_TRUE(twin.drive(weft, true, Time{2010us}));
-    EXPECT_TRUE(twin.drive(weft, false, Time{2020us})); // shows the gap
+    EXPECT_TRUE(twin.drive(weft, false, Time{2020us})); // reveals the gap
     twin.faults(stop_button).delay = 1ms;               // its level shows at once, its edge comes late
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2030us}));
     run_until(10ms);
@@ -238,7 +238,7 @@ TEST_F(Lines, tell_no_edge_twice_that_arrives_after_the_levels_were_read) {
     EXPECT_EQ(heard().back(), (Heard{What::stop_rose, Time{12ms}}));
 }
 
-TEST_F(Lines, drive_a_lamp_only_when_it_was_written_and_at_once) {
+TEST_F(Lines, drive_a_lamp_at_once_when_it_is_written) {
     run_until(2500us);
     EXPECT_EQ(twin.counters().writes, 2u) << "the safe values, at opening and at start";
     listener->lamp_next = 1;
@@ -252,10 +252,10 @@ TEST_F(Lines, drive_a_lamp_only_when_it_was_written_and_at_once) {
     EXPECT_EQ(twin.counters().writes, 3u) << "it is on already";
 }
 
-TEST_F(Lines, drive_what_the_row_says_when_the_wish_is_stale) {
+TEST_F(Lines, drive_the_substitute_of_their_row_when_a_value_is_stale) {
     listener->lamp_next = 1;
     run_until(60ms);                                 // good for 50 ms
-    EXPECT_TRUE(twin.drive(weft, true, Time{61ms})); // anything that wakes
+    EXPECT_TRUE(twin.drive(weft, true, Time{61ms})); // any edge that wakes the component
     run_until(62ms);
     EXPECT_FALSE(driven(lamp));
 }
@@ -268,7 +268,7 @@ TEST_F(Lines, drive_actuators_by_events) {
     EXPECT_FALSE(driven(brake));
 }
 
-TEST_F(Lines, leave_safe_values_behind_and_keep_them) {
+TEST_F(Lines, leave_safe_values_at_the_stop_and_keep_them) {
     listener->opens = true;
     listener->lamp_next = 1;
     run_until(3ms);
@@ -281,7 +281,7 @@ TEST_F(Lines, leave_safe_values_behind_and_keep_them) {
     EXPECT_EQ(twin.outputs(), safe);
 }
 
-TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
+TEST_F(Lines, work_again_after_a_stop_and_a_start) {
     listener->opens = true;
     listener->lamp_next = 1;
     twin.faults(weft).lose_next = 1;
@@ -294,7 +294,7 @@ TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
     change(0, LifeChange::stop);
     EXPECT_EQ(twin.outputs(), at(brake));
     listener->heard.clear();
-    listener->opens = true; // told to nobody
+    listener->opens = true; // reported to nobody
     EXPECT_TRUE(twin.drive(weft, true, Time{5010us}));
     run_until(10ms);
     EXPECT_EQ(listener->faults, 1) << "lines that nobody drives cannot be relied on";
@@ -325,7 +325,7 @@ TEST_F(Lines, begin_anew_when_they_are_stopped_and_started_again) {
     EXPECT_EQ(twin.outputs(), at(brake));
 }
 
-TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes) {
+TEST_F(Lines, report_a_removed_chip_once_even_without_writes) {
     EXPECT_FALSE(listener->faulted.get());
     twin.set_removed(true);
     run_until(5ms);
@@ -338,7 +338,7 @@ TEST_F(Lines, tell_a_fault_once_when_their_chip_is_removed_though_nobody_writes)
     EXPECT_TRUE(listener->faulted.get());
 }
 
-TEST_F(Lines, tell_a_fault_when_a_write_is_refused_and_write_what_was_asked_for_last_as_soon_as_it_can_be) {
+TEST_F(Lines, report_a_refused_write_and_retry_the_latest_value) {
     twin.set_removed(true);
     run_until(5ms);
     listener->opens = true;
@@ -359,7 +359,7 @@ TEST_F(Lines, tell_a_fault_when_a_write_is_refused_and_write_what_was_asked_for_
     EXPECT_EQ(listener->faults, 2) << "a new fault is told anew";
 }
 
-TEST_F(Lines, tell_an_input_that_changed_while_the_chip_was_gone) {
+TEST_F(Lines, report_an_input_that_changed_while_the_chip_was_removed) {
     twin.faults(stop_button).lose_next = 1;
     twin.set_removed(true);
     EXPECT_TRUE(twin.drive(stop_button, true, Time{2010us}));
@@ -371,7 +371,7 @@ TEST_F(Lines, tell_an_input_that_changed_while_the_chip_was_gone) {
     EXPECT_EQ(heard()[0].what, What::stop_rose);
 }
 
-TEST_F(Lines, cost_next_to_nothing_while_their_chip_is_gone) {
+TEST_F(Lines, use_hardly_any_time_while_their_chip_is_removed) {
     twin.set_removed(true);
     run_until(5ms);
     const auto before = io_cycles();
@@ -379,7 +379,7 @@ TEST_F(Lines, cost_next_to_nothing_while_their_chip_is_gone) {
     EXPECT_LE(io_cycles() - before, 50u) << "one look in 20 ms";
 }
 
-TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_stop) {
+TEST_F(Lines, become_safe_at_the_next_start_after_a_refused_stop) {
     listener->opens = true;
     run_until(3ms);
     twin.set_removed(true);
@@ -398,7 +398,7 @@ TEST_F(Lines, are_made_safe_at_the_next_start_when_the_chip_refused_it_at_the_st
     EXPECT_EQ(instance.life().left_unsafe(), "");
 }
 
-TEST_F(Lines, leave_safe_values_behind_though_the_chip_refuses_them_once) {
+TEST_F(Lines, leave_safe_values_though_the_chip_refuses_them_once) {
     listener->opens = true;
     run_until(3ms);
     ASSERT_TRUE(driven(valve));
@@ -415,7 +415,7 @@ TEST_F(LinesBeforeTheStart, refuse_to_start_without_their_chip) {
     EXPECT_NE(refused.error().view().find("\"lines\""), std::string_view::npos);
 }
 
-TEST_F(Lines, are_safe_when_what_a_force_hid_is_wanted_by_nobody) {
+TEST_F(Lines, become_safe_when_a_force_ends_after_its_writer_stopped) {
     listener->lamp_ahead = 40ms;
     listener->lamp_next = 1;
     run_until(5ms);

@@ -12,7 +12,7 @@
 
 namespace tappet::test {
 
-/// On the box of these tests, or on another one as the binding has it.
+/// On the box of these tests, or on another one that the binding names.
 template <const auto& table, const auto& box = board, const auto&... binding>
 struct MachineRig : testing::Test {
     template <class Interface> void configure(std::string_view name, Interface& device) {
@@ -20,7 +20,7 @@ struct MachineRig : testing::Test {
         const auto configured = instance.configure({&provided, 1});
         ASSERT_TRUE(configured) << configured.error().view();
     }
-    /// What stands around the machine moves; the time of the next move.
+    /// Moves the plant; returns the time of its next move.
     virtual Time carry(Time) { return never; }
     /// Runs to `end`, counted from the start.
     void run_until(Duration end) {
@@ -35,13 +35,13 @@ struct MachineRig : testing::Test {
         EXPECT_TRUE(world.run_until(Time{end}));
     }
     void run(Duration time) { run_until(clock.now().time_since_epoch() + time); }
-    /// Of the activity by its row.
+    /// Changes the activity of this row.
     void change(std::size_t activity, LifeChange change) {
         const Sentence refusal = world.change_activity(activity, change);
         EXPECT_TRUE(refusal.empty()) << refusal.view();
     }
-    /// The activity of row 0, which runs `driver`, is stopped, its device does not hear it, and whoever asked
-    /// is told.
+    /// Stops the activity of row 0, which runs `driver`, while its device is silent, and expects the refusal
+    /// that says so.
     void stop_unheard(std::string_view driver) {
         EXPECT_EQ(world.change_activity(0, LifeChange::stop).view(),
                   (Sentence{"component \"", driver,

@@ -1,18 +1,18 @@
-// A Modbus server as a component: values with their age, outages, back-off, and who is held up by it.
+// A Modbus server as a component: values with their age, outages, back-off, and which activities it delays.
 #include "tests/drivers/components/forced_port.hpp"
 #include "tests/drivers/components/utility_machine.hpp"
 
 namespace tappet::test {
 namespace {
 
-TEST_F(SubstitutedPump, is_told_what_the_row_gives_for_a_stale_value) {
+TEST_F(SubstitutedPump, receives_the_substitute_of_its_row_for_a_stale_value) {
     reader->pump_next = 1; // once
     run_until(1150ms);
     EXPECT_TRUE(pump_runs());
     run_until(1500ms);
     EXPECT_FALSE(pump_runs());
     run_until(18s);
-    twin.set(modbus::Table::coils, 0, 1); // by somebody else
+    twin.set(modbus::Table::coils, 0, 1); // by another client
     run_until(20s);
     EXPECT_FALSE(pump_runs()) << "it is true now, and said again";
     reader->pump_next = 1;
@@ -20,7 +20,7 @@ TEST_F(SubstitutedPump, is_told_what_the_row_gives_for_a_stale_value) {
     EXPECT_TRUE(pump_runs());
 }
 
-TEST_F(Utility, gives_values_the_time_of_their_answer) {
+TEST_F(Utility, stamps_values_with_the_time_of_their_answer) {
     EXPECT_DOUBLE_EQ(reader->value, -5.5);
     EXPECT_LE(reader->age, 100ms + 50ms) << "its period and the activity's";
     EXPECT_TRUE(reader->connected.get());
@@ -30,7 +30,7 @@ TEST_F(Utility, gives_values_the_time_of_their_answer) {
     EXPECT_LE(reader->fresh, server->counters().answers) << "one answer is fresh once";
 }
 
-TEST_F(Utility, writes_a_change_soon_and_nothing_that_nobody_set) {
+TEST_F(Utility, writes_a_change_soon_and_nothing_that_was_never_set) {
     const auto before = server->counters().requests;
     EXPECT_FALSE(pump_runs());
     reader->pump_next = 1;
@@ -80,7 +80,7 @@ TEST_F(Utility, reconnects_and_reads_fresh_values) {
     EXPECT_EQ(reader->back, 1);
 }
 
-TEST_F(Utility, is_safe_when_its_writer_stopped_while_the_server_was_away_for_long) {
+TEST_F(Utility, becomes_safe_when_its_writer_stopped_during_a_long_outage) {
     start_the_pump();
     twin.inject(modbus::Fault::down);
     change(1, LifeChange::stop);
@@ -91,7 +91,7 @@ TEST_F(Utility, is_safe_when_its_writer_stopped_while_the_server_was_away_for_lo
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(Utility, gives_no_fresh_value_for_an_exception) {
+TEST_F(Utility, reports_no_fresh_value_after_an_exception) {
     twin.inject(modbus::Fault::exception);
     run_until(3s);
     EXPECT_EQ(reader->flow, Flow::stale);
@@ -99,7 +99,7 @@ TEST_F(Utility, gives_no_fresh_value_for_an_exception) {
     EXPECT_TRUE(reader->connected.get()) << "it does answer";
 }
 
-TEST_F(Utility, says_which_row_is_refused_and_how_until_it_is_answered) {
+TEST_F(Utility, names_a_refused_row_and_its_exception_until_it_is_answered) {
     const auto reason = [this] { return server->reason.last().view(); };
     run_until(1s);
     EXPECT_EQ(reason(), "");
@@ -119,12 +119,12 @@ TEST_F(Utility, says_which_row_is_refused_and_how_until_it_is_answered) {
                         "correct the map, or the server");
 }
 
-TEST_F(Utility, says_why_the_server_is_lost_and_no_more_when_it_is_back) {
+TEST_F(Utility, reports_why_the_server_is_lost_until_it_is_back) {
     const std::pair<modbus::Fault, std::string_view> reasons[]{
         {modbus::Fault::silent,
          "row \"unit\": no answer in time; look at the server's supply, its unit and the line's setting"},
-        {modbus::Fault::garbage_length,
-         "row \"unit\": what came is no answer to it; look at the line's setting, its cable and its ends"},
+        {modbus::Fault::garbage_length, "row \"unit\": the reply does not match the request; look at the "
+                                        "line's setting, its cable and its ends"},
         {modbus::Fault::down, "row \"unit\": no connection; look at the server's address, supply and cable"}};
     for (const auto& [fault, reason] : reasons) {
         run(2s);
@@ -138,28 +138,28 @@ TEST_F(Utility, says_why_the_server_is_lost_and_no_more_when_it_is_back) {
     }
 }
 
-TEST_F(Utility, waits_for_one_answer_only_when_the_server_is_silent_and_two_rows_are_due) {
+TEST_F(Utility, waits_for_a_silent_server_only_once_per_cycle) {
     twin.inject(modbus::Fault::silent);
     reader->pump_next = 1;
-    run_until(1100ms); // both are due
+    run_until(1100ms); // both rows are due
     EXPECT_EQ(server->counters().timeouts, 1u);
     EXPECT_EQ(reader->lost, 1);
 }
 
-TEST_F(Utility, keeps_its_back_off_however_long_its_period_is) {
+TEST_F(Utility, keeps_its_back_off_even_with_a_long_period) {
     twin.inject(modbus::Fault::silent);
     const Time later = clock.now() + 200ms;
     server->work({later, later, 10s});
     EXPECT_EQ(server->counters().timeouts, 1u);
 }
 
-TEST_F(Utility, brings_what_was_written_last_to_the_server_at_stop) {
+TEST_F(Utility, writes_the_latest_values_to_the_server_at_the_stop) {
     start_the_pump();
     world.stop();
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(Utility, leaves_the_safe_values_of_its_map_at_stop_whatever_their_writer_left) {
+TEST_F(Utility, writes_the_safe_values_of_its_map_at_every_stop) {
     reader->leaves_safe = false;
     start_the_pump();
     change_server(LifeChange::stop);
@@ -173,7 +173,7 @@ TEST_F(Utility, leaves_the_safe_values_of_its_map_at_stop_whatever_their_writer_
     EXPECT_EQ(reader->back, 1);
 }
 
-TEST_F(Utility, writes_its_safe_values_once_more_when_a_request_is_lost_or_refused_at_the_stop) {
+TEST_F(Utility, retries_its_safe_values_once_after_a_failed_request) {
     for (const modbus::Fault fault : {modbus::Fault::silent, modbus::Fault::exception}) {
         reader->leaves_safe = false;
         start_the_pump();
@@ -186,7 +186,7 @@ TEST_F(Utility, writes_its_safe_values_once_more_when_a_request_is_lost_or_refus
     }
 }
 
-TEST_F(Utility, leaves_its_safe_values_though_an_answer_was_lost_just_before_the_stop) {
+TEST_F(Utility, writes_its_safe_values_after_a_lost_answer) {
     start_the_pump();
     twin.inject(modbus::Fault::silent, 1);
     while (server->counters().timeouts == 0) run(10ms);
@@ -194,7 +194,7 @@ TEST_F(Utility, leaves_its_safe_values_though_an_answer_was_lost_just_before_the
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
+TEST_F(Utility, works_again_after_a_stop_and_a_start) {
     reader->pump_next = 1;
     run_until(1500ms);
     twin.inject(modbus::Fault::down);
@@ -223,7 +223,7 @@ TEST_F(Utility, begins_anew_when_it_is_stopped_and_started_again) {
     EXPECT_EQ(reader->back, 2);
 }
 
-TEST_F(Utility, writes_after_a_start_nothing_that_grew_stale_before_it) {
+TEST_F(Utility, writes_no_value_after_a_start_that_became_stale_before_it) {
     reader->pump_next = 1;
     run_until(1500ms);
     change_server(LifeChange::stop);
@@ -235,7 +235,7 @@ TEST_F(Utility, writes_after_a_start_nothing_that_grew_stale_before_it) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(Utility, tells_an_outage_anew_when_it_is_started_beside_a_server_that_is_down) {
+TEST_F(Utility, reports_an_outage_again_when_restarted_during_it) {
     start_the_pump(); // it starts alone only when each of its inputs was written
     twin.inject(modbus::Fault::down);
     run_until(3s);
@@ -248,19 +248,19 @@ TEST_F(Utility, tells_an_outage_anew_when_it_is_started_beside_a_server_that_is_
     EXPECT_EQ(reader->back, 1);
 }
 
-TEST_F(Utility, does_not_wait_at_stop_for_a_server_that_is_silent) {
+TEST_F(Utility, does_not_wait_for_a_silent_server_at_the_stop) {
     start_the_pump();
     twin.inject(modbus::Fault::silent);
     run_until(4s);
-    clock.advance_to(clock.now() + 20s); // it would be asked again now
+    clock.advance_to(clock.now() + 20s); // it would be polled again now
     const auto before = server->counters();
     world.stop();
     EXPECT_EQ(server->counters(), before);
     EXPECT_EQ(instance.life().left_unsafe(), "server");
 }
 
-TEST_F(Utility, writes_nothing_old_when_a_force_ends) {
-    reader->pump_next = 1; // once; its row says for how long that holds
+TEST_F(Utility, writes_no_old_value_when_a_force_ends) {
+    reader->pump_next = 1; // once; its row says how long that value is good
     run_until(20s);
     ForcedPort on{instance, "server.pump.on", FacetKind::input};
     on.to(0.0);
@@ -271,14 +271,14 @@ TEST_F(Utility, writes_nothing_old_when_a_force_ends) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reaches_it) {
+TEST_F(Utility, reports_an_unreached_server_until_a_stop_reaches_it) {
     start_the_pump();
     for (const modbus::Fault fault : {modbus::Fault::down, modbus::Fault::silent, modbus::Fault::exception}) {
         twin.set_exception(6);
         SCOPED_TRACE(static_cast<int>(fault));
         twin.inject(fault);
         stop_unheard("server");
-        stop_unheard("server"); // and is told so again
+        stop_unheard("server"); // the refusal is repeated
         twin.inject(modbus::Fault::none);
         change_server(LifeChange::restart);
         run(3s);
@@ -292,7 +292,7 @@ TEST_F(Utility, says_that_its_server_was_not_reached_at_stop_until_a_stop_reache
 /// Longer than a time stamp may lie ahead of a cycle.
 using SlowServer = MachineRig<utility_machine>;
 
-TEST_F(SlowServer, gives_values_that_are_good) {
+TEST_F(SlowServer, provides_good_values) {
     modbus::Twin twin{3s, 1200ms};
     configure<modbus::Transport>("server", twin);
     const Reader& reader = *instance.find<Reader>("reader");

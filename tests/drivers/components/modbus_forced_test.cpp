@@ -1,12 +1,12 @@
-// What a Modbus server is told while a port on the way to it is forced, and afterwards.
+// The values that a Modbus server receives while a port on the way to it is forced, and afterwards.
 #include "tests/drivers/components/forced_port.hpp"
 #include "tests/drivers/components/utility_machine.hpp"
 
 namespace tappet::test {
 namespace {
 
-/// Forced at the input, then at the output; released, and then its writer stops.
-TEST_F(HeldPump, is_told_what_stands_behind_a_force_though_that_is_stale) {
+/// Forced at the input, then at the output; then the force is released, or its writer stops.
+TEST_F(HeldPump, receives_a_stale_hidden_value_when_the_force_ends) {
     reader->leaves_safe = false;
     reader->pump_next = 0; // once
     run_until(2s);
@@ -27,10 +27,10 @@ TEST_F(HeldPump, is_told_what_stands_behind_a_force_though_that_is_stale) {
         }
 }
 
-/// What the pump is told, forced at one end.
+/// The pump's value is forced at one end.
 struct ForcedPump : Utility {
     void begin(std::string_view name, FacetKind kind) {
-        reader->pump_next = 0; // off, and that is all that its component says
+        reader->pump_next = 0; // off, the only value that its component writes
         run_until(20s);
         pump.emplace(instance, name, kind).to(1.0);
         run_until(22s);
@@ -39,24 +39,24 @@ struct ForcedPump : Utility {
     std::optional<ForcedPort> pump;
 };
 
-TEST_F(ForcedPump, is_told_what_stood_behind_the_force_however_old_that_is) {
+TEST_F(ForcedPump, receives_the_hidden_value_whatever_its_age) {
     begin("server.pump.on", FacetKind::input);
     pump->release();
     run_until(24s);
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(ForcedPump, is_told_once_more_what_is_forced_when_its_server_was_away_for_long) {
+TEST_F(ForcedPump, receives_the_forced_value_again_after_a_long_outage) {
     begin("server.pump.on", FacetKind::input);
     twin.inject(modbus::Fault::down);
-    run_until(32s); // longer than its row calls good
+    run_until(32s); // longer than its row calls the value good
     twin.set(modbus::Table::coils, 0, 0);
     twin.inject(modbus::Fault::none);
     run_until(60s);
     EXPECT_TRUE(pump_runs());
 }
 
-TEST_F(ForcedPump, is_told_so_too_when_its_writer_stops) {
+TEST_F(ForcedPump, receives_the_hidden_value_when_its_writer_stops) {
     reader->leaves_safe = false;
     begin("reader.pump", FacetKind::output);
     change(1, LifeChange::stop);
@@ -73,7 +73,7 @@ inline constexpr auto silent_registers = modbus::register_map(
 inline constexpr auto silent_machine = machine_with<modbus::Client<silent_registers>>();
 struct SilentPump : UtilityOf<silent_machine> {};
 
-TEST_F(SilentPump, is_not_told_at_the_stop_what_a_force_kept_from_it) {
+TEST_F(SilentPump, does_not_receive_a_hidden_value_at_the_stop) {
     reader->leaves_safe = false;
     reader->pump_next = 0;
     run_until(2s);
@@ -102,7 +102,7 @@ struct ForcedTo : Rig {
 using Forced = ForcedTo<Utility>;
 using ForcedSilent = ForcedTo<SilentPump>;
 
-TEST_F(ForcedSilent, obeys_a_writer_that_restarts_before_its_client_looks) {
+TEST_F(ForcedSilent, follows_a_writer_that_restarts_between_two_cycles) {
     begin(1);
     change(1, LifeChange::stop);
     change(1, LifeChange::start);
@@ -112,7 +112,7 @@ TEST_F(ForcedSilent, obeys_a_writer_that_restarts_before_its_client_looks) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(ForcedSilent, obeys_what_a_stop_leaves_whatever_its_time) {
+TEST_F(ForcedSilent, follows_the_final_value_of_a_stop_whatever_its_time) {
     begin(1);
     reader->leaves_safe = true;
     reader->pump_age = 1s;
@@ -121,7 +121,7 @@ TEST_F(ForcedSilent, obeys_what_a_stop_leaves_whatever_its_time) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(ForcedSilent, hears_a_writer_that_was_stopped_twice) {
+TEST_F(ForcedSilent, follows_a_writer_that_was_stopped_twice) {
     begin(1);
     static_cast<void>(
         instance.life().ask_component(find_component(instance.machine().table, "reader"), LifeChange::stop));
@@ -135,7 +135,7 @@ TEST_F(ForcedSilent, hears_a_writer_that_was_stopped_twice) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(ForcedSilent, is_not_told_at_a_stop_what_lay_ahead_behind_the_force) {
+TEST_F(ForcedSilent, does_not_receive_a_hidden_future_value_at_a_stop) {
     begin(0);
     reader->pump_age = -900ms;
     reader->pump_next = 1;
@@ -145,14 +145,14 @@ TEST_F(ForcedSilent, is_not_told_at_a_stop_what_lay_ahead_behind_the_force) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(Forced, is_safe_after_a_stop_though_it_was_forced_to_what_it_had) {
+TEST_F(Forced, becomes_safe_after_a_stop_though_the_force_changed_nothing) {
     begin(1);
     change(1, LifeChange::stop);
     run_until(8s);
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(Forced, is_told_what_a_running_writer_wants_when_its_client_is_back) {
+TEST_F(Forced, receives_the_value_of_a_running_writer_when_its_client_restarts) {
     begin(0);
     change_server(LifeChange::stop);
     run_until(4100ms);
@@ -162,12 +162,12 @@ TEST_F(Forced, is_told_what_a_running_writer_wants_when_its_client_is_back) {
     EXPECT_TRUE(pump_runs());
 }
 
-/// Who writes what the pump is told claims times that lie ahead.
+/// The writer of the pump's value claims future times.
 struct PumpAhead : Utility {
     PumpAhead() { reader->pump_age = -900ms; }
 };
 
-TEST_F(PumpAhead, is_told_off_at_once) {
+TEST_F(PumpAhead, switches_off_at_once) {
     reader->pump_next = 1;
     run_until(1100ms);
     ASSERT_TRUE(pump_runs());
@@ -176,7 +176,7 @@ TEST_F(PumpAhead, is_told_off_at_once) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(PumpAhead, is_told_the_safe_value_of_a_stop_at_once) {
+TEST_F(PumpAhead, receives_the_safe_value_of_a_stop_at_once) {
     reader->pump_next = 1;
     run_until(1100ms);
     ASSERT_TRUE(pump_runs());
@@ -185,7 +185,7 @@ TEST_F(PumpAhead, is_told_the_safe_value_of_a_stop_at_once) {
     EXPECT_FALSE(pump_runs());
 }
 
-TEST_F(PumpAhead, is_not_believed_for_longer_than_its_row_says) {
+TEST_F(PumpAhead, expires_when_its_row_says_despite_a_future_time) {
     twin.inject(modbus::Fault::down);
     run_until(2800ms);
     reader->pump_next = 1; // good for 5 s

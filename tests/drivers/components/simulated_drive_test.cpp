@@ -16,7 +16,7 @@ struct Transition : testing::Test {
         drive.control(word);
         return drive.state();
     }
-    /// By the shortest way.
+    /// By the shortest path.
     void lead_to(DriveState state) {
         for (const std::uint16_t word : std::array<std::uint16_t, 4>{0x06, 0x07, 0x0F, 0x02})
             if (drive.state() != state) give(word);
@@ -30,7 +30,7 @@ struct Transition : testing::Test {
     SimulatedDrive drive;
 };
 
-TEST_F(Transition, goes_up_step_by_step_2_3_4) {
+TEST_F(Transition, enables_the_drive_step_by_step_2_3_4) {
     EXPECT_EQ(drive.statusword() & 0x4F, 0x40);
     expect(0x06, DriveState::ready_to_switch_on);
     EXPECT_EQ(drive.power(), SimulatedDrive::Power::off);
@@ -40,7 +40,7 @@ TEST_F(Transition, goes_up_step_by_step_2_3_4) {
     EXPECT_EQ(drive.power(), SimulatedDrive::Power::follow);
 }
 
-TEST_F(Transition, is_that_of_its_control_word) {
+TEST_F(Transition, follows_its_control_word) {
     using enum DriveState;
     constexpr struct {
         const char* what;
@@ -68,7 +68,7 @@ TEST_F(Transition, is_that_of_its_control_word) {
     }
 }
 
-TEST_F(Transition, stops_quickly_11_and_is_disabled_at_standstill_12) {
+TEST_F(Transition, quick_stops_11_and_disables_at_standstill_12) {
     enable();
     expect(0x02, DriveState::quick_stop_active);
     EXPECT_EQ(drive.power(), SimulatedDrive::Power::stop);
@@ -78,7 +78,7 @@ TEST_F(Transition, stops_quickly_11_and_is_disabled_at_standstill_12) {
     drive.settle(true);
     EXPECT_EQ(drive.state(), DriveState::switch_on_disabled);
 }
-TEST_F(Transition, reacts_to_a_fault_once_13_rests_in_it_14_and_is_reset_by_a_rising_edge_15) {
+TEST_F(Transition, enters_a_fault_13_14_and_leaves_it_by_an_edge_15) {
     enable();
     EXPECT_TRUE(drive.trip());
     EXPECT_FALSE(drive.trip());
@@ -92,7 +92,7 @@ TEST_F(Transition, reacts_to_a_fault_once_13_rests_in_it_14_and_is_reset_by_a_ri
     expect(0x80, DriveState::switch_on_disabled);
 }
 
-TEST(SimulatedDrive, of_a_plant_that_needs_no_more_is_led_by_a_control_and_lost_by_a_fault) {
+TEST(SimulatedDrive, follows_its_control_and_stops_after_a_trip) {
     SimulatedDrive drive;
     DriveControl control;
     control.want(DriveGoal::enabled);

@@ -1,4 +1,4 @@
-// A Modbus server as a component, with who reads of it and writes to it.
+// A Modbus server as a component, with a component that reads from it and writes to it.
 #pragma once
 
 #include "drivers/modbus/client.hpp"
@@ -21,7 +21,7 @@ struct Reader {
     Input<std::int64_t> survived{};
     Output<double> pump{};
     int pump_next = -1;  // 0, 1: written in the next cycle
-    Duration pump_age{}; // so long ago it was true
+    Duration pump_age{}; // age of the written value
     int lost = 0, back = 0;
     Flow flow = Flow::never_written;
     std::uint64_t fresh = 0;
@@ -60,7 +60,7 @@ constexpr auto machine_with(const Pump&... pump) {
         components(
             component<Server>("server", device("server")),
             component<Reader>("reader")),
-        activities( // the reader stops first, so that what it writes last reaches the server
+        activities( // the reader stops first, so that its last value reaches the server
             activity("server", every(50ms), runs("server"), not_real_time),
             activity("reader", every(1ms), runs("reader"), budget(20us))),
         connections(

@@ -63,7 +63,7 @@ struct RealLines : testing::Test {
     Gap gap{};
 };
 
-TEST_F(RealLines, deliver_edges_in_order_with_number_time_and_meaning) {
+TEST_F(RealLines, deliver_edges_in_order_with_number_time_and_level) {
     open();
     EXPECT_TRUE(read().empty()) << "and do not block";
     const Time before = now();
@@ -113,7 +113,7 @@ TEST_F(RealLines, write_outputs_at_once_and_safe_values_at_open_and_close) {
     EXPECT_EQ(device.counters().failures, 0u);
 }
 
-TEST_F(RealLines, say_how_many_edges_a_burst_cost_and_read_the_levels_again) {
+TEST_F(RealLines, report_the_edges_lost_in_a_burst_and_read_the_levels) {
     open();
     for (int i = 0; i < 3001; ++i) pull(3, i % 2 == 0);
     std::this_thread::sleep_for(5ms);
@@ -155,7 +155,7 @@ TEST_F(RealLines, are_found_by_the_label_of_their_chip) {
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().view());
 }
 
-TEST_F(RealLines, show_a_foreign_program_who_holds_them) {
+TEST_F(RealLines, show_their_holder_to_another_program) {
     open();
     Foreign info{"gpioinfo -c /dev/panel"};
     EXPECT_EQ(info.wait(), 0);
@@ -193,8 +193,8 @@ TEST_F(RealLines, allocate_nothing_while_they_run) {
     EXPECT_EQ(got, 200u);
 }
 
-/// The last test: nothing brings the chip back.
-TEST_F(RealLines, refuse_and_count_every_call_once_the_chip_is_removed_and_nobody_spins) {
+/// The last test: the chip never comes back.
+TEST_F(RealLines, refuse_and_count_every_call_once_the_chip_is_removed) {
     open();
     os::Waiter waiter;
     ASSERT_TRUE(waiter.watch(device.wait_handle()));

@@ -1,5 +1,5 @@
-// Opening GPIO lines that are not there: each refusal names what, where and the cure. The rest is on the
-// bench.
+// Opening GPIO lines that do not exist: each refusal names the place, the fault and the cure. The rest is
+// tested on the bench.
 #include "drivers/gpio/lines.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(Lines, refuse_a_chip_that_does_not_exist) {
                                         "another in the board (gpiodetect lists them)");
 }
 
-TEST(Lines, refuse_a_path_that_is_no_chip) {
+TEST(Lines, refuse_a_path_that_is_not_a_chip) {
     EXPECT_NE(refusal("/dev/null").find("cannot be opened"), std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-// Digital lines: edges with their numbers and times, gaps noticed, outputs safe, and every fault of a line.
+// Digital lines: edges with their numbers and times, detected gaps, safe outputs, and every fault of a line.
 #include "drivers/gpio/twin.hpp"
 
 #include <gtest/gtest.h>
@@ -43,12 +43,12 @@ TEST_F(GpioTwin, delivers_edges_in_order_with_number_and_time) {
     EXPECT_EQ(twin.levels().mask, bit(detector) | bit(brake));
 }
 
-TEST_F(GpioTwin, makes_no_edge_of_a_level_that_stays) {
+TEST_F(GpioTwin, reports_no_edge_while_the_level_stays) {
     change(drop_wire, false, Time{1ms});
     EXPECT_EQ(read().count, 0u);
 }
 
-TEST_F(GpioTwin, leaves_the_rest_for_the_next_read) {
+TEST_F(GpioTwin, keeps_the_remaining_edges_for_the_next_read) {
     for (int i = 0; i < 10; ++i) {
         const Time at{1ms * (i + 1)};
         twin.drive(drop_wire, i % 2 == 0, at);
@@ -92,7 +92,7 @@ TEST_F(GpioTwin, delivers_every_bounce_of_a_line_without_debounce) {
     EXPECT_EQ(read().count, 7u);
 }
 
-TEST_F(GpioTwin, hides_bounces_shorter_than_the_debounce_time) {
+TEST_F(GpioTwin, suppresses_bounces_shorter_than_the_debounce_time) {
     twin.faults(button).bounces = 5;
     twin.drive(button, true, Time{10ms});
     twin.deliver_until(Time{16ms});
@@ -103,7 +103,7 @@ TEST_F(GpioTwin, hides_bounces_shorter_than_the_debounce_time) {
     EXPECT_TRUE(edges[0].rising);
 }
 
-TEST_F(GpioTwin, swallows_a_pulse_shorter_than_the_debounce_time) {
+TEST_F(GpioTwin, suppresses_a_pulse_shorter_than_the_debounce_time) {
     twin.drive(button, true, Time{10ms});
     twin.drive(button, false, Time{14ms});
     twin.deliver_until(Time{1s});
@@ -123,7 +123,7 @@ TEST_F(GpioTwin, stays_at_the_level_where_it_is_stuck) {
     EXPECT_EQ(edges[0].stamp, Time{4ms});
 }
 
-TEST_F(GpioTwin, delivers_late_with_the_right_stamp_and_in_order) {
+TEST_F(GpioTwin, delivers_late_edges_in_order_with_the_right_stamp) {
     twin.faults(drop_wire).delay = 8ms;
     twin.drive(drop_wire, true, Time{1ms});
     twin.drive(detector, true, Time{2ms});
@@ -136,7 +136,7 @@ TEST_F(GpioTwin, delivers_late_with_the_right_stamp_and_in_order) {
     EXPECT_EQ(twin.counters().missed, 0u);
 }
 
-TEST_F(GpioTwin, writes_outputs_only_and_all_at_once) {
+TEST_F(GpioTwin, writes_only_outputs_and_all_at_once) {
     EXPECT_EQ(twin.outputs(), bit(brake)) << "safe values from the start";
     EXPECT_TRUE(twin.write(bit(lamp) | bit(brake) | bit(drop_wire), bit(lamp) | bit(drop_wire)));
     EXPECT_EQ(twin.outputs(), bit(lamp));
@@ -144,7 +144,7 @@ TEST_F(GpioTwin, writes_outputs_only_and_all_at_once) {
     EXPECT_EQ(twin.outputs(), bit(brake));
 }
 
-TEST_F(GpioTwin, lets_the_plant_drive_no_output_and_no_line_that_is_not_there) {
+TEST_F(GpioTwin, refuses_to_let_the_plant_drive_outputs_or_missing_lines) {
     EXPECT_FALSE(twin.drive(lamp, true, Time{1ms}));
     EXPECT_FALSE(twin.drive(5, true, Time{1ms}));
 }
@@ -159,7 +159,7 @@ TEST_F(GpioTwin, calls_its_listener_once_per_delivery_with_edges) {
     EXPECT_EQ(calls, 1);
 }
 
-TEST_F(GpioTwin, accounts_for_every_edge_under_random_losses) {
+TEST_F(GpioTwin, counts_every_edge_under_random_losses) {
     twin.faults(drop_wire).lose_one_in = 4;
     std::uint64_t driven = 0;
     for (Time at{1ms}; at < Time{1s}; at += 1ms, ++driven) {
@@ -172,7 +172,7 @@ TEST_F(GpioTwin, accounts_for_every_edge_under_random_losses) {
     EXPECT_GT(twin.counters().missed, 0u);
 }
 
-TEST(EdgeSequence, survives_the_wrap_of_the_kernels_count) {
+TEST(EdgeSequence, survives_the_wrap_of_the_kernels_counter) {
     EdgeSequence sequence;
     EXPECT_EQ(sequence.missed_before(0xFFFFFFFFu), 0xFFFFFFFEu);
     EXPECT_EQ(sequence.missed_before(0), 0u);
@@ -192,7 +192,7 @@ TEST(GpioPlan, refuses_a_single_line_because_its_losses_are_invisible) {
               "used or not");
 }
 
-TEST(GpioPlan, refuses_two_names_for_one_line) {
+TEST(GpioPlan, refuses_two_names_for_the_same_line) {
     constexpr std::array twice{Line{.name = "a", .offset = 4}, Line{.name = "b", .offset = 4}};
     EXPECT_EQ(refusal(twice), "GPIO chip \"loom\": lines \"a\" and \"b\" are both line 4; correct the board");
 }
@@ -205,7 +205,7 @@ TEST(GpioPlan, refuses_too_many_lines_and_impossible_debounce_times) {
     EXPECT_NE(refusal(slow), "");
 }
 
-TEST_F(GpioTwin, refuses_every_call_while_its_chip_is_removed_and_changes_nothing) {
+TEST_F(GpioTwin, refuses_every_call_unchanged_while_its_chip_is_removed) {
     EXPECT_TRUE(twin.write(bit(lamp), bit(lamp)));
     const Mask before = twin.outputs();
     twin.set_removed(true);

@@ -118,7 +118,7 @@ void sleep_for(Duration time) noexcept { kernel.pass(time); }
 
 namespace {
 
-/// A bus of which there is no more than what makes it safe.
+/// A bus with only the part that makes it safe.
 struct SafeBus : RealDevice {
     can::SafeSender sender{};
     std::expected<void, Sentence> open(const DevicePlace&) override { return {}; }
@@ -128,7 +128,7 @@ struct SafeBus : RealDevice {
     std::size_t safe_frames_left() noexcept override { return sender.left(); }
 };
 
-TEST(SafeFrames, are_all_sent_once_more_when_they_are_asked_for_again) {
+TEST(SafeFrames, are_all_sent_again_on_a_second_request) {
     std::array<can::Frame, 2> frames{};
     frames[0].id = 0x201;
     frames[1].id = 0x202;
@@ -160,7 +160,7 @@ protected:
     can::SafeSender sender;
 };
 
-TEST_F(SafeFrame, is_not_confirmed_by_that_of_before) {
+TEST_F(SafeFrame, is_not_confirmed_by_the_confirmation_of_an_earlier_copy) {
     EXPECT_EQ(sender.left(), 1u);
     send(); // the first one still waits at the bus
     kernel.confirms = 1;
@@ -169,21 +169,21 @@ TEST_F(SafeFrame, is_not_confirmed_by_that_of_before) {
     EXPECT_EQ(sender.left(), 0u);
 }
 
-TEST_F(SafeFrame, is_confirmed_though_the_kernel_dropped_that_of_before) {
+TEST_F(SafeFrame, is_confirmed_though_the_kernel_dropped_an_earlier_copy) {
     kernel.unconfirmed.clear();
     send();
     kernel.confirms = 1;
     EXPECT_EQ(sender.left(), 0u);
 }
 
-TEST_F(SafeFrame, is_confirmed_though_the_bus_sent_it_before_that_of_before) {
+TEST_F(SafeFrame, is_confirmed_though_the_bus_sent_it_before_an_earlier_copy) {
     send();
     std::swap(kernel.unconfirmed[0], kernel.unconfirmed[1]);
     kernel.confirms = 1;
     EXPECT_EQ(sender.left(), 0u);
 }
 
-TEST_F(SafeFrame, is_sent_and_never_confirmed_while_the_kernel_has_no_socket_for_it) {
+TEST_F(SafeFrame, is_sent_but_unconfirmed_while_the_kernel_has_no_socket) {
     kernel.has_sockets = false;
     send();
     EXPECT_EQ(kernel.sent.size(), 2u);
@@ -215,7 +215,7 @@ struct QueuedFrames : testing::Test {
     SafeBus bus{};
 };
 
-TEST_F(QueuedFrames, each_leave_once_though_the_bus_is_slow) {
+TEST_F(QueuedFrames, are_each_sent_once_on_a_slow_bus) {
     open(can::SafeSender::most_frames);
     for (const Duration wire_time : {540us, 1080us, 2700us, 5400us}) { // from 250 to 25 kbit/s
         kernel.wire_time = wire_time;
@@ -238,7 +238,7 @@ struct TwoFrames : QueuedFrames {
     }
 };
 
-TEST_F(TwoFrames, that_stand_in_the_queue_are_not_repeated) {
+TEST_F(TwoFrames, are_not_repeated_while_they_are_queued) {
     EXPECT_EQ(look(0), 2u);
     for (int n = 0; n < 2; ++n) {
         os::sleep_for(can::SafeSender::repeat_after);
@@ -248,7 +248,7 @@ TEST_F(TwoFrames, that_stand_in_the_queue_are_not_repeated) {
     EXPECT_EQ(look(2), 0u);
 }
 
-TEST_F(TwoFrames, of_which_one_was_lost_have_that_one_repeated) {
+TEST_F(TwoFrames, are_repeated_only_as_far_as_they_were_lost) {
     EXPECT_EQ(look(1), 1u);
     kernel.unconfirmed.clear(); // an interface that went down
     EXPECT_EQ(look(1), 1u);

@@ -1,4 +1,4 @@
-// What a guardian writes to Modbus servers of which some are dead: the live ones wait for none of them.
+// A guardian writes to Modbus servers of which some are dead: no live server waits for a dead one.
 #include "drivers/hardware/opened.hpp"
 #include "drivers/modbus/real_server.hpp"
 #include "kernel/os/clock.hpp"
@@ -64,8 +64,8 @@ TEST(SafeRegisters, reach_every_server_that_answers) {
     }
 }
 
-/// Answers that take 600 ms each, and as many of them as there is time for.
-TEST(SafeRegisters, reach_a_slow_server_beside_silent_ones) {
+/// Answers take 600 ms each; there are as many as the time allows.
+TEST(SafeRegisters, reach_a_slow_server_among_silent_ones) {
     const std::array many{requests[0], requests[1], requests[0], requests[1]};
     for (const std::size_t place : {0u, 3u}) {
         Servers<4> all{10s, many};
@@ -81,7 +81,7 @@ TEST(SafeRegisters, reach_a_slow_server_beside_silent_ones) {
     }
 }
 
-TEST(SafeRegisters, are_given_up_when_their_time_is_over) {
+TEST(SafeRegisters, are_abandoned_when_their_time_is_over) {
     Servers<2> all{6s};
     all.all_are_silent_but(1);
     const Time begin = os::Clock::monotonic();
@@ -90,7 +90,7 @@ TEST(SafeRegisters, are_given_up_when_their_time_is_over) {
     EXPECT_TRUE(all.to[1].is_safe);
 }
 
-TEST(SafeRegisters, that_a_server_refuses_keep_none_behind_them_from_it) {
+TEST(SafeRegisters, are_written_though_the_server_refuses_earlier_ones) {
     Servers<1> all{30s};
     all.raw[0]->manner = Manner::exception;
     EXPECT_EQ(make_safe_requests(all.to, 500ms, {}), 1u);
@@ -98,8 +98,8 @@ TEST(SafeRegisters, that_a_server_refuses_keep_none_behind_them_from_it) {
     EXPECT_LT(all.raw[0]->requests(), 50) << "it rests between them";
 }
 
-/// The address space has no room for the stack of a thread. Whether all servers are safe nevertheless, one of
-/// which is silent for longer than its share, and somebody was there for the watchdog.
+/// Makes servers safe while the address space has no room for a thread's stack. One server is silent for
+/// longer than its share. Returns whether all are safe and the watchdog was served.
 bool are_safe_without_threads() {
     Servers<4> all{300ms};
     RawServer& late = *all.raw[0];
@@ -121,11 +121,12 @@ TEST(SafeRegistersDeathTest, reach_servers_without_a_thread) {
     std::size_t pages = 0;
     std::ifstream{"/proc/self/statm"} >> pages;
     if (pages > std::size_t{1} << 28u) GTEST_SKIP() << "a sanitizer has taken the address space";
-    GTEST_FLAG_SET(death_test_style, "threadsafe"); // of its own: no stack of an earlier thread is kept
+    GTEST_FLAG_SET(death_test_style,
+                   "threadsafe"); // a process of its own: no stack of an earlier thread is kept
     EXPECT_EXIT(_exit(are_safe_without_threads() ? 0 : 1), testing::ExitedWithCode(0), "");
 }
 
-TEST(SilentLine, takes_no_longer_than_all_servers_may) {
+TEST(SilentLine, delays_the_end_by_at_most_the_common_time_limit) {
     RawServer serial{RawServer::Line::serial};
     serial.manner = Manner::silent;
     const std::array bound{serial_line(115200, 'N', 1), answer_within(2s)};
@@ -136,12 +137,12 @@ TEST(SilentLine, takes_no_longer_than_all_servers_may) {
     to[0].device = &device;
     const Time begin = os::Clock::monotonic();
     EXPECT_EQ(make_safe_requests(to, 3s, {}), 1u);
-    // Without a bound on the line's own rest it would be another second.
+    // Without a bound on the serial line's own rest it would take another second.
     EXPECT_LT(os::Clock::monotonic() - begin, 3600ms);
 }
 
-/// It takes its first request, and closes the connection at its second one, as one that starts anew.
-TEST(Restarted, server_is_told_all_again) {
+/// The server accepts its first request and closes the connection at the second one, as if it restarted.
+TEST(Restarted, server_receives_all_requests_again) {
     Servers<1> all{2s};
     RawServer& server = *all.raw[0];
     server.on_request([&server](int number, const modbus::Bytes&) {
@@ -151,8 +152,8 @@ TEST(Restarted, server_is_told_all_again) {
     EXPECT_EQ(server.last_request()[9], 3) << "its first one, once more";
 }
 
-/// It confirms one request of each connection and closes it at the second one.
-TEST(Restarted, server_is_told_all_though_it_never_stands_for_long) {
+/// The server confirms one request of each connection and closes it at the second one.
+TEST(Restarted, server_receives_all_requests_over_short_connections) {
     std::array<modbus::SafeWrite, 40> many{};
     for (std::size_t i = 0; i < many.size(); ++i)
         many[i] = {{modbus::Table::holding_registers, static_cast<std::uint32_t>(i), 1}, 0};
@@ -167,8 +168,8 @@ TEST(Restarted, server_is_told_all_though_it_never_stands_for_long) {
     EXPECT_EQ(told.size(), many.size());
 }
 
-/// It is silent to the first request, and has as much time for an answer as there is.
-TEST(BusyServer, is_asked_again_when_a_request_is_lost) {
+/// The server ignores the first request; an answer may take all the time there is.
+TEST(BusyServer, receives_a_lost_request_again) {
     Servers<1> all{2s};
     RawServer& server = *all.raw[0];
     server.on_request([&server](int number, const modbus::Bytes&) {
@@ -177,8 +178,8 @@ TEST(BusyServer, is_asked_again_when_a_request_is_lost) {
     EXPECT_EQ(make_safe_requests(all.to, 2s, {}), 0u);
 }
 
-/// It refuses everything, or closes each connection, for 2 s.
-TEST(BusyServer, is_asked_until_it_is_ready) {
+/// The server refuses everything, or closes each connection, for 2 s.
+TEST(BusyServer, receives_requests_until_it_is_ready) {
     for (const Manner busy : {Manner::exception, Manner::close}) {
         Servers<1> all{2s};
         RawServer& server = *all.raw[0];

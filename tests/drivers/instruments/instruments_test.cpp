@@ -1,5 +1,5 @@
-// Encoders, analog inputs and outputs, force sensors and axes with the simulated ones at the other end: what
-// is measured is what is there, and what fails is told and moves nothing.
+// Encoders, analog inputs and outputs, force sensors and axes against simulated ones: they measure the true
+// value, and a failure is reported and moves nothing.
 #include "drivers/instruments/analog.hpp"
 #include "drivers/instruments/encoder.hpp"
 #include "drivers/instruments/force_sensor.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 using namespace instruments;
 
-/// What drivers write, and what goes to them.
+/// The drivers' values, and the values written to them.
 struct Wires {
     Output<std::int64_t> counts;
     Output<double> current, newtons, wanted_velocity, wanted_pressure;
@@ -82,20 +82,20 @@ struct Instruments : test::MachineRig<table> {
     }
     Wires& wires() { return of<Wires>("wires"); }
     void pass(Duration time = 2ms) { run(time); }
-    /// It is so from now on, and is looked at.
+    /// Sets the value from now on, and runs a cycle.
     template <class T> void give(T& what, std::type_identity_t<T> value, Duration time = 2ms) {
         what = value;
         pass(time);
     }
 };
 
-TEST_F(Instruments, an_encoder_follows_its_register_over_its_ends_either_way) {
+TEST_F(Instruments, an_encoder_follows_its_register_across_wraps_in_both_directions) {
     SimulatedEncoder<16> scale{-1000.0};
     auto& encoder = of<Encoder<"m", 16>>("encoder");
     Random random{1};
     double place = 0.0;
     for (int i = 0; i < 2000; ++i) {
-        place += 40.0 * (random.unit() - 0.45); // less than 32.768 m in a step, and away with time
+        place += 40.0 * (random.unit() - 0.45); // less than 32.768 m in a step, with a drift over time
         give(wires().register_now, scale.count(place), 1ms);
         ASSERT_NEAR(encoder.position.last(), place, 1.1e-3) << "step " << i;
     }
@@ -103,7 +103,7 @@ TEST_F(Instruments, an_encoder_follows_its_register_over_its_ends_either_way) {
     EXPECT_TRUE(encoder.good.last());
 }
 
-TEST_F(Instruments, an_encoder_that_falls_silent_holds_its_place_and_begins_at_its_register_again) {
+TEST_F(Instruments, a_silent_encoder_keeps_its_position_and_resumes_from_its_register) {
     auto& encoder = of<Encoder<"m", 16>>("encoder");
     wires().register_now = 0xffff; // -1
     pass();
@@ -117,7 +117,7 @@ TEST_F(Instruments, an_encoder_that_falls_silent_holds_its_place_and_begins_at_i
     EXPECT_DOUBLE_EQ(encoder.position.last(), -0.5);
 }
 
-TEST_F(Instruments, an_encoder_whose_disk_is_loose_or_that_loses_pulses_shows_what_it_counts) {
+TEST_F(Instruments, an_encoder_shows_its_counts_despite_slip_and_lost_pulses) {
     SimulatedEncoder<16> scale{-1000.0};
     auto& encoder = of<Encoder<"m", 16>>("encoder");
     scale.slip(-100);
@@ -128,7 +128,7 @@ TEST_F(Instruments, an_encoder_whose_disk_is_loose_or_that_loses_pulses_shows_wh
     EXPECT_DOUBLE_EQ(encoder.position.last(), 1.1);
 }
 
-TEST_F(Instruments, an_analog_input_scales_and_tells_a_broken_wire) {
+TEST_F(Instruments, an_analog_input_scales_its_value_and_detects_a_broken_wire) {
     SimulatedTransmitter transmitter{{4.0, 20.0, 0.0, 16.0}};
     auto& pressure = of<AnalogInput<"bar">>("pressure");
     for (const double bar : {0.0, 3.5, 16.0}) {
@@ -152,7 +152,7 @@ TEST_F(Instruments, an_analog_input_scales_and_tells_a_broken_wire) {
     EXPECT_FALSE(pressure.good.last());
 }
 
-TEST(AnAnalogScale, draws_the_lines_of_NE_43) {
+TEST(AnAnalogScale, applies_the_limits_of_NE_43) {
     constexpr AnalogScale scale{4.0, 20.0, 0.0, 10.0};
     for (const double good : {3.6, 4.0, 20.5, 21.0}) EXPECT_TRUE(scale.is_alive(good)) << good;
     for (const double bad : {0.0, 3.59, 21.01}) EXPECT_FALSE(scale.is_alive(bad)) << bad;
@@ -161,7 +161,7 @@ TEST(AnAnalogScale, draws_the_lines_of_NE_43) {
     EXPECT_DOUBLE_EQ(falling.raw(75.0), 2.5);
 }
 
-TEST_F(Instruments, a_force_sensor_takes_its_tare_off_and_tells_an_overload_once) {
+TEST_F(Instruments, a_force_sensor_subtracts_its_tare_and_reports_an_overload_once) {
     auto& cell = of<ForceSensor>("cell");
     auto& alarm = of<Alarm>("alarm");
     give(wires().newtons_now, 15.0);
@@ -188,7 +188,7 @@ TEST_F(Instruments, a_force_sensor_takes_its_tare_off_and_tells_an_overload_once
     EXPECT_DOUBLE_EQ(cell.force.last(), 0.0) << "what is not good is no tare";
 }
 
-TEST_F(Instruments, nothing_is_good_that_is_no_number_whatever_is_measured) {
+TEST_F(Instruments, a_value_that_is_not_finite_is_never_good) {
     auto& cell = of<ForceSensor>("cell");
     give(wires().newtons_now, 1.7e308);
     cell.tare();
@@ -205,7 +205,7 @@ TEST_F(Instruments, nothing_is_good_that_is_no_number_whatever_is_measured) {
     auto& encoder = of<Encoder<"m", 16>>("encoder");
     give(wires().register_now, 500);
     for (const double none : {1e-320, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
-        encoder.counts_per_unit.set(none); // no proposal is accepted that says so
+        encoder.counts_per_unit.set(none); // no proposal with this value is accepted
         wires().register_now += 100;
         pass();
         EXPECT_FALSE(encoder.good.last()) << none;
@@ -218,7 +218,7 @@ TEST_F(Instruments, nothing_is_good_that_is_no_number_whatever_is_measured) {
     EXPECT_EQ(encoder.position.last(), -0.9);
 }
 
-TEST_F(Instruments, an_encoder_has_as_many_counts_as_an_encoder_can_have) {
+TEST_F(Instruments, an_encoder_refuses_impossible_counts_per_unit) {
     auto& encoder = of<Encoder<"m", 16>>("encoder");
     PropertyTransaction transaction;
     const auto proposed = [&](double counts) {
@@ -237,7 +237,7 @@ TEST_F(Instruments, an_encoder_has_as_many_counts_as_an_encoder_can_have) {
     for (const double good : {1e-9, -4096.0, 1e12}) EXPECT_EQ(proposed(good), "") << good;
 }
 
-TEST_F(Instruments, an_axis_and_an_analog_output_send_what_they_may) {
+TEST_F(Instruments, an_axis_and_an_analog_output_limit_their_values) {
     struct Case {
         double wanted, sent;
     };

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# A Modbus device that is not ours (pymodbus). Register n of the input registers holds n + 1000, holding registers
+# A foreign Modbus device (pymodbus). Register n of the input registers holds n + 1000, holding registers
 # start at 0, every odd discrete input is set; from input register 40 on stand -305419896 and -12.625 in each of the four
 # orders of bytes, as pymodbus builds them. Arguments: "tcp PORT" or "rtu DEVICE".
 import asyncio

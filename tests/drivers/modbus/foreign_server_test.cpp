@@ -1,5 +1,5 @@
-// The client and its transport against a device that is not ours (pymodbus), by TCP on loopback and by RTU on
-// a pair of terminals (socat): reading, writing, exceptions, and an outage of the whole process.
+// The client and its transport against a foreign device (pymodbus), by TCP on loopback and by RTU on a pair
+// of terminals (socat): reading, writing, exceptions, and an outage of the whole process.
 #include "drivers/modbus/libmodbus_transport.hpp"
 #include "drivers/modbus/session.hpp"
 #include "kernel/os/clock.hpp"
@@ -52,7 +52,7 @@ protected:
         start();
     }
     void start() {
-        // The distribution's interpreter: it is the one that has pymodbus.
+        // The distribution's interpreter: only it has pymodbus.
         server = std::make_unique<Foreign>(
             std::string{"/usr/bin/python3 -W ignore " TAPPET_FOREIGN_SERVER " "} + GetParam() + " " + where);
         ASSERT_TRUE(server->says("ready"))
@@ -74,7 +74,7 @@ protected:
     Session<6, 15> session{map, transport, {.first = 50ms, .most = 200ms}};
 };
 
-TEST_P(ForeignDevice, is_read_written_lost_and_found_again) {
+TEST_P(ForeignDevice, is_read_written_and_recovered_after_an_outage) {
     ASSERT_TRUE(run_until([&] {
         return value("inputs.b").quality == Quality::good && value("contacts.odd").quality == Quality::good;
     })) << server->output();

@@ -17,10 +17,10 @@
 namespace tappet::modbus {
 namespace {
 
-/// Of an answer that comes: no host is so busy.
+/// For an answer that comes: no host is so busy.
 constexpr Duration patience = 30s;
 
-/// A server and who asks it. Of a serial line the name is the server's.
+/// A server and its client. On a serial line, the name is the server's.
 struct Asked {
     explicit Asked(RawServer::Line line, Duration answer_within = patience,
                    Serial setting = {{}, 115200, 'N', 1})
@@ -79,7 +79,7 @@ TEST_P(Wire, reads_and_writes_all_four_tables) {
     EXPECT_EQ(server.last_request()[pdu + 6], 0b101);
 }
 
-TEST_P(Wire, hands_an_exception_on_as_a_value) {
+TEST_P(Wire, returns_an_exception_as_a_value) {
     server.manner = Manner::exception;
     const Answer answer = read();
     EXPECT_EQ(answer.outcome, Outcome::exception);
@@ -88,31 +88,31 @@ TEST_P(Wire, hands_an_exception_on_as_a_value) {
     EXPECT_EQ(read().outcome, Outcome::ok) << "the connection still stands";
 }
 
-TEST_P(WireOfASilentServer, is_given_up_after_the_time_told) {
+TEST_P(WireOfASilentServer, times_out_after_the_configured_time) {
     server.manner = Manner::silent;
     const Answer answer = read();
     EXPECT_EQ(answer.outcome, Outcome::timeout);
     EXPECT_GE(answer.took, 100ms);
 }
 
-TEST_P(WireOfASilentServer, is_given_up_when_the_rest_of_an_answer_does_not_come) {
+TEST_P(WireOfASilentServer, times_out_when_the_rest_of_an_answer_is_missing) {
     server.manner = Manner::drip;
     EXPECT_NE(read().outcome, Outcome::ok);
 }
 
-TEST_P(WireOfASilentServer, is_given_up_when_its_answer_dribbles) {
+TEST_P(WireOfASilentServer, times_out_when_an_answer_arrives_byte_by_byte) {
     server.manner = Manner::dribble;
-    std::array<std::uint16_t, 120> many{}; // twelve seconds' worth of bytes, each within the time told
+    std::array<std::uint16_t, 120> many{}; // twelve seconds' worth of bytes, each within the time-out
     EXPECT_EQ(transport.read(Table::holding_registers, 0, many).outcome, Outcome::timeout);
 }
 
-TEST_P(WireOfASilentServer, never_has_its_late_answer_taken_for_the_next_one) {
+TEST_P(WireOfASilentServer, never_mistakes_a_late_answer_for_the_next_one) {
     server.manner = Manner::late;
     EXPECT_EQ(read(7).outcome, Outcome::timeout);
     server.manner = Manner::right;
     server.let_go();
     Answer answer{.outcome = Outcome::timeout};
-    while (answer.outcome == Outcome::timeout) { // a busy host may need more than the time told
+    while (answer.outcome == Outcome::timeout) { // a busy host may need more than the time-out
         come_back();
         answer = read(50);
     }
@@ -120,7 +120,7 @@ TEST_P(WireOfASilentServer, never_has_its_late_answer_taken_for_the_next_one) {
     EXPECT_EQ(words[0], 1050);
 }
 
-TEST_P(WireOfASilentServer, never_has_an_answer_taken_that_comes_while_the_next_one_is_asked_for) {
+TEST_P(WireOfASilentServer, never_accepts_a_late_answer_during_the_next_request) {
     for (const bool writes : {false, true}) {
         server.manner = Manner::late;
         EXPECT_EQ(read(7).outcome, Outcome::timeout);
@@ -136,7 +136,7 @@ TEST_P(WireOfASilentServer, never_has_an_answer_taken_that_comes_while_the_next_
         if (answer.outcome == Outcome::ok && !writes) {
             EXPECT_EQ(words[0], 1050);
         }
-        // A busy host may need more than the time told.
+        // A busy host may need more than the time-out.
         for (; answer.outcome == Outcome::timeout; answer = read(50)) {
             come_back();
         }
@@ -182,8 +182,8 @@ TEST(ModbusRtu, refuses_an_answer_with_a_wrong_checksum) {
     }
 }
 
-/// The network loses what it asks, and is whole again when it has given up.
-TEST(ModbusTcp, never_sends_a_request_again_that_it_has_given_up) {
+/// The network loses the request, and works again after the client has given up.
+TEST(ModbusTcp, never_sends_an_abandoned_request_again) {
     const auto [listener, port] = bound_to_loopback(SOCK_STREAM);
     ASSERT_EQ(::listen(listener, 1), 0);
     LibmodbusTransport transport;
@@ -202,7 +202,7 @@ TEST(ModbusTcp, never_sends_a_request_again_that_it_has_given_up) {
     for (const int fd : {server, listener}) ::close(fd);
 }
 
-TEST(ModbusRtu, refuses_a_write_that_is_confirmed_for_another_place) {
+TEST(ModbusRtu, refuses_a_write_confirmed_for_another_address) {
     Asked at{RawServer::Line::serial, 2s, even};
     const std::array<std::uint16_t, 3> to{1, 0, 1};
     for (const Table table : {Table::coils, Table::holding_registers}) {
@@ -215,7 +215,7 @@ TEST(ModbusRtu, refuses_a_write_that_is_confirmed_for_another_place) {
     }
 }
 
-TEST(ModbusTcp, is_refused_where_nobody_listens) {
+TEST(ModbusTcp, is_refused_without_a_listener) {
     std::uint16_t port = 0;
     {
         const RawServer gone{RawServer::Line::tcp};
@@ -228,7 +228,7 @@ TEST(ModbusTcp, is_refused_where_nobody_listens) {
     EXPECT_EQ(transport.read(Table::holding_registers, 0, words).outcome, Outcome::disconnected);
 }
 
-TEST(ModbusRtu, is_refused_on_a_line_that_is_not_there) {
+TEST(ModbusRtu, is_refused_on_a_missing_line) {
     LibmodbusTransport transport;
     ASSERT_TRUE(transport.open({.line = Serial{"/dev/ttyS_not_here"}}));
     EXPECT_EQ(transport.connect().outcome, Outcome::refused);
@@ -263,15 +263,16 @@ std::string refusal(const TransportSettings& settings) {
 }
 
 TEST(ModbusSettings, refuse_names_instead_of_addresses) {
-    EXPECT_EQ(refusal({.line = Tcp{"climate.local", 502}}),
-              "Modbus server \"climate.local\", port 502: this is no numeric IPv4 address and port; write it "
-              "like \"192.168.0.7\" in the board");
+    EXPECT_EQ(
+        refusal({.line = Tcp{"climate.local", 502}}),
+        "Modbus server \"climate.local\", port 502: this is not a numeric IPv4 address and port; write it "
+        "like \"192.168.0.7\" in the board");
     EXPECT_NE(refusal({.line = Tcp{"10.0.0.300", 502}}), "");
     EXPECT_NE(refusal({.line = Tcp{"10.0.0.3", 0}}), "");
     EXPECT_NE(refusal({.line = Tcp{"", 502}}), "");
 }
 
-TEST(ModbusSettings, refuse_units_lines_and_time_outs_that_cannot_be) {
+TEST(ModbusSettings, refuse_impossible_units_lines_and_time_outs) {
     EXPECT_EQ(refusal({.line = Serial{"/dev/ttyS1"}, .unit = 248}),
               "Modbus unit 248 does not exist: choose 1 to 247 in the board");
     EXPECT_NE(refusal({.line = Tcp{"10.0.0.3", 502}, .unit = 0}), "");
@@ -288,7 +289,7 @@ TEST(ModbusSessionOnTheWire, survives_an_outage_in_real_time) {
     LibmodbusTransport transport;
     ASSERT_TRUE(transport.open({.line = Tcp{"127.0.0.1", server.port()}, .answer_within = 60ms}));
     Session<1, 2> session{map, transport, {.first = 20ms, .most = 100ms}};
-    const auto run_until = [&](const auto& is_so) { // sooner or later it is, however busy the host
+    const auto run_until = [&](const auto& is_so) { // eventually it is, however busy the host
         while (!is_so()) {
             const Duration rest = session.step(os::Clock::monotonic()) - os::Clock::monotonic();
             if (rest > 0ns) std::this_thread::sleep_for(std::min<Duration>(rest, 10ms));

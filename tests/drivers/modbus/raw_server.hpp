@@ -1,4 +1,4 @@
-// A Modbus server made of bytes, for tests: it knows the frames, not our code, and can answer wrongly on
+// A Modbus server made of bytes, for tests: it knows the frames but not our code, and can answer wrongly on
 // purpose.
 #pragma once
 
@@ -106,12 +106,12 @@ public:
         const std::lock_guard lock{mutex_};
         return requests_;
     }
-    /// Called with their number and the request, before it is answered.
+    /// Called before the answer, with the number of the request and the request.
     void on_request(std::function<void(int, const Bytes&)> act) {
         const std::lock_guard lock{mutex_};
         on_request_ = std::move(act);
     }
-    /// What is late goes out; it has when this returns.
+    /// Sends a late answer; it is out when this returns.
     void let_go() {
         const unsigned before = answered_;
         let_go_ = true;
@@ -130,8 +130,7 @@ private:
         peer_ = ::posix_openpt(O_RDWR | O_NOCTTY);
         if (peer_ < 0 || ::grantpt(peer_) != 0 || ::unlockpt(peer_) != 0) std::abort();
         terminal_ = ::ptsname(peer_);
-        keep_open_ =
-            ::open(terminal_.c_str(), O_RDWR | O_NOCTTY); // a terminal without any user would hang up
+        keep_open_ = ::open(terminal_.c_str(), O_RDWR | O_NOCTTY); // a terminal without a user would hang up
         termios raw{};
         ::cfmakeraw(&raw);
         ::tcsetattr(keep_open_, TCSANOW, &raw);

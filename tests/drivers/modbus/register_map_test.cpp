@@ -1,4 +1,4 @@
-// Values in registers, and tables of registers that must be refused.
+// Values in registers, and register tables that must be refused.
 #include "drivers/modbus/register_map.hpp"
 
 #include "kernel/base/random.hpp"
@@ -12,7 +12,7 @@
 namespace tappet::modbus {
 namespace {
 
-TEST(Registers, read_words_as_their_kind_says) {
+TEST(Registers, decode_words_by_their_kind) {
     EXPECT_EQ(to_physical(word("w", 0).times(0.1), {215, 0}), 21.5);
     EXPECT_EQ(to_physical(word("w", 0).as_signed(), {0xFFFF, 0}), -1.0);
     EXPECT_EQ(to_physical(double_word("d", 0), {0x0001, 0x0002}), 65538.0);
@@ -22,8 +22,8 @@ TEST(Registers, read_words_as_their_kind_says) {
     EXPECT_EQ(to_physical(bit("b", 0), {1, 0}), 1.0);
 }
 
-// The four orders in which devices have the bytes of 0x12345678.
-TEST(Registers, take_double_words_in_any_order_of_bytes) {
+// The four byte orders in which devices store 0x12345678.
+TEST(Registers, decode_double_words_in_any_byte_order) {
     constexpr double value = 0x12345678;
     const Register d = double_word("d", 0);
     const struct {
@@ -41,7 +41,7 @@ TEST(Registers, take_double_words_in_any_order_of_bytes) {
     EXPECT_EQ(to_words(float_word("f", 0).bytes_swapped(), 1.5).words, (Words{0xC03F, 0x0000}));
 }
 
-TEST(Registers, come_back_as_they_went_in) {
+TEST(Registers, decode_as_they_were_encoded) {
     Random random{4};
     for (int i = 0; i < 1000; ++i) {
         const double value = static_cast<double>(random.between(-2147483648ll, 2147483647ll));
@@ -51,7 +51,7 @@ TEST(Registers, come_back_as_they_went_in) {
     }
 }
 
-TEST(Registers, saturate_and_refuse_what_is_no_number) {
+TEST(Registers, saturate_and_refuse_nan) {
     EXPECT_EQ(to_words(word("w", 0), 70000).words[0], 65535);
     EXPECT_TRUE(to_words(word("w", 0), 70000).saturated);
     EXPECT_EQ(to_words(word("w", 0), -1).words[0], 0);
@@ -79,7 +79,7 @@ template <class... Rows> std::string_view fault(const Rows&... rows) {
 }
 auto row(Run run, Register r) { return read("r", run, every(1s), r); }
 
-TEST(RegisterMap, holds_the_words_that_make_each_written_row_safe) {
+TEST(RegisterMap, contains_the_safe_words_of_each_written_row) {
     static constexpr auto all =
         register_map(write("a", holding_registers(10, 3), every(1s), stale_after(5s),
                            double_word("both", 1).safe(65537), word("one", 0).times(0.5).safe(17)),
@@ -94,7 +94,7 @@ TEST(RegisterMap, holds_the_words_that_make_each_written_row_safe) {
     EXPECT_EQ(writes.requests[1].first, 3u);
 }
 
-TEST(RegisterMap, refuses_what_is_written_and_says_no_safe_value) {
+TEST(RegisterMap, refuses_written_registers_without_a_safe_value) {
     EXPECT_EQ(fault(write("r", coils(0, 1), every(1s), stale_after(5s), bit("b", 0))),
               "register \"r.b\" does not say its safe value: write .safe(..) behind it, or "
               ".safe_by_silence() behind "
@@ -108,7 +108,7 @@ TEST(RegisterMap, refuses_what_is_written_and_says_no_safe_value) {
               "register \"r.w\" cannot hold its safe value: it is outside of the register's range");
 }
 
-TEST(RegisterMap, refuses_runs_that_no_request_carries) {
+TEST(RegisterMap, refuses_rows_longer_than_a_request) {
     EXPECT_EQ(fault(row(holding_registers(0, 126), word("w", 0))),
               "row \"r\" has 126 holding registers: a row carries 1 to 125; split it");
     EXPECT_EQ(fault(write("r", holding_registers(0, 124), every(1s), stale_after(5s), word("w", 0))),
@@ -119,7 +119,7 @@ TEST(RegisterMap, refuses_runs_that_no_request_carries) {
     EXPECT_EQ(fault(row(holding_registers(65535, 1), word("w", 0))), "");
 }
 
-TEST(RegisterMap, refuses_to_write_what_can_only_be_read) {
+TEST(RegisterMap, refuses_to_write_read_only_tables) {
     EXPECT_EQ(fault(write("r", input_registers(0, 1), every(1s), stale_after(5s), word("w", 0))),
               "row \"r\" writes input registers, which can only be read: write coils or holding registers");
 }
@@ -130,21 +130,21 @@ TEST(RegisterMap, refuses_to_overwrite_unnamed_registers) {
               "overwritten with 0");
 }
 
-TEST(RegisterMap, refuses_to_swap_what_has_nothing_to_swap) {
+TEST(RegisterMap, refuses_to_swap_single_words_and_bits) {
     EXPECT_EQ(fault(row(holding_registers(0, 2), word("w", 1).swapped())),
               "register \"r.w\" is swapped, but has one word; write bytes_swapped(), or take swapped() away");
     EXPECT_EQ(fault(row(coils(0, 2), bit("b", 1).bytes_swapped())),
               "register \"r.b\" is a bit and has no bytes to swap; take bytes_swapped() away");
 }
 
-TEST(RegisterMap, refuses_registers_outside_their_row_or_over_each_other) {
+TEST(RegisterMap, refuses_registers_that_exceed_their_row_or_overlap) {
     EXPECT_EQ(fault(row(holding_registers(0, 2), double_word("d", 1))),
               "register \"r.d\" reaches outside its row of 2 holding registers: move it or lengthen the row");
     EXPECT_EQ(fault(read("r", holding_registers(0, 4), every(1s), double_word("d", 0), word("w", 1))),
               "register \"r.w\" overlaps \"d\": move one of them");
 }
 
-TEST(RegisterMap, refuses_bits_among_words_and_words_among_bits) {
+TEST(RegisterMap, refuses_to_mix_bits_and_words) {
     EXPECT_EQ(fault(row(holding_registers(0, 1), bit("b", 0))),
               "register \"r.b\" is a bit among holding registers: take bit() for coils and discrete inputs, "
               "words elsewhere");
@@ -152,7 +152,7 @@ TEST(RegisterMap, refuses_bits_among_words_and_words_among_bits) {
     EXPECT_EQ(fault(row(discrete_inputs(0, 1), bit("b", 0))), "");
 }
 
-TEST(RegisterMap, refuses_doubled_names_zero_factors_and_impossible_periods) {
+TEST(RegisterMap, refuses_duplicate_names_zero_factors_and_impossible_periods) {
     EXPECT_EQ(fault(row(coils(0, 1), bit("b", 0)), row(coils(1, 1), bit("b", 0))),
               "row \"r\" is there twice: rename one of them");
     EXPECT_EQ(fault(read("r", coils(0, 2), every(1s), bit("b", 0), bit("b", 1))),

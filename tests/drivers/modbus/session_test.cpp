@@ -25,7 +25,7 @@ struct ModbusSession : testing::Test {
         server.set(Table::input_registers, 0, 215);
         server.set(Table::discrete_inputs, 4, 1);
     }
-    /// Runs the client's activity up to `end`; each step takes as long as the server lets it.
+    /// Runs the client's activity up to `end`; each step takes as long as the server makes it.
     void run_until(Time end) {
         for (int guard = 0; now < end && guard < 1'000'000; ++guard) {
             const Time next = session.step(now);
@@ -43,7 +43,7 @@ struct ModbusSession : testing::Test {
     Time now{};
 };
 
-TEST_F(ModbusSession, knows_what_is_wrong_and_that_a_lost_server_is_worse_than_a_refused_row) {
+TEST_F(ModbusSession, reports_a_lost_server_rather_than_a_refused_row) {
     run_until(Time{1s});
     EXPECT_EQ(session.trouble(), Trouble{});
     server.set_exception(6);
@@ -58,7 +58,7 @@ TEST_F(ModbusSession, knows_what_is_wrong_and_that_a_lost_server_is_worse_than_a
     EXPECT_EQ(session.trouble(), Trouble{});
 }
 
-TEST(ModbusSessionOfRealNumbers, keeps_the_last_good_value_in_place_of_what_is_no_number) {
+TEST(ModbusSessionOfRealNumbers, keeps_the_last_good_value_instead_of_nan_or_infinity) {
     static constexpr auto meter =
         register_map(read("meter", input_registers(0, 2), every(100ms), float_word("flow", 0)));
     Twin server{300ms};
@@ -95,7 +95,7 @@ TEST_F(ModbusSession, polls_its_rows_at_their_periods) {
     EXPECT_EQ(session.counters().outages, 0u);
 }
 
-TEST_F(ModbusSession, writes_nothing_before_all_values_of_a_row_were_set) {
+TEST_F(ModbusSession, writes_a_row_only_when_all_its_values_were_set) {
     run_until(Time{1s});
     EXPECT_TRUE(session.set(wanted_temperature, 22, now));
     run_until(Time{3s});
@@ -106,7 +106,7 @@ TEST_F(ModbusSession, writes_nothing_before_all_values_of_a_row_were_set) {
     EXPECT_EQ(server.get(Table::holding_registers, 9), 60);
 }
 
-TEST_F(ModbusSession, repeats_what_it_wrote_and_stops_when_it_is_stale) {
+TEST_F(ModbusSession, repeats_its_writes_until_they_become_stale) {
     want(22, 60);
     run_until(Time{100ms});
     server.set(Table::holding_registers, 8, 0); // the server restarted and forgot
@@ -118,7 +118,7 @@ TEST_F(ModbusSession, repeats_what_it_wrote_and_stops_when_it_is_stale) {
     EXPECT_EQ(server.get(Table::holding_registers, 8), 0) << "nobody set it for more than 3 s";
 }
 
-TEST_F(ModbusSession, sends_nothing_stale_after_an_outage) {
+TEST_F(ModbusSession, sends_no_stale_value_after_an_outage) {
     run_until(Time{1s});
     server.inject(Fault::down);
     run_until(Time{2s});
@@ -131,7 +131,7 @@ TEST_F(ModbusSession, sends_nothing_stale_after_an_outage) {
     EXPECT_EQ(session.counters().dropped_stale, 2u);
 }
 
-TEST_F(ModbusSession, makes_safe_what_grew_stale_before_the_server_had_it) {
+TEST_F(ModbusSession, replaces_unsent_values_that_became_stale_by_safe_values) {
     for (const Fault fault : {Fault::down, Fault::silent, Fault::exception}) {
         SCOPED_TRACE(static_cast<int>(fault));
         want(22, 60);
@@ -150,7 +150,7 @@ TEST_F(ModbusSession, makes_safe_what_grew_stale_before_the_server_had_it) {
     EXPECT_EQ(session.counters().dropped_stale, 5u);
 }
 
-TEST_F(ModbusSession, brings_a_new_value_to_the_server_beside_one_that_was_written_long_ago) {
+TEST_F(ModbusSession, writes_a_new_value_together_with_an_old_one) {
     want(22, 60);
     run_until(Time{20s});
     session.set(wanted_humidity, 40, now);
@@ -160,7 +160,7 @@ TEST_F(ModbusSession, brings_a_new_value_to_the_server_beside_one_that_was_writt
     EXPECT_EQ(session.counters().dropped_stale, 0u);
 }
 
-TEST_F(ModbusSession, writes_no_stale_value_to_a_server_that_may_have_begun_anew) {
+TEST_F(ModbusSession, writes_no_stale_value_to_a_server_that_may_have_restarted) {
     want(90, 1);
     run_until(Time{20s});
     server.inject(Fault::down);
@@ -181,7 +181,7 @@ TEST_F(ModbusSession, writes_no_stale_value_to_a_server_that_may_have_begun_anew
     EXPECT_EQ(server.get(Table::holding_registers, 9), 2) << "it is still said";
 }
 
-TEST(ModbusSessionOfSilence, lets_a_row_that_is_safe_by_silence_be_silent) {
+TEST(ModbusSessionOfSilence, stops_writing_a_row_that_is_safe_by_silence) {
     static constexpr auto ramp = register_map(write("ramp", holding_registers(0, 2), every(1s),
                                                     stale_after(3s), word("speed", 0), word("torque", 1))
                                                   .safe_by_silence());
@@ -199,12 +199,12 @@ TEST(ModbusSessionOfSilence, lets_a_row_that_is_safe_by_silence_be_silent) {
     EXPECT_EQ(session.counters().dropped_stale, 1u);
 }
 
-TEST_F(ModbusSession, refuses_to_set_a_value_that_is_only_read_or_is_no_number) {
+TEST_F(ModbusSession, refuses_to_set_read_only_values_and_nan) {
     EXPECT_FALSE(session.set(temperature, 1, now));
     EXPECT_FALSE(session.set(wanted_temperature, 0.0 / 0.0 * 1.0, now));
 }
 
-TEST_F(ModbusSession, lets_values_grow_old_when_the_server_is_silent_and_survives) {
+TEST_F(ModbusSession, keeps_the_last_values_while_the_server_is_silent_and_recovers) {
     run_until(Time{1s});
     server.inject(Fault::silent);
     run_until(Time{11s});
@@ -222,7 +222,7 @@ TEST_F(ModbusSession, lets_values_grow_old_when_the_server_is_silent_and_survive
     EXPECT_EQ(session.counters().outages_survived, 1u);
 }
 
-TEST_F(ModbusSession, backs_off_when_refused_and_no_further_than_told) {
+TEST_F(ModbusSession, backs_off_up_to_its_limit_when_refused) {
     server.inject(Fault::down);
     run_until(Time{100s});
     // 0.1 0.2 0.4 0.8 1.6 s are five waits of 3.1 s together, then one each 2 s.
@@ -253,7 +253,7 @@ TEST_F(ModbusSession, waits_for_a_slow_answer_that_is_in_time) {
     EXPECT_EQ(session.value(temperature).quality, Quality::good);
 }
 
-TEST_F(ModbusSession, makes_an_exception_a_quality_and_stays_connected) {
+TEST_F(ModbusSession, marks_a_value_after_an_exception_and_stays_connected) {
     run_until(Time{1s});
     server.set_exception(6);
     server.inject(Fault::exception);
@@ -290,7 +290,7 @@ TEST_F(ModbusSession, reconnects_after_garbage_and_foreign_answers) {
     }
 }
 
-TEST_F(ModbusSession, keeps_reading_while_values_to_write_change_all_the_time) {
+TEST_F(ModbusSession, keeps_reading_while_values_to_write_change_constantly) {
     run_until(Time{1s});
     for (int i = 0; i < 500; ++i) {
         want(i, i);

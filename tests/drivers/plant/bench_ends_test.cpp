@@ -45,7 +45,7 @@ struct Lines : testing::Test {
     gpio::BenchLines end;
 };
 
-TEST_F(Lines, carry_levels_both_ways_and_turn_over_what_is_active_low) {
+TEST_F(Lines, carry_levels_both_ways_and_invert_active_low_lines) {
     ASSERT_TRUE(end.open_at(chip.string(), lines.rows, bound));
     EXPECT_FALSE(is_pulled_up(0));
     EXPECT_TRUE(is_pulled_up(3)) << "active low, and not active";
@@ -60,7 +60,7 @@ TEST_F(Lines, carry_levels_both_ways_and_turn_over_what_is_active_low) {
     EXPECT_EQ(end.failures(), 0u);
 }
 
-TEST_F(Lines, drive_an_input_when_its_time_has_come) {
+TEST_F(Lines, drive_an_input_at_its_time) {
     ASSERT_TRUE(end.open_at(chip.string(), lines.rows, bound));
     end.look(at_ns(1'000'000));
     EXPECT_TRUE(end.drive(0, true, at_ns(5'000'000)));
@@ -69,7 +69,7 @@ TEST_F(Lines, drive_an_input_when_its_time_has_come) {
     EXPECT_TRUE(is_pulled_up(0));
 }
 
-TEST_F(Lines, say_half_way_between_two_looks_when_an_output_changed) {
+TEST_F(Lines, date_an_output_change_midway_between_two_polls) {
     ASSERT_TRUE(end.open_at(chip.string(), lines.rows, bound));
     end.look(at_ns(1'000'000));
     put(8, true);
@@ -77,7 +77,7 @@ TEST_F(Lines, say_half_way_between_two_looks_when_an_output_changed) {
     EXPECT_EQ(end.changed_at(at_ns(1'400'000)), at_ns(1'200'000));
 }
 
-TEST_F(Lines, that_are_missing_are_named_with_the_cure) {
+TEST_F(Lines, name_missing_lines_and_the_cure) {
     std::filesystem::remove(file(9, "value"));
     const auto opened = end.open_at(chip.string(), lines.rows, bound);
     ASSERT_FALSE(opened);
@@ -87,7 +87,7 @@ TEST_F(Lines, that_are_missing_are_named_with_the_cure) {
     EXPECT_NE(said.find("more than 9 lines: --gpio-chip NAME:LINES"), std::string::npos) << said;
 }
 
-TEST(Can, names_an_interface_that_does_not_exist) {
+TEST(Can, names_a_missing_interface) {
     can::BenchBus bus;
     const can::Identifiers none{};
     const auto opened = bus.open({.address = "no-such-can", .map = &none});
@@ -123,7 +123,7 @@ struct Server : testing::Test {
     int port = 0;
 };
 
-TEST_F(Server, answers_for_what_it_has_and_refuses_what_it_does_not_accept) {
+TEST_F(Server, answers_for_its_registers_and_refuses_other_requests) {
     ASSERT_TRUE(listens);
     ASSERT_EQ(modbus_connect(client), 0);
     std::uint16_t words[4] = {};
@@ -145,7 +145,7 @@ TEST_F(Server, answers_for_what_it_has_and_refuses_what_it_does_not_accept) {
     EXPECT_EQ(errno, EMBXILADD);
 }
 
-TEST_F(Server, without_power_is_gone_and_comes_back) {
+TEST_F(Server, disconnects_without_power_and_comes_back) {
     ASSERT_TRUE(listens);
     ASSERT_EQ(modbus_connect(client), 0);
     end.set_power(false);

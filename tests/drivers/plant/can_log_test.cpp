@@ -1,5 +1,4 @@
-// Candump logs of simulated buses: what is recorded, what is replayed and when, what is compared, and which
-// file is refused with which words.
+// Candump logs of simulated buses: recording, replay and its times, comparison, and the refusal of files.
 #include "drivers/plant/can_log.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +49,7 @@ struct CanLog : testing::Test {
         EXPECT_EQ(end.send(frame, can::Keep::every), can::Send::queued);
         end.service(now);
     }
-    /// As the twins of a machine are moved: what ends sent, then what the log has.
+    /// As the twins of a machine move: first the frames of the ends, then those of the log.
     void move(Time now) {
         bus.deliver_until(now);
         drain();
@@ -82,7 +81,7 @@ struct CanLog : testing::Test {
     CanReplay replay;
 };
 
-TEST_F(CanLog, records_what_both_ends_send_in_the_order_of_the_wire) {
+TEST_F(CanLog, records_frames_of_both_ends_in_the_order_of_the_wire) {
     CanRecorder recorder;
     ASSERT_TRUE(recorder.open("axis can", (folder / "new").string()).empty());
     recorder.begin(Time{1s});
@@ -109,7 +108,7 @@ TEST_F(CanLog, records_what_both_ends_send_in_the_order_of_the_wire) {
               "(0000000001.500000) axis_can 182#CC\n");
 }
 
-TEST_F(CanLog, says_what_it_cannot_write) {
+TEST_F(CanLog, reports_files_that_it_cannot_write) {
     CanRecorder recorder;
     const Sentence said = recorder.open("can", file("") + "/below_a_file");
     EXPECT_TRUE(said.view().ends_with("name a folder in which you may write")) << said.view();
@@ -156,7 +155,7 @@ TEST_F(CanLog, replays_each_frame_at_its_time_since_the_first_of_the_log) {
     EXPECT_EQ(plant.counters().sent, 1u) << "it believes that somebody heard it";
 }
 
-TEST_F(CanLog, lets_the_plant_hear_the_machine_while_nobody_hears_the_plant) {
+TEST_F(CanLog, passes_frames_to_the_plant_while_the_plant_is_muted) {
     ASSERT_TRUE(open("(1.0) can0 181#01\n").empty());
     bus.mute(plant);
     send(machine, 0x201, 7, Time{1ms});
@@ -164,7 +163,7 @@ TEST_F(CanLog, lets_the_plant_hear_the_machine_while_nobody_hears_the_plant) {
     EXPECT_EQ(arrived(plant).size(), 1u);
 }
 
-TEST_F(CanLog, leaves_out_and_counts_what_the_machine_does_not_take) {
+TEST_F(CanLog, skips_and_counts_frames_that_the_machine_does_not_receive) {
     ASSERT_TRUE(open("(1.0) can0 181#01\n(1.0) can0 7FF#01\n(1.0) can0 00000181#01\n(1.0) can0 181#R\n"
                      "(1.0) can0 20000040#0000000000000000\n(1.0) can0 201#05\n")
                     .empty());
@@ -178,20 +177,20 @@ TEST_F(CanLog, leaves_out_and_counts_what_the_machine_does_not_take) {
     EXPECT_EQ(counts.errors, 1u);
     EXPECT_EQ(counts.only_in_log, 1u);
     EXPECT_TRUE(replay.report().view().ends_with(
-        "left out 2 of other identifiers, 1 remote and 1 error frames; of what the machine sent itself 0 "
-        "frames "
+        "left out 2 of other identifiers, 1 remote and 1 error frames; of the frames that the machine sent, "
+        "0 "
         "are as in the log, 0 are not, 1 are only in the log and 0 are not in it"))
         << replay.report().view();
 }
 
-TEST_F(CanLog, compares_what_the_machine_sends_identifier_by_identifier) {
+TEST_F(CanLog, compares_the_sent_frames_for_each_identifier) {
     ASSERT_TRUE(open("(1.000) can0 181#01\n"
                      "(1.001) can0 201#01\n"
                      "(1.002) can0 201#02\n"
                      "(1.003) can0 181#01\n")
                     .empty());
     move(Time{});
-    send(machine, 0x202, 9, Time{1ms}); // the log has none of it: nothing to compare
+    send(machine, 0x202, 9, Time{1ms}); // the log has no such frame: nothing to compare
     send(machine, 0x201, 1, Time{1ms});
     move(Time{1ms});
     move(Time{2ms});
@@ -210,8 +209,8 @@ TEST_F(CanLog, compares_what_the_machine_sends_identifier_by_identifier) {
         << replay.report().view();
 }
 
-// Under virtual time question and answer have the same time.
-TEST_F(CanLog, gives_an_answer_of_the_same_moment_only_when_the_machine_has_asked) {
+// Under virtual time, question and answer have the same time.
+TEST_F(CanLog, replays_an_answer_of_the_same_time_only_after_its_request) {
     ASSERT_TRUE(open("(1.0) can0 181#01\n(1.001) can0 201#01\n(1.001) can0 181#02\n").empty());
     move(Time{});
     EXPECT_EQ(arrived(machine).size(), 1u);
@@ -224,14 +223,14 @@ TEST_F(CanLog, gives_an_answer_of_the_same_moment_only_when_the_machine_has_aske
     EXPECT_TRUE(replay.is_over());
 }
 
-TEST_F(CanLog, waits_no_longer_than_a_microsecond_for_a_machine_that_does_not_ask) {
+TEST_F(CanLog, waits_at_most_a_microsecond_for_a_missing_request) {
     ASSERT_TRUE(open("(1.0) can0 181#01\n(1.001) can0 201#01\n(1.001) can0 181#02\n").empty());
     for (const Duration at : {0us, 1000us, 1001us}) move(Time{at});
     EXPECT_EQ(arrived(machine).size(), 2u);
     EXPECT_TRUE(replay.is_over());
 }
 
-TEST_F(CanLog, leaves_out_a_last_line_that_is_cut_off_and_says_so) {
+TEST_F(CanLog, skips_and_reports_a_truncated_last_line) {
     ASSERT_TRUE(open("(1.0) can0 181#01\n(1.001) can0 181#0203\n(1.002) can0 181#0").empty());
     for (const Duration at : {0us, 1000us, 2000us}) move(Time{at});
     EXPECT_EQ(arrived(machine).size(), 2u);
@@ -257,7 +256,7 @@ TEST_F(CanLog, refuses_a_file_with_line_column_and_cure) {
                     .ends_with("cannot be read; name a log of candump -L or -l"));
 }
 
-TEST_F(CanLog, says_when_the_file_changes_while_it_is_replayed) {
+TEST_F(CanLog, reports_a_file_that_changes_during_the_replay) {
     std::string text;
     for (int i = 0; i < 10'000; ++i) text += "(" + std::to_string(1000 + i) + ".0) can0 181#01\n";
     ASSERT_TRUE(open(text).empty());

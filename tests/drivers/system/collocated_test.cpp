@@ -1,4 +1,4 @@
-// The same system with its wire and without: what its components do and get is the same.
+// The same system with and without its wire: its components behave and receive the same.
 #include "kernel/machine/accept.hpp"
 #include "kernel/system/collocated.hpp"
 #include "tests/drivers/system/pair_run.hpp"
@@ -15,7 +15,7 @@ struct NoPlant final : Plant {
     Time move(Time) override { return never; }
 };
 
-/// What the two components did and saw.
+/// The actions and observations of the two components.
 struct Seen {
     std::vector<std::int32_t> got{};
     std::vector<double> levels{};
@@ -24,7 +24,7 @@ struct Seen {
     bool operator==(const Seen&) const = default;
 };
 
-/// The same story, whatever moves the time.
+/// Runs the same story, whatever moves the time.
 template <class RunFor>
 Seen tell(Giver& giver, Taker& taker, RunFor run_for) {
     Seen seen;
@@ -44,7 +44,7 @@ Seen tell(Giver& giver, Taker& taker, RunFor run_for) {
     return seen;
 }
 
-TEST(Collocated, what_is_local_and_what_is_cut_behaves_alike) {
+TEST(Collocated, components_behave_alike_with_and_without_a_wire) {
     NoPlant none;
     VirtualRun local{LocalFirmware::machine(), none, 1};
     ASSERT_TRUE(local.start());

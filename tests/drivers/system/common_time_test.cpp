@@ -1,5 +1,5 @@
-// One time over the nodes of a wire: values keep the time at which they were true, whatever their nodes'
-// clocks show, to within the bound that the compiler has proven.
+// One time over the nodes of a wire: values keep the time at which they were true, whatever the clocks of
+// their nodes show, within the bound that the compiler has proven.
 #include "tests/drivers/system/pair.hpp"
 #include "toolchain/machine/system_run.hpp"
 
@@ -8,7 +8,7 @@
 namespace tappet::time_test {
 namespace {
 
-/// Tells by its own clock when it told it.
+/// Sends the time of its own clock.
 struct Speaker {
     Output<double> told_at{};
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME { told_at.write(to_seconds(cycle.now - Time{})); }
@@ -18,7 +18,7 @@ struct Speaker {
 };
 struct Listener {
     Input<double> told_at{};
-    // As it was in the last cycle: outside of it nobody knows how old a value is.
+    // As read in the last cycle: outside of a cycle the age of a value is unknown.
     double value = 0;
     bool is_good = false;
     Time stamp{};
@@ -65,7 +65,7 @@ struct Rig {
         }
     }
     Listener& listener() { return *run.instance(1).find<Listener>("listener"); }
-    /// By how much the stamp of the value that is known differs from when it was true.
+    /// The difference between the received stamp and the time at which the value was true.
     Duration error() {
         const Time told = clocks[0].true_time(Time{from_seconds(listener().value)});
         return clocks[1].true_time(listener().stamp) - told;
@@ -80,8 +80,8 @@ struct Rig {
     SystemRun run;
 };
 
-TEST(CommonTime, a_value_keeps_the_time_at_which_it_was_true_between_clocks_that_drift) {
-    // Of both nodes that are told the time; and the steps of it and of the value.
+TEST(CommonTime, keeps_the_time_stamp_of_a_value_between_drifting_clocks) {
+    // The errors of both receiving nodes, and the steps of clock and value.
     const Duration bound = 2 * systems::plan_of<clocked>.clock_error + Duration{time_step_ns} + 2us;
     Duration furthest{};
     std::int64_t looks = 0;
@@ -107,7 +107,7 @@ TEST(CommonTime, a_value_keeps_the_time_at_which_it_was_true_between_clocks_that
     EXPECT_GT(furthest, 50us) << "stamps are late in this run; nothing of that was seen";
 }
 
-TEST(CommonTime, while_nobody_tells_the_time_what_needs_it_is_not_valid) {
+TEST(CommonTime, is_invalid_while_no_clock_master_sends) {
     Rig rig{1};
     ASSERT_TRUE(rig.run.start(0) && rig.run.start(1));
     rig.run.run_for(500ms);
@@ -127,8 +127,8 @@ TEST(CommonTime, while_nobody_tells_the_time_what_needs_it_is_not_valid) {
     rig.run.stop();
 }
 
-TEST(CommonTime, of_a_teller_that_began_anew_only_its_new_time_counts) {
-    // Of a turn of what is told, less 40 ms: the old clock would take the times for 40 ms older.
+TEST(CommonTime, follows_only_the_new_time_of_a_restarted_clock_master) {
+    // One turn of the sent time, less 40 ms: the old clock would make the times 40 ms older.
     for (const Duration jump :
          {Duration{655'360us - 40ms}, Duration{655'360us + 3ms}, Duration{-300ms}, Duration{7h}}) {
         Rig rig{1};
@@ -152,7 +152,7 @@ TEST(CommonTime, of_a_teller_that_began_anew_only_its_new_time_counts) {
     }
 }
 
-TEST(CommonTime, a_time_on_the_wire_is_of_the_past_or_of_now_or_of_neither) {
+TEST(CommonTime, classifies_a_time_on_the_wire_as_past_present_or_invalid) {
     const Time now{100s};
     Duration age{};
     for (const Duration ago : {Duration::zero(), Duration{10us}, Duration{491ms}}) {
@@ -169,51 +169,50 @@ std::string refusal(const WireRow& wire, const Crossing& crossing) {
     return std::string{
         plan_system(system("lane", three, wire, crossings(crossing)), &systems::analyse_can).fault.view()};
 }
-TEST(CommonTime, refusals) {
+TEST(CommonTime, refuses_invalid_clock_rows) {
     EXPECT_EQ(refusal(clocked_wire, row), "");
     EXPECT_EQ(
         refusal(pair::usual_wire("wire"), row),
-        "lane: crossing \"a.speaker.told_at\" -> \"b.listener.told_at\" is told with_time, but wire \"wire\" "
+        "lane: crossing \"a.speaker.told_at\" -> \"b.listener.told_at\" is sent with_time, but wire \"wire\" "
         "has no common time; add common_clock(\"node\", every(100ms), within(200us))");
     EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("c", every(100ms), within(200us))), row),
               "lane: common_clock(\"c\"): there is no such node; name one of nodes(...)");
     EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(0ms), within(200us))), row),
-              "lane: common_clock(\"clock\") is told every 0 ms; write every(...) from 10 ms to 10 s");
+              "lane: common_clock(\"clock\") is sent every 0 ms; write every(...) from 10 ms to 10 s");
     EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(10ms), within(200us))), row),
-              "lane: common_clock(\"clock\") is told every 10 ms, of which a quarter must do for a frame and "
+              "lane: common_clock(\"clock\") is sent every 10 ms, of which a quarter must do for a frame and "
               "served_within(...) twice; write every(...) of 16 ms at least, or serve the wire sooner");
     EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms), within(200us)),
                                        common_clock("a", every(100ms), within(200us))),
                       row),
-              "lane: wire \"wire\" has 2 common_clock(...); one node tells the time, remove the others");
+              "lane: wire \"wire\" has 2 common_clock(...); one node sends the time, remove the others");
     EXPECT_EQ(refusal(pair::usual_wire("wire",
                                        common_clock("clock", every(100ms), within(200us), stamps_late(0us))),
                       row),
-              "lane: common_clock(\"clock\"): stamps are late by more than nothing, and clocks part by at "
-              "most 1e-2; "
-              "correct stamps_late(...) or drift(...)");
+              "lane: common_clock(\"clock\"): stamps_late(...) must be above 0 and drift(...) from 0 to "
+              "1e-2; correct them");
     EXPECT_EQ(refusal(pair::usual_wire("wire", identifiers_from(0x200), fixed_identifiers), row),
-              "lane: wire \"wire\" says identifiers_from(...) and fixed_identifiers, which are made of what "
-              "a frame is; "
-              "remove one of them");
+              "lane: wire \"wire\" has both identifiers_from(...) and fixed_identifiers; remove one of them");
     EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms))), row),
-              "lane: common_clock(\"clock\") does not say how well it is to be known; add within(200us)");
-    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms), within(50us))), row),
-              "lane: common_clock(\"clock\"): it is known to 124 us, but promised within 50 us; most of it, "
-              "100 us, is "
-              "how late frames are stamped; say stamps_late(...) of less where that is so, or promise less");
+              "lane: common_clock(\"clock\") has no permitted error; add within(200us)");
+    EXPECT_EQ(
+        refusal(pair::usual_wire("wire", common_clock("clock", every(100ms), within(50us))), row),
+        "lane: common_clock(\"clock\"): its error may be 124 us, but it is promised within 50 us; most of "
+        "it, "
+        "100 us, is "
+        "how late frames are stamped; write a shorter stamps_late(...) if that is true, or promise less");
     EXPECT_EQ(
         refusal(pair::usual_wire("wire", common_clock("clock", every(1s), within(150us), stamps_late(10us))),
                 row),
-        "lane: common_clock(\"clock\"): it is known to 241 us, but promised within 150 us; most of it, "
+        "lane: common_clock(\"clock\"): its error may be 241 us, but it is promised within 150 us; most of "
+        "it, "
         "231 us, is "
-        "what clocks part in 1007 ms; tell it more often, or promise less");
+        "the drift of the clocks in 1007 ms; send it more often, or promise less");
     Crossing long_lived = row;
     long_lived.data.max_age = 2s;
     EXPECT_EQ(refusal(clocked_wire, long_lived),
-              "lane: crossing \"a.speaker.told_at\" -> \"b.listener.told_at\" is told with_time, which holds "
-              "for 381 "
-              "ms; say stale_after(...) of at most that");
+              "lane: crossing \"a.speaker.told_at\" -> \"b.listener.told_at\" is sent with_time, which holds "
+              "for 381 ms; write stale_after(...) of at most that");
 }
 
 } // namespace

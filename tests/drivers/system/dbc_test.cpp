@@ -1,5 +1,4 @@
-// What crosses a system's wire, as canmatrix reads it: the exported DBC file, and frames that were heard
-// there.
+// The frames of a system's wire, read by canmatrix from the exported DBC file.
 #include "drivers/can/dbc/writer.hpp"
 #include "tests/drivers/can/hex.hpp"
 #include "tests/drivers/system/pair_run.hpp"
@@ -16,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(SystemDbc, is_read_by_a_tool_that_is_not_ours_and_so_are_the_frames) {
+TEST(SystemDbc, is_read_with_its_frames_by_a_foreign_tool) {
     const auto& plan = systems::plan_of<pair>;
     PairRun both;
     std::array<can::Identifier, plan.frames.size()> all{};

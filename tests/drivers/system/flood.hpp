@@ -1,6 +1,6 @@
-// A machine whose loop is more urgent than its wire, another one, and somebody who floods that wire. With a
-// wire that is served within a shorter time than the loop's deadline the priorities are wrong: who tests for
-// a disturbance must find it there.
+// A machine whose loop is more urgent than its wire, another machine, and a node that floods that wire. When
+// the wire must be served within a shorter time than the loop's deadline, the priorities are wrong: a test
+// for disturbance must find it there.
 #pragma once
 
 #include "drivers/system/station.hpp"
@@ -9,11 +9,12 @@ namespace tappet::flood {
 
 inline constexpr Duration loop_period = 1ms, loop_deadline = 300us, loop_budget = 40us;
 
-/// Follows what the other machine tells, and tells it back.
+/// Follows the value of the other machine, and sends it back.
 struct Loop {
     Input<double> followed{};
     Output<double> place{};
-    void (*look)(const Cycle&) noexcept TAPPET_REALTIME = nullptr; ///< of who measures, at the end
+    void (*look)(const Cycle&) noexcept
+        TAPPET_REALTIME = nullptr; ///< for the measuring test, at the end of a step
 
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         place.write(followed.get() + 1);
@@ -41,12 +42,12 @@ inline constexpr auto two = tappet::system("two",
     promises());
 // clang-format on
 
-/// The loop comes before the wire.
+/// The loop is more urgent than the wire.
 inline constexpr auto& right = two<1'000'000, 60'000>;
-/// Planted: the wire comes before the loop.
+/// Planted: the wire is more urgent than the loop.
 inline constexpr auto& wrong = two<200'000, 10'000>;
 
-/// A frame of the system, rightly protected: as its node would send it, were it mad.
+/// A frame of the system with right protection, as its node would send it if it were out of control.
 constexpr can::Frame frame_of(const WireFrame& as, std::uint64_t contents, std::uint8_t counter) {
     can::Frame frame{.id = as.id, .length = as.bytes};
     for (std::size_t i = 0; i < frame.length; ++i)

@@ -1,6 +1,6 @@
-// A wire that is full disturbs nobody who is more urgent than it: in virtual time, in which each cycle takes
-// up to its budget and the most urgent activity runs. The wire's own activity is woken as often as its row
-// says at most, while all keep their rates; when somebody does not, more often, which is told.
+// A full wire disturbs no activity that is more urgent than it: in virtual time, each cycle takes up to its
+// budget and the most urgent activity runs. While all nodes keep their rates, the wire's own activity wakes
+// at most as often as its row says. When a node exceeds its rate, it wakes more often, and that is reported.
 #include "board/host/board.hpp"
 #include "kernel/machine/accept.hpp"
 #include "tests/drivers/system/flood.hpp"
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t bits_per_second = 500'000;
 constexpr std::size_t a = 0, b = 1;
 
-/// Whose frames come, back to back.
+/// Source of the frames, which come back to back.
 enum class Flood : std::uint8_t { none, of_the_other, of_ours };
 
 struct Seen {
@@ -66,7 +66,7 @@ private:
         view.wire.rate = {rate, 0};
         return view;
     }
-    /// As many as it takes; all frames of the node in turns.
+    /// Sends as many frames as fit, all frames of the node in turn.
     void fill(std::size_t of, Random& random) {
         liar_.service(run_.now());
         for (can::Frame ignored; liar_.receive(ignored).what != can::Received::none;) {
@@ -101,7 +101,7 @@ std::pair<Seen, Seen> quiet_and_flooded(Flood flood, std::uint64_t seed, std::ui
 class UnderFlood : public testing::TestWithParam<Flood> {};
 INSTANTIATE_TEST_SUITE_P(Floods, UnderFlood, testing::Values(Flood::of_the_other, Flood::of_ours));
 
-TEST_P(UnderFlood, who_is_more_urgent_than_the_wire_responds_as_without_it) {
+TEST_P(UnderFlood, an_activity_more_urgent_than_the_wire_keeps_its_response) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const auto [quiet, flooded] = quiet_and_flooded<right>(GetParam(), seed, bits_per_second);
         EXPECT_EQ(quiet.loop, loop_budget) << "seed " << seed;
@@ -113,7 +113,7 @@ TEST_P(UnderFlood, who_is_more_urgent_than_the_wire_responds_as_without_it) {
     }
 }
 
-TEST_P(UnderFlood, the_wires_own_activity_is_served_in_time) {
+TEST_P(UnderFlood, the_activity_of_the_wire_meets_its_deadline) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const auto [quiet, flooded] = quiet_and_flooded<right>(GetParam(), seed, bits_per_second);
         EXPECT_LE(flooded.wire, 1ms) << "seed " << seed;
@@ -125,12 +125,12 @@ TEST_P(UnderFlood, the_wires_own_activity_is_served_in_time) {
     }
 }
 
-TEST_P(UnderFlood, a_wire_before_the_loop_is_seen_to_disturb_it) {
+TEST_P(UnderFlood, a_wire_more_urgent_than_the_loop_disturbs_it) {
     const auto [quiet, flooded] = quiet_and_flooded<wrong>(GetParam(), 1, bits_per_second);
     EXPECT_GT(flooded.loop, loop_budget) << "what the other cases look for is found where it is planted";
 }
 
-TEST(FloodBeyondTheRate, is_told_and_disturbs_nobody) {
+TEST(FloodBeyondTheRate, is_reported_and_disturbs_no_other_activity) {
     const auto [quiet, flooded] = quiet_and_flooded<right>(Flood::of_the_other, 1, 16 * bits_per_second);
     EXPECT_EQ(quiet.wakes_too_many, 0u);
     EXPECT_GT(flooded.wakes_too_many, 0u);

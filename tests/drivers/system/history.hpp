@@ -1,5 +1,5 @@
-// What was emitted, sent, served and executed in one run of a system whose senders share one receiver, with
-// the true time of each; and what must hold of it, whatever went wrong in between.
+// Everything emitted, sent, served and executed in one run of a system whose senders share one receiver, with
+// its true time; and the rules that hold whatever goes wrong in between.
 #pragma once
 
 #include "kernel/component/command.hpp"
@@ -15,7 +15,7 @@
 
 namespace tappet::history {
 
-using Number = std::int32_t; ///< names an event or a command: no two of a history have the same
+using Number = std::int32_t; ///< identifies an event or a command, uniquely in a history
 
 /// One start of a node.
 struct Life {
@@ -27,7 +27,7 @@ struct Emission {
     Number number = 0;
     Time at{};
 };
-/// The sender was told that one of its events is lost.
+/// The sender learned that one of its events was lost.
 struct Loss {
     std::size_t sender = 0;
     Time at{};
@@ -45,7 +45,7 @@ struct Asked {
     CommandState how = CommandState::sent;
     Number result = 0;
 };
-/// The receiver took a command up, or refused it.
+/// The receiver accepted a command, or refused it.
 struct Begun {
     Number number = 0;
     Time at{};
@@ -60,16 +60,16 @@ struct Executed {
 struct Channel {
     std::string_view name{};
     std::size_t sender = 0, receiver = 0;
-    bool has_services = false; ///< each one that arrives is a `Served` of this sender
+    bool has_services = false; ///< each arrival is a `Served` of this sender
     SendCounts sent{};
     ReceiveCounts received{};
     std::uint64_t waiting = 0; ///< at the end of the history: neither answered, nor lost, nor unknown
 };
-/// What the rows say.
+/// The bounds from the rows.
 struct Times {
-    Duration event{}, command{}; ///< from the emission, or the sending, until it is served or given up
-    Duration reader{};           ///< until a sender is told of what its node knows
-    Duration drift{};            ///< of clocks against the true time, in all of that
+    Duration event{}, command{}; ///< from emission or sending until served or given up
+    Duration reader{};           ///< until a sender learns what its node knows
+    Duration drift{};            ///< total drift of the clocks against the true time
 };
 
 struct History {
@@ -94,7 +94,7 @@ struct History {
     }
 };
 
-/// Empty: it holds.
+/// Returns empty when the rule holds.
 using Fault = std::string;
 
 template <class List>
@@ -114,7 +114,7 @@ inline Fault never_twice(const History& history) {
     return check(history.executed, " was executed twice");
 }
 
-/// What is served was emitted, what is executed was sent and taken up, each before it.
+/// Everything served was emitted before, and everything executed was sent and accepted before.
 inline Fault nothing_from_nowhere(const History& history) {
     for (const Served& each : history.served) {
         const auto from = find_number(history.emitted, each.number);
@@ -134,10 +134,10 @@ inline Fault nothing_from_nowhere(const History& history) {
     return {};
 }
 
-/// Of each sender, over all starts: the receiver meets them as they were emitted or sent.
+/// For each sender, over all starts: the receiver gets its messages in the order of emission or sending.
 inline Fault in_order(const History& history) {
     const auto check = [](const auto& sources, const auto& arrivals, const char* what) -> Fault {
-        std::map<Number, std::pair<std::size_t, std::size_t>> place; // sender, and the how many-th
+        std::map<Number, std::pair<std::size_t, std::size_t>> place; // sender, and position in its order
         for (std::size_t i = 0; i < sources.size(); ++i) place[sources[i].number] = {sources[i].sender, i};
         std::map<std::size_t, std::size_t> last;
         for (const auto& each : arrivals) {
@@ -154,7 +154,7 @@ inline Fault in_order(const History& history) {
     return fault.empty() ? check(history.asked, history.begun, "command") : fault;
 }
 
-/// An event that was not served: its sender's component was told so in its time, or one of the two ended.
+/// For an event that was not served, its sender's component learned so in time, or one of the two ended.
 inline Fault losses_are_told(const History& history) {
     for (const Emission& each : history.emitted) {
         if (find_number(history.served, each.number) != history.served.end()) continue;
@@ -169,7 +169,7 @@ inline Fault losses_are_told(const History& history) {
     return {};
 }
 
-/// Each message is delivered or lost, and both ends say the same; only what an end of a start took with it is
+/// Each message is delivered or lost, and both ends agree; only messages lost with the end of a start are
 /// unknown.
 inline Fault counts_agree(const History& history) {
     for (const Channel& each : history.channels) {
@@ -185,7 +185,7 @@ inline Fault counts_agree(const History& history) {
         if (received.lost < sent.lost || received.lost > sent.lost + sent.unknown)
             return fault("the two ends do not know the same losses");
         if (!each.has_services) continue;
-        // A receiver that ends takes along what waits in the mailbox of its component: one, of one row.
+        // A receiver that ends loses the waiting content of its component's mailbox: one message, of one row.
         std::uint64_t services = 0;
         for (const Emission& one : history.emitted)
             services +=
@@ -198,8 +198,8 @@ inline Fault counts_agree(const History& history) {
     return {};
 }
 
-/// Served within the time of its row, and answered within twice that, for a reply waits for the one before
-/// it; a command ends unless its sender does.
+/// Served within the time of its row, and answered within twice that, since a reply waits for the previous
+/// one; a command completes unless its sender ends.
 inline Fault in_time(const History& history) {
     const Times& times = history.times;
     const Duration late = times.drift;
@@ -224,8 +224,8 @@ inline Fault in_time(const History& history) {
     return {};
 }
 
-/// Done: it was executed between its two times, and that is its result. Rejected at its own node, it was not
-/// even taken up; refused at the other, it was not executed.
+/// A command that is done was executed between its two times with that result. One rejected at its own node
+/// was never accepted; one refused at the other node was not executed.
 inline Fault ends_are_true(const History& history) {
     for (const Asked& each : history.asked) {
         const auto begun = find_number(history.begun, each.number);
@@ -245,8 +245,8 @@ inline Fault ends_are_true(const History& history) {
 
 inline std::int32_t add_to(std::int32_t& sum, std::int32_t number) { return sum += number; }
 
-/// Each start of the receiver is an object of its own, and nothing of before is executed there. Of what its
-/// receiver noted, only what it refused is looked at, which did not happen: the answers alone must fit.
+/// Each start of the receiver is an object of its own, and executes nothing from before. Only refusals in the
+/// receiver's record count, since refused commands did not happen: the answers alone must fit.
 inline Fault linearizable(const History& history) {
     std::size_t done = 0, of_lives = 0;
     for (const Asked& each : history.asked) done += each.how == CommandState::done ? 1u : 0u;
@@ -279,7 +279,7 @@ inline constexpr std::array checkers{
     Checker{"counts_agree", counts_agree},   Checker{"in_time", in_time},
     Checker{"ends_are_true", ends_are_true}, Checker{"linearizable", linearizable}};
 
-/// Of each that finds one, "name: what".
+/// One entry "name: fault" for each checker that finds a fault.
 inline std::vector<std::string> faults_of(const History& history) {
     std::vector<std::string> faults;
     for (const Checker& each : checkers)

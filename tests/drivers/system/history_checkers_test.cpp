@@ -1,5 +1,4 @@
-// A right history passes every checker; one with a planted fault is found by the checker of that fault, and
-// by no other.
+// A right history passes every checker; a planted fault is found by its own checker, and by no other.
 #include "tests/drivers/system/history.hpp"
 
 #include <gtest/gtest.h>
@@ -11,8 +10,8 @@ constexpr std::size_t one = 0, two = 1, taker = 2;
 
 Time at(std::int64_t ms) { return Time{} + ms * 1ms; }
 
-/// Two senders, for a fifth of a second: an event of the second one is lost; its 1000 failed there, and was
-/// executed all the same; 15 was refused, and 3 did not leave its node.
+/// Two senders, for a fifth of a second: an event of the second one is lost; its 1000 failed there but was
+/// executed; 15 was refused, and 3 did not leave its node.
 History right_one() {
     History history;
     history.times = {.event = 30ms, .command = 30ms, .reader = 5ms, .drift = 0ms};
@@ -49,7 +48,7 @@ Asked& asked(History& history, Number number) {
 Executed& executed(History& history, Number number) {
     return *std::ranges::find(history.executed, number, &Executed::number);
 }
-/// What the receiver noted and what its sender got are the same, and both wrong.
+/// The receiver's note and the sender's result agree, and both are wrong.
 void answer(History& history, Number number, Number result) {
     asked(history, number).result = executed(history, number).result = result;
 }
@@ -61,7 +60,7 @@ std::string found_by(const History& history) {
         if (!each.check(history).empty()) names += (names.empty() ? "" : " ") + std::string{each.name};
     return names;
 }
-/// Of the right history with this done to it.
+/// Plants a change in the right history; returns the checkers that find it.
 template <class Plant>
 std::string found_in(Plant plant) {
     History history = right_one();
@@ -69,38 +68,38 @@ std::string found_in(Plant plant) {
     return found_by(history);
 }
 
-TEST(PlantedFault, none_is_found_in_a_right_history) {
+TEST(HistoryCheckers, accept_a_right_history) {
     EXPECT_EQ(faults_of(right_one()), std::vector<std::string>{});
 }
 
-TEST(PlantedFault, twice) {
+TEST(HistoryCheckers, find_duplicates) {
     EXPECT_EQ(found_in([](History& h) { h.served.push_back({3, at(66)}); }), "never_twice");
     EXPECT_EQ(found_in([](History& h) { h.begun.push_back({7, at(146)}); }), "never_twice");
     EXPECT_EQ(found_in([](History& h) { h.executed.push_back({7, 1134, at(149)}); }), "never_twice");
 }
 
-TEST(PlantedFault, out_of_nowhere) {
+TEST(HistoryCheckers, find_deliveries_from_nowhere) {
     EXPECT_EQ(found_in([](History& h) { h.served.push_back({9, at(66)}); }), "nothing_from_nowhere");
     EXPECT_EQ(found_in([](History& h) { h.served[0].at = at(9); }), "nothing_from_nowhere");
     EXPECT_EQ(found_in([](History& h) { h.begun.push_back({9, at(146)}); }), "nothing_from_nowhere");
     EXPECT_EQ(found_in([](History& h) { h.begun[0].at = at(21); }), "nothing_from_nowhere") << "too late";
 }
 
-TEST(PlantedFault, another_order) {
+TEST(HistoryCheckers, find_reordered_deliveries) {
     EXPECT_EQ(found_in([](History& h) { std::swap(h.served[0], h.served[2]); }), "in_order");
     EXPECT_EQ(found_in([](History& h) { std::swap(h.begun[0], h.begun[4]); }), "in_order");
     EXPECT_EQ(found_in([](History& h) { std::swap(h.served[0], h.served[1]); }), "")
         << "of two senders there is none";
 }
 
-TEST(PlantedFault, a_loss_that_nobody_was_told_of_in_its_time) {
+TEST(HistoryCheckers, find_losses_not_reported_in_time) {
     EXPECT_EQ(found_in([](History& h) { h.told.clear(); }), "losses_are_told");
     EXPECT_EQ(found_in([](History& h) { h.told[0].at = at(101); }), "losses_are_told");
     EXPECT_EQ(found_in([](History& h) { h.told[0].at = at(64); }), "losses_are_told");
     EXPECT_EQ(found_in([](History& h) { h.told[0].sender = one; }), "losses_are_told");
 }
 
-TEST(PlantedFault, counts_that_differ) {
+TEST(HistoryCheckers, find_counts_that_differ) {
     EXPECT_EQ(found_in([](History& h) { h.channels[1].received.lost = 0; }), "counts_agree");
     EXPECT_EQ(found_in([](History& h) { ++h.channels[0].received.served; }), "counts_agree");
     EXPECT_EQ(found_in([](History& h) { ++h.channels[0].sent.offered; }), "counts_agree");
@@ -116,14 +115,14 @@ TEST(PlantedFault, counts_that_differ) {
         << "both ends say three, and the component served two";
 }
 
-TEST(PlantedFault, too_late) {
+TEST(HistoryCheckers, find_late_deliveries) {
     EXPECT_EQ(found_in([](History& h) { h.served[2].at = at(91); }), "in_time");
     EXPECT_EQ(found_in([](History& h) { h.begun[3].at = executed(h, 1000).at = at(131); }), "in_time");
     EXPECT_EQ(found_in([](History& h) { asked(h, 7).responded = at(206); }), "in_time");
     EXPECT_EQ(found_in([](History& h) { asked(h, 15).responded = never; }), "in_time");
 }
 
-TEST(PlantedFault, an_end_that_is_not_true) {
+TEST(HistoryCheckers, find_false_outcomes) {
     EXPECT_EQ(found_in([](History& h) { executed(h, 7).result = 127; }), "ends_are_true");
     EXPECT_EQ(found_in([](History& h) { h.executed.pop_back(); }), "ends_are_true") << "done, not executed";
     EXPECT_EQ(found_in([](History& h) { executed(h, 20).at = at(41); }), "ends_are_true") << "after its end";
@@ -133,7 +132,7 @@ TEST(PlantedFault, an_end_that_is_not_true) {
         << "refused, and executed";
 }
 
-TEST(PlantedFault, answers_that_no_order_explains) {
+TEST(HistoryCheckers, find_answers_that_no_order_explains) {
     EXPECT_EQ(found_in([](History& h) { answer(h, 20, 20); }), "linearizable") << "a lost update";
     EXPECT_EQ(found_in([](History& h) { answer(h, 7, 1120); }), "linearizable") << "a stale answer";
     EXPECT_EQ(found_in([](History& h) { answer(h, 7, 2127); }), "linearizable") << "1000 twice";
@@ -143,7 +142,7 @@ TEST(PlantedFault, answers_that_no_order_explains) {
         << "of a command that failed nobody knows whether it happened";
 }
 
-TEST(PlantedFault, a_start_that_goes_on_where_the_one_before_it_ended) {
+TEST(HistoryCheckers, find_state_kept_across_a_restart) {
     const auto begin_anew = [](History& h) { h.lives[taker] = {{at(0), at(133)}, {at(135), never}}; };
     EXPECT_EQ(found_in([&](History& h) { begin_anew(h); }), "linearizable") << "the old sum";
     EXPECT_EQ(found_in([&](History& h) { begin_anew(h), answer(h, 7, 1007); }), "linearizable")

@@ -1,5 +1,5 @@
-// A thousand seeds of what goes wrong on a wire and at its ends: whatever happens, what the machines did
-// passes every checker of a history, and what arrives comes in the time that was proven, and near to it.
+// A thousand seeds of faults on a wire and at its ends: the recorded history passes every checker, and
+// arrivals stay within the proven time, and come near it.
 #include "tests/drivers/system/story.hpp"
 
 #include <cstdio>
@@ -9,11 +9,11 @@ namespace {
 
 constexpr auto& plan = systems::plan_of<trio>;
 
-/// What many seeds met: a checker that never had a case finds nothing.
+/// Cases met over many seeds: a checker without cases finds nothing.
 struct Met {
     std::uint64_t emitted = 0, served = 0, told = 0, asked = 0, done = 0, refused = 0;
     std::uint64_t lost = 0, unknown = 0, repeated = 0; ///< messages, of all channels
-    std::uint64_t overlapping = 0;                     ///< done while one of the other sender was under way
+    std::uint64_t overlapping = 0; ///< done while a command of the other sender was in flight
     std::uint64_t failed_but_executed = 0, failed_and_not = 0;
     Longest longest{};
 
@@ -44,7 +44,7 @@ struct Met {
     }
 };
 
-/// Ends at the first seed whose history is not right.
+/// Stops at the first seed with a wrong history.
 void live(std::uint64_t seeds, const Weather& weather, Met& met) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Story story{seed, weather};
@@ -54,7 +54,7 @@ void live(std::uint64_t seeds, const Weather& weather, Met& met) {
     }
 }
 
-/// Observed by proven, of each frame on the wire. The nearest.
+/// Observed divided by proven response of each frame on the wire. Returns the nearest.
 double expect_frames_in_time(const Longest& longest) {
     double nearest = 0;
     for (std::size_t f = 0; f < plan.frames.size(); ++f) {
@@ -65,12 +65,12 @@ double expect_frames_in_time(const Longest& longest) {
     return nearest;
 }
 
-/// From the end of a command until its sender sees it.
+/// Time from the end of a command until its sender sees it.
 Duration proven_back(std::size_t crossing) {
     return plan.frames[plan.place[crossing].reply].worst + trio.wire.service.deadline + Story::reader;
 }
 
-/// The same of each row, from one component to the other.
+/// The same for each row, from component to component.
 double expect_rows_in_time(const Longest& longest) {
     double nearest = 0;
     const auto compare = [&](std::size_t x, const char* what, Duration seen, Duration proven) {
@@ -83,7 +83,7 @@ double expect_rows_in_time(const Longest& longest) {
         nearest = std::max(nearest, part);
     };
     for (std::size_t x = 0; x < row_count; ++x) {
-        const Duration proven = systems::promises_of<trio>.proven[x]; // a promise stands for each row
+        const Duration proven = systems::promises_of<trio>.proven[x]; // each row has a promise
         compare(x, "there", longest.served[x], proven);
         if (trio.crossings[x].kind == CrossingKind::command)
             compare(x, "back", longest.answered[x], proven + proven_back(x));
@@ -91,7 +91,7 @@ double expect_rows_in_time(const Longest& longest) {
     return nearest;
 }
 
-TEST(History, without_faults_everything_is_served) {
+TEST(History, delivers_everything_without_faults) {
     Met met;
     ASSERT_NO_FATAL_FAILURE(live(1, Weather{.drifts = false, .spoils = false}, met));
     EXPECT_GT(met.emitted, 10u);
@@ -101,7 +101,7 @@ TEST(History, without_faults_everything_is_served) {
     EXPECT_EQ(met.done + met.refused, met.asked);
 }
 
-TEST(History, what_arrives_comes_within_what_is_proven_of_its_row_and_near_to_it) {
+TEST(History, keeps_the_proven_bounds_and_comes_near_them) {
     Met met;
     ASSERT_NO_FATAL_FAILURE(live(200, Weather{.crowds = true}, met));
     EXPECT_EQ(met.lost + met.unknown, 0u);
@@ -112,7 +112,7 @@ TEST(History, what_arrives_comes_within_what_is_proven_of_its_row_and_near_to_it
     EXPECT_GE(of_frames, 0.5);
 }
 
-TEST(History, omitted_doubled_and_spoilt_frames_cost_no_order_and_every_loss_is_known_at_both_ends) {
+TEST(History, keeps_its_order_and_reports_every_loss_despite_faulty_frames) {
     Met met;
     ASSERT_NO_FATAL_FAILURE(live(300, Weather{.omits = true, .doubles = true, .crowds = true}, met));
     EXPECT_GT(met.lost, 50u) << "the faults strike";
@@ -124,7 +124,7 @@ TEST(History, omitted_doubled_and_spoilt_frames_cost_no_order_and_every_loss_is_
     EXPECT_GE(expect_frames_in_time(met.longest), 0.7);
 }
 
-TEST(History, killed_restarted_and_cut_nodes_serve_nothing_twice_and_answer_for_one_start_alone) {
+TEST(History, delivers_nothing_twice_despite_killed_and_disconnected_nodes) {
     Met met;
     ASSERT_NO_FATAL_FAILURE(
         live(500, Weather{.omits = true, .doubles = true, .kills = true, .cuts = true}, met));

@@ -1,4 +1,4 @@
-// Frames of a node that lies: of any identifier of the wire, with any contents, damaged or rightly protected.
+// Frames of a lying node: with any identifier of the wire and any contents, damaged or with right protection.
 #include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace tappet::pair {
 namespace {
 
-TEST(Hostile, frames_stop_nobody_and_what_is_damaged_is_refused) {
+TEST(Hostile, frames_stop_no_node_and_damaged_ones_are_refused) {
     const auto& plan = systems::plan_of<pair>;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         Random random{seed};

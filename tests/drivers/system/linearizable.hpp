@@ -1,5 +1,5 @@
-// Whether what several callers saw of one object could have come of one call after the other: the search of
-// Wing and Gong (1993), with Lowe's memo (2017) of what was tried.
+// Whether the observations of several callers of one object can result from calls in sequence: the search of
+// Wing and Gong (1993), with Lowe's memo (2017) of tried states.
 #pragma once
 
 #include "kernel/base/time.hpp"
@@ -13,32 +13,33 @@
 
 namespace tappet::history {
 
-/// A call, as its caller saw it.
+/// A call, as seen by its caller.
 struct Operation {
     Time invoked{};
     Time responded = never;
     std::int32_t argument = 0;
-    /// None: nobody knows whether it happened; if it did, then at any time after its invocation.
+    /// Empty: it is unknown whether the call happened; if so, at any time after its invocation.
     std::optional<std::int32_t> result{};
 };
 
-/// The object without its callers: changes the state, which begins at 0, and answers.
+/// The object without its callers: changes the state, which begins at 0, and returns the answer.
 using Apply = std::int32_t (*)(std::int32_t& state, std::int32_t argument);
 
-/// Of one object. By locality (Herlihy and Wing 1990) a history of several is right when that of each one is.
+/// Checks one object. By locality (Herlihy and Wing 1990), a history of several objects is right when that of
+/// each one is.
 class Linearization {
 public:
     static constexpr std::size_t most = 64; ///< the memo keeps a bit for each
     Linearization(std::span<const Operation> operations, Apply apply)
         : operations_{operations}, apply_{apply} {}
 
-    /// False, too, when there are more than `most`: what is not searched is not found right.
+    /// Also false for more than `most` calls: the search must be complete.
     [[nodiscard]] bool exists() { return operations_.size() <= most && goes_on(0, 0); }
 
 private:
     static constexpr std::uint64_t bit(std::size_t i) { return std::uint64_t{1} << i; }
 
-    /// From here on, with those of `past` behind it.
+    /// Searches on from here, after the calls in `past`.
     bool goes_on(std::uint64_t past, std::int32_t state) {
         Time first_response = never;
         bool is_over = true;
@@ -49,11 +50,11 @@ private:
         }
         if (is_over) return true;
         if (!tried_.insert({past, state}).second) return false;
-        // Those that must have happened first: mostly they did.
+        // First those that must have happened: mostly they did.
         for (const bool is_known : {true, false})
             for (std::size_t i = 0; i < operations_.size(); ++i) {
                 const Operation& each = operations_[i];
-                // Whatever began after another one's end comes behind it.
+                // A call that began after the end of another one comes after it.
                 if ((past & bit(i)) != 0 || each.result.has_value() != is_known ||
                     each.invoked > first_response)
                     continue;

@@ -1,4 +1,4 @@
-// The search that finds an order of calls: right where there is one, and only there.
+// The search finds an order of calls exactly when there is one.
 #include "tests/drivers/system/linearizable.hpp"
 
 #include "kernel/base/random.hpp"
@@ -23,18 +23,18 @@ Operation open(int invoked, std::int32_t argument) {
     return {.invoked = Time{} + Duration{invoked}, .argument = argument};
 }
 
-TEST(Linearizable, calls_of_one_time_come_in_either_order) {
+TEST(Linearizable, accepts_simultaneous_calls_in_either_order) {
     EXPECT_TRUE(is_linearizable({done(0, 10, 1, 1), done(5, 15, 2, 3)}));
     EXPECT_TRUE(is_linearizable({done(0, 10, 1, 3), done(5, 15, 2, 2)}));
     EXPECT_FALSE(is_linearizable({done(0, 10, 1, 1), done(5, 15, 2, 2)})) << "an update is lost";
 }
 
-TEST(Linearizable, what_ended_came_before_what_began_later) {
+TEST(Linearizable, requires_an_earlier_call_before_a_later_one) {
     EXPECT_TRUE(is_linearizable({done(0, 10, 1, 1), done(11, 15, 2, 3)}));
     EXPECT_FALSE(is_linearizable({done(0, 10, 1, 3), done(11, 15, 2, 2)}));
 }
 
-TEST(Linearizable, what_nobody_knows_of_happened_once_or_not_at_all_and_not_before_it_was_sent) {
+TEST(Linearizable, accepts_an_unanswered_call_at_most_once_after_its_start) {
     EXPECT_TRUE(is_linearizable({open(0, 5), done(11, 15, 2, 2)}));
     EXPECT_TRUE(is_linearizable({open(0, 5), done(11, 15, 2, 7)}));
     EXPECT_TRUE(is_linearizable({open(0, 5), done(11, 15, 2, 2), done(20, 25, 1, 8)})) << "late";
@@ -42,7 +42,7 @@ TEST(Linearizable, what_nobody_knows_of_happened_once_or_not_at_all_and_not_befo
     EXPECT_FALSE(is_linearizable({open(16, 5), done(11, 15, 2, 7)}));
 }
 
-TEST(Linearizable, too_many_calls_are_not_found_right) {
+TEST(Linearizable, refuses_too_many_calls) {
     std::vector<Operation> calls;
     for (int i = 0; i < 64; ++i) calls.push_back(done(i, i, 1, i + 1));
     EXPECT_TRUE(is_linearizable(calls));
@@ -50,7 +50,7 @@ TEST(Linearizable, too_many_calls_are_not_found_right) {
     EXPECT_FALSE(is_linearizable(calls));
 }
 
-/// Every order of every choice of the open ones, tried.
+/// Tries every order of every choice of the open calls.
 bool is_linearizable_by_trial(const std::vector<Operation>& calls) {
     std::vector<std::size_t> order(calls.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -75,7 +75,7 @@ bool is_linearizable_by_trial(const std::vector<Operation>& calls) {
     return false;
 }
 
-TEST(Linearizable, says_the_same_as_trying_every_order) {
+TEST(Linearizable, agrees_with_trying_every_order) {
     Random random{1};
     int right = 0, wrong = 0;
     for (int n = 0; n < 2000; ++n) {

@@ -1,4 +1,4 @@
-// Two machines on one wire: what crosses arrives as if it were local, and what does not is known.
+// Two machines on one wire: messages arrive as if they were local, and losses are known.
 #include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
@@ -11,12 +11,12 @@ struct LinkTest : testing::Test, PairRun<> {
         start(0ms);
         ASSERT_TRUE(run.run_until(
             [&] { return giver().other_is_there.get() && taker().other_is_there.get(); }, 200ms));
-        ASSERT_TRUE(run.run_for(200ms)); // each row was told
+        ASSERT_TRUE(run.run_for(200ms)); // each row was sent
     }
     systems::Link<pair, 0>& from() { return *run.instance(0).find<systems::Link<pair, 0>>("wire"); }
     systems::Link<pair, 1>& to() { return *run.instance(1).find<systems::Link<pair, 1>>("wire"); }
 
-    /// It is done within the time.
+    /// Requests the change and expects it done within the time.
     void change(std::size_t node, std::string_view component, LifeChange change, Duration within) {
         MachineInstance& there = run.instance(node);
         const std::size_t part = find_component(there.machine().table, component);
@@ -26,7 +26,7 @@ struct LinkTest : testing::Test, PairRun<> {
     }
 };
 
-TEST_F(LinkTest, tells_a_value_in_the_bits_that_its_row_says) {
+TEST_F(LinkTest, transfers_a_value_in_the_bits_of_its_row) {
     giver().tells = 123.456;
     run.run_for(30ms);
     double value = 0;
@@ -37,7 +37,7 @@ TEST_F(LinkTest, tells_a_value_in_the_bits_that_its_row_says) {
     EXPECT_DOUBLE_EQ(taker().level.get(), 838860.7) << "the last one that fits";
 }
 
-TEST_F(LinkTest, a_value_grows_stale_when_its_node_is_gone) {
+TEST_F(LinkTest, a_value_becomes_stale_when_its_node_is_lost) {
     run.run_for(30ms);
     EXPECT_TRUE(taker().level.good());
     run.kill(0);
@@ -46,7 +46,7 @@ TEST_F(LinkTest, a_value_grows_stale_when_its_node_is_gone) {
     EXPECT_FALSE(taker().other_is_there.get());
 }
 
-TEST_F(LinkTest, a_value_that_a_force_hid_and_that_nobody_wants_is_stale_there) {
+TEST_F(LinkTest, a_hidden_value_is_stale_at_the_receiver_when_its_writer_stops) {
     giver().tells = 80;
     run.run_for(30ms);
     MachineInstance& here = run.instance(0);
@@ -65,7 +65,7 @@ TEST_F(LinkTest, a_value_that_a_force_hid_and_that_nobody_wants_is_stale_there) 
     EXPECT_EQ(taker().level.flow(), Flow::stale);
 }
 
-TEST_F(LinkTest, serves_each_event_once_and_in_order) {
+TEST_F(LinkTest, delivers_each_event_once_and_in_order) {
     for (int i = 1; i <= 20; ++i) {
         giver().to_send.push_back(i);
         run.run_for(50ms);
@@ -77,7 +77,7 @@ TEST_F(LinkTest, serves_each_event_once_and_in_order) {
     EXPECT_EQ(to().served(1), (ReceiveCounts{.served = 20}));
 }
 
-TEST_F(LinkTest, a_command_goes_through_its_whole_life) {
+TEST_F(LinkTest, a_command_runs_to_completion) {
     giver().asks = 21;
     taker().busy_for = 3;
     giver().states.clear();
@@ -87,14 +87,14 @@ TEST_F(LinkTest, a_command_goes_through_its_whole_life) {
     EXPECT_EQ(giver().states.back(), CommandState::done);
 }
 
-TEST_F(LinkTest, a_command_that_is_refused_there_fails_here) {
+TEST_F(LinkTest, a_command_fails_when_the_receiver_refuses_it) {
     giver().asks = 1;
     taker().refuses = true;
     run.run_for(200ms);
     EXPECT_EQ(giver().doubled.state(), CommandState::failed);
 }
 
-TEST_F(LinkTest, a_command_to_a_node_that_dies_fails) {
+TEST_F(LinkTest, a_command_fails_when_its_node_dies) {
     giver().asks = 1;
     taker().busy_for = 1000;
     run.run_for(50ms);
@@ -104,7 +104,7 @@ TEST_F(LinkTest, a_command_to_a_node_that_dies_fails) {
     EXPECT_EQ(giver().doubled.state(), CommandState::failed);
 }
 
-TEST(LinkAlone, a_node_that_is_first_on_the_wire_is_heard_when_another_one_comes) {
+TEST(LinkAlone, connects_to_a_node_that_starts_later) {
     PairRun both;
     SystemRun& run = both.run;
     ASSERT_TRUE(run.start(0)); // nobody acknowledges
@@ -116,7 +116,7 @@ TEST(LinkAlone, a_node_that_is_first_on_the_wire_is_heard_when_another_one_comes
     EXPECT_TRUE(both.taker().other_is_there.get());
 }
 
-TEST_F(LinkTest, whoever_is_not_heard_any_more_believes_nobody_is_there) {
+TEST_F(LinkTest, an_unheard_node_reports_all_others_absent) {
     run.wire().bus_off(run.twin(0));
     run.run_for(100ms);
     EXPECT_FALSE(giver().other_is_there.get()) << "it hears the other one, but is not heard";
@@ -125,7 +125,7 @@ TEST_F(LinkTest, whoever_is_not_heard_any_more_believes_nobody_is_there) {
     EXPECT_TRUE(giver().other_is_there.get() && taker().other_is_there.get()) << "it was restarted";
 }
 
-TEST_F(LinkTest, whoever_stops_its_link_believes_nobody_is_there) {
+TEST_F(LinkTest, a_node_that_stops_its_link_reports_all_others_absent) {
     ASSERT_TRUE(giver().other_is_there.get());
     change(0, "wire", LifeChange::stop, 20ms);
     EXPECT_FALSE(giver().other_is_there.get());
@@ -134,14 +134,14 @@ TEST_F(LinkTest, whoever_stops_its_link_believes_nobody_is_there) {
     EXPECT_TRUE(giver().other_is_there.get() && taker().other_is_there.get());
 }
 
-TEST_F(LinkTest, an_event_for_a_node_that_is_gone_is_known_to_be_lost) {
+TEST_F(LinkTest, an_event_to_an_absent_node_is_reported_lost) {
     run.kill(1);
     giver().to_send = {7};
     run.run_for(60ms);
     EXPECT_EQ(giver().losses, 1);
 }
 
-TEST_F(LinkTest, an_event_for_a_component_that_does_not_run_counts_as_delivered_and_is_dropped_there) {
+TEST_F(LinkTest, an_event_to_a_stopped_component_is_delivered_and_dropped) {
     change(1, "taker", LifeChange::stop, 20ms);
     giver().to_send = {7};
     giver().asks = 1;

@@ -1,5 +1,5 @@
-// What is no number goes to no other machine, as a value, with an event, with a command or in its result, in
-// steps or as it is.
+// No NaN or infinity reaches another machine, as a value, with an event, with a command or in its result, in
+// steps or unscaled.
 #include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
@@ -96,7 +96,7 @@ struct TwoMachines : testing::Test, OnOneWire<LeadFirmware, FollowFirmware> {
     Follow* b = nullptr;
 };
 
-TEST_F(TwoMachines, act_on_nothing_that_is_no_number) {
+TEST_F(TwoMachines, ignore_values_that_are_not_finite) {
     constexpr double endless = std::numeric_limits<double>::infinity();
     for (const double none : {std::nan(""), endless, -endless}) {
         tell(none);
@@ -115,7 +115,7 @@ TEST_F(TwoMachines, act_on_nothing_that_is_no_number) {
     EXPECT_EQ(a->stop_at.state(), CommandState::done);
 }
 
-TEST_F(TwoMachines, fail_a_command_whose_result_is_no_number) {
+TEST_F(TwoMachines, fail_a_command_whose_result_is_nan) {
     b->answer = std::nan("");
     tell(6);
     EXPECT_EQ(b->stops, 2);

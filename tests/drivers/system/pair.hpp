@@ -1,4 +1,4 @@
-// Two machines and what crosses between them: a value, an event, a command, and whether the other is there.
+// Two machines and their crossings: a value, an event, a command, and the presence of the other one.
 #pragma once
 
 #include "board/host/board.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet::pair {
 
-/// Tells what its test gives it.
+/// Sends what its test sets.
 struct Giver {
     Output<double> level{};
     Event<std::int32_t> sent{};

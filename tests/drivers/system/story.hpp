@@ -1,4 +1,4 @@
-// One life of the three machines: what they emit and send, what goes wrong meanwhile, and what was seen.
+// One life of the three machines: their events and commands, the faults meanwhile, and the observations.
 #pragma once
 
 #include "tests/drivers/system/trio.hpp"
@@ -7,21 +7,21 @@
 
 namespace tappet::trio {
 
-/// What a run may meet.
+/// The faults that a run may meet.
 struct Weather {
-    bool drifts = true; ///< clocks, and each begins where it likes
+    bool drifts = true; ///< clocks drift, and each starts at any time
     bool spoils = true; ///< a frame, as often as the wire's bus_errors(...) allow
     bool omits = false, doubles = false, kills = false, cuts = false;
-    bool crowds = false; ///< each tells all it may, and all of it in one cycle
+    bool crowds = false; ///< each node sends as much as allowed, all of it in one cycle
 };
 
 inline constexpr std::size_t row_count = trio.crossings.size();
 
-/// The longest times, beside what is proven of them in a run whose frames all arrive.
+/// The longest times, to compare with the proven ones in a run whose frames all arrive.
 struct Longest {
-    std::array<Duration, row_count> served{};   ///< of each row, from the writing, emission or sending
+    std::array<Duration, row_count> served{};   ///< of each row, from writing, emission or sending
     std::array<Duration, row_count> answered{}; ///< of commands, without the cycles that they take
-    std::array<double, systems::plan_of<trio>.frames.size()> frames{}; ///< by proven
+    std::array<double, systems::plan_of<trio>.frames.size()> frames{}; ///< divided by the proven time
 
     void merge(const Longest& other) {
         for (std::size_t x = 0; x < row_count; ++x) {
@@ -35,7 +35,7 @@ struct Longest {
 class Story {
 public:
     static constexpr std::size_t first_event = 1, first_command = 3; ///< crossings, of either sender
-    // And a cycle of the sender's more: what is asked for is emitted or sent in the next one.
+    // And one more cycle of the sender: a request is emitted or sent in the next one.
     static constexpr Duration pause = trio.crossings[first_event].at_most_per + 5ms;
     static constexpr Duration reader =
         sender_table.activities[0].period + sender_table.activities[0].deadline();
@@ -68,7 +68,7 @@ public:
             if (weather_.omits) run_.end(n).omits_one_in = 20;
             if (weather_.doubles) run_.end(n).doubles_one_in = 10;
         }
-        run_.run_for(200ms); // each row was told
+        run_.run_for(200ms); // each row was sent
         for (const Time end = run_.now() + 700ms; run_.now() < end;) {
             strike();
             run_.run_for(weather_.crowds ? pause : Duration{random_.between(10'000'000, 50'000'000)});
@@ -81,7 +81,7 @@ public:
         }
         for (std::size_t n = 0; n < nodes; ++n)
             if (!run_.is_alive(n)) restart(n);
-        run_.run_for(300ms); // whatever waits is answered
+        run_.run_for(300ms); // everything that waits is answered
         for (std::size_t n = 0; n < nodes; ++n) look(n, Count::waits);
         run_.stop();
         return history();
@@ -115,7 +115,7 @@ private:
         ChannelRow{"commands of one", 3, 0, taker_node}, ChannelRow{"commands of two", 4, 1, taker_node},
         ChannelRow{"replies to one", 3, taker_node, 0},  ChannelRow{"replies to two", 4, taker_node, 1}};
     enum class Count : std::uint8_t {
-        unknown, ///< what is unanswered: its start ends
+        unknown, ///< unanswered calls: their start ends
         waits
     };
 
@@ -160,7 +160,7 @@ private:
             sender(n).self = n;
         }
     }
-    /// Most die without a word.
+    /// Most nodes die without a last message.
     void end(std::size_t n) {
         random_.one_in(4) ? run_.stop(n) : run_.kill(n);
         history().lives[n].back().ends = run_.now();

@@ -14,7 +14,7 @@ namespace tappet::trio {
 
 using history::Number;
 
-/// What all three write to, by the true time.
+/// The common record of all three, by the true time.
 struct Witness {
     const SystemRun* run = nullptr;
     history::History history{};
@@ -33,7 +33,7 @@ struct Witness {
         call->responded = run->now(), call->how = how, call->result = result;
     }
     void wrote(Number level) { levels.resize(static_cast<std::size_t>(level) + 1, run->now()); }
-    /// Whatever came since the last one that was seen shows itself now.
+    /// Everything since the last observed value shows itself now.
     void saw(Number level) {
         const auto seen = static_cast<std::size_t>(level) + 1;
         if (seen > levels_seen && levels_seen != 0)
@@ -42,7 +42,7 @@ struct Witness {
     }
 };
 
-/// Emits and sends what its test gives it, in its next cycle.
+/// Emits and sends, in its next cycle, what its test sets.
 struct Sender {
     Output<double> level{};
     Event<Number> sent{};
@@ -51,8 +51,8 @@ struct Sender {
     Witness* witness = nullptr;
     std::size_t self = 0;
     Number to_emit = 0, to_add = 0; ///< 0: nothing
-    Number adds = 0;                ///< under way
-    Number told = 0;                ///< as its level
+    Number adds = 0;                ///< in flight
+    Number told = 0;                ///< sent as its level
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         if (witness == nullptr) return;
@@ -88,14 +88,14 @@ struct Sender {
 
 /// Serves events, and holds a sum to which commands add. A command takes some cycles; some are refused.
 struct Taker {
-    /// Some take longer than their sender waits for a node that it does not hear.
+    /// Some take longer than their sender waits for a silent node.
     static constexpr int busy_cycles(Number number) { return number % 8 == 7 ? 20 : number % 4; }
     static constexpr bool refuses(Number number) { return number % 16 == 15; }
 
     Input<double> level{};
     Witness* witness = nullptr;
     Number sum = 0;
-    std::map<Number, int> left{}; ///< cycles, of what is under way
+    std::map<Number, int> left{}; ///< cycles left of commands in flight
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         double value = 0;

@@ -1,4 +1,4 @@
-// A node of another version of the system: what is the same there works, what differs is refused by name.
+// A node of another version of the system: equal rows work there, different ones are refused by name.
 #include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@ namespace tappet::pair {
 namespace {
 
 // clang-format off
-/// The value is told in finer steps.
+/// The value has finer steps.
 inline constexpr auto newer_pair = system("pair",
     both_nodes, usual_wire("wire"),
     crossings(
@@ -16,7 +16,7 @@ inline constexpr auto newer_pair = system("pair",
 // clang-format on
 using NewerTaker = AtRunTime<station<newer_pair, "b", taker_table>, board::host>;
 
-TEST(Versions, what_is_the_same_works_and_what_differs_is_refused_by_name) {
+TEST(Versions, exchange_equal_rows_and_refuse_different_ones_by_name) {
     PairRun<GiverFirmware, NewerTaker> both;
     both.start(0ms);
     SystemRun& run = both.run;
@@ -42,11 +42,11 @@ TEST(Versions, what_is_the_same_works_and_what_differs_is_refused_by_name) {
     EXPECT_TRUE(to.works(1));
 }
 
-TEST(Versions, the_right_one_is_taken_when_it_comes) {
+TEST(Versions, connect_once_the_right_version_starts) {
     PairRun both;
     both.start();
     SystemRun& run = both.run;
-    run.stop(1); // in order: it says so
+    run.stop(1); // orderly: it announces its end
     run.run_for(20ms);
     EXPECT_FALSE(both.giver().other_is_there.get()) << "before its silence would tell";
     ASSERT_TRUE(run.start(1));

@@ -1,4 +1,4 @@
-// The same rows on other wires: CAN FD, which takes wide values, and identifiers that no row moves.
+// The same rows on other wires: CAN FD, which takes wide values, and identifiers that stay when rows change.
 #include "tests/drivers/system/pair_run.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 using Pose = std::array<double, 6>;
 
-/// Tells and asks in values that no classical frame takes.
+/// Sends values and commands that no classical frame holds.
 struct Arm {
     Output<Pose> pose{};
     Event<Pose> reached{};
@@ -59,7 +59,7 @@ constexpr auto wide = system("wide",
 using ArmFirmware = AtRunTime<station<wide, "a", arm_table>, board::host>;
 using DeskFirmware = AtRunTime<station<wide, "b", desk_table>, board::host>;
 
-TEST(CanFd, takes_values_arguments_and_results_that_no_classical_frame_takes) {
+TEST(CanFd, carries_values_arguments_and_results_too_long_for_classical_frames) {
     OnOneWire<ArmFirmware, DeskFirmware> both{wide.view()};
     both.start();
     SystemRun& run = both.run;
@@ -75,7 +75,7 @@ TEST(CanFd, takes_values_arguments_and_results_that_no_classical_frame_takes) {
     EXPECT_EQ(arm.mirror.result<0>(), (Pose{-1.5, 2, -1e300, 0, -4, -5}));
 }
 
-TEST(CanFd, frames_are_protected_as_long_ones_are_and_proven_in_both_bit_rates) {
+TEST(CanFd, protects_long_frames_and_proves_them_at_both_bit_rates) {
     const auto& plan = systems::plan_of<wide>;
     const WireFrame& data = plan.frames[plan.place[0].frame];
     EXPECT_EQ(data.bytes, 64); // 24 bits of protection, one of validity, 48 bytes
@@ -105,14 +105,14 @@ TEST(CanFd, frames_are_protected_as_long_ones_are_and_proven_in_both_bit_rates) 
 constexpr auto fixed_wire = usual_wire("wire", fixed_identifiers);
 constexpr auto older = system("fixed", both_nodes, fixed_wire,
     crossings(level_row, a_row, b_row));
-/// More rows, of which two come first on the wire.
+/// More rows, of which two are more urgent on the wire.
 constexpr auto newer = system("fixed", both_nodes, fixed_wire,
     crossings(sent_row, level_row, doubled_row, a_row, b_row));
 // clang-format on
 using OlderTaker = AtRunTime<station<older, "b", taker_table>, board::host>;
 using NewerGiver = AtRunTime<station<newer, "a", giver_table>, board::host>;
 
-TEST(FixedIdentifiers, a_version_with_other_rows_works_in_all_that_both_have) {
+TEST(FixedIdentifiers, let_two_versions_exchange_their_common_rows) {
     for (const WireFrame& frame : systems::plan_of<older>.frames) {
         std::size_t found = 0;
         for (const WireFrame& each : systems::plan_of<newer>.frames)
@@ -138,18 +138,18 @@ TEST(FixedIdentifiers, a_version_with_other_rows_works_in_all_that_both_have) {
     EXPECT_EQ((run.instance(1).find<systems::Link<older, 1>>("wire")->frames_refused.last()), 0);
 }
 
-TEST(FixedIdentifiers, win_the_wire_by_how_soon_the_next_one_may_follow) {
+TEST(FixedIdentifiers, rank_frames_by_their_shortest_interval) {
     const auto& frames = systems::plan_of<newer>.frames;
     EXPECT_EQ(frames[0].kind, WireFrameKind::beat);
     EXPECT_EQ(frames[1].kind, WireFrameKind::beat);
     for (std::size_t f = 3; f < frames.size(); ++f) {
         EXPECT_LT(frames[f - 1].id, frames[f].id);
-        // In 32 steps an octave.
+        // In 32 steps for each octave.
         EXPECT_LE(to_seconds(frames[f - 1].apart), to_seconds(frames[f].apart) * 33 / 32);
     }
 }
 
-/// Tells a value of that type.
+/// Sends a value of that type.
 template <class T>
 struct Teller {
     Output<T> value{};
@@ -200,7 +200,7 @@ std::uint16_t layout_of(const WireRow& on) {
     return plan.index[0].layout;
 }
 
-TEST(Layouts, differ_where_the_same_bits_mean_something_else) {
+TEST(Layouts, differ_when_the_same_bits_have_another_meaning) {
     const auto on = [](const CommonClock& clock) { return usual_wire("wire", fixed_identifiers, clock); };
     const WireRow usual = on(common_clock("a", every(100ms), within(200us)));
     std::vector<std::uint16_t> all{
@@ -216,7 +216,7 @@ TEST(Layouts, differ_where_the_same_bits_mean_something_else) {
     EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
-/// Stands on two wires: it hears the giver on one, and tells the arm's desk on the other.
+/// A node on two wires: it receives the giver on one, and sends to the arm's desk on the other.
 struct Bridge {
     Input<double> level{};
     Output<double> doubled{};
@@ -238,16 +238,16 @@ constexpr auto second_wire = system("second", nodes(node<on_first_wire>("m"), no
 // clang-format on
 using BridgeFirmware = AtRunTime<station<second_wire, "m", on_first_wire>, board::host>;
 
-TEST(TwoWires, a_node_of_two_systems_stands_on_both) {
+TEST(TwoWires, connect_a_node_of_two_systems) {
     const AcceptedMachine machine = BridgeFirmware::machine();
     for (const std::string_view component : {"left", "left_can", "right", "right_can", "bridge"})
         EXPECT_NE(find_component(machine.table, component), nowhere) << component;
     EXPECT_EQ(machine.table.activities.size(), 5u) << "its own, and two of each wire";
 }
 
-TEST(Priorities, follow_deadlines_and_where_that_is_not_enough_audsley) {
-    // An answer of 6.6 ms must go before values of 6.2 ms: those would else wait for it in their own node's
-    // queue.
+TEST(Priorities, follow_deadlines_and_if_necessary_audsley) {
+    // An answer of 6.6 ms must come before values of 6.2 ms, which would otherwise wait for it in their own
+    // node's queue.
     const auto tight = system(
         "tight", both_nodes,
         wire("wire", bit_rate(372'000), beats(14'300us), silent_after(43ms),
@@ -272,7 +272,7 @@ TEST(Priorities, follow_deadlines_and_where_that_is_not_enough_audsley) {
     for (const WireFrame& frame : plan.frames) EXPECT_LE(frame.worst, frame.deadline);
 }
 
-TEST(Pace, what_comes_sooner_than_its_row_says_waits_and_is_counted) {
+TEST(Pace, delays_and_counts_events_above_the_rate_of_their_row) {
     PairRun both;
     both.start();
     SystemRun& run = both.run;

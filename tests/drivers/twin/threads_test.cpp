@@ -1,4 +1,4 @@
-// The twins between two threads, as they run in the host world under real time: nothing lost, nothing torn.
+// The twins between two threads, as in the host world under real time: nothing is lost or torn.
 #include "drivers/can/twin_bus.hpp"
 #include "drivers/gpio/twin.hpp"
 
@@ -34,7 +34,7 @@ TEST(Ring, hands_every_item_over_in_order_between_two_threads) {
     EXPECT_EQ(ring.size(), 0u);
 }
 
-TEST(CanTwin, carries_frames_between_the_machines_thread_and_the_buss) {
+TEST(CanTwin, carries_frames_between_the_threads_of_machine_and_bus) {
     static constexpr std::array from_machine{can::Identifier{0x201, false}};
     static constexpr std::array from_plant{can::Identifier{0x181, false}};
     can::TwinBus bus{1};
@@ -83,7 +83,7 @@ TEST(CanTwin, carries_frames_between_the_machines_thread_and_the_buss) {
     EXPECT_EQ(machine.counters().lost_in_kernel, 0u);
 }
 
-TEST(GpioTwin, accounts_for_every_edge_between_two_threads) {
+TEST(GpioTwin, counts_every_edge_between_two_threads) {
     static constexpr std::array lines{gpio::Line{.name = "a", .offset = 0},
                                       gpio::Line{.name = "b", .offset = 1},
                                       gpio::Line{.name = "out", .offset = 2, .role = gpio::Role::output}};
@@ -96,7 +96,7 @@ TEST(GpioTwin, accounts_for_every_edge_between_two_threads) {
             const Time at{1us * (i + 1)};
             twin.drive(static_cast<std::size_t>(i % 2), i % 4 < 2, at);
             twin.deliver_until(at);
-            if ((twin.outputs() & 3u) != 0) break; // inputs are never driven by the machine
+            if ((twin.outputs() & 3u) != 0) break; // the machine never drives inputs
         }
         done = true;
     }};

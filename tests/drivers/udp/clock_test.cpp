@@ -1,5 +1,5 @@
-// How far another clock is ahead: what is told of it holds whatever the network does, by how much the clocks
-// drift, and when the other one is set; what is no question or answer is none.
+// The offset of another clock: the reported bounds hold whatever the network does, however the clocks drift,
+// and when the other one is set; invalid questions and answers are ignored.
 #include "drivers/udp/peer_clock.hpp"
 #include "drivers/udp/twin.hpp"
 #include "kernel/base/random.hpp"
@@ -20,7 +20,7 @@ Duration part(Duration of, double factor) {
 
 class Exchange : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(Exchange, tells_bounds_between_which_the_other_clock_is) {
+TEST_P(Exchange, bounds_the_offset_of_the_other_clock) {
     Random random{GetParam()};
     const Duration began = some(random, 100s) - 50s;
     const double drift = 100e-6 * (2.0 * random.unit() - 1.0);
@@ -50,7 +50,7 @@ TEST_P(Exchange, tells_bounds_between_which_the_other_clock_is) {
     EXPECT_LT(worst, 2ms) << "the shortest ways of many tell more than one exchange";
 }
 
-TEST_P(Exchange, notices_that_the_other_clock_was_set) {
+TEST_P(Exchange, detects_that_the_other_clock_was_set) {
     Random random{GetParam()};
     ClockExchange known;
     Duration ahead = 3s;
@@ -71,7 +71,7 @@ TEST_P(Exchange, notices_that_the_other_clock_was_set) {
 }
 INSTANTIATE_TEST_SUITE_P(seeds, Exchange, testing::Range<std::uint64_t>(1, 21));
 
-TEST(ClockPacket, is_read_as_it_was_written_and_nothing_else_is_read) {
+TEST(ClockPacket, decodes_as_it_was_encoded_and_refuses_other_packets) {
     const clock_packet::Content content{7, Time{} + 1s, Time{} + 2s, Time{} + 3s};
     const auto packet = clock_packet::write(content);
     clock_packet::Content read;
@@ -87,14 +87,14 @@ TEST(ClockPacket, is_read_as_it_was_written_and_nothing_else_is_read) {
     EXPECT_FALSE(clock_packet::read(bad, read));
 }
 
-TEST(ClockPacket, of_a_time_that_no_machine_reaches_is_none) {
+TEST(ClockPacket, refuses_impossible_times) {
     for (const Time at : {Time::max(), Time::min(), Time{} + clock_packet::longest + 1ns}) {
         clock_packet::Content read;
         EXPECT_FALSE(clock_packet::read(clock_packet::write({7, Time{} + 1s, at, at}), read));
     }
 }
 
-/// Both components at twins between which datagrams are carried by hand.
+/// Both components at twins between which the test carries datagrams.
 struct Clocks : testing::Test {
     os::Clock clock{os::Clock::Kind::virtual_time};
     Twin asking, answering;
@@ -134,7 +134,7 @@ struct Clocks : testing::Test {
     }
 };
 
-TEST_F(Clocks, tell_how_far_the_other_one_is_ahead_and_how_surely) {
+TEST_F(Clocks, report_their_offset_and_its_error) {
     exchange();
     EXPECT_EQ(peer.exchanges.last(), 1);
     EXPECT_LT(std::abs(peer.ahead.last().count()), 1000) << "there is one clock";
@@ -153,7 +153,7 @@ TEST_F(Clocks, tell_how_far_the_other_one_is_ahead_and_how_surely) {
     EXPECT_LT(peer.error.last(), 1001us);
 }
 
-TEST_F(Clocks, take_no_answer_that_cannot_be) {
+TEST_F(Clocks, refuse_impossible_answers) {
     for (int i = 0; i < 3; ++i) exchange();
     const Duration ahead = peer.ahead.last(), error = peer.error.last();
     const auto answer = [&](Duration asked, Duration received, Duration answered) {
@@ -169,21 +169,21 @@ TEST_F(Clocks, take_no_answer_that_cannot_be) {
         peer.step(cycle());
         wait(98ms);
     };
-    answer(-77s, 0ms, 0ms); // of a question that was not asked then
-    answer(0ms, 0ms, -5ms); // given before it was asked for
-    answer(0ms, -50s, 40s); // which took longer than its way there and back
+    answer(-77s, 0ms, 0ms); // to a question that was not asked then
+    answer(0ms, 0ms, -5ms); // given before its question
+    answer(0ms, -50s, 40s); // which took longer than its round trip
     EXPECT_EQ(peer.ahead.last(), ahead);
     EXPECT_GE(peer.error.last(), error);
     EXPECT_LT(peer.error.last(), error + 1ms) << "by what the clocks drift";
     EXPECT_EQ(peer.jumps.last(), 0);
 }
 
-TEST_F(Clocks, take_no_answer_of_another_question_and_answer_no_nonsense) {
+TEST_F(Clocks, refuse_answers_to_other_requests_and_invalid_requests) {
     exchange();
     peer.step(cycle());
     std::array<std::byte, most_bytes> packet;
     ASSERT_EQ(asking.hear(packet), clock_packet::bytes);
-    for (const std::uint32_t number : {0U, 1U, 3U, 99U}) // it waits for that of 2
+    for (const std::uint32_t number : {0U, 1U, 3U, 99U}) // it waits for an answer to 2
         ASSERT_TRUE(asking.tell(
             clock_packet::write({number, clock.now() - 50s, clock.now() + 40s, clock.now() + 40s})));
     peer.step(cycle());

@@ -1,5 +1,5 @@
-// Datagrams come in as they were sent, at the twin and at a socket of this box; what cannot be opened says
-// why.
+// Datagrams arrive as they were sent, at the twin and at a socket of this box; a socket that cannot be opened
+// says why.
 #include "drivers/udp/sender.hpp"
 #include "drivers/udp/socket.hpp"
 #include "tests/drivers/loopback.hpp"
@@ -23,14 +23,14 @@ std::string received(Device& from, std::size_t room = most_bytes) {
     const std::size_t size = from.receive(std::span{bytes}.first(room));
     return {reinterpret_cast<const char*>(bytes.data()), std::min(size, room)};
 }
-/// Whatever comes within two seconds.
+/// The datagram that comes within two seconds.
 std::string awaited(Device& at) {
     std::string got;
     for (int i = 0; i < 2000 && got.empty(); ++i, ::usleep(1000)) got = received(at);
     return got;
 }
 
-TEST(Twin, gives_datagrams_in_their_order_and_nothing_when_none_is_there) {
+TEST(Twin, returns_datagrams_in_order_and_nothing_when_empty) {
     Twin twin;
     EXPECT_EQ(received(twin), "");
     EXPECT_TRUE(twin.tell(bytes_of("one")));
@@ -40,7 +40,7 @@ TEST(Twin, gives_datagrams_in_their_order_and_nothing_when_none_is_there) {
     EXPECT_EQ(received(twin), "");
 }
 
-TEST(Twin, gives_the_plant_what_the_machine_sends) {
+TEST(Twin, passes_datagrams_of_the_machine_to_the_plant) {
     Twin twin;
     ASSERT_TRUE(twin.send(bytes_of("asked")));
     EXPECT_EQ(received(twin), "") << "it does not hear itself";
@@ -50,7 +50,7 @@ TEST(Twin, gives_the_plant_what_the_machine_sends) {
     EXPECT_EQ(twin.hear(bytes), 0u);
 }
 
-TEST(Twin, drops_what_nobody_takes_and_what_is_too_long) {
+TEST(Twin, drops_datagrams_when_full_and_refuses_oversized_ones) {
     Twin twin;
     int taken = 0;
     while (twin.tell(bytes_of("x")) && taken < 1000) ++taken;
@@ -58,14 +58,14 @@ TEST(Twin, drops_what_nobody_takes_and_what_is_too_long) {
     EXPECT_FALSE(Twin{}.tell(bytes_of(std::string(most_bytes + 1, 'x'))));
 }
 
-TEST(Twin, tells_the_whole_size_of_what_does_not_fit) {
+TEST(Twin, returns_the_full_size_of_a_datagram_that_does_not_fit) {
     Twin twin;
     ASSERT_TRUE(twin.tell(bytes_of("a long one")));
     std::array<std::byte, 4> small;
     EXPECT_EQ(twin.receive(small), 10u);
 }
 
-TEST(Socket, receives_what_is_sent_to_its_port) {
+TEST(Socket, receives_datagrams_sent_to_its_port) {
     const std::uint16_t port = free_port(SOCK_DGRAM);
     Socket socket;
     ASSERT_TRUE(socket.open("127.0.0.1", port).has_value());
@@ -81,7 +81,7 @@ TEST(Socket, receives_what_is_sent_to_its_port) {
     EXPECT_EQ(size, 10u);
 }
 
-TEST(Socket, asks_another_one_and_hears_its_answer) {
+TEST(Socket, receives_the_answer_to_its_request) {
     const std::uint16_t port = free_port(SOCK_DGRAM);
     Socket answers, asks, other;
     ASSERT_TRUE(answers.open("127.0.0.1", port).has_value());
@@ -99,7 +99,7 @@ TEST(Socket, asks_another_one_and_hears_its_answer) {
     EXPECT_THAT(std::string{wrong.error().view()}, HasSubstr("\"the clock\" is no IPv4 address"));
 }
 
-TEST(Socket, says_why_it_cannot_be_opened) {
+TEST(Socket, reports_why_it_cannot_be_opened) {
     Socket first, second, nowhere;
     const std::uint16_t port = free_port(SOCK_DGRAM);
     ASSERT_TRUE(first.open("127.0.0.1", port).has_value());
@@ -110,7 +110,7 @@ TEST(Socket, says_why_it_cannot_be_opened) {
     const auto wrong = nowhere.open("the camera", port);
     ASSERT_FALSE(wrong);
     EXPECT_THAT(std::string{wrong.error().view()},
-                HasSubstr("\"the camera\" is no IPv4 address; write it as 192.168.7.1"));
+                HasSubstr("\"the camera\" is not an IPv4 address; write it as 192.168.7.1"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// What an event, a step, a condition, a time-out and a statement take: written by hand, as a C++ table, as a
-// script compiled with the firmware, as a script loaded at run time, and in Boost's libraries.
+// The cost of an event, a step, a condition, a time-out and a statement: written by hand, as a C++ table, as
+// a script compiled with the firmware, as a script loaded at run time, and in Boost's libraries.
 #include "tests/figures/behaviour/by_hand.hpp"
 #include "tests/figures/behaviour/peers.hpp"
 #include "tests/figures/behaviour/steps.hpp"
@@ -16,7 +16,7 @@ using namespace tappet::figures;
 
 // ---- events
 
-constexpr std::size_t many_events = 65536; // more than a branch predictor learns by heart
+constexpr std::size_t many_events = 65536; // more than a branch predictor can learn
 std::array<std::uint8_t, many_events> random_events{};
 constexpr std::array<std::uint8_t, 12> steady_events{power,  start, pick,  faster, pick,  slower,
                                                      faster, stop,  start, broken, reset, power};
@@ -30,7 +30,7 @@ struct Steady {
     static std::size_t at(std::size_t i) { return steady_events[i % steady_events.size()]; }
 };
 
-/// Each candidate has its own of each of them, and its own place in the events.
+/// Each candidate has its own copy of each machine, and its own position in the events.
 template <class Events, class Form>
 void drive(std::size_t times) {
     static Form form;
@@ -72,14 +72,14 @@ using ScriptLoaded = Ours<loom_script, Form::loaded>;
 template <int number> using Msm = Peer<&msm_dispatch<number>, msm_counts>;
 template <int number> using Statechart = Peer<&statechart_dispatch<number>, statechart_counts>;
 
-/// What a form counts in the first events.
+/// The counts of a form after the first events.
 template <class Form>
 LoomCounts counted() {
     Form form;
     for (std::size_t i = 0; i < 5000; ++i) form.event(Any::at(i), at_ns(std::int64_t(i)));
     return form.counts();
 }
-/// All forms do the same; empty: they do.
+/// Returns a difference between the forms; empty: all do the same.
 std::string differs() {
     const LoomCounts right = counted<Bare>();
     const std::pair<const char*, LoomCounts> forms[] = {

@@ -1,4 +1,4 @@
-// A state machine of a constant source bound by hand, as native code or in memory.
+// A state machine of a constant source, bound by hand, as native code or as tables in memory.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -11,11 +11,11 @@
 namespace tappet::figures {
 
 enum class Form : std::uint8_t {
-    compiled, ///< native code, as of a behaviour that is compiled with the firmware
-    loaded    ///< in memory, as of a script that is loaded while the machine runs
+    compiled, ///< native code, as for a behaviour that is compiled with the firmware
+    loaded    ///< tables in memory, as for a script that is loaded at run time
 };
 
-/// `source`: a StateMachine, or a ScriptUnit of which it is the first type.
+/// `source`: a StateMachine, or a ScriptUnit whose first type it is.
 template <class Component, const auto& source, Form form> struct Bound {
     static constexpr const ProgramTables& tables = tables_of(source, 0);
     static constexpr std::size_t bytes = std::max<std::size_t>(tables.layout.size, data_alignment);

@@ -132,7 +132,7 @@ void HandRelay::step(Time now) noexcept TAPPET_REALTIME {
         right_ = !right_;
         entered_at_ = now;
     }
-    if (due == 0) due = 1; // the state that was entered handles it
+    if (due == 0) due = 1; // the entered state handles it
     kept_.busy = false;
 }
 

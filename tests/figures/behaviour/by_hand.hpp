@@ -1,5 +1,5 @@
-// The machines as switches, written by hand. `Records::kept`: what an engineer writes who owes his machine
-// what ours keeps, that is checked sums, times of entry, the last transition, a trace, one event at a time.
+// The machines as switches, written by hand. `Records::kept` adds the records that the framework keeps:
+// checked sums, times of entry, the last transition, a trace, one event at a time.
 #pragma once
 
 #include "tests/figures/behaviour/loom.hpp"
@@ -8,7 +8,7 @@ namespace tappet::figures {
 
 enum class Records : std::uint8_t { none, kept };
 
-/// What is kept of a machine beside its state.
+/// The records of a machine beside its state.
 struct HandRecords {
     using Trace = void (*)(void*, int from, int to, Time now) noexcept TAPPET_REALTIME;
     bool busy = false;
@@ -93,7 +93,7 @@ private:
     Time entered_at_{};
 };
 
-/// Two states that a condition changes, once in each step.
+/// Two states; a condition changes them once in each step.
 class HandRelay {
 public:
     [[gnu::noinline]] void step(Time now) noexcept TAPPET_REALTIME;
@@ -105,7 +105,7 @@ private:
     Time entered_at_{};
 };
 
-/// Two states that the time changes.
+/// Two states that alternate by time-outs.
 class HandClock {
 public:
     static constexpr Duration period = std::chrono::milliseconds{1};
@@ -118,7 +118,7 @@ private:
     Time entered_at_ = at_ns(0);
 };
 
-/// The loop of sums.osd, as it stands in a program that keeps its variables and its position.
+/// The loop of sums.osd, as a program that keeps its variables and its position.
 struct HandSums {
     std::int64_t i = 0, a = 0, b = 1;
     double x = 0;

@@ -1,4 +1,4 @@
-// The events of the loom's cycle and what its forms count. C++17, for the peers' sake.
+// The events of the loom's cycle and the counts of its forms. C++17, because the peers need it.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace tappet::figures {
 enum LoomEvent : std::uint8_t { power, start, faster, slower, stop, pick, broken, reset };
 inline constexpr std::size_t loom_events = 8;
 
-/// What a form has counted; equal for equal events.
+/// The counts of a form; equal for equal events.
 struct LoomCounts {
     std::int64_t exits = 0;
     std::int64_t entries = 0;

@@ -5,15 +5,15 @@
 
 namespace tappet::figures {
 
-/// What their actions count.
+/// The counts of their actions.
 extern LoomCounts msm_counts, statechart_counts;
 
-/// There are two machines of each, so that each order of events begins in the initial state.
+/// Two machines of each, so that each order of events begins in the initial state.
 inline constexpr int peer_machines = 2;
-/// Once, before the first event.
+/// Call once, before the first event.
 void msm_start();
 void statechart_start();
-/// An event by its number, as it comes out of a queue, to the machine of that number.
+/// Dispatches an event by its number, as read from a queue, to the machine of that number.
 template <int machine>
 void msm_dispatch(std::size_t event);
 template <int machine>

@@ -1,5 +1,5 @@
-// What an engine steps: run programs with a condition that never holds, a condition that holds in each step,
-// a time-out, and a program that is a loop of statements; each as a script and as a C++ table.
+// Behaviours for an engine's step: run programs with a condition that never holds, a condition that holds in
+// each step, a time-out, and a program that is a loop of statements; each as a script and as a C++ table.
 #pragma once
 
 #include "tests/figures/behaviour/bound.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::figures {
 
-/// The component under all of them.
+/// The component that all of them act on.
 struct Swing {
     Event<> beat;
     std::int64_t exits = 0;

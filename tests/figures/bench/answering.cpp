@@ -1,5 +1,5 @@
-// answering PAIRS FILE: in the guest. Asks the machine and the bare program in turns, in an order drawn by
-// chance, and writes a line for each pair: what was asked, and what each of them took in ns.
+// answering PAIRS FILE: in the guest. Asks the machine and the bare program in turns, in a random order, and
+// writes a line for each pair: the request, and both response times in ns.
 #include "drivers/can/socket_can.hpp"
 #include "drivers/gpio/lines.hpp"
 #include "drivers/hardware/hardware.hpp"
@@ -35,7 +35,7 @@ int fail(const char* what) {
     return 1;
 }
 
-/// From before the request is written until its answer is read; -1: none came.
+/// Nanoseconds from before the request is written until its answer is read; -1: no answer came.
 std::int64_t ask_frame(int socket, std::uint32_t request, std::uint32_t answer, unsigned char number) {
     can_frame frame{};
     frame.can_id = request;
@@ -61,7 +61,7 @@ struct Outside {
         pull = ::open((chip + std::to_string(in) + "/pull").c_str(), O_WRONLY);
         value = ::open((chip + std::to_string(out) + "/value").c_str(), O_RDONLY);
     }
-    /// From before the edge until the output is seen to follow.
+    /// Nanoseconds from before the edge until the output follows; -1: it did not.
     [[nodiscard]] std::int64_t ask(bool high) const {
         const char* word = high ? "pull-up" : "pull-down";
         const auto length = static_cast<ssize_t>(high ? 7 : 9);
@@ -131,7 +131,7 @@ int run(int count, char** words) {
     if (!armed) return fail("the machine could not be armed");
     if (!world.start(*armed)) return fail(world.refusal().characters);
     sched_param parameters{};
-    parameters.sched_priority = 1; // above everything else, below whoever answers
+    parameters.sched_priority = 1; // above everything else, below the machine and the bare program
     sched_setscheduler(0, SCHED_FIFO, &parameters);
 
     Random random{3};
@@ -147,7 +147,7 @@ int run(int count, char** words) {
     const int hung = world.stop();
     const int written = write_pairs(words[2], frames, edges);
     std::fflush(stdout);
-    std::_Exit(hung == 0 ? written : fail("a thread of the machine hung")); // the bare threads go on for ever
+    std::_Exit(hung == 0 ? written : fail("a thread of the machine hung")); // the bare threads never end
 }
 
 } // namespace

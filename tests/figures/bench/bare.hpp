@@ -1,4 +1,4 @@
-// The same answers without a framework, as one would write them in C: a thread for each device that waits,
+// The same answers without a framework, as one would write them in C: each device has a thread that waits,
 // reads and writes.
 #pragma once
 
@@ -6,11 +6,11 @@
 
 namespace tappet::figures::bench {
 
-/// What may happen once the program runs. Why not is printed.
+/// Starts the bare programs. Returns false after printing why it could not.
 bool start_bare_can(const char* interface, std::uint32_t request, std::uint32_t answer, int priority);
 bool start_bare_lines(const char* chip, unsigned in, unsigned out, int priority);
 
-/// A raw socket that takes these two frames only; -1: refused, and why is printed.
+/// Opens a raw socket that receives these two frames only; -1: refused, with the reason printed.
 int open_can(const char* interface, std::uint32_t one, std::uint32_t other);
 
 } // namespace tappet::figures::bench

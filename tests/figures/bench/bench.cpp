@@ -1,5 +1,5 @@
 // The reaction path through real drivers: boots the bench, where a machine and a bare program answer frames
-// and edges in turns, and judges what they took; and a loop beside a wire that somebody floods by turns.
+// and edges in turns, and judges their times; and a loop beside a wire that is flooded by turns.
 #include "tests/figures/measure/candidates.hpp"
 #include "tests/figures/measure/equivalence.hpp"
 
@@ -20,7 +20,8 @@ using namespace tappet::figures;
 namespace fs = std::filesystem;
 
 constexpr double margin = 0.05;
-/// What a processor that does not idle adds: another thread is left, and another one's frame is put away.
+/// Bound on p99 with flood over p99 without: a processor that does not idle must first leave another thread
+/// and put away that one's frame.
 constexpr double disturbed_above = 1.25;
 
 struct Report {
@@ -28,7 +29,7 @@ struct Report {
     std::size_t unanswered = 0;
 };
 
-/// The lines that a program wrote in the guest; nothing when it did not come to its end.
+/// The lines that a program wrote in the guest; nothing when it did not finish.
 std::optional<std::ifstream> boot(const std::string& box, const std::string& words, const fs::path& folder) {
     const std::string file = (folder / "pairs").string(), log = (folder / "log").string();
     const std::string command = "'" TAPPET_BENCH "' --verbose --timeout 150 --can can0 "
@@ -41,7 +42,7 @@ std::optional<std::ifstream> boot(const std::string& box, const std::string& wor
     return std::nullopt;
 }
 
-/// What the guest wrote, by "can" and "gpio".
+/// The guest's measurements, by "can" and "gpio".
 std::map<std::string, Report> answered(std::size_t pairs, const fs::path& folder) {
     std::map<std::string, Report> told;
     auto lines = boot("--gpio-chip panel:8 --file '" TAPPET_ANSWERING "'=/bin/answering",
@@ -56,10 +57,10 @@ std::map<std::string, Report> answered(std::size_t pairs, const fs::path& folder
     return told;
 }
 
-/// By the kind of flood: the loop's responses in us, each block of flood beside one of quiet.
+/// By the kind of flood: the loop's responses in us, each block with flood beside one without.
 std::map<std::string, std::vector<PairOfBlocks>> flooded(std::size_t pairs, const fs::path& folder) {
     std::map<std::string, std::vector<PairOfBlocks>> told;
-    // Its exit code says whether the loop was disturbed, which is what the figure says.
+    // The exit code says whether the loop was disturbed; the figure says the same.
     auto lines =
         boot("--tool sh --file '" TAPPET_FLOODED "'=/bin/flooded",
              "sh -c \"flooded right " + std::to_string(pairs) + " /tmp/pairs || [ $? = 1 ]\"", folder);

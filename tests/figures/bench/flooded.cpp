@@ -1,7 +1,7 @@
-// flooded right|wrong PAIRS FILE: in the guest. A machine runs at one end of a wire, and somebody floods it,
-// by turns with quiet: how long after its release a loop that is more urgent than the wire comes to its end,
-// with and without. Writes a line for each pair of blocks; ends with 1 when the loop was disturbed.
-//     right: the loop comes before the wire; wrong: after it, which is what this finds
+// flooded right|wrong PAIRS FILE: in the guest. A machine runs at one end of a wire, which is flooded by
+// turns: measures the time from the release of a loop that is more urgent than the wire to its end, with and
+// without flood. Writes a line for each pair of blocks; ends with 1 when the loop was disturbed.
+//     right: the loop is more urgent than the wire; wrong: it is less urgent, which this must detect
 #include "drivers/can/socket_can.hpp"
 #include "drivers/hardware/hardware.hpp"
 #include "kernel/base/random.hpp"
@@ -47,7 +47,7 @@ int fail(const char* what) {
     return 2;
 }
 
-// ---- what is seen of the loop
+// ---- measurements of the loop
 
 constexpr auto block_time = 50ms;
 constexpr std::size_t in_block = 2 * static_cast<std::size_t>(block_time / loop_period);
@@ -106,14 +106,14 @@ int open_flood() {
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = static_cast<int>(if_nametoindex("can0"));
-    // It hears nothing. The interface of sockaddr is C's: one type stands for all.
+    // It receives nothing. The interface of sockaddr is C's: one type stands for all.
     if (made < 0 || setsockopt(made, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) != 0 ||
         bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
         return -1;
     return made;
 }
 
-// ---- one after the other
+// ---- the rounds
 
 struct Pair {
     Kind kind{};
@@ -124,7 +124,7 @@ void add(figures::Samples& all_us, const Block& block) {
         all_us.add(static_cast<double>(block.response_ns[i]) / 1000);
 }
 
-/// Of one kind: true when the loop was not disturbed.
+/// Judges one kind of flood. Returns true when the loop was not disturbed.
 bool judge(Kind kind, const std::vector<Pair>& pairs, std::uint64_t misses, std::uint64_t frames) {
     figures::Samples quiet, flooded;
     for (const Pair& pair : pairs)
@@ -193,7 +193,7 @@ int run(std::size_t pairs_of_each, const char* path) {
         watched = nullptr;
     };
     bool well = true;
-    watch(Kind::none, pairs.front().quiet); // until everything is warm
+    watch(Kind::none, pairs.front().quiet); // warm-up
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const EngineStatistics before = loop->statistics(), before_of_wire = wire->statistics();
         const std::uint64_t frames = sent;

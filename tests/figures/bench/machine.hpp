@@ -9,13 +9,13 @@
 
 namespace tappet::figures::bench {
 
-/// What the wires carry. The bare program has identifiers and lines of its own.
+/// The identifiers and lines of the wires. The bare program has its own.
 namespace wire {
 inline constexpr std::uint32_t request = 0x101, answer = 0x201, bare_request = 0x102, bare_answer = 0x202;
 inline constexpr unsigned in = 0, out = 1, bare_in = 2, bare_out = 3;
 } // namespace wire
 
-/// Answers with the number that it was asked with.
+/// Answers with the number of the request.
 struct Echo {
     Input<std::int64_t> asked;
     Output<std::int64_t> answer;

@@ -138,7 +138,7 @@ struct Line {
     double position, velocity;
     std::array<double, cam_rows> angles, due;
 };
-/// The time at which an even motion reaches each angle.
+/// Calculates the time at which an even motion reaches each angle.
 void predict_line(std::size_t times) {
     static Line line{5.0, 3600.0, {}, {}};
     for (std::size_t i = 0; i < times; i += cam_rows) {
@@ -152,7 +152,7 @@ void predict_line(std::size_t times) {
         keep(line);
     }
 }
-/// Fires what is due: at this speed every sixth sample has a row.
+/// Fires due rows: at this speed every sixth sample has one.
 void next_sample(std::size_t) {
     Shaft& turning = shaft();
     do {

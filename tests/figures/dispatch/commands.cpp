@@ -1,4 +1,4 @@
-// A command: sent, and from its sending to its end.
+// A command: its sending, and the time from its sending to its end.
 #include "tests/figures/dispatch/groups.hpp"
 #include "tests/figures/dispatch/machine.hpp"
 #include "tests/figures/measure/world.hpp"
@@ -24,19 +24,19 @@ void send(std::size_t times) {
         keep(sent);
     }
 }
-/// Everything that was sent is carried out; who was woken is left woken: a further wake finds it so.
+/// Executes everything that was sent. The receiver stays marked as woken, as another wake would find it.
 void carry_out(std::size_t) {
     measured().far->run(true);
     measured().far->waiter().wake();
 }
-/// Nobody woke the receiver yet: the first one who sends does.
+/// The receiver is not marked as woken: the next sender wakes it.
 void carry_out_and_rest(std::size_t) {
     measured().far->run(true);
     static_cast<void>(measured().far->waiter().take());
 }
 void carry_out_clocked(std::size_t) { measured().clocked->run(false); }
 
-/// What a message of a command must say: which one, and for whom.
+/// The content of a command's message: its command and its receiver.
 struct Notice {
     void* command;
     std::uint64_t part;

@@ -1,4 +1,4 @@
-// Cycles of an engine whose component has a state machine: nothing happens, or one event. Loaded: the
+// Cycles of an engine whose component has a state machine, without an event and with one. "Loaded": the
 // script's tables in memory.
 #include "kernel/machine/accept.hpp"
 #include "tests/figures/behaviour/steps.hpp"

@@ -1,4 +1,4 @@
-// Emission to so many subscribers, and rows that come and go.
+// Emission to several subscribers, and rows that are connected and disconnected.
 #include "tests/figures/dispatch/groups.hpp"
 #include "tests/figures/dispatch/machine.hpp"
 
@@ -14,7 +14,7 @@ namespace tappet::figures {
 
 namespace {
 
-// ---- floors and peers: the same reaction, reached by other ways
+// ---- floors and peers: the same reaction by other means
 
 // Aligned like ours: where a short function crosses a block of 32 bytes, a call takes a fifth longer.
 [[gnu::noinline, gnu::aligned(32)]] void hear(void* context, double value) noexcept {
@@ -105,9 +105,9 @@ Group synchronous(std::string name) {
               {"loop over function pointers"}}}};
 }
 
-// ---- asynchronous: each subscriber's message is left in its engine's mailbox
+// ---- asynchronous: each subscriber's message goes to its engine's mailbox
 
-/// As many bytes as one of ours.
+/// As large as one of our messages.
 struct Parcel {
     void (*run)(void*, const std::byte*);
     void* object;
@@ -144,7 +144,7 @@ Group asynchronous(std::string name, std::size_t batch) {
               &take_parcels}}};
 }
 
-// ---- rows that come and go
+// ---- rows that are connected and disconnected
 
 template <EventHandle Emitter::* handle>
 void change(std::size_t times) {

@@ -1,4 +1,4 @@
-// What figures-dispatch measures, by subject.
+// The groups of figures-dispatch, by subject.
 #pragma once
 
 #include "tests/figures/measure/candidates.hpp"

@@ -1,4 +1,4 @@
-// The table: its rows are made by loops, because there are many alike.
+// The table: loops make its rows, because many are alike.
 #include "tests/figures/dispatch/machine.hpp"
 
 #include "kernel/machine/accept.hpp"
@@ -8,7 +8,7 @@ namespace tappet::figures {
 
 namespace {
 
-/// Numbered names, each with a facet's name after it or without.
+/// Numbered names, with or without a facet's name after them.
 struct Name {
     std::array<char, 16> characters{};
     std::size_t size = 0;
@@ -38,7 +38,7 @@ constexpr auto sender_clocked = numbered<senders>('s', "clocked");
 struct Fan {
     std::string_view event;
     std::size_t rows;
-    std::uint32_t quota; ///< 0: they call
+    std::uint32_t quota; ///< 0: rows that call
 };
 constexpr std::array fans{Fan{"emitter.one", 1, 0},        Fan{"emitter.two", 2, 0},
                           Fan{"emitter.eight", 8, 0},      Fan{"emitter.many", listeners, 0},
@@ -83,7 +83,7 @@ constexpr auto rows = [] {
     }
     return m;
 }();
-// A machine has its memory once: two need two tables.
+// A table has one memory, so that two machines need two tables.
 constexpr auto table = rows, table_with_stamps = rows;
 
 struct Machinery {
@@ -98,8 +98,8 @@ struct Machinery {
             all.listener[i] = instance.find<Listener>(listener_names[i].view());
         all.far = &instance.engines()[1];
         all.clocked = &instance.engines()[2];
-        // It is woken more often than its row promises, so that its first claims are measured, each with two
-        // calls of the kernel a cycle.
+        // It is woken more often than its row promises, so that the claims are measured at first, each with
+        // two system calls a cycle.
         while (kind == os::Clock::Kind::real &&
                all.far->statistics().measured_claims <= Engine::measured_at_first) {
             const RunsActivity here{0};

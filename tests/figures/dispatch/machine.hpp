@@ -1,5 +1,5 @@
-// The machine whose calls are measured: an emitter and its senders in one activity, those who listen in
-// others. Everything is bound by its table.
+// The machine whose calls are measured: an emitter and its senders in one activity, the listeners in others.
+// Its table binds everything.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -15,7 +15,7 @@ namespace tappet::figures {
 inline constexpr std::size_t listeners = 64;
 inline constexpr std::size_t senders = 32;
 
-/// Does the least that can be seen: what is called here is the same for ours, floors and peers.
+/// Does the smallest visible work: the callee is the same for ours, floors and peers.
 struct Listener {
     double sum = 0;
 
@@ -33,10 +33,10 @@ struct Listener {
 };
 
 struct Emitter {
-    Event<double> none, one, two, eight, many;               ///< so many rows call
-    Event<double> tell_one, tell_two, tell_eight, tell_many; ///< so many rows tell another activity
-    Event<double> changing;                                  ///< one row calls, one tells
-    EventHandle calling, telling;                            ///< of those two
+    Event<double> none, one, two, eight, many;               ///< that many rows call
+    Event<double> tell_one, tell_two, tell_eight, tell_many; ///< that many rows notify another activity
+    Event<double> changing;                                  ///< one row calls, one notifies
+    EventHandle calling, telling;                            ///< of those two rows
     MethodCall<double(double)> scaled;
 
     static constexpr auto interface() {
@@ -54,14 +54,14 @@ struct Emitter {
 };
 
 struct Sender {
-    CommandCall<double> note;    ///< to an activity that is woken
-    CommandCall<double> clocked; ///< to one that looks every period
+    CommandCall<double> note;    ///< to an activity that is woken for it
+    CommandCall<double> clocked; ///< to one that polls every period
     static constexpr auto interface() {
         return facets(sends<&Sender::note>("note", "adds"), sends<&Sender::clocked>("clocked", "adds"));
     }
 };
 
-/// The machine, configured and started: every engine is run by who measures.
+/// The machine, configured and started; the measuring program runs every engine.
 struct Measured {
     Emitter* emitter = nullptr;
     std::array<Sender*, senders> sender{};

@@ -1,4 +1,4 @@
-// Steps of engines whose components have nothing to do: what the framework itself takes.
+// Steps of engines whose components have nothing to do: the cost of the framework itself.
 #include "kernel/machine/accept.hpp"
 #include "tests/figures/dispatch/groups.hpp"
 #include "tests/figures/measure/world.hpp"
@@ -9,7 +9,7 @@ namespace tappet::figures {
 
 namespace {
 
-/// As little as can be seen.
+/// The smallest visible work.
 struct Idle {
     std::uint64_t steps = 0;
     void step(const Cycle&) noexcept TAPPET_REALTIME { ++steps; }
@@ -21,11 +21,11 @@ struct Idle {
 constexpr auto idle_table = machine("idle", components(component<Idle>("idle")),
                                     activities(activity("motion", every(1ms), budget(50us), runs("idle"))),
                                     connections(), reactions(), behaviours());
-/// As an activity does it: when is it due, it is due, it runs.
+/// As an activity does it: asks when the engine is due, waits in virtual time, runs it.
 void step_without_stamps(std::size_t times) {
     static World world{os::Clock::Kind::virtual_time, AtRunTime<idle_table, figures_board>::machine()};
     Engine& engine = world.engine();
-    const RunsActivity here{engine.plan().activity}; // as its thread does, once for ever
+    const RunsActivity here{engine.plan().activity}; // as its thread does, once and for all
     for (std::size_t i = 0; i < times; ++i) {
         world.clock.advance_to(engine.next_wake());
         engine.run(false);
@@ -104,7 +104,7 @@ void call_crowd(std::size_t times) {
     }
 }
 
-/// One of them in real time, woken instead of waiting for its period.
+/// One of them in real time, woken without waiting for its period.
 template <const EnginePlan& row>
 void step_with_stamps(std::size_t times) {
     static Crowd crowd{os::Clock::Kind::real, 1, 1, row};

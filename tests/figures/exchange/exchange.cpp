@@ -1,4 +1,4 @@
-// What data flow between components costs (thesis 4.4.4), beside copies, bare loops, locks and the peers.
+// The cost of data flow between components (thesis 4.4.4), beside copies, bare loops, locks and the peers.
 #include "tests/figures/exchange/exchange.hpp"
 #include "tests/figures/exchange/iceoryx.hpp"
 
@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
     const Options options = read_options(argc, argv);
     Result result{.program = "exchange"};
     start_machine();
-    // There is one RouDi in a machine, and the process that measures has it when it has itself counted.
+    // Only one RouDi may run on a host: a counting child leaves it to its parent, which measures.
     const std::string no_iceoryx = counting() ? "callgrind does not count it" : start_iceoryx();
     const bool with_iceoryx = no_iceoryx.empty();
     if (!with_iceoryx) result.notes.push_back("iceoryx was not measured: " + no_iceoryx);

@@ -8,7 +8,7 @@
 
 namespace tappet::figures {
 
-/// Once, before anything else of iceoryx. Empty: it runs; else why it does not.
+/// Call once, before anything else of iceoryx. Empty: it runs; else the reason why it does not.
 std::string start_iceoryx();
 void stop_iceoryx();
 

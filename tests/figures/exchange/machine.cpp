@@ -1,5 +1,5 @@
-// Starts the machine, whose outputs are shut before; no engine steps, for each operation is called by the
-// measuring threads.
+// Starts the machine, whose outputs stay disabled; no engine steps, because the measuring threads call each
+// operation.
 #include "tests/figures/exchange/machine.hpp"
 
 #include "kernel/machine/accept.hpp"

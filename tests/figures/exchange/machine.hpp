@@ -1,5 +1,5 @@
-// The machine whose ports are measured: packets of 8, 160 and 4096 bytes, each flowing to a reader in the
-// writer's activity and to one in another, as a last value and through a buffer.
+// The machine whose ports are measured: packets of 8, 160 and 4096 bytes. Each goes to a reader in the
+// writer's activity and to one in another activity, as a last value and through a buffer.
 #pragma once
 
 #include "kernel/machine/worlds/virtual_world.hpp"

@@ -1,4 +1,4 @@
-// Each operation is one packet given and taken.
+// Each operation gives one packet and takes it.
 #include "tests/figures/exchange/exchange.hpp"
 
 #include "tests/figures/exchange/iceoryx.hpp"

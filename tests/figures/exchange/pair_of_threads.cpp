@@ -9,7 +9,7 @@
 namespace tappet::figures {
 
 std::string meet(const std::function<void()>& giver, const std::function<void()>& taker) {
-    static_cast<void>(ticks_of_reading()); // both are measured before anybody waits for them
+    static_cast<void>(ticks_of_reading()); // measured before any thread waits
     static_cast<void>(ns_per_tick());
     std::string refused;
     std::atomic<bool> ready{false}, go{false};
@@ -21,7 +21,7 @@ std::string meet(const std::function<void()>& giver, const std::function<void()>
         }
         taker();
     }};
-    // Before this thread takes its processor for itself: the other one may have begun on it.
+    // Before this thread binds itself to its processor, it waits: the other one may have started there.
     while (!ready) std::this_thread::sleep_for(std::chrono::microseconds{50});
     const std::uint64_t first = ticks();
     {
@@ -37,7 +37,7 @@ std::string meet(const std::function<void()>& giver, const std::function<void()>
 
 namespace {
 
-/// Half of each round trip, and how far the answering thread's stamps seem ahead of the asking one's.
+/// Half of each round trip, and the apparent lead of the answering thread's clock over the asking one's.
 struct RoundTrips {
     Samples half_ticks{}, ahead_ticks{};
 };
@@ -75,7 +75,7 @@ RoundTrips round_trips(std::size_t rounds, bool second_asks) {
 } // namespace
 
 Clocks compare_clocks(std::size_t rounds) {
-    // Whatever makes one way longer than the other for the roles, and not for the clocks, cancels.
+    // An asymmetry of the roles cancels; an asymmetry of the clocks stays.
     const RoundTrips first = round_trips(rounds, false), second = round_trips(rounds, true);
     Clocks clocks;
     clocks.ahead_ticks = (first.ahead_ticks.median() - second.ahead_ticks.median()) / 2;

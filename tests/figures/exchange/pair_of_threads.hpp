@@ -1,4 +1,5 @@
-// Two threads, each alone on a processor, one giving and one taking, and the ways in which they may meet.
+// Two threads, each alone on a processor, one giving and one taking, and the rhythms in which they may
+// exchange.
 #pragma once
 
 #include "tests/figures/exchange/machine.hpp"
@@ -12,7 +13,7 @@
 
 namespace tappet::figures {
 
-/// What one meeting found, in ns.
+/// The results of one meeting, in ns.
 struct Meeting {
     Samples seen; ///< from before the giving to the packet taken by the other thread
     Samples give;
@@ -20,26 +21,28 @@ struct Meeting {
     Samples stream; ///< for each packet, of many in a row
 };
 
-/// How many packets meet, how long at most: the share of time that Linux leaves to real-time threads.
+/// The number of packets and the longest duration: it respects the share of time that Linux leaves to
+/// real-time threads.
 struct MeetingPlan {
     std::size_t packets = 2000;
     double longest_ns = 30e6;
-    double clock_ahead_ticks = 0; ///< how far the taker's time stamps are ahead of the giver's
+    double clock_ahead_ticks = 0; ///< the lead of the taker's time stamps over the giver's
 };
 
-/// Runs both at once on the first two processors; rests afterwards. Empty: done; else what the system
-/// refused.
+/// Runs both at the same time on the first two processors; rests afterwards. Empty: done; else the refusal of
+/// the system.
 std::string meet(const std::function<void()>& giver, const std::function<void()>& taker);
 
-/// How far the second processor's time stamps are ahead of the first's, and one way of a line that two
-/// processors write in turns.
+/// The lead of the second processor's time stamps over the first's, and the one-way time of a cache line that
+/// two processors write in turns.
 struct Clocks {
     double ahead_ticks = 0;
     Samples one_way_ns{};
 };
 Clocks compare_clocks(std::size_t rounds);
 
-/// What two processors write is not joined with its neighbours, nor by the prefetcher of adjacent lines.
+/// Keeps a value that two processors write apart from its neighbours and from the prefetcher of adjacent
+/// lines.
 template <class T> struct alignas(128) Line {
     std::atomic<T> value{};
 };
@@ -52,16 +55,16 @@ inline void wait_ticks(std::uint64_t from, double ns) noexcept {
     }
 }
 
-/// At least one tick: what is shorter than a look at the clock cannot be told from it, and a ratio of two
-/// such times is a number.
+/// At least one tick: the clock cannot resolve less, and the ratio of two such times stays a number.
 inline double took_ns(std::uint64_t first, std::uint64_t last) noexcept {
     return std::max(1.0, static_cast<double>(last - first) - ticks_of_reading()) * ns_per_tick();
 }
 
 using Parcel = Packet<160>;
 
-/// One packet at a time, the taker polling without a pause: what a reader sees, and what its polling costs
-/// the writer. Between two packets the writer does something else, as a component does between its cycles.
+/// One packet at a time, while the taker polls without a pause: measures the delay that a reader sees, and
+/// the cost of its polling for the writer. Between two packets the writer does other work, as a component
+/// does between its cycles.
 template <class Subject>
 Meeting meet_paced(const MeetingPlan& plan) {
     constexpr double pause_ns = 500;
@@ -109,8 +112,7 @@ Meeting meet_paced(const MeetingPlan& plan) {
     return found;
 }
 
-/// The writer alone, in the same rhythm: nobody looks, or, when it `takes` back each packet itself, nobody
-/// else.
+/// The writer alone, in the same rhythm: nobody reads, or with `takes` only the writer itself.
 template <class Subject, bool takes>
 Meeting write_alone(const MeetingPlan& plan) {
     constexpr double pause_ns = 1000;
@@ -137,8 +139,8 @@ Meeting write_alone(const MeetingPlan& plan) {
     return found;
 }
 
-/// Both without a pause, each operation timed that did its work: the worst that two sides can do to each
-/// other.
+/// Both without a pause. Only operations that did their work are timed: the worst case that two sides can
+/// cause each other.
 template <class Subject>
 Meeting meet_contended(const MeetingPlan& plan) {
     Moments give_begun(plan.packets), give_ended(plan.packets), take_begun(plan.packets),
@@ -148,7 +150,7 @@ Meeting meet_contended(const MeetingPlan& plan) {
     Parcel in{};
     while (Subject::take(in)) {
     }
-    // Each goes on after its own last sample until the other has its own.
+    // Each side continues after its own last sample until the other one is done.
     const auto side = [&](auto&& operation, Moments& begun, Moments& ended, std::size_t& done,
                           Line<bool>& own, Line<bool>& other) {
         const std::uint64_t start = ticks();
@@ -184,7 +186,7 @@ Meeting meet_contended(const MeetingPlan& plan) {
     return found;
 }
 
-/// Many packets in a row, each of which arrives: from the first one given to the last one taken.
+/// Many packets in a row, without a loss: from the first one given to the last one taken.
 template <class Queue>
 Meeting meet_in_a_stream(const MeetingPlan& plan) {
     const std::size_t packets = plan.packets * 5;

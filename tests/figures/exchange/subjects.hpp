@@ -1,5 +1,6 @@
-// What is measured: each gives a packet on one side and takes it on the other. The last value: taking tells
-// whether there is a new one. The queue: each packet once; giving tells whether there was room.
+// The measured subjects: each gives a packet on one side and takes it on the other. The last value: taking
+// returns whether there is a new one. The queue: it delivers each packet once; giving returns whether there
+// was room.
 #pragma once
 
 #include "tests/figures/exchange/machine.hpp"
@@ -13,7 +14,7 @@
 
 namespace tappet::figures {
 
-/// The limit of the hardware for one packet handed over: a copy in, a flag, a copy out. It protects nothing.
+/// The hardware's limit for handing over one packet: a copy in, a flag, a copy out. It protects nothing.
 template <std::size_t bytes, bool flag_on_its_own_line>
 struct BareHandOver {
     static constexpr const char* name =
@@ -45,7 +46,7 @@ private:
     alignas(128) static inline std::uint64_t taken = 0;
 };
 
-/// Whether the reader is in the writer's activity or in another.
+/// Whether the reader is in the writer's activity (near) or in another (far).
 enum class Reach : std::uint8_t { near, far };
 
 template <std::size_t bytes, Reach reach>

@@ -1,4 +1,4 @@
-// Rounds in which all subjects take turns in a random order, and what follows from them.
+// Rounds in which all subjects take turns in a random order, and their evaluation.
 #include "tests/figures/exchange/exchange.hpp"
 
 #include "tests/figures/exchange/iceoryx.hpp"
@@ -18,7 +18,7 @@ namespace {
 enum class Mode : std::uint8_t { paced, alone, contended, stream };
 using Meet = Meeting (*)(const MeetingPlan&);
 
-/// How one subject is measured in one way, and what was found in each round.
+/// One subject in one rhythm, and the results of each round.
 struct Entry {
     const char* name = nullptr;
     Standing role = Standing::ours;
@@ -44,7 +44,7 @@ using Ours = Port<160, Reach::far>;
 using OurQueue = Buffer<160, Reach::far>;
 using Apart = BareHandOver<160, true>;
 using Beside = BareHandOver<160, false>;
-/// The same bare loops once more: between the queues' turns they have the same neighbours as these.
+/// The same bare loops a second time: between the queues they have the same neighbours as the queues.
 struct BesideQueues : Beside {};
 
 std::vector<Entry> subjects(bool with_iceoryx) {
@@ -56,7 +56,7 @@ std::vector<Entry> subjects(bool with_iceoryx) {
     add<LockedValue<160, InheritingLock>, false>(entries);
     if (with_iceoryx) add<Iceoryx<160, false>, false>(entries);
     add<OurQueue, true>(entries);
-    add<BesideQueues, true>(entries, false); // it overwrites what nobody took: no stream
+    add<BesideQueues, true>(entries, false); // it overwrites packets that nobody took: no stream
     add<BoostSpsc<160>, true>(entries);
     add<BoostQueue<160>, true>(entries);
     add<LockedQueue<160, PlainLock>, true>(entries);
@@ -96,7 +96,7 @@ private:
 double median_of(const Meeting& round, Part part) { return (round.*part).median(); }
 double p999_of(const Meeting& round, Part part) { return (round.*part).quantile(0.999); }
 
-/// The median, over the rounds, of what `value` makes of each.
+/// The median over the rounds of `value`.
 template <class Value>
 double over_rounds(std::size_t rounds, Value&& value) {
     Samples ratios;

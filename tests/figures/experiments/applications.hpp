@@ -1,12 +1,12 @@
-// The four applications (thesis 4.2.3, 4.4.4, 4.5.4 and 4.6.4), each a machine table. Periods come once a
-// second less often than their name says, so that they drift against each other; priorities follow from the
-// periods. Budgets are the loads and a quarter more.
+// The four applications (thesis 4.2.3, 4.4.4, 4.5.4 and 4.6.4), each a machine table. Each activity occurs
+// once less in each second than its nominal period says, so that periods drift against each other; priorities
+// follow from the periods. Budgets are the loads plus a quarter.
 //
-// Each activity stands between one above and one below it. Figure 4.13's topology of data flow is the text's:
-// in the small application the activity in between separates the other two; in the concurrent one four
-// activities stand in a ring of eight channels; in the large one each fills a buffer for the one above, and
-// the highest sets data for all. Commands and events go both ways between neighbours, and between the highest
-// and the lowest.
+// Each activity has one neighbour above and one below. The topology of data flow in figure 4.13 is that of
+// the text: in the small application the activity in between separates the other two; in the concurrent one
+// four activities stand in a ring of eight channels; in the large one each fills a buffer for the one above,
+// and the highest sets data for all. Commands and events go both ways between neighbours, and between the
+// highest and the lowest.
 #pragma once
 
 #include "kernel/machine/firmware.hpp"
@@ -18,7 +18,7 @@
 
 namespace tappet::experiments {
 
-/// Whichever the program was told to run on.
+/// The processor on which the program was told to run.
 inline constexpr Board one_processor{
     .name = "experiments",
     .world = "host",
@@ -26,13 +26,13 @@ inline constexpr Board one_processor{
     .heap_bytes = 0,
     .processors = 1,
     .highest_priority = 80,
-    .default_processor = -1, // that of the program, which has a single one
+    .default_processor = -1, // the program's only one
     .only_warned = warn_only("realtime-kernel", "clock-source", "rt-throttling", "cpu-governor",
                              "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap",
                              "fifo-priority", "clock-resolution", "processors"),
 };
 
-/// Of an activity that occurs once less in each second than `in_a_second` times.
+/// Period of an activity that occurs once less in each second than `in_a_second` times.
 constexpr Duration drifting(std::int64_t in_a_second) {
     return Duration{(1'000'000'000 + (in_a_second - 1) / 2) / (in_a_second - 1)};
 }
@@ -171,9 +171,9 @@ inline constexpr auto large = machine("large",
 
 struct Application {
     std::string_view name;
-    AcceptedMachine (*machine)(); ///< of a Firmware: what is measured is what is flashed
+    AcceptedMachine (*machine)(); ///< from a Firmware: the measured machine is the flashed one
 };
-/// All four, as the compiler accepted them.
+/// All four accepted machines.
 std::span<const Application> applications();
 
 } // namespace tappet::experiments

@@ -43,7 +43,7 @@ struct Loop {
     }
 };
 
-/// Period and load of an application's task "high", as its table says.
+/// Period and load of an application's task "high", as in its table.
 std::pair<Duration, Duration> highest_of(const Application& application) {
     const AcceptedMachine machine = application.machine();
     os::Clock clock{os::Clock::Kind::virtual_time};
@@ -67,7 +67,7 @@ std::string run_bare(const Application& application, const Circumstances& circum
     loop->turns = turns_for(load, circumstances.turns_per_ns);
     loop->ticks_of_stamps = circumstances.ticks_of_stamps;
     loop->record = record;
-    static_cast<void>(os::lock_memory()); // as arming does; what is refused is refused to both
+    static_cast<void>(os::lock_memory()); // as arming does; a refusal affects both alike
     const auto latency = os::hold_cpu_dma_latency();
     const os::ThreadPlan plan{"bare",    one_processor.highest_priority, -1, loop->stack, &Loop::live,
                               loop.get()};

@@ -1,4 +1,4 @@
-// Does this and that.
+// Random work of changing kinds.
 #include "tests/figures/experiments/disturbance.hpp"
 
 #include "kernel/base/random.hpp"

@@ -1,4 +1,4 @@
-// Random load that is not real-time and no part of the machine: what else a computer does meanwhile.
+// Random load that is not real-time and no part of the machine, as from other programs of a computer.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace tappet::experiments {
 
-/// Until it is stopped: calculates, goes through memory beyond the caches, calls the system and sleeps, each
+/// Until it is stopped, calculates, walks through memory beyond the caches, calls the system and sleeps, each
 /// for a random time.
 void disturb(const std::stop_token& ends, std::uint64_t seed);
 

@@ -1,5 +1,5 @@
-// figures-experiments: four applications in five settings, as the thesis validates its design. Beside what
-// every program of figures is told:
+// figures-experiments: four applications in five settings, as the thesis validates its design. Words in
+// addition to those of every program of figures:
 //     --seconds S            of each application in each setting; the thesis: 300
 //     --application NAME     one of minimal, small, concurrent, large
 //     --setting NAME         one of none, locked, data, commands, events
@@ -25,7 +25,7 @@ using namespace tappet;
 using namespace tappet::experiments;
 
 struct Wanted {
-    std::string seconds = {}; ///< empty: by the setting
+    std::string seconds = {}; ///< empty: depends on the setting
     std::string application = {};
     std::string setting = {};
     std::string histograms = {};
@@ -52,7 +52,7 @@ void refuse_unknown(const Wanted& wanted) {
                "\"; there are none, locked, data, commands, events");
 }
 
-/// The last processor that this process may use, and from now on its only one.
+/// Binds this process to the last processor that it may use, and returns it.
 int take_one_processor() {
     cpu_set_t all;
     CPU_ZERO(&all);
@@ -70,9 +70,9 @@ void stay_on(int processor) {
         refuse("the system does not let it choose its processor");
 }
 
-/// Turns per nanosecond: the median of many short trials on this thread, which stands undisturbed meanwhile.
+/// Turns per nanosecond: the median of many short trials on this undisturbed thread.
 double calibrate_load() {
-    constexpr std::uint64_t turns = 50'000; // some 100 us: shorter than most disturbances are apart
+    constexpr std::uint64_t turns = 50'000; // some 100 us: shorter than the usual gap between disturbances
     constexpr int trials = 201;
     figures::Samples samples;
     for (int i = 0; i < trials; ++i) {
@@ -90,7 +90,7 @@ struct Part {
     Setting setting;
 };
 
-/// Whether figures whose id has `only` need that application in that setting.
+/// Returns whether figures whose id contains `only` need that application in that setting.
 bool shows_in(const Application& application, Setting setting, const std::string& only) {
     const std::string id = "experiments." + std::string{application.name} + ".";
     const auto meets = [&](const char* what) {
@@ -158,7 +158,7 @@ int main(int argc, char** argv) {
     figures::Result result{.program = "experiments", .setting = options.setting};
     const int processor = take_one_processor();
     Circumstances circumstances;
-    // Anew before each run: what else goes on changes how fast a processor is.
+    // Repeated before each run: other programs change the speed of a processor.
     const auto calibrate = [&] {
         const figures::Undisturbed quiet{processor};
         circumstances.ns_per_tick = figures::ns_per_tick();
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
     if (const std::string refused = calibrate(); !refused.empty())
         result.notes.push_back("the system refused: " + refused);
 
-    // In rounds, so that whatever the computer does meanwhile meets all settings alike.
+    // In rounds, so that other programs affect all settings alike.
     const double rounds = std::clamp(std::round(seconds), 1.0, 10.0);
     const auto check = [](const Application& application, const std::string& why_not) {
         if (!why_not.empty()) refuse(std::string{application.name} + ": " + why_not);

@@ -1,4 +1,4 @@
-// Tables and histograms out of the samples.
+// Makes tables and histograms of the samples.
 #include "tests/figures/experiments/findings.hpp"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ Row row_of(std::string name, Standing role, const Samples& samples) {
 
 using Select = Samples TaskResult::*;
 
-/// What is known without measuring.
+/// A row for a value that is known without measuring.
 Row stated(std::string name, double value) {
     return {std::move(name), Standing::floor, figures::single(value)};
 }
@@ -169,7 +169,7 @@ void add_plot(std::vector<Plot>& plots, const Experiment* experiment, std::strin
     if (!plot.series.empty()) plots.push_back(std::move(plot));
 }
 
-/// How far periods were from what the rows say: on one axis, whatever their length.
+/// Deviations of periods from those of the rows: on one axis for all lengths.
 void add_period_plot(std::vector<Plot>& plots, const Findings& findings, const std::string& application) {
     const Experiment* experiment = findings.find(application, Setting::none);
     if (experiment == nullptr) return;
@@ -222,7 +222,7 @@ std::vector<Figure> figures_of(const Findings& findings) {
         add_exchanges(figures, findings, application);
         for (const Setting setting : {Setting::data, Setting::commands, Setting::events})
             add_with_communication(figures, findings, application, setting, &TaskResult::periods);
-        // Commands and events run without the load: their latencies have nothing to stand beside.
+        // Commands and events run without the load: their latencies have no counterpart.
         add_with_communication(figures, findings, application, Setting::data, &TaskResult::latencies);
         for (const Setting setting : {Setting::commands, Setting::events})
             if (const Experiment* each = findings.find(application, setting))

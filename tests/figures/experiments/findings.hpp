@@ -1,4 +1,4 @@
-// What all experiments together found out, as figures, plots and statements.
+// The findings of all experiments together, as figures, plots and statements.
 #pragma once
 
 #include "tests/figures/experiments/run.hpp"
@@ -15,9 +15,9 @@ inline constexpr const char* application_names[] = {"minimal", "small", "concurr
 
 class Findings {
 public:
-    /// The experiment of that name and setting, made when it is not there yet.
+    /// Returns the experiment of that name and setting; makes it when it does not exist.
     Experiment& at(std::string_view application, Setting setting);
-    /// The highest priority of an application as a bare thread, made when it is not there yet.
+    /// Returns the highest priority of an application as a bare thread; makes it when it does not exist.
     TaskResult& bare(std::string_view application);
     /// Null: it was not run, or has no such task.
     [[nodiscard]] const TaskResult* find_bare(std::string_view application) const;
@@ -35,14 +35,14 @@ private:
 std::vector<figures::Figure> figures_of(const Findings& findings);
 /// The histograms of the thesis: 4.9 and 4.10, 4.14 to 4.23, 4.34 and 4.35, 4.42 and 4.43.
 std::vector<figures::Plot> plots_of(const Findings& findings);
-/// What the thesis draws from them, true or false as measured. Of experiments that were not run there is
-/// none.
+/// The conclusions of the thesis, true or false as measured. There is none about experiments that were not
+/// run.
 std::vector<figures::Statement> statements_of(const Findings& findings);
 
 /// The histograms of all tasks as files that gnuplot reads: one for each real-time task, application and
-/// setting, as the thesis kept them (A.2.2). "concurrent-data-high.txt" and so on: a block for each thing
-/// that was measured, two empty lines between them, each line the lower end of a bin and how many executions
-/// fell into it. Empty: written; else why not.
+/// setting, as the thesis kept them (A.2.2). "concurrent-data-high.txt" and so on: a block for each
+/// measured quantity, two empty lines between them, each line with the lower end of a bin and the number of
+/// executions in it. Empty: written; else the reason why not.
 std::string write_histograms(const Findings& findings, const std::string& directory);
 
 } // namespace tappet::experiments

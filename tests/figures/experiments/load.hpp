@@ -8,7 +8,8 @@
 
 namespace tappet::experiments {
 
-/// So many turns of a loop in which each waits for the one before: no processor overtakes it.
+/// Executes that many turns of a loop in which each waits for the one before, so that no processor can
+/// overlap them.
 inline void turn(std::uint64_t turns) noexcept TAPPET_REALTIME {
     std::uint64_t value = turns;
     for (std::uint64_t i = 0; i < turns; ++i) {
@@ -17,7 +18,7 @@ inline void turn(std::uint64_t turns) noexcept TAPPET_REALTIME {
     }
 }
 
-/// The turns that take so long.
+/// The number of turns that take that time.
 inline std::uint64_t turns_for(Duration time, double turns_per_ns) {
     return static_cast<std::uint64_t>(static_cast<double>(time.count()) * turns_per_ns);
 }

@@ -1,4 +1,4 @@
-// What the connectors are compared with: the same data behind a mutex with priority inheritance.
+// The counterparts of the connectors: the same data behind a mutex with priority inheritance.
 #pragma once
 
 #include "tests/figures/measure/inheriting_mutex.hpp"
@@ -10,7 +10,7 @@ namespace tappet::experiments {
 
 using figures::InheritingMutex;
 
-/// The last value. Each call answers whether it had to wait.
+/// The last value. Each call returns whether it had to wait.
 template <class T>
 class LockedData {
 public:

@@ -16,7 +16,7 @@ namespace tappet::experiments {
 
 namespace {
 
-/// How often a thread has given the processor away by itself; -1 when the system does not say.
+/// Voluntary switches of a thread so far; -1 when the system does not report them.
 std::int64_t voluntary_switches(int thread) {
     std::ifstream file{"/proc/self/task/" + std::to_string(thread) + "/status"};
     constexpr std::string_view wanted = "voluntary_ctxt_switches:";
@@ -25,7 +25,8 @@ std::int64_t voluntary_switches(int thread) {
     return -1;
 }
 
-/// Sleeps of a thread beyond the one after each cycle: somebody else had what it wanted.
+/// Counts the sleeps of a thread beyond the one after each cycle: another thread held a resource that it
+/// needed.
 class Blocking {
 public:
     Blocking(const Task& task, const Engine& engine) : task_{task}, engine_{engine} {}
@@ -33,7 +34,7 @@ public:
     [[nodiscard]] std::int64_t since_begin() const { return std::max<std::int64_t>(0, balance() - begin_); }
 
 private:
-    // Both numbers while it sleeps: no cycle ended between them.
+    // Reads both numbers while the thread sleeps: no cycle ends in between.
     [[nodiscard]] std::int64_t balance() const {
         std::int64_t switches = 0;
         std::uint64_t before = 0, after = 0;
@@ -45,7 +46,7 @@ private:
         }
         return switches - static_cast<std::int64_t>(after);
     }
-    // Another thread writes it: read anew each time.
+    // Another thread writes it: read again each time.
     [[nodiscard]] std::uint64_t cycles() const {
         figures::clobber();
         return engine_.statistics().cycles;
@@ -65,7 +66,7 @@ void evaluate(std::span<const Execution> executions, Setting setting, double ns_
         const auto ns = [&](std::uint64_t ticks) { return static_cast<double>(ticks) * ns_per_tick; };
         ++into.executions;
         into.latencies.add(ns(now.busy) / 1e3);
-        if (i + 1 == executions.size()) break; // what followed it was not seen
+        if (i + 1 == executions.size()) break; // its successor was not recorded
         into.periods.add(ns(executions[i + 1].begin - now.begin) / 1e3);
         if (setting == Setting::none) {
             into.copies.add(ns(now.copies));

@@ -1,4 +1,4 @@
-// One experiment: an application in one setting, run for a while; and what its tasks recorded.
+// One experiment: an application in one setting, run for a while, and the records of its tasks.
 #pragma once
 
 #include "tests/figures/experiments/applications.hpp"
@@ -11,10 +11,10 @@
 
 namespace tappet::experiments {
 
-/// What one task did in one setting, over all rounds. Periods and latencies in us, the rest in ns.
+/// The results of one task in one setting, over all rounds. Periods and latencies in us, the rest in ns.
 struct TaskResult {
     std::string name;
-    double period_us = 0; ///< as the table says
+    double period_us = 0; ///< from the table
     double load_us = 0;
     bool real_time = false;
     figures::Samples periods{};      ///< from begin to begin
@@ -26,10 +26,10 @@ struct TaskResult {
     figures::Samples sends{};        ///< of one command, or of one event
     figures::Samples one_served{};
     figures::Samples two_served{}; ///< after one execution
-    figures::Samples served{};     ///< any number but none
+    figures::Samples served{};     ///< any number above zero
     std::uint64_t executions = 0;
     std::uint64_t waited_for_locks = 0;
-    std::int64_t blocked = 0; ///< times it gave the processor away although it had work to do
+    std::int64_t blocked = 0; ///< times it gave up the processor although it had work to do
     std::uint64_t misses = 0; ///< deadlines
 };
 
@@ -45,19 +45,21 @@ struct Circumstances {
     std::uint64_t ticks_of_stamps = 0;
 };
 
-/// Runs it for `seconds` and adds to `into`. Empty: done; else why not.
+/// Runs it for `seconds` and adds to `into`. Empty: done; else the reason why not.
 std::string run_experiment(const Application& application, const Circumstances& circumstances, double seconds,
                            Experiment& into);
 
-/// The highest priority of an application without the application: one bare thread with its period and its
-/// load, by cyclictest's method. What it shows is the machine's doing, not a framework's. Likewise.
+/// Runs the highest priority of an application alone: one bare thread with its period and its load, by
+/// cyclictest's method. It shows the behaviour of the machine, not of a framework. Returns as
+/// run_experiment().
 std::string run_bare(const Application& application, const Circumstances& circumstances, double seconds,
                      TaskResult& into);
 
-/// What is left out at the beginning of a run of that length: caches, page faults, the start of the others.
+/// The time that is left out at the beginning of a run of that length: caches, page faults, the start of the
+/// others.
 constexpr Duration warming_of(Duration whole) { return std::min<Duration>(50ms, whole / 2); }
 
-/// What a task recorded, as samples; the first `warming` ticks are left out.
+/// Turns the records of a task into samples, without the first `warming` ticks.
 void evaluate(std::span<const Execution> executions, Setting setting, double ns_per_tick,
               std::uint64_t warming, TaskResult& into);
 

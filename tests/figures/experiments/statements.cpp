@@ -1,4 +1,4 @@
-// The thesis' statements on its experiments, each with what decides it.
+// The thesis' statements on its experiments, each with its decisive measurement.
 #include "tests/figures/experiments/findings.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::string number(double value) {
     return text;
 }
 
-/// p99 of how far a period is from what the row says.
+/// p99 of the deviation of a period from that of the row.
 double jitter_us(const TaskResult& task) {
     Samples deviations;
     for (const double period : task.periods.values()) deviations.add(std::abs(period - task.period_us));
@@ -34,7 +34,7 @@ double share_near(const Samples& samples, double centre, double tolerance) {
     return static_cast<double>(near) / static_cast<double>(samples.count());
 }
 
-/// Collects what each application shows; a statement is true when it holds for all that were run.
+/// Collects the results of each application; a statement is true when it holds for all that were run.
 class Verdict {
 public:
     explicit Verdict(std::string text) : text_{std::move(text)} {}
@@ -53,7 +53,7 @@ private:
 };
 
 using Of = const TaskResult&;
-/// For each application in which this task ran in this setting.
+/// Visits each application in which this task ran in this setting.
 void each_application(const Findings& findings, Setting setting, std::string_view task,
                       const std::function<void(const std::string&, Of)>& look) {
     for (const char* application : application_names)
@@ -93,14 +93,14 @@ void judge_periods(const Findings& findings, std::vector<Statement>& into) {
     grows.conclude(into);
 }
 
-/// Both tasks of the small application have the same load: what the highest takes is one step of the low
-/// one's latency.
+/// Both tasks of the small application have the same load: the time of the highest is one step in the latency
+/// of the low one.
 void judge_peaks(const Findings& findings, std::vector<Statement>& into) {
     const TaskResult* high = findings.find("small", Setting::none, "high");
     const TaskResult* low = findings.find("small", Setting::none, "low");
     if (high == nullptr || low == nullptr) return;
     const double step = high->latencies.median();
-    std::array<double, 4> share{}; // after no preemption, one, two, three
+    std::array<double, 4> share{}; // after 0, 1, 2 and 3 preemptions
     std::string seen = "load " + number(step) + " us";
     for (std::size_t i = 0; i < share.size(); ++i) {
         const double peak = static_cast<double>(i + 1) * step;
@@ -156,7 +156,7 @@ void judge_latencies(const Findings& findings, std::vector<Statement>& into) {
 }
 
 using Look = std::function<double(const Samples&)>;
-/// Ours against the mutex, of one task in one application.
+/// Compares ours with the mutex, for one task in one application.
 void compare(Verdict& verdict, const Findings& findings, const char* application, const char* task,
              const Look& look, double factor) {
     const TaskResult* ours = findings.find(application, Setting::data, task);
@@ -166,7 +166,7 @@ void compare(Verdict& verdict, const Findings& findings, const char* application
     std::string seen =
         std::string{application} + " " + task + " " + number(a) + " ns, locks " + number(b) + " ns";
     const TaskResult* bare = findings.find(application, Setting::none, task);
-    const bool has_buffers = std::string_view{application} == "large"; // which the copies leave out
+    const bool has_buffers = std::string_view{application} == "large"; // the copies leave buffers out
     if (bare != nullptr && !bare->copies.empty() && !has_buffers)
         seen += ", bare copies " + number(look(bare->copies)) + " ns";
     verdict.add(a * factor <= b, seen);

@@ -69,7 +69,7 @@ void Task::step(const Cycle&) noexcept TAPPET_REALTIME {
     now.busy = since(now.begin);
     if (how == Setting::none) {
         now.copies = copy_bare();
-        // In turns: the second of two in a row would find what it touches in the cache.
+        // Alternating: the second of two in a row would find its data in the cache.
         if (executed_ % 2 == 0)
             now.one_message = post_bare(1);
         else
@@ -78,7 +78,7 @@ void Task::step(const Cycle&) noexcept TAPPET_REALTIME {
     if (executed_ < assignment_.record.size()) assignment_.record[executed_++] = now;
 }
 
-// A port that no row connects has no mutex either.
+// A port without a connection has no mutex either.
 void Task::read_all() noexcept TAPPET_REALTIME {
     if (assignment_.ports.from_higher != nullptr) static_cast<void>(from_higher.read(seen_));
     if (assignment_.ports.from_lower != nullptr) static_cast<void>(from_lower.read(seen_));
@@ -130,7 +130,7 @@ void Task::send(Execution& now) noexcept TAPPET_REALTIME {
     if (to_below) {
         const std::uint64_t first = ticks();
         static_cast<void>(ask_lower.send());
-        // A time of one command, whether one or two were sent.
+        // The time of one command, whether one or two were sent.
         now.sent = to_above ? (now.sent + since(first)) / 2 : since(first);
         lower_answered_ = false;
     }
@@ -155,7 +155,7 @@ bool Task::serve_lower() noexcept TAPPET_REALTIME {
 void Task::hear_higher(std::uint64_t) noexcept TAPPET_REALTIME { static_cast<void>(serve_higher()); }
 void Task::hear_lower(std::uint64_t) noexcept TAPPET_REALTIME { static_cast<void>(serve_lower()); }
 
-// The floor of data flow: what the same packets cost when nobody else is there.
+// The floor of data flow: the cost of the same packets without any other thread.
 std::uint32_t Task::copy_bare() noexcept TAPPET_REALTIME {
     const LockedPorts& ports = assignment_.ports;
     const std::uint64_t first = ticks();
@@ -166,7 +166,7 @@ std::uint32_t Task::copy_bare() noexcept TAPPET_REALTIME {
     return since(first);
 }
 
-// The floor of commands and events: what whoever is told must be told anyhow.
+// The floor of commands and events: the work that any notification needs.
 std::uint32_t Task::post_bare(std::size_t messages) noexcept TAPPET_REALTIME {
     const std::uint64_t first = ticks();
     for (std::size_t i = 0; i < messages; ++i) {

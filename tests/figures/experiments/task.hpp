@@ -1,5 +1,5 @@
-// The one kind of task of all experiments (thesis A.2.2): a load, and what it exchanges with the activity
-// above and the one below it. Which of the five settings it runs is a property.
+// The one kind of task of all experiments (thesis A.2.2): a load, and its exchange with the activities above
+// and below. A property selects one of the five settings.
 #pragma once
 
 #include "kernel/activity/timing.hpp"
@@ -34,22 +34,22 @@ namespace experiments {
 using Packet = std::array<double, 20>;
 static_assert(sizeof(Packet) == 160);
 
-/// What is known of one execution of a task. Times in ticks of the time stamp counter, the stamps' own cost
-/// taken off.
+/// The record of one execution of a task. Times in ticks of the time stamp counter, without the stamps' own
+/// cost.
 struct Execution {
     std::uint64_t begin = 0;        ///< as read
     std::uint32_t busy = 0;         ///< from begin to the end of the step
-    std::uint32_t exchange = 0;     ///< of it, around data flow
-    std::uint32_t sent = 0;         ///< of it, around sending commands or emitting events
+    std::uint32_t exchange = 0;     ///< part of busy, around data flow
+    std::uint32_t sent = 0;         ///< part of busy, around sending commands or emitting events
     std::uint32_t copies = 0;       ///< as many bare copies of packets as data ports are connected
     std::uint32_t one_message = 0;  ///< a message stored in place, and announced by an atomic OR
     std::uint32_t two_messages = 0; ///< two of them, in two places
     std::uint32_t served = 0;       ///< commands or events between this execution and the next
-    std::uint64_t serving = 0; ///< ns: what they took together, from the end of the step or of the one before
+    std::uint64_t serving = 0;      ///< ns: their total, each from the end of the step or of the one before
 };
 
-/// The ports of a task as channels behind mutexes; null: the row is not in the table. Filled from the very
-/// rows of the machine.
+/// The ports of a task as channels behind mutexes; null: the row is not in the table. Filled from the rows of
+/// the machine.
 struct LockedPorts {
     LockedData<Packet>* to_higher = nullptr;
     LockedData<Packet>* to_lower = nullptr;
@@ -65,7 +65,7 @@ struct Assignment {
     std::size_t fill_at_most = 0;  ///< packets that one execution pushes: the whole buffer, or one
     std::size_t drain_at_most = 0; ///< and pops
     double turns_per_ns = 0;
-    std::uint64_t ticks_of_stamps = 0;         ///< that two stamps with nothing in between show
+    std::uint64_t ticks_of_stamps = 0;         ///< between two stamps with nothing in between
     const FunctionTiming* reactions = nullptr; ///< of this task, as its own engine keeps it
     std::span<Execution> record{};
 };
@@ -80,7 +80,7 @@ struct Task {
     CommandCall<> ask_higher, ask_lower;
     Event<std::uint64_t> pulse;
 
-    /// Before the machine is armed.
+    /// Call before the machine is armed.
     void assign(const Assignment& assignment);
 
     void start(const Cycle&) noexcept TAPPET_REALTIME;
@@ -96,7 +96,7 @@ struct Task {
         return assignment_.record.first(executed_);
     }
     [[nodiscard]] std::uint64_t waited_for_locks() const noexcept { return waited_for_locks_; }
-    /// Of its activity; 0 before it started. Any thread.
+    /// The thread of its activity; 0 before it started. Any thread may call it.
     [[nodiscard]] int thread() const noexcept { return thread_.load(std::memory_order_acquire); }
 
     static constexpr auto interface() {

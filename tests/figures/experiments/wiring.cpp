@@ -1,4 +1,4 @@
-// Goes through the rows of data flow and makes a channel of each.
+// Makes a channel of each row of data flow.
 #include "tests/figures/experiments/wiring.hpp"
 
 #include "kernel/machine/table/names.hpp"

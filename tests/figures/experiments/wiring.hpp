@@ -1,4 +1,4 @@
-// The rows of a machine once more, behind mutexes: what the setting "locked" exchanges its packets through.
+// The rows of a machine a second time, behind mutexes: the channels of the setting "locked".
 #pragma once
 
 #include "kernel/machine/table/machine.hpp"
@@ -9,15 +9,16 @@
 
 namespace tappet::experiments {
 
-/// Lives longer than the machine that uses it.
+/// Must outlive the machine that uses it.
 class Wiring {
 public:
-    /// One channel for each output of the table, one buffer for each buffer row. A row whose writer has the
-    /// longer period is filled completely in each execution and emptied one by one; one whose reader has the
-    /// longer period the other way round (thesis 4.4.4).
+    /// One channel for each output of the table, one buffer for each buffer row. When the writer of a row has
+    /// the longer period, each execution fills it completely and the reader takes packets one by one; when
+    /// the reader has the longer period, the writer pushes one by one and the reader empties it (thesis
+    /// 4.4.4).
     explicit Wiring(const MachineView& machine);
 
-    /// The ports of a component, and how much it moves at once; nothing else is filled.
+    /// The ports of a component, and its packets at a time; all else stays empty.
     [[nodiscard]] const Assignment& of(std::size_t component) const { return assignments_[component]; }
     /// Data rows and buffer rows.
     [[nodiscard]] std::size_t channels() const { return channels_; }

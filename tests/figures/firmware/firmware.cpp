@@ -1,5 +1,5 @@
-// What the carpet loom's firmware takes: its size, the memory it has, and how soon it is armed, as it tells
-// after weaving on the bench. And how large a station of the lane is, which has its end of a wire in it.
+// The size of the carpet loom's firmware, its memory, and its time to arm, as its summary reports after
+// weaving on the bench. And the size of a station of the lane, which contains its end of a wire.
 #include "tests/figures/measure/candidates.hpp"
 
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr double megabyte = 1e6;
 
-/// Of a program as it would be flashed; 0 when it cannot be stripped.
+/// Size of a program as it would be flashed; 0 when it cannot be stripped.
 double stripped_bytes(const std::string& program, const fs::path& folder) {
     const fs::path to = folder / "stripped";
     const std::string command = TAPPET_STRIP " -o '" + to.string() + "' '" + program + "'";
@@ -28,7 +28,7 @@ double stripped_bytes(const std::string& program, const fs::path& folder) {
     return static_cast<double>(fs::file_size(to, none));
 }
 
-/// The summary of a short run on the bench; nothing when it did not come to its end.
+/// The summary of a short run on the bench; nothing when it did not finish.
 std::optional<nlohmann::json> weave(const fs::path& folder) {
     const std::string summary = (folder / "summary.json").string(), log = (folder / "log").string();
     const std::string command = "'" TAPPET_DEMO "' --plain --picks 20 --firmware '" TAPPET_FIRMWARE

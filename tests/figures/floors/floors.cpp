@@ -1,4 +1,4 @@
-// The floors by themselves: what no framework can beat, measured first so that a reader knows the machine.
+// The floors by themselves: limits that no framework can beat, measured first to describe the machine.
 #include "tests/figures/floors/two_threads.hpp"
 #include "tests/figures/measure/candidates.hpp"
 

@@ -63,7 +63,7 @@ void round_trips(std::size_t times, Samples& samples) {
 }
 
 /// One round of first touches: the other core writes many lines, this one reads each once, in an order that
-/// no prefetcher guesses.
+/// no prefetcher can predict.
 void first_touches(std::size_t times, Samples& samples) {
     shared.ball.word = shared.answer.word = 0;
     std::atomic<bool> ready{false};
@@ -113,8 +113,8 @@ void wake_eventfd() {
     static_cast<void>(!write(descriptor, &one, sizeof one));
 }
 
-/// One round of wakes: from before the call that wakes to the sleeper's next line. The sleeper has the higher
-/// priority, so that on one core it runs at once.
+/// One round of wakes: from before the call that wakes to the sleeper's next statement. The sleeper has the
+/// higher priority, so that on one core it runs at once.
 void wakes(std::size_t times, int processor, void (*wait)(), void (*wake)(), Samples& samples) {
     std::atomic<std::uint64_t> woken{0};
     std::atomic<bool> ready{false};

@@ -1,4 +1,4 @@
-// For tests that count instructions of what they do themselves: they start themselves under callgrind.
+// For tests that count their own instructions: they start themselves under callgrind.
 #pragma once
 
 #include <cstdlib>
@@ -8,8 +8,8 @@
 
 namespace tappet::figures {
 
-/// Instructions of all functions measured_* of a program that is started with these words; 0: it did not come
-/// so far. callgrind's file stands beside the program and ends on `name`.
+/// Instructions of all functions measured_* of a program that is started with these words; 0: it did not
+/// reach them. callgrind writes its file beside the program; its name ends on `name`.
 inline double count_measured(const std::string& program, const std::string& words, const std::string& name) {
     const std::string out = program + "." + name;
     const std::string command =

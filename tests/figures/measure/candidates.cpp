@@ -22,7 +22,7 @@ namespace tappet::figures {
 
 namespace {
 
-/// What was measured of one candidate.
+/// The measurements of one candidate.
 struct Rounds {
     const Candidate* candidate = nullptr;
     std::size_t batch = 0;
@@ -31,16 +31,16 @@ struct Rounds {
 
 constexpr double rounds_of_short = 9;
 constexpr std::size_t samples_of_round = 400;
-constexpr double longest_round_ns = 20e6; ///< of a candidate that is slow
+constexpr double longest_round_ns = 20e6; ///< for a slow candidate
 
-/// One round of it.
+/// Measures one round of it.
 void measure(Rounds& rounds, std::size_t wanted) {
     const std::size_t batch = rounds.batch;
     const auto prepare = [&] {
         if (rounds.candidate->prepare != nullptr) rounds.candidate->prepare(batch);
     };
     prepare();
-    rounds.candidate->run(batch); // caches
+    rounds.candidate->run(batch); // warms the caches
     Samples samples;
     samples.reserve(wanted);
     const double reading = ticks_of_reading();
@@ -87,7 +87,7 @@ Goal judge(const std::string& group, const RatioGoal& plan, const Measured& meas
 constexpr const char* told_to_count = "TAPPET_FIGURES_COUNT";
 constexpr std::size_t operations = 2000;
 
-/// When this process is the one under callgrind: runs each candidate, has it counted, and ends the process.
+/// When this process runs under callgrind: runs and counts each candidate, and ends the process.
 void leave_if_counting(const std::vector<const Group*>& groups) {
     if (!counting()) return;
     for (const Group* group : groups)
@@ -111,8 +111,8 @@ void leave_if_counting(const std::vector<const Group*>& groups) {
     std::_Exit(0);
 }
 
-/// Of one operation, by "group/candidate": the program starts itself once more under callgrind, which dumps
-/// its counters after each candidate. Empty when valgrind is not there.
+/// Instructions of one operation, by "group/candidate": the program starts itself a second time under
+/// callgrind, which dumps its counters after each candidate. Empty when valgrind is not installed.
 std::map<std::string, double> count_instructions(const char* program, const std::string& only) {
     std::map<std::string, double> counts;
     const std::filesystem::path place =

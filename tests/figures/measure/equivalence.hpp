@@ -1,5 +1,5 @@
-// Whether two things take the same time, within a stated margin: not that no difference was seen, which too
-// few samples show of anything, but that a difference larger than the margin would have been.
+// Decides whether two things take the same time within a stated margin. It proves that a larger difference
+// would have been seen; too few samples prove nothing.
 #pragma once
 
 #include "tests/figures/measure/samples.hpp"
@@ -11,8 +11,8 @@
 
 namespace tappet::figures {
 
-/// Samples of both, taken side by side in time: whatever the machine did then met both of them. Samples of
-/// one pair may depend on each other; pairs are taken to be independent.
+/// Samples of both, taken side by side in time: each disturbance affected both. Samples of one pair may
+/// depend on each other; pairs are taken to be independent.
 struct PairOfBlocks {
     std::vector<double> ours{};
     std::vector<double> theirs{};
@@ -26,9 +26,8 @@ enum class Verdict : std::uint8_t {
     undecided   ///< it reaches over an edge: there were too few samples, or they scatter too much
 };
 
-/// Ours by theirs.
-/// Of fewer pairs nothing is concluded: that all of them lie on one side of the truth is likelier than what
-/// the interval leaves out on that side.
+/// Ours divided by theirs. Fewer pairs give no verdict: they all lie on one side of the truth more often than
+/// the interval's error on that side allows.
 inline constexpr std::size_t fewest_pairs = 5;
 static_assert(1.0 / (1 << fewest_pairs) < 0.05);
 
@@ -38,8 +37,8 @@ struct Comparison {
     double margin = 0;
     std::size_t pairs = 0;
 
-    /// How far from 1 the ratio may be as far as this is known, as a factor of at least 1: the interval's
-    /// further edge.
+    /// The largest plausible distance of the ratio from 1, as a factor of at least 1: the interval's further
+    /// edge.
     [[nodiscard]] double worst() const noexcept;
     [[nodiscard]] Verdict verdict() const noexcept;
     /// "ratio 1.012, 90 % interval 0.998 to 1.031 from 220 pairs: equivalent"

@@ -1,4 +1,4 @@
-// A peer of what exchanges without locks: a mutex as the thesis configured it.
+// A peer of lock-free exchange: a mutex as the thesis configured it.
 #pragma once
 
 #include <pthread.h>
@@ -21,7 +21,7 @@ public:
     InheritingMutex& operator=(const InheritingMutex&) = delete;
 
     void lock() noexcept { pthread_mutex_lock(&mutex_); }
-    /// True when it had to wait for whoever held it.
+    /// Returns true when it had to wait for another holder.
     bool lock_told() noexcept {
         if (pthread_mutex_trylock(&mutex_) == 0) return false;
         lock();

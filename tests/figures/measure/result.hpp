@@ -1,5 +1,5 @@
-// What a program of figures found out, in the one form that the report and the programs' tests read: JSON,
-// one file for each program.
+// The result of a program of figures, in the one form that the report and the programs' tests read: JSON, one
+// file for each program.
 #pragma once
 
 #include "tests/figures/measure/samples.hpp"
@@ -14,7 +14,7 @@
 
 namespace tappet::figures {
 
-/// Ours, the physical or the bare limit that it stands beside, or what others offer for the same task.
+/// Ours, its physical or bare limit, or another product for the same task.
 enum class Standing : std::uint8_t { ours, floor, peer };
 [[nodiscard]] const char* to_text(Standing role) noexcept;
 
@@ -26,7 +26,7 @@ struct Row {
     std::optional<double> instructions = {}; ///< for one operation, counted under callgrind
 };
 
-/// Things that do the same, measured in turns in one run.
+/// Rows that do the same, measured in turns in one run.
 struct Figure {
     std::string id; ///< stable: two commits are compared by it; "exchange.local.160"
     std::string title;
@@ -36,17 +36,17 @@ struct Figure {
     std::vector<Row> rows = {};
 };
 
-/// Something that was to be shown: `measured` at most `limit`, both in `unit` ("x" for a ratio).
+/// A goal: `measured` at most `limit`, both in `unit` ("x" for a ratio).
 struct Goal {
     std::string text;
     double limit = 0;
     double measured = 0;
     std::string unit = "x";
-    std::string detail = {}; ///< of which figures it was calculated
+    std::string detail = {}; ///< the figures that it was calculated from
     [[nodiscard]] bool held() const { return measured <= limit; }
 };
 
-/// Something that was claimed, found true or false as measured.
+/// A claim, found true or false as measured.
 struct Statement {
     std::string text;
     bool held = false;
@@ -62,7 +62,7 @@ struct Series {
 struct Plot {
     std::string id;
     std::string title;
-    std::string x, y; ///< what the axes show, with units
+    std::string x, y; ///< the meaning of the axes, with units
     bool histogram = false;
     bool log_x = false, log_y = false;
     std::vector<Series> series;
@@ -75,20 +75,20 @@ struct Result {
     std::vector<Goal> goals = {};
     std::vector<Statement> statements = {};
     std::vector<Plot> plots = {};
-    std::vector<std::string> notes = {}; ///< what could not be measured here, and why
+    std::vector<std::string> notes = {}; ///< measurements that were not possible here, and why
 
     /// Null: there is no such row.
     [[nodiscard]] const Row* find(std::string_view figure, std::string_view row) const;
     /// As JSON.
     [[nodiscard]] std::string text() const;
-    /// Empty: written. Otherwise why not.
+    /// Empty: written. Otherwise the reason why not.
     [[nodiscard]] std::string write(const std::string& path) const;
     /// As tables, with the ratio of each row to the first of ours.
     void print() const;
 };
 
-/// Or one sentence: the file is not there, empty or broken. A number that is no number (JSON's null) comes
-/// back as NaN: a goal with one is missed.
+/// Reads a result. Otherwise one sentence: the file is missing, empty or broken. JSON's null becomes NaN: a
+/// goal with one is missed.
 std::expected<Result, std::string> read_result(const std::string& path);
 
 /// Samples as a histogram of `bins` bins of equal width between the smallest and the quantile `upto`; the
@@ -96,11 +96,12 @@ std::expected<Result, std::string> read_result(const std::string& path);
 Series histogram(std::string name, Standing role, const Samples& samples, std::size_t bins = 100,
                  double upto = 1);
 
-/// As above, of positive samples, over all of them: each bin is so wide that `in_a_decade` of them make a
-/// factor of ten, so that a peak and a worst case far away from it are both seen. For a plot with log_x.
+/// As above, of positive samples, over all of them: `in_a_decade` bins make a factor of ten, so that both a
+/// peak and a distant worst case are visible. For a plot with log_x.
 Series log_histogram(std::string name, Standing role, const Samples& samples, int in_a_decade = 40);
 
-/// How many of each, drawn so that one is seen beside many; with `log_x` for log_histogram.
+/// The number of samples in each bin, drawn so that one is visible beside many; with `log_x` for
+/// log_histogram.
 Plot histogram_plot(std::string id, std::string title, std::string x, std::string y,
                     std::vector<Series> series, bool log_x = false);
 

@@ -1,4 +1,4 @@
-// A heap of measured values and what is told about it.
+// A set of measured values and its summary.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace tappet::figures {
 
-/// What a row of a figure says about its samples, in the figure's unit.
+/// The summary of a row's samples, in the figure's unit.
 struct Summary {
     double median = 0, mean = 0, p99 = 0, p999 = 0, max = 0;
     std::size_t count = 0;
 };
-/// Of what is known without measuring, or was found once.
+/// Summary of a value that is known without measuring, or was found once.
 constexpr Summary single(double value) { return {value, value, value, value, value, 1}; }
 
 class Samples {
@@ -29,9 +29,9 @@ public:
     }
     [[nodiscard]] std::size_t count() const { return values_.size(); }
     [[nodiscard]] bool empty() const { return values_.empty(); }
-    /// In no order that means something once a quantile was asked for.
+    /// The order is meaningless after quantile() was called.
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
-    /// The smallest value that at least the share `q` of them does not exceed; 0 of none.
+    /// The smallest value that at least the share `q` of the samples does not exceed; 0 without samples.
     [[nodiscard]] double quantile(double q) const {
         if (values_.empty()) return 0;
         sort();

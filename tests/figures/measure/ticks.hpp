@@ -1,5 +1,5 @@
-// The processor's time stamp counter: the cheapest clock there is, the same on every core of a machine with
-// an invariant one.
+// The processor's time stamp counter: the cheapest clock, the same on every core of a machine with an
+// invariant counter.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace tappet::figures {
 
-/// A time stamp; what stands before it in the program has been done, what stands after it has not begun.
+/// A time stamp; everything before it in the program has completed, nothing after it has begun.
 inline std::uint64_t ticks() noexcept {
     _mm_lfence();
     const std::uint64_t now = __rdtsc();
@@ -15,9 +15,9 @@ inline std::uint64_t ticks() noexcept {
     return now;
 }
 
-/// What one tick takes, in ns: measured once against CLOCK_MONOTONIC, over 50 ms.
+/// The length of one tick in ns: measured once against CLOCK_MONOTONIC, over 50 ms.
 double ns_per_tick();
-/// What reading the counter twice takes with nothing in between, in ticks: to be taken off each sample.
+/// The ticks between two immediate readings of the counter: subtract them from each sample.
 double ticks_of_reading();
 
 } // namespace tappet::figures

@@ -1,4 +1,4 @@
-// Asks Linux for quiet.
+// Asks Linux for an undisturbed processor.
 #include "tests/figures/measure/undisturbed.hpp"
 
 #include <chrono>
@@ -22,7 +22,7 @@ Undisturbed::Undisturbed(int processor) {
         if (pthread_setaffinity_np(pthread_self(), sizeof set, &set) != 0)
             refused_ += "processor " + std::to_string(processor) + " for a thread of its own; ";
     }
-    // One that spins without end is ended, and does not take the host's processors with it.
+    // Ends a thread that spins without end, before it blocks the host's processors.
     constexpr rlimit spins{.rlim_cur = 60'000'000, .rlim_max = RLIM_INFINITY}; // us
     if (setrlimit(RLIMIT_RTTIME, &spins) != 0) refused_ += "RLIMIT_RTTIME; ";
     sched_param parameters{};

@@ -1,23 +1,23 @@
-// A measuring thread that the rest of the machine disturbs as little as can be: a real-time priority, a
-// processor of its own, memory that stays, processors that do not sleep deeply.
+// A measuring thread with as little disturbance as possible: a real-time priority, a processor of its own,
+// locked memory, processors that do not sleep deeply.
 #pragma once
 
 #include <string>
 
 namespace tappet::figures {
 
-/// While it lives, the thread that made it runs so. What the system refuses is left as it was and told by
+/// While it exists, the thread that made it runs so. Refusals of the system change nothing and are listed by
 /// refused().
 class Undisturbed {
 public:
     static constexpr int priority = 60; ///< SCHED_FIFO
-    /// `processor`: where it runs; -1: anywhere.
+    /// `processor`: the one to run on; -1: any.
     explicit Undisturbed(int processor);
     ~Undisturbed();
     Undisturbed(const Undisturbed&) = delete;
     Undisturbed& operator=(const Undisturbed&) = delete;
 
-    /// What the system refused, for the notes of a result; empty: nothing.
+    /// The refusals of the system, for the notes of a result; empty: none.
     [[nodiscard]] const std::string& refused() const { return refused_; }
 
 private:
@@ -25,8 +25,8 @@ private:
     std::string refused_{};
 };
 
-/// Linux stops real-time threads that use more than 95 % of a second: a measuring thread that ran for so long
-/// rests a tenth of it.
+/// Linux stops real-time threads that use more than 95 % of a second: a measuring thread rests for a tenth of
+/// its busy time.
 void rest_after(double busy_ns);
 
 } // namespace tappet::figures

@@ -1,5 +1,5 @@
-// A machine that is configured and started, with its engines to be run by who measures; for programs that
-// link tappet_machine.
+// A machine that is configured and started, whose engines the measuring program runs; for programs that link
+// tappet_machine.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -15,7 +15,7 @@ namespace tappet::figures {
 inline constexpr Board figures_board{
     .name = "figures", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024};
 
-/// Nothing is measured of a machine that does not come to life: exits with 2 and the sentence.
+/// A machine that does not start gives no measurement: exits with 2 and the sentence.
 inline void exit_if(const Sentence& refusal) {
     if (refusal.empty()) return;
     std::cerr << refusal.view() << '\n';
@@ -25,7 +25,7 @@ inline void exit_if(const Sentence& refusal) {
 struct World {
     os::Clock clock;
     MachineInstance instance;
-    Duration configuring{}; ///< what that took
+    Duration configuring{}; ///< the time of the configuration
     World(os::Clock::Kind kind, const AcceptedMachine& machine) : clock{kind}, instance{machine, clock} {
         const Time begin = os::Clock::monotonic();
         const auto configured = instance.configure({});
@@ -37,7 +37,7 @@ struct World {
         }
     }
     Engine& engine() { return instance.engines()[0]; }
-    /// In virtual time, as its activities do it: when is it due, it is due, it runs.
+    /// As the activities do it, in virtual time: asks when an engine is due, waits, runs it.
     void run_all() {
         for (Engine& each : instance.engines()) {
             clock.advance_to(each.next_wake());

@@ -1,5 +1,5 @@
-// A cascade of three levels as a table with its control section, beside the same loop written by hand: place
-// commands speed, speed commands torque. Six axes of a robot, and one.
+// A cascade of three levels as a table with its control section, beside the same loop written by hand:
+// position commands speed, speed commands torque. Six axes of a robot, and one.
 #include "tests/figures/measure/world.hpp"
 #include "tests/figures/motion/cascade_laws.hpp"
 #include "tests/figures/motion/groups.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 using namespace cascade;
 
-/// Where the wires of a driver end.
+/// The end of a driver's wires.
 template <int n>
 struct Terminals {
     Input<Joints<n>> volts;
@@ -32,7 +32,7 @@ struct Terminals {
     }
 };
 
-/// The Generator of the outermost level: where the way leads.
+/// The Generator of the outermost level: the target of the motion.
 template <int n>
 struct Way {
     Input<Joints<n>> position;
@@ -58,7 +58,7 @@ struct Way {
     }
 };
 
-/// All others: what the law makes of one, two or three inputs.
+/// All others: the law of one, two or three inputs.
 template <int n, template <int> class Law, std::size_t count, class A = Joints<n>, class B = Joints<n>>
 struct Part {
     Input<A> a;
@@ -129,7 +129,8 @@ struct Cascade : World {
     }
 };
 
-/// As an activity does it in virtual time, where no stamps are taken: when is it due, it is due, it runs.
+/// As an activity does it in virtual time, where no stamps are taken: asks when the engine is due, waits,
+/// runs it.
 template <int n>
 void by_table(std::size_t times) {
     Cascade<n>& machine = Cascade<n>::get();
@@ -140,12 +141,12 @@ void by_table(std::size_t times) {
         engine.run(false);
     }
 }
-/// The same parts in real time, each timed in each cycle, woken instead of waiting for their period.
+/// The same parts in real time, each timed in each cycle, woken without waiting for their period.
 template <int n>
 struct Timed : World {
     os::Clock real{os::Clock::Kind::real};
     Engine timed{};
-    // Another table, so that the parts are none of the other machine.
+    // Another table, so that both machines have their own parts.
     static constexpr auto table = [] {
         auto renamed = cascade_table<n>;
         renamed.name = "cascade-timed";
@@ -155,7 +156,7 @@ struct Timed : World {
         EnginePlan plan = engine().plan();
         plan.periodic = false;
         plan.at_most_per = {};
-        plan.budget = {}; // a measurement that something interrupts breaks no claim
+        plan.budget = {}; // an interruption of the measurement must not break a claim
         timed.place(plan, real);
         timed.start(real.now());
     }
@@ -180,7 +181,7 @@ void by_hand(std::size_t times) {
         keep(loop.volts);
     }
 }
-/// As anybody does it: a reading of the system's clock at either end, and nothing for its parts.
+/// As an engineer would do it: a reading of the system's clock at either end, and none for its parts.
 template <int n>
 void by_hand_timed(std::size_t times) {
     static ByHand<n> loop;
@@ -222,7 +223,7 @@ Group group_of(std::string id, std::string title) {
 } // namespace
 
 void add_cascades(std::vector<Group>& groups) {
-    static_cast<void>(os::prove_processor_counter()); // as it is when the machine arms
+    static_cast<void>(os::prove_processor_counter()); // as when the machine arms
     groups.push_back(group_of<6>(
         "motion.cascade.robot",
         "a cycle of a cascade of three levels in ten components: flange, six axes, their torques"));

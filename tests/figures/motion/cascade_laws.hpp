@@ -1,5 +1,5 @@
-// What a cascade of three levels computes, law by law, and the loop that somebody writes of them by hand: one
-// function, no table. The components of cascade.cpp hold the same laws.
+// The computation of a cascade of three levels, law by law, and the same loop by hand: one function, no
+// table. The components of cascade.cpp hold the same laws.
 #pragma once
 
 #include "kernel/motion/dynamics.hpp"
@@ -44,7 +44,7 @@ Axes<n, Axis> all_axes(const Axis& one) {
     }(std::make_index_sequence<static_cast<std::size_t>(n)>{});
 }
 
-/// What encoders count while somebody moves the arm a little: no value comes twice in 64 cycles.
+/// Counts of the encoders while somebody moves the arm a little: no value comes twice in 64 cycles.
 template <int n>
 class Counters {
 public:
@@ -82,13 +82,13 @@ struct Observe {
         return velocity;
     }
 };
-/// What the outermost level leads: the flange of a robot; of one axis its place.
+/// The controlled quantity of the outermost level: the flange of a robot, or the position of one axis.
 template <int n>
 using Aim = std::conditional_t<n == 6, motion::FrameOf<Arm>, Joints<n>>;
 template <int n>
 using Speed = std::conditional_t<n == 6, motion::TwistOf<Arm>, Joints<n>>;
 
-/// To and fro on a jerk-limited way.
+/// A jerk-limited motion to and fro.
 template <int n>
 struct Travel {
     motion::Profile share =
@@ -113,7 +113,7 @@ struct Travel {
         }
     }
 };
-/// Proportional, and the speed of the way beforehand.
+/// A proportional controller with feed-forward of the speed.
 template <int n>
 struct Approach {
     Joints<n> operator()(const Aim<n>& target, const Speed<n>& speed,
@@ -159,7 +159,7 @@ struct Restrain {
         return within<n>(wanted, 20.0);
     }
 };
-/// Of the PUMA 560 with its drives; of one axis a mass with friction.
+/// The dynamics of the PUMA 560 with its drives, or of one axis: a mass with friction.
 template <int n>
 struct Load {
     Joints<n> operator()(const Joints<n>& position, const Joints<n>& velocity,

@@ -25,7 +25,7 @@ using robots::k361;
 using robots::puma_560;
 using robots::puma_560_links;
 
-/// Postures and motions in which no sine is foretold; KDL has them in its own form.
+/// Postures and motions without predictable sines; KDL has them in its own form.
 struct Given {
     std::array<Joints<6>, many> q, rates, accelerations;
     std::array<KDL::JntArray, many> kdl_q, kdl_rates, kdl_accelerations;
@@ -117,7 +117,7 @@ void all_postures(std::size_t times) {
         return closed_form(folded<puma_560_links>, at.targets[k], at.q[k]);
     });
 }
-constexpr double beside = 0.05; // of each joint from where it shall be, rad: some cycles of a fast motion
+constexpr double beside = 0.05; // distance of each joint from its target, rad: some cycles of a fast motion
 void by_least_squares(std::size_t times) {
     in_turn(times, [&at = given()](std::size_t k) {
         const Joints<6> from = at.q[k] + Joints<6>::Constant(beside);

@@ -1,4 +1,4 @@
-// What the program of the mathematics of motion is made of.
+// The groups of the program that measures the mathematics of motion.
 #pragma once
 
 #include "tests/figures/measure/candidates.hpp"
@@ -8,10 +8,10 @@
 
 namespace tappet::figures {
 
-/// So many different values are given, in turn: more than are foretold.
+/// The number of different inputs, used in turn: more than a processor can predict.
 inline constexpr std::size_t many = 64;
 inline std::size_t place = 0;
-/// Each operation makes something of the k-th of what is given.
+/// Each operation computes one value from the k-th input.
 template <class Make>
 void in_turn(std::size_t times, Make make) {
     for (std::size_t i = 0; i < times; ++i, ++place) {
@@ -29,12 +29,14 @@ void in_turn(std::size_t times, Make make) {
 void add_chains(std::vector<Group>& groups);
 /// A machine's cascade beside the same loop by hand.
 void add_cascades(std::vector<Group>& groups);
-/// Whether both put out the same, bit by bit, after as many cycles as the machine has been measured.
+/// Returns whether both outputs are the same, bit by bit, after as many cycles as the machine has been
+/// measured.
 bool cascades_are_the_same();
 /// Sines, trajectories, controllers and estimators.
 void add_loops(std::vector<Group>& groups);
 
-/// By how much ours and KDL differ at most over what is measured: frames and Jacobians (m, 1), torques (Nm).
+/// The largest differences between ours and KDL over the measured inputs: frames and Jacobians (m, 1),
+/// torques (Nm).
 struct Differences {
     double kinematics = 0;
     double torques = 0;

@@ -1,4 +1,4 @@
-// Sines, trajectories, controllers and estimators: what one axis asks for in a cycle.
+// Sines, trajectories, controllers and estimators: the calculations of one axis in a cycle.
 #include "tests/figures/motion/groups.hpp"
 
 #include "kernel/base/random.hpp"
@@ -49,7 +49,7 @@ void own_sine_alone(std::size_t times) { six(times, sine_cosine); }
 void musl_sine(std::size_t times) {
     six(times, [](double angle) { return SineCosine{std::sin(angle), std::cos(angle)}; });
 }
-/// The system's: this program's own is musl's, as that of a firmware.
+/// The host's glibc function: this program itself is linked with musl, as a firmware is.
 double (*of_glibc(const char* name))(double) {
     static void* const library = dlopen("libm.so.6", RTLD_NOW);
     return reinterpret_cast<double (*)(double)>(dlsym(library, name));

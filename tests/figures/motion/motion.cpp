@@ -1,5 +1,5 @@
-// What one cycle of six axes takes: kinematics, dynamics, inverses, trajectories and controllers, beside KDL;
-// a machine's whole cascade, beside the same loop by hand.
+// The cost of one cycle of six axes: kinematics, dynamics, inverses, trajectories and controllers, beside
+// KDL; a machine's whole cascade, beside the same loop by hand.
 #include "tests/figures/motion/groups.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tappet::figures {
 
 namespace {
 
-/// In nanoseconds, of the median of a row; nothing when it was not measured.
+/// In nanoseconds, of the median of a row; adds nothing when it was not measured.
 void add_goal(Result& result, const std::string& text, double ns, const std::string& figure,
               const std::string& row) {
     if (const Row* found = result.find(figure, row))

@@ -110,7 +110,7 @@ void* BareTicker::run(void* self) noexcept {
             clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
             clock_gettime(CLOCK_MONOTONIC, &now);
             at.block_.add(to_ns(now) - next);
-            if (to_ns(now) > next + at.period_ns_) // as ours: periods that were lost are not made up for
+            if (to_ns(now) > next + at.period_ns_) // as ours: lost periods are not made up for
                 next += (to_ns(now) - next) / at.period_ns_ * at.period_ns_;
         }
     }

@@ -14,7 +14,7 @@
 
 namespace tappet::figures::reaction {
 
-/// How late so many cycles in a row began.
+/// The lateness of the starts of that many cycles in a row.
 class TickBlock {
 public:
     static constexpr std::size_t capacity = 100;
@@ -36,15 +36,16 @@ private:
     std::atomic<std::size_t> count_{0};
 };
 
-/// When the last value came to the one who waited for it.
+/// The time at which the last value reached its receiver.
 class Arrival {
 public:
     void note(std::uint64_t value) noexcept TAPPET_REALTIME {
         at_ = ticks();
         value_.store(value, std::memory_order_release);
     }
-    /// In the sender, once `value` was sent at `begin`: the ticks it took; 0: it did not come within a
-    /// millisecond or so. A receiver on another processor is then left the time to fall asleep again.
+    /// Called by the sender after it sent `value` at `begin`. Returns the ticks until arrival; 0: it did not
+    /// arrive within a millisecond or so. Then it gives a receiver on another processor time to fall asleep
+    /// again.
     std::uint64_t wait_for(std::uint64_t value, std::uint64_t begin, bool is_far) const noexcept
         TAPPET_REALTIME {
         constexpr std::uint64_t patience = 3'000'000, falling_asleep = 60'000; // ticks
@@ -67,7 +68,7 @@ private:
 /// A thread of its own.
 class BareThread {
 public:
-    /// Why it was refused; empty: it runs.
+    /// The refusal; empty: it runs.
     const char* start(int processor, int priority, void* (*body)(void*), void* context) noexcept;
     void join() noexcept;
     ~BareThread() { join(); }
@@ -77,7 +78,7 @@ private:
     bool runs_ = false;
 };
 
-/// A word and a futex: nothing else lies between sender and receiver.
+/// A word and a futex, with nothing else between sender and receiver.
 class BareReceiver {
 public:
     const char* start(int processor, int priority) noexcept;

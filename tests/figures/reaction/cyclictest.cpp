@@ -1,4 +1,4 @@
-// Runs it and reads the histogram out of its JSON, in ns.
+// Runs it and reads the histogram from its JSON, in ns.
 #include "tests/figures/reaction/cyclictest.hpp"
 
 #include <nlohmann/json.hpp>
@@ -36,7 +36,7 @@ Outcome run_cyclictest(int processor, int priority, std::size_t period_us, std::
     for (const auto& [late, times] : read[bins].items())
         for (std::size_t i = 0; i < times.get<std::size_t>(); ++i)
             outcome.late_ns.add(std::atof(late.c_str()));
-    // Beyond the last bin it tells but how many there were, and the longest.
+    // Beyond the last bin it reports only their number and the longest.
     const std::size_t all = read.value(cycles, outcome.late_ns.count());
     while (outcome.late_ns.count() < all) outcome.late_ns.add(read.value(longest, 0.0));
     return outcome;

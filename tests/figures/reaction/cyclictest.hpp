@@ -10,10 +10,10 @@ namespace tappet::figures::reaction {
 
 struct Outcome {
     Samples late_ns{};
-    std::string why_not{}; ///< it could not be run; empty: it was
+    std::string why_not{}; ///< the reason why it could not run; empty: it ran
 };
 
-/// So many wake-ups of one thread under SCHED_FIFO.
+/// Runs that many wake-ups of one thread under SCHED_FIFO.
 [[nodiscard]] Outcome run_cyclictest(int processor, int priority, std::size_t period_us, std::size_t count);
 
 } // namespace tappet::figures::reaction

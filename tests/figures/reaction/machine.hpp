@@ -1,5 +1,5 @@
-// The machine whose reactions are measured: one periodic activity, and one that hands events over to an
-// activity on its own processor and to one on another.
+// The machine whose reactions are measured: one periodic activity, and one that sends events to an activity
+// on its own processor and to one on another.
 #pragma once
 
 #include "kernel/base/random.hpp"
@@ -17,7 +17,7 @@ namespace tappet::figures::reaction {
 
 inline constexpr Duration period = 500us;
 
-/// Notes how late its cycles begin. It reads the clock itself, so that all that the framework does before a
+/// Records the lateness of its cycles. It reads the clock itself, so that all work of the framework before a
 /// component counts.
 struct Ticker {
     TickBlock block;
@@ -27,7 +27,7 @@ struct Ticker {
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 
-/// Its operation is what an event reaches.
+/// Its operation is the target of the event.
 struct Receiver {
     Arrival arrival;
     void take(std::uint64_t value) noexcept TAPPET_REALTIME { arrival.note(value); }
@@ -36,8 +36,8 @@ struct Receiver {
     }
 };
 
-/// In each cycle it is asked for, hands over so many values: each once by its event and once barely, in an
-/// order drawn by chance.
+/// In each requested cycle it sends that many values: each once by its event and once by the bare program, in
+/// a random order.
 struct Sender {
     static constexpr std::size_t pairs_in_cycle = 8;
     enum class Reach : std::uint8_t { none, near, far };
@@ -50,8 +50,8 @@ struct Sender {
         BareReceiver* bare = nullptr;
     };
     Route to_near, to_far;                 ///< before the machine is armed
-    std::atomic<Reach> reach{Reach::none}; ///< asked for by the measuring thread; none again when done
-    std::array<std::uint64_t, pairs_in_cycle> took_ours{}, took_bare{}; ///< in ticks; 0: it never came
+    std::atomic<Reach> reach{Reach::none}; ///< set by the measuring thread; back to none when done
+    std::array<std::uint64_t, pairs_in_cycle> took_ours{}, took_bare{}; ///< in ticks; 0: it did not arrive
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         const Reach asked = reach.load(std::memory_order_acquire);

@@ -1,5 +1,5 @@
-// The reaction path on this machine: how late a periodic activity wakes, beside cyclictest's loop, and what
-// an event into another activity takes, beside a bare futex.
+// The reaction path on this machine: the lateness of a periodic activity, beside cyclictest's loop, and the
+// time of an event into another activity, beside a bare futex.
 #include "kernel/machine/accept.hpp"
 #include "kernel/machine/worlds/real_world.hpp"
 #include "kernel/os/sleep.hpp"
@@ -16,7 +16,8 @@ namespace tappet::figures::reaction {
 namespace {
 
 constexpr double margin = 0.05;
-constexpr std::size_t warming = 4; ///< cycles of a block that are left out: both sides have just been started
+constexpr std::size_t warming = 4; ///< first cycles of a block, left out because both sides have just been
+                                   ///< started
 
 constinit os::Clock machine_clock{os::Clock::Kind::real};
 
@@ -31,7 +32,7 @@ struct Rig {
     Sender& sender() { return *instance.find<Sender>("sender"); }
     int priority(std::size_t activity) { return instance.machine().plan.activities[activity].priority; }
 
-    /// Everything runs afterwards; else why not.
+    /// Starts everything. Empty: it runs; else the reason why not.
     std::string start() {
         if (const auto configured = instance.configure({}); !configured)
             return std::string{configured.error().view()};
@@ -90,7 +91,7 @@ void measure_periodic(Rig& rig, const Options& options, Result& result) {
         static_cast<std::size_t>(options.setting == "smoke" ? 2 : 220 * options.scale()));
     for (PairOfBlocks& pair : pairs) {
         const bool bare_first = random.below(2) == 0;
-        // Where the blocks lie against the kernel's tick is left to chance.
+        // The phase of the blocks against the kernel's tick is random.
         os::sleep_for(Duration{random.between(0, 4'000'000)});
         if (bare_first) pair.theirs = tick_bare(rig);
         os::sleep_for(Duration{random.between(0, 4'000'000)});

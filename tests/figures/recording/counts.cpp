@@ -1,6 +1,6 @@
 // Counts instructions under callgrind: of a cycle that writes a hundred ports, recorded and not.
 //     recording_counts          started by the test: starts valgrind on itself, once for each form
-//     recording_counts FORM     runs that form's cycles, of which the last 100 are measured
+//     recording_counts FORM     runs that form's cycles and measures the last 100
 #include "kernel/machine/accept.hpp"
 #include "tests/figures/measure/callgrind.hpp"
 #include "tests/figures/recording/machine.hpp"
@@ -47,7 +47,8 @@ int drive_form(std::string_view form) {
 
 int main(int words, char** word) {
     if (words == 2) return drive_form(word[1]);
-    /// Room for each port over the copy itself: is it due, its number and its value, each with their places.
+    /// The bound for each port, beyond the copy itself: the check whether it is due, its number and its value
+    /// with their places.
     constexpr double most_a_port = 40;
     const auto count = [&](const char* form) { return count_measured(word[0], form, form) / measured; };
     const double without = count("without");

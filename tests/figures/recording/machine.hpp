@@ -6,7 +6,7 @@
 
 namespace tappet::figures {
 
-/// Ten of the hundred ports. Each has another value in each cycle, or the same.
+/// Ten of the hundred ports. In each cycle all values change, or none.
 struct Bank {
     static inline bool moves = true;
     double value = 0.0;

@@ -1,5 +1,5 @@
-// What recording values costs the machine that is recorded: a step that writes a hundred ports, with them on
-// its tape and without.
+// The cost of recording values for the recorded machine: a step that writes a hundred ports, with and without
+// them on its tape.
 #include "kernel/machine/accept.hpp"
 #include "tests/figures/measure/world.hpp"
 #include "tests/figures/recording/machine.hpp"
@@ -11,7 +11,7 @@ namespace tappet::figures {
 
 namespace {
 
-/// As its activity does it in each period, by a clock that costs nothing and is there at once.
+/// As its activity does it in each period, with a clock that costs nothing and never waits.
 template <const auto& table> void step(std::size_t times) {
     static World world{os::Clock::Kind::virtual_time, AtRunTime<table, figures_board>::machine()};
     Engine& engine = world.engine();
@@ -32,7 +32,7 @@ std::vector<Group> groups() {
               {"no reporting in the table", Standing::floor, &step<silent>}}}};
 }
 
-/// Of the medians of the same run.
+/// Compares the medians of the same run.
 void add_statement(Result& result) {
     constexpr double period_ns = 1e6;
     const Row* recorded = result.find("recording.step.100", "each port in each step");

@@ -1,4 +1,4 @@
-// Paired ratios, so that what the machine does in a round meets both commits.
+// Paired ratios, so that a disturbance in a round affects both commits.
 #include "tests/figures/report/compare.hpp"
 
 #include "tests/figures/report/text.hpp"
@@ -13,14 +13,14 @@ namespace tappet::figures {
 
 namespace {
 
-/// Student's t, two-sided 99 %, of 1 to 20 degrees of freedom; further ones take the last, which is larger
-/// than theirs.
+/// Student's t, two-sided 99 %, of 1 to 20 degrees of freedom; more degrees use the last value, which is
+/// larger than theirs.
 constexpr std::array student{63.657, 9.925, 5.841, 4.604, 4.032, 3.707, 3.499, 3.355, 3.250, 3.169,
                              3.106,  3.055, 3.012, 2.977, 2.947, 2.921, 2.898, 2.878, 2.861, 2.845};
 
 struct Pairs {
     Standing role = Standing::ours;
-    std::size_t before = 0, after = 0; ///< rounds that have it
+    std::size_t before = 0, after = 0; ///< rounds that contain it
     std::vector<double> ratios = {};
     std::optional<double> instructions_before = {}, instructions_after = {};
 };
@@ -125,7 +125,7 @@ std::string comparison_text(const Comparison& comparison, const std::string& bef
         rounds = std::max(rounds, change.rounds);
     }
     std::string counted;
-    constexpr double least = 0.005; // of the instructions; less is the loop's own rest
+    constexpr double least = 0.005; // of the instructions; smaller changes are the loop's own
     for (const Change& change : comparison.changes) {
         if (change.verdict != Verdict::same || change.role != Standing::ours) continue;
         if (!change.instructions_before || !change.instructions_after) continue;

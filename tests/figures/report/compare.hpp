@@ -9,7 +9,7 @@
 
 namespace tappet::figures {
 
-/// What all programs of both commits told in one round, run right after one another.
+/// The results of all programs of both commits in one round, run right after one another.
 struct Round {
     std::vector<Result> before;
     std::vector<Result> after;
@@ -31,25 +31,26 @@ struct Change {
 struct Comparison {
     std::vector<Change> changes;       ///< rows that both commits have
     std::vector<std::string> only_one; ///< "only before: exchange.local.160, ours"
-    double noise = 0; ///< what floors and peers changed by, at their 95 % quantile, though they are the same
-                      ///< code in both
+    double noise = 0; ///< the 95 % quantile of the changes of floors and peers, although their code is the
+                      ///< same in both
     double margin = 0;
-    /// Less than this is no change: 0.05 is 5 %.
+    /// The smallest ratio that counts as a change: 0.05 is 5 %.
     [[nodiscard]] double threshold() const { return noise > margin ? noise : margin; }
     [[nodiscard]] bool slower() const;
 };
 
-/// Ours is slower when the interval lies above 1 and the ratio above 1 + threshold(); faster likewise.
+/// Ours is slower when the interval lies above 1 and the ratio above 1 + threshold(); faster is defined the
+/// same way.
 Comparison compare(const std::vector<Round>& rounds, double margin);
 
-/// The mean of logarithms with its 99 % interval by Student's t, as factors: {mean, low, high}. Of one value:
-/// an interval from 0 to infinity.
+/// The mean of logarithms with its 99 % interval by Student's t, as factors: {mean, low, high}. A single
+/// value has an interval from 0 to infinity.
 struct Interval {
     double mean, low, high;
 };
 Interval mean_of_ratios(const std::vector<double>& ratios);
 
-/// As text: what is slower, what is faster, how many are the same.
+/// As text: the slower and the faster rows, and the number of unchanged ones.
 std::string comparison_text(const Comparison& comparison, const std::string& before,
                             const std::string& after);
 

@@ -83,7 +83,7 @@ int run_all(const ReportOptions& options, const std::vector<Program>& programs) 
     return write_report(run, options.output);
 }
 
-/// One round of one build, the programs in turn with those of the other.
+/// Runs the programs of both builds alternately, round by round.
 int compare_builds(const ReportOptions& options, const std::vector<Program>& now) {
     const auto found = find_programs(options.against);
     if (!found) return refuse(found.error(), not_run);

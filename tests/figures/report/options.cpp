@@ -1,4 +1,4 @@
-// Options as a table: a word, and where its value goes.
+// Options as a table: a word, and the destination of its value.
 #include "tests/figures/report/options.hpp"
 
 #include <charconv>

@@ -1,4 +1,4 @@
-// What ci/figures tells the report.
+// The options that ci/figures passes to the report.
 #pragma once
 
 #include <expected>
@@ -15,12 +15,12 @@ struct ReportOptions {
     std::vector<std::string> only = {};
     std::string setting = "short"; ///< --long, --brief, --smoke
     bool counts = true;            ///< --no-counts
-    double limit = 0;              ///< --limit SECONDS of each program; 0: as the setting has it
+    double limit = 0;              ///< --limit SECONDS of each program; 0: depends on the setting
     std::size_t rounds = 6;        ///< --rounds N
     double margin_percent = 5;     ///< --margin PERCENT
 };
 
-/// Or one sentence: which word is wrong, and which there are.
+/// Otherwise one sentence: the wrong word, and the valid ones.
 std::expected<ReportOptions, std::string> read_report_options(const std::vector<std::string>& words);
 
 } // namespace tappet::figures

@@ -15,10 +15,10 @@ namespace tappet::figures {
 
 namespace {
 
-/// A machine of which more than this of fixed work's time varies is called restless.
+/// A machine is called restless when the time of its fixed work varies by more than this.
 constexpr double quiet_percent = 2;
 
-/// Programs in the order of the sections; what has none comes last.
+/// Programs in the order of the sections; those without a section come last.
 std::vector<const ProgramRun*> in_order(const Run& run) {
     std::vector<const ProgramRun*> programs;
     for (const ProgramRun& program : run.programs) programs.push_back(&program);

@@ -1,4 +1,4 @@
-// One run as one page that needs nothing beside itself: no network, no script, no file.
+// One run as a self-contained page: no network, no script, no other file.
 #pragma once
 
 #include "tests/figures/report/run.hpp"
@@ -7,10 +7,10 @@
 
 namespace tappet::figures {
 
-/// The page's text. gnuplot's files stand in `folder`; when it draws nothing the page says so.
+/// Returns the page's text. gnuplot's files are in `folder`; when it draws nothing, the page says so.
 std::string page(const Run& run, const std::string& folder);
 
-/// The same in short, for a terminal.
+/// A short version for a terminal.
 std::string summary_text(const Run& run);
 
 } // namespace tappet::figures

@@ -1,4 +1,4 @@
-// Writes gnuplot's script with the data in it, and takes what is a document out of the SVG.
+// Writes gnuplot's script with the data in it, and removes the document's parts from the SVG.
 #include "tests/figures/report/plots.hpp"
 
 #include "tests/figures/report/text.hpp"
@@ -15,7 +15,7 @@ namespace tappet::figures {
 
 namespace {
 
-/// To be told apart on white and on black.
+/// Distinguishable on white and on black.
 constexpr std::array ours_colours{"#2b7de0", "#12a594", "#8e5cd9", "#d6409f", "#3f9142", "#0894b3"};
 constexpr std::array peer_colours{"#e5832a", "#d9484f", "#b8860b", "#a0674b", "#c2577a", "#96772b"};
 constexpr std::array floor_colours{"#8a9099", "#6f7a88", "#a4a9b0", "#5f6b7a"};
@@ -43,11 +43,11 @@ std::vector<std::pair<double, double>> drawable(const Plot& plot, const Series& 
         if (!std::isfinite(x) || !std::isfinite(y) || (plot.log_x && x <= 0)) continue;
         if (plot.log_y && y <= 0) {
             if (!plot.histogram) continue;
-            y = 0.5; // an empty bin stands below the bins of one
+            y = 0.5; // an empty bin is drawn below the bins of one
         }
         points.emplace_back(x, y);
     }
-    if (plot.histogram && !points.empty()) { // the last bin ends as far on as the one before it
+    if (plot.histogram && !points.empty()) { // the last bin is as wide as the one before it
         const std::size_t n = points.size();
         const double width = n > 1 ? points[n - 1].first - points[n - 2].first : 1;
         points.emplace_back(points.back().first + width, points.back().second);
@@ -55,7 +55,7 @@ std::vector<std::pair<double, double>> drawable(const Plot& plot, const Series& 
     return points;
 }
 
-/// Large numbers as 1.5k and 2.0M: their digits would run into each other.
+/// Large numbers as 1.5k and 2.0M: long digits would overlap.
 const char* format_of(const Plot& plot, int axis) {
     constexpr double many_digits = 1e5;
     for (const Series& series : plot.series)

@@ -1,4 +1,4 @@
-// Plots, drawn by gnuplot as SVG that stands inside a page.
+// Plots, drawn by gnuplot as SVG inside a page.
 #pragma once
 
 #include "tests/figures/measure/result.hpp"
@@ -9,14 +9,14 @@
 
 namespace tappet::figures {
 
-/// What gnuplot is told for one plot, writing to `file`. `name` is unique on the page.
+/// The script of gnuplot for one plot, which writes `file`. `name` is unique on the page.
 std::string gnuplot_script(const Plot& plot, const std::string& name, const std::string& file);
 
-/// The SVG as an element: without prologue, with the page's own colour where gnuplot drew in black.
+/// The SVG as an element: without prologue, and with the page's own colour instead of gnuplot's black.
 std::string as_element(const std::string& svg, const std::string& title);
 
-/// One element for each plot, drawn in one start of gnuplot, with its files in `folder`. An empty one for a
-/// plot without a point. Or one sentence: why nothing was drawn.
+/// One element for each plot, drawn in one run of gnuplot, with its files in `folder`. A plot without a point
+/// gives an empty one. Otherwise one sentence: the reason why nothing was drawn.
 std::expected<std::vector<std::string>, std::string> draw(const std::vector<const Plot*>& plots,
                                                           const std::string& folder);
 

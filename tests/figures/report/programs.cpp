@@ -1,4 +1,4 @@
-// Children in process groups of their own, so that one that hangs ends with all that it started.
+// Children in process groups of their own, so that a hung one is killed with all its children.
 #include "tests/figures/report/programs.hpp"
 
 #include "tests/figures/report/surroundings.hpp"
@@ -38,7 +38,7 @@ std::string end_of(const std::string& log) {
     return text;
 }
 
-/// What it ended with, as waitpid tells it; -1: it was ended for want of time.
+/// The status from waitpid; -1: it was killed at its time limit.
 int run_child(std::vector<std::string> words, const std::string& log, double seconds_at_most) {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());

@@ -1,4 +1,4 @@
-// One run of figures: which machine it was, what disturbed it, and what each program found out.
+// One run of figures: the host, its disturbances, and the result of each program.
 #pragma once
 
 #include "tests/figures/measure/result.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::figures {
 
-/// What happened on the machine during a span, of all its processors together.
+/// The use of the host during a span, by all its processors together.
 struct Usage {
     double seconds = 0;
     double busy_percent = 0;  ///< of all processors
@@ -18,12 +18,12 @@ struct Usage {
     double interrupts_per_second = 0;
 };
 
-/// The same work again and again on one undisturbed processor, and a look at the clock without pause.
+/// The same work repeated on one undisturbed processor, and continuous readings of the clock.
 struct Noise {
     double work_us = 0;         ///< median of the fixed work
     double spread_percent = 0;  ///< its p99 above its median
     double worst_percent = 0;   ///< its longest above its median
-    double gaps_per_second = 0; ///< pauses longer than 1 us that nobody asked for
+    double gaps_per_second = 0; ///< unrequested pauses longer than 1 us
     double longest_gap_us = 0;
     double lost_percent = 0; ///< of the time, in those pauses
 };
@@ -39,15 +39,15 @@ struct ProgramRun {
 };
 
 struct Run {
-    std::string commit; ///< with "and changes" when the tree held some
+    std::string commit; ///< with "and changes" when the tree has uncommitted ones
     std::string when;
     std::string setting;
-    std::vector<std::pair<std::string, std::string>> machine = {}; ///< what, value
+    std::vector<std::pair<std::string, std::string>> machine = {}; ///< name, value
     Noise before = {};
     std::vector<ProgramRun> programs = {};
 };
 
-/// As one JSON, for archives.
+/// As one JSON text, for archives.
 std::string merged(const Run& run);
 
 /// How many goals and statements of a run were held.

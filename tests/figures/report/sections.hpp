@@ -1,4 +1,4 @@
-// What a reader is told about each program of figures before its numbers.
+// Text for the reader about each program of figures, before its numbers.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ struct Section {
     std::string_view about;
 };
 
-/// In the page's order; a program that is not among them follows with its own name.
+/// In the page's order; a program without a section follows under its own name.
 // clang-format off
 inline constexpr std::array sections{
     Section{"reaction", "Reaction: from the stimulus to what it causes",

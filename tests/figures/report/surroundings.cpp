@@ -1,4 +1,4 @@
-// Reads /proc and /sys, and works without pause to see what interrupts it.
+// Reads /proc and /sys, and works without pause to find interruptions.
 #include "tests/figures/report/surroundings.hpp"
 
 #include "tests/figures/measure/ticks.hpp"
@@ -20,7 +20,7 @@ namespace tappet::figures {
 
 namespace {
 
-/// Of a file; empty when it is not there or has none.
+/// The first line of a file; empty when the file is missing or empty.
 std::string first_line(const std::string& path) {
     std::ifstream file{path};
     std::string line;
@@ -86,7 +86,7 @@ std::string power() {
                                                             : ", no latency lock");
 }
 
-/// The multiplications of one block depend on each other: its time knows neither caches nor memory.
+/// The multiplications of one block depend on each other: caches and memory do not affect its time.
 void fixed_work() noexcept {
     std::uint64_t value = 0x9E3779B97F4A7C15;
     for (int i = 0; i < 20000; ++i) {
@@ -164,7 +164,8 @@ Noise measure_noise(int processor, double seconds) {
     const Undisturbed quiet{processor};
     Samples work;
     Pauses pauses;
-    // Half of it works, half looks, in spans short enough for the throttling of real-time threads.
+    // Half of the time it works, half it reads the clock, in spans short enough for the throttling of
+    // real-time threads.
     constexpr double span_ns = 50e6;
     for (double spent = 0; spent < seconds * 1e9; spent += 2 * span_ns) {
         fixed_work();

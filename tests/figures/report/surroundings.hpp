@@ -1,22 +1,22 @@
-// The machine that the figures were taken on, and what disturbs a measurement there.
+// The host of the figures, and the disturbances of a measurement there.
 #pragma once
 
 #include "tests/figures/report/run.hpp"
 
 namespace tappet::figures {
 
-/// Processor, caches, memory, kernel, clock, power management, isolation, compilers: what, value.
+/// Processor, caches, memory, kernel, clock, power management, isolation, compilers: name, value.
 std::vector<std::pair<std::string, std::string>> describe_machine();
 
-/// Of the tree that it is started in; "unknown" outside a repository.
+/// The commit of the tree in the working directory; "unknown" outside a repository.
 std::string commit_of_tree();
 /// Local time as ISO 8601.
 std::string local_time();
 
-/// Takes so many seconds on that processor.
+/// Measures for that many seconds on that processor.
 Noise measure_noise(int processor, double seconds);
 
-/// What happens from here on until usage().
+/// Measures the use of the host from here on until usage().
 class Meter {
 public:
     Meter();

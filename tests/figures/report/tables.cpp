@@ -14,7 +14,7 @@ std::string bar(const Goal& goal) {
     return "<span class=\"bar" + std::string{goal.held() ? "" : " over"} +
            "\"><i style=\"width:" + std::to_string(static_cast<int>(width)) + "%\"></i><u></u></span>";
 }
-/// What a goal was calculated of; the figure's id that it begins with leads there.
+/// The figures that a goal was calculated from, with a link to the one whose id it begins with.
 std::string linked(const std::string& detail, const Run& run) {
     for (const ProgramRun& program : run.programs)
         for (const Figure& figure : program.result.figures)
@@ -25,11 +25,11 @@ std::string linked(const std::string& detail, const Run& run) {
     return escaped(detail);
 }
 
-/// Which columns a figure has.
+/// The columns of a figure.
 struct Columns {
-    bool spread;  ///< more was measured than one value
+    bool spread;  ///< at least one row has several values
     bool counted; ///< instructions
-    bool ours;    ///< floors or peers stand beside it
+    bool ours;    ///< it has floors or peers to compare with
     explicit Columns(const Figure& figure)
         : spread{std::ranges::any_of(figure.rows, [](const Row& row) { return row.summary.count > 1; })},
           counted{
@@ -45,7 +45,7 @@ struct Columns {
     }
 };
 
-/// The line below a row of ours: what it takes beside each floor and each peer.
+/// The line below a row of ours: its ratio to each floor and each peer.
 std::string ratios(const std::vector<Beside>& others, const Columns& columns) {
     std::string line;
     for (const Beside& other : others) {

@@ -1,4 +1,4 @@
-// The pieces of the page that stand in rows and columns.
+// The parts of the page in rows and columns.
 #pragma once
 
 #include "tests/figures/report/run.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet::figures {
 
-/// `<name attributes>inside</name>`; what stands inside has been escaped.
+/// `<name attributes>inside</name>`; `inside` is already escaped.
 inline std::string element(const std::string& name, const std::string& inside,
                            const std::string& attributes = {}) {
     return "<" + name + (attributes.empty() ? "" : " " + attributes) + ">" + inside + "</" + name + ">";
@@ -16,11 +16,11 @@ inline std::string element(const std::string& name, const std::string& inside,
 /// A number in a row.
 inline std::string cell(double value) { return element("td", number_text(value)); }
 
-/// One goal in five cells; its detail leads to the figure that it names.
+/// One goal in five cells; its detail links to the figure that it names.
 std::string goal_row(const Goal& goal, const Run& run);
-/// All of a program; empty when it has none.
+/// All statements of a program; empty: it has none.
 std::string statements(const Result& result);
-/// All figures of a program; many of them are folded by what their ids begin with.
+/// All figures of a program; many of them are grouped by the prefix of their ids.
 std::string tables(const Result& result);
 
 } // namespace tappet::figures

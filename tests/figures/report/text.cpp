@@ -41,7 +41,7 @@ std::string quantity(double value, const std::string& unit) {
 
 namespace {
 
-/// What stands before the first comma.
+/// The part before the first comma.
 std::string key_of(const Row& row) { return row.name.substr(0, row.name.find(',')); }
 
 } // namespace

@@ -1,4 +1,4 @@
-// fork, exec and wait4, which tells what a child took.
+// fork, exec and wait4, which reports the resources of a child.
 #include "tests/figures/scale/child.hpp"
 
 #include <cstdlib>
@@ -36,7 +36,7 @@ std::string end_of(const std::string& file) {
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
-    ::setenv("CCACHE_DISABLE", "1", 1); // what was compiled before shall be compiled again
+    ::setenv("CCACHE_DISABLE", "1", 1); // a cached compilation must run again
     ::execvp(arguments.front(), arguments.data());
     ::_exit(127);
 }

@@ -1,4 +1,4 @@
-// Another program, run to its end, and what it took.
+// Another program, run to its end, and the resources that it used.
 #pragma once
 
 #include <expected>
@@ -14,7 +14,7 @@ struct Used {
 };
 
 /// `words`: the program, found along PATH, and its arguments. Its output goes to `log`. Otherwise one
-/// sentence, with the last lines it said.
+/// sentence, with the last lines of the output.
 std::expected<Used, std::string> run_child(const std::vector<std::string>& words, const std::string& log);
 
 } // namespace tappet::figures

@@ -59,7 +59,7 @@ struct Unit$ {
 )";
 
 constexpr std::size_t most_types = 20;
-constexpr std::size_t most_activities = 62; // a table may have 63; one is left for whoever looks on
+constexpr std::size_t most_activities = 62; // a table may have 63; one is left for a browser
 constexpr std::size_t usual_each = 10;
 constexpr std::size_t period_ms = 50;
 
@@ -120,7 +120,7 @@ private:
     void connect(std::size_t reader, const char* input, std::size_t from, const char* output,
                  const char* options, bool last) {
         const std::size_t writer = from % size_.components;
-        // Inside an activity what flows back, or round, flows a cycle later.
+        // Inside an activity, data that flows back, or in a ring, flows a cycle later.
         const bool back = activity_of(writer) == activity_of(reader) && writer >= reader;
         out_ << "        data(\"unit_" << writer << '.' << output << "\", \"unit_" << reader << '.' << input
              << '"' << options << (back ? ", delayed" : "") << ')' << end(last);

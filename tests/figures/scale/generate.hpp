@@ -1,4 +1,4 @@
-// Writes the source of a machine of any size: what it takes to compile, to hold and to run is a figure.
+// Writes the source of a machine of any size: the costs of compiling, holding and running it are figures.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@ namespace tappet::figures {
 struct MachineSize {
     std::size_t components = 10;
 
-    /// So many different component types at most: real machines are made of many of the same.
+    /// The largest number of different component types: real machines consist of many of the same.
     [[nodiscard]] std::size_t types() const;
     /// Ten components each, until there are as many activities as a table may have.
     [[nodiscard]] std::size_t activities() const;
     /// Each component has four inputs.
     [[nodiscard]] std::size_t connections() const { return 4 * components; }
-    /// Every second component's event is told to another one.
+    /// The event of every second component has a reaction in another one.
     [[nodiscard]] std::size_t reactions() const { return components / 2; }
 };
 

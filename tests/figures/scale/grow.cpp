@@ -1,4 +1,4 @@
-// Generates, compiles, links and runs machines, and draws what it takes over their size.
+// Generates, compiles, links and runs machines, and plots the costs over their size.
 #include "tests/figures/scale/scale.hpp"
 
 #include "tests/diagnostics/large_system.hpp"
@@ -25,11 +25,10 @@ using Fault = std::optional<std::string>;
 
 constexpr const char* clang = "clang++-22";
 
-/// From so many components on as many connections lead to other activities as in larger machines; 10 are one
-/// activity.
+/// From this size on the same share of connections leads to other activities; 10 components are one activity.
 constexpr std::size_t wired_alike = 50;
 
-/// What is measured of each size.
+/// The quantities that are measured for each size.
 enum class What : std::uint8_t {
     gcc_seconds,
     gcc_memory,
@@ -62,7 +61,7 @@ Row row_of(std::string name, Standing role, const Summary& summary, std::optiona
     return {.name = std::move(name), .role = role, .summary = summary, .instructions = instructions};
 }
 
-/// A folder of its own that goes with it.
+/// A temporary folder, removed with it.
 struct Workshop {
     std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("tappet-scale-" + std::to_string(::getpid()));
@@ -78,7 +77,7 @@ struct Workshop {
 
 void add(Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); }
 
-/// Which sizes are compiled by which compiler.
+/// The sizes for each compiler.
 struct Growth {
     std::vector<std::size_t> sizes;          ///< by the tree's own compiler, linked and run
     std::vector<std::size_t> sizes_of_clang; ///< compiled by clang as well
@@ -104,7 +103,7 @@ public:
         }
         report();
     }
-    /// One machine's firmware of a system: what each of its boxes waits for.
+    /// One machine's firmware of a system: the compile time that each of its boxes needs.
     void compile_system(const diagnostics::SystemSize& size) {
         const std::string source = shop_.file("system.cpp"), count = std::to_string(size.machines);
         const std::string title =
@@ -166,7 +165,7 @@ private:
         add(words, tools_.at("flags"));
         return words;
     }
-    /// The flags of that compiler's own tree; what only the other one knows is left out.
+    /// The flags of that compiler's own tree; flags that only the other compiler knows are left out.
     [[nodiscard]] Words clang_words() const {
         Words words{clang, "-fconstexpr-steps=2000000000", "-fconstexpr-depth=2000", "-Wfunction-effects",
                     "-Wno-c++26-extensions"};
@@ -226,7 +225,7 @@ private:
         return {};
     }
 
-    /// The same machine with real threads, as a static firmware.
+    /// Runs the same machine with real threads, as a static firmware.
     Fault arm(std::size_t size, const std::string& object) {
         const std::string program = shop_.file("real");
         if (Fault fault = link(object, "real", {"-static", "-s", "-Wl,--gc-sections", "-pthread"}, program))
@@ -323,9 +322,9 @@ void Growing::report_subject(const Subject& subject) {
     if (!plot.series.empty()) result_.plots.push_back(std::move(plot));
 }
 
-// What the engines take beyond the components' own work, which is what the bare loop takes; and the whole
-// step, beside that of the first machine whose connections lead to other activities as often: one activity
-// alone reads nothing from another.
+// The engines' cost beyond the components' own work, which the bare loop shows; and the whole step, beside
+// that of the first machine with the same share of connections to other activities: a single activity reads
+// nothing from another.
 void Growing::judge_step() {
     const auto judge = [this](std::size_t small, const char* goal, double limit,
                               double (*of)(std::map<What, Summary>&)) {

@@ -46,7 +46,7 @@ struct Frame {
     std::uint64_t lifted = 0;
 };
 
-/// Says with each of its cycles that the next pick begins.
+/// Announces the next pick in each of its cycles.
 struct Shaft {
     Event<std::uint32_t> pick;
     std::uint32_t picks = 0;
@@ -75,19 +75,19 @@ struct FrameHead {
     }
 };
 
-/// What stands at the hooks' magnets in the end.
+/// The final state of the hooks' magnets.
 struct Hooks {
     HookRow row{};
     std::uint64_t written = 0; ///< blocks of 64
 };
 
-/// A bus of the hook modules; what leaves here is on the wire.
+/// A bus of the hook modules; its output is on the wire.
 struct HookBus {
     BufferInput<Frame> frames;
     Hooks at_hooks;
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         Frame frame;
-        // As many as a pick has; a frame that comes meanwhile waits.
+        // As many as a pick has; a frame that arrives meanwhile waits.
         for (std::size_t i = 0; i < frames_of_bus && frames.pop(frame); ++i) {
             at_hooks.row.lifted[frame.module] = frame.lifted;
             ++at_hooks.written;
@@ -164,7 +164,7 @@ constexpr auto over_registers = machine("jacquard-registers",
     behaviours());
 // clang-format on
 
-/// The shaft tells the head, the head sends the row, the field writes it.
+/// The shaft notifies the head, the head sends the row, the field writes it.
 template <const auto& table>
 void picks_of(std::size_t times) {
     static World loom{os::Clock::Kind::virtual_time, AtRunTime<table, figures_board>::machine()};

@@ -1,4 +1,4 @@
-// What every generated machine is linked with: a main that starts it, runs its engines and writes a result.
+// The common main of every generated machine: it starts the machine, runs its engines and writes a result.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -8,7 +8,7 @@ namespace tappet::figures {
 /// The generated machine.
 AcceptedMachine accepted();
 
-/// Rows of a probe's result by which the program of figures knows them.
+/// Names of the rows of a probe's result, for the program of figures.
 inline constexpr const char* probe_engines = "engines";
 inline constexpr const char* probe_steps = "the same steps, called in a bare loop";
 

@@ -1,4 +1,4 @@
-// A generated machine as a static firmware: arms, runs for a moment, and tells when it was armed and when
+// A generated machine as a static firmware: arms, runs for a moment, and reports when it was armed and when
 // every activity had started.
 #include "tests/figures/scale/probe.hpp"
 
@@ -18,7 +18,7 @@ void tell(const char* what, Time when) {
     static_cast<void>(os::write_all(1, Sentence{what, " ", to_ns(when), "\n"}.view()));
 }
 
-/// A computer that compiles is no box; starting takes as long on it.
+/// A build host is not a box; starting takes as long on it.
 constexpr std::array<std::string_view, 2> only_warned{"realtime-kernel", "rt-throttling"};
 constinit os::Clock machine_clock{os::Clock::Kind::real};
 

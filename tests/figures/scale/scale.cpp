@@ -1,4 +1,4 @@
-// What size costs: machines of 10 to 1000 components, a system of ten machines, and a jacquard head of 12288
+// The cost of size: machines of 10 to 1000 components, a system of ten machines, and a jacquard head of 12288
 // hooks.
 #include "tests/figures/scale/scale.hpp"
 

@@ -1,5 +1,5 @@
-// What figures-scale measures: machines of several sizes, compiled by both compilers, linked, started and
-// run; a system; a jacquard head.
+// The measurements of figures-scale: machines of several sizes, compiled by both compilers, linked, started
+// and run; a system; a jacquard head.
 #pragma once
 
 #include "tests/figures/measure/candidates.hpp"
@@ -11,13 +11,13 @@
 
 namespace tappet::figures {
 
-/// How the tree that this program belongs to compiles and links: words by name, from the file CMake wrote.
+/// The compilers and flags of this program's tree: words by name, from the file that CMake wrote.
 using Toolset = std::map<std::string, std::vector<std::string>>;
 std::expected<Toolset, std::string> read_toolset(const std::string& file);
 
-/// Adds figures, plots and goals; what could not be done goes into the notes.
+/// Adds figures, plots and goals; the notes name impossible measurements.
 void measure_growth(const Options& options, const Toolset& tools, Result& result);
-/// Likewise, of compiling one machine of a system: ten on one wire, with a hundred rows across.
+/// Does the same for the compilation of one machine of a system: ten on one wire, with a hundred rows across.
 void measure_system(const Options& options, const Toolset& tools, Result& result);
 std::vector<Group> jacquard_groups();
 

@@ -1,5 +1,5 @@
-// Whether being read disturbs who writes: an engine's steps while another processor follows its tape cycle by
-// cycle, in turns with steps that nobody follows.
+// Whether a reader disturbs the writer: an engine's steps while another processor follows its tape cycle by
+// cycle, in turns with steps without a reader.
 #include "kernel/machine/accept.hpp"
 #include "tests/figures/measure/ticks.hpp"
 #include "tests/figures/measure/undisturbed.hpp"
@@ -20,8 +20,8 @@ constexpr std::size_t steps_each = 16; ///< in one sample
 constexpr std::size_t samples_each = 200;
 constexpr std::size_t turns = 60; ///< of the short setting, followed and not
 
-/// The other processor: reads whatever was published since it looked last, without a rest or each 100 us,
-/// which is a hundred times as often as the browser does.
+/// The other processor: reads all new records, either without a rest or every 100 us, which is a hundred
+/// times as often as the browser does.
 class Follower {
 public:
     enum class Manner : std::uint8_t { not_at_all, now_and_then, at_once };
@@ -82,8 +82,7 @@ void add_followed(const Options& options, Result& result) {
     for (std::size_t turn = 0; turn < all; ++turn)
         for (std::size_t manner = 0; manner < samples.size(); ++manner) {
             follower.follow(static_cast<Follower::Manner>(manner));
-            std::this_thread::sleep_for(
-                std::chrono::milliseconds{2}); // both rest, and the other one hears it
+            std::this_thread::sleep_for(std::chrono::milliseconds{2}); // both rest, and the other one notices
             const std::uint64_t before = follower.cycles();
             for (std::size_t i = 0; i < samples_each; ++i) {
                 const std::uint64_t begin = ticks();

@@ -1,4 +1,4 @@
-// The machines whose recording is measured: components that do as little as can be seen.
+// The machines whose recording is measured: their components do the smallest visible work.
 #pragma once
 
 #include "kernel/services/scope/thread_scope.hpp"
@@ -6,7 +6,7 @@
 
 namespace tappet::figures {
 
-/// As little as can be seen.
+/// The smallest visible work.
 struct Idle {
     std::uint64_t steps = 0;
     Event<> kicks;
@@ -33,7 +33,7 @@ inline constexpr auto ten_scoped = machine("ten",
     return *reinterpret_cast<scope::Directory*>(machine.memory.data() + machine.plan.scope_at);
 }
 
-/// A step while another processor reads each cycle off the tape at once, and while none does.
+/// A step while another processor reads each cycle off the tape at once, and one without a reader.
 void add_followed(const Options& options, Result& result);
 
 } // namespace tappet::figures

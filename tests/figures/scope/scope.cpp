@@ -1,4 +1,4 @@
-// What recording every cycle costs: an engine's step with the thread scope on, switched off and not in the
+// The cost of recording every cycle: an engine's step with the thread scope on, switched off and not in the
 // table at all, beside the time stamps that the engine takes anyway (thesis A.2.1).
 #include "kernel/machine/accept.hpp"
 #include "tests/figures/scope/machine.hpp"
@@ -32,7 +32,7 @@ constexpr auto one_timeless_scoped = one_scoped;
 constexpr auto looked_at = ten_scoped;
 // clang-format on
 
-/// As its activity does it each time that it is woken.
+/// As its activity does it at each wake-up.
 template <const auto& table, os::Clock::Kind kind, bool off = false>
 void step(std::size_t times) {
     static World world{kind, AtRunTime<table, figures_board>::machine()};
@@ -61,7 +61,7 @@ void plain_store(std::size_t times) {
     }
 }
 
-/// The background's share: what was done since it looked last is looked at, cycle by cycle.
+/// The background's share: it evaluates all new records, cycle by cycle.
 World& watched() {
     static World world{os::Clock::Kind::real, AtRunTime<looked_at, figures_board>::machine()};
     return world;
@@ -129,7 +129,7 @@ std::string ns(double value) {
     return text.data();
 }
 
-/// What follows from the medians of the same run.
+/// Compares the medians of the same run.
 void add_statements(Result& result) {
     const Row* recorded = result.find("scope.step.10", "recorded");
     const Row* off = result.find("scope.step.10", "recording switched off");

@@ -30,7 +30,7 @@ protected:
     Random random{static_cast<std::uint64_t>(::getpid())};
 };
 
-TEST_F(Equivalence, is_found_where_there_is_one_although_the_machine_drifts) {
+TEST_F(Equivalence, is_found_although_the_machine_drifts) {
     const Comparison found = compare(measured(random, 400, 1.0, 0.1), median, margin);
     EXPECT_EQ(found.verdict(), Verdict::equivalent) << found.low << " to " << found.high;
     EXPECT_GE(found.worst(), 1.0);
@@ -58,7 +58,7 @@ TEST_F(Equivalence, is_wrongly_found_at_the_margin_in_one_of_twenty_runs) {
     EXPECT_LT(wrong, runs * 3 / 20) << "one in twenty is ten; thirty would be more than chance";
 }
 
-TEST_F(Equivalence, of_the_tail_looks_at_the_tail) {
+TEST_F(Equivalence, is_judged_at_the_chosen_quantile) {
     std::vector<PairOfBlocks> all = measured(random, 400, 1.0, 0.05);
     for (PairOfBlocks& pair : all) pair.ours[random.below(pair.ours.size())] *= 3; // one in twenty is late
     EXPECT_EQ(compare(all, median, margin).verdict(), Verdict::equivalent);

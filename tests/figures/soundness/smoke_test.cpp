@@ -1,5 +1,5 @@
-// Each program of figures runs for a moment: its result is whole and sane, it stands beside its floors and
-// peers, and each claim is judged. What it measured is no test.
+// Each program of figures runs for a moment: its result is complete and sane, it contains its floors and
+// peers, and each claim is judged. The measured times are not tested.
 #include "tests/figures/measure/result.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::Contains;
 
-/// With --smoke and a file for its result; a test that fails says why.
+/// Runs it with --smoke and a file for its result; a failed test says why.
 Result run_smoke(const std::string& name) {
     const std::string program = TAPPET_FIGURES "/" + name + "/figures-" + name;
     const std::string file = testing::TempDir() + "figures-" + std::to_string(::getpid()) + ".json";
@@ -40,7 +40,7 @@ std::ptrdiff_t rows_of(const Figure& figure, Standing role) {
     return std::ranges::count(figure.rows, role, &Row::role);
 }
 
-/// Each figure has a row of ours and something beside it, each with samples that are in order.
+/// Each figure has a row of ours and another one beside it, each with ordered samples.
 void expect_sound(const Result& result) {
     for (const Figure& figure : result.figures) {
         EXPECT_GE(figure.rows.size(), 2u) << figure.id;
@@ -60,17 +60,16 @@ void expect_sound(const Result& result) {
     }
 }
 
-/// Programs that are nothing but figures with floors, goals and statements.
+/// Programs that contain only figures with floors, goals and statements.
 struct Program {
     const char* name;
-    std::vector<const char*> figures; ///< each of them stands beside a floor
+    std::vector<const char*> figures; ///< each of them has a floor
     std::size_t goals, statements;
 };
 class Figures : public testing::TestWithParam<Program> {};
 TEST_P(Figures, stand_beside_their_floors_and_judge_each_claim) {
     const Program& program = GetParam();
-    const Result result =
-        run_smoke(program.name); // fails where two things that are compared do not do the same
+    const Result result = run_smoke(program.name); // fails when two compared subjects do not do the same
     expect_sound(result);
     for (const char* id : program.figures) {
         const auto found = std::ranges::find(result.figures, id, &Figure::id);
@@ -145,7 +144,7 @@ TEST(ExperimentFigures, run_every_application_in_every_setting) {
 }
 
 #if defined(TAPPET_HAS_BENCH)
-TEST(BenchFigures, claim_nothing_where_nothing_was_booted) {
+TEST(BenchFigures, claim_nothing_when_nothing_was_booted) {
     const Result result = run_smoke("bench");
     EXPECT_EQ(result.program, "bench");
     EXPECT_TRUE(result.figures.empty());
@@ -154,7 +153,7 @@ TEST(BenchFigures, claim_nothing_where_nothing_was_booted) {
     EXPECT_EQ(result.notes.front(), "nothing was booted in this setting");
 }
 
-TEST(FirmwareFigures, without_a_boot_tell_the_size_alone) {
+TEST(FirmwareFigures, report_only_the_size_without_a_boot) {
     const Result result = run_smoke("firmware");
     expect_sound(result);
     ASSERT_EQ(result.figures.size(), 1u);
@@ -168,7 +167,7 @@ TEST(FirmwareFigures, without_a_boot_tell_the_size_alone) {
 }
 #endif
 
-TEST(FloorsFigures, are_whole_and_none_of_them_is_ours) {
+TEST(FloorsFigures, are_complete_and_contain_floors_only) {
     const Result result = run_smoke("floors");
     for (const Figure& figure : result.figures)
         for (const Row& row : figure.rows) {
@@ -190,7 +189,7 @@ TEST(FloorsFigures, are_whole_and_none_of_them_is_ours) {
     expect_less("floors.word", "release store", "exchange");
 }
 
-TEST(MotionFigures, are_whole_and_compare_what_is_the_same) {
+TEST(MotionFigures, are_complete_and_compare_equal_results) {
     const Result result = run_smoke("motion");
     expect_sound(result);
     EXPECT_EQ(ids_of(result.figures),

@@ -1,4 +1,4 @@
-// Nothing of it knows a table: identifiers and places of bits are in the code.
+// No table: identifiers and positions of bits are in the code.
 #include "tests/figures/wire/bare.hpp"
 
 #include <cmath>

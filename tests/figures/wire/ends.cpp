@@ -1,4 +1,4 @@
-// The table of both, and how they come to know each other.
+// The table of both, and the start of their connection.
 #include "tests/figures/wire/ends.hpp"
 
 #include "drivers/system/station.hpp"
@@ -17,7 +17,7 @@ constexpr auto telling = machine("telling",
 constexpr auto hearing = machine("hearing",
     components(component<Hearer>("hearer")),
     activities(activity("hearing", every(5ms), runs("hearer"), budget(50us))), connections(), reactions(), behaviours());
-// Beats are seldom, so that what is measured is the rows.
+// Beats are rare, so that the rows dominate the measurement.
 constexpr auto two = tappet::system("two",
     nodes(node<telling>("a"), node<hearing>("b")),
     wire("wire", bit_rate(500'000), beats(100s), silent_after(1000s), served_within(1ms, budget(40us))),

@@ -1,5 +1,5 @@
-// Two machines and what crosses between them, each at its end of a wire of memory: their engines are run by
-// who measures, under one virtual clock.
+// Two machines and the rows across, each at its end of a wire in memory: the measuring program runs their
+// engines, under one virtual clock.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -8,11 +8,11 @@
 
 namespace tappet::figures {
 
-/// So long that what repeats of itself is not seen among the events.
+/// Long enough to keep repeated values out of the measurement of events.
 inline constexpr Duration value_period = 10s;
-/// A row's messages stand half of its time apart.
+/// Half of this lies between the messages of a row.
 inline constexpr Duration event_period = 40ms;
-/// How the level stands on the wire; the bare program has it so, too.
+/// The size of the level on the wire, also in the bare program.
 inline constexpr unsigned level_bits = 24;
 inline constexpr double level_step = 0.1;
 
@@ -46,12 +46,12 @@ struct Ends {
     Memory* to = nullptr;
     void (*advance)(Duration) = nullptr;
     Time (*now)() = nullptr;
-    /// Each hears what the other has sent, and answers; nothing is left on the way.
+    /// Each end processes all frames of the other, and answers; none is left.
     void (*exchange)() = nullptr;
     double (*hearer_level)() = nullptr;
     bool (*are_all_answered)() = nullptr; ///< the events
-    // The ends of the wire without their engines: as those call them.
-    void (*end_sends)() = nullptr;                     ///< what is due by the clock
+    // The ends of the wire without their engines, with the calls that the engines make.
+    void (*end_sends)() = nullptr;                     ///< sends the frames that are due by the clock
     void (*end_receives)(const can::Frame&) = nullptr; ///< a frame that the bus has taken
     bare::Identifiers identifiers{};
 };

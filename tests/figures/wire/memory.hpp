@@ -1,5 +1,5 @@
-// A controller without a wire: what one end sends lies in memory until somebody takes it to the other. Both
-// ours and the bare program use it.
+// A controller without a wire: the frames of one end stay in memory until the program carries them to the
+// other. Both ours and the bare program use it.
 #pragma once
 
 #include "drivers/can/device.hpp"
@@ -34,7 +34,7 @@ public:
 
     // ---- the other side
 
-    /// False: there is none.
+    /// Returns false when there is none.
     bool fetch(can::Frame& frame) noexcept {
         if (fetched_ == sent) return false;
         frame = outbox_[fetched_++ % capacity];

@@ -1,5 +1,5 @@
-// What crosses from machine to machine on a CAN wire: a value told and heard, and an event with its answer,
-// beside a program that does the same by hand on the same device.
+// The cost of rows across a CAN wire: a value sent and received, and an event with its answer, beside a
+// program that does the same by hand on the same device.
 #include "tests/figures/measure/candidates.hpp"
 #include "tests/figures/wire/bare.hpp"
 #include "tests/figures/wire/ends.hpp"
@@ -30,7 +30,7 @@ void set_up_bare() {
     receiver.take = &take_bare;
 }
 
-// ---- a value is told
+// ---- sending a value
 
 void forget(Memory& memory) {
     for (can::Frame frame; memory.fetch(frame);) keep(frame);
@@ -42,7 +42,7 @@ void set_level() {
     ends().teller->level.write(level);
     sender.level = level;
 }
-/// Each hears what the other has said meanwhile; none of it is left.
+/// Each end processes all pending frames of the other.
 void prepare(std::size_t) {
     set_level();
     ends().exchange();
@@ -66,15 +66,15 @@ void tell_bare(std::size_t times) {
         bare::send_level(sender, ends().now());
     }
 }
-/// What runs when nothing is to be done: of the same machine.
+/// The cost of a pass without work on the same machine.
 void tell_nothing(std::size_t times) {
     for (std::size_t i = 0; i < times; ++i) ends().sends->run(true);
 }
 
-// ---- a value is heard
+// ---- receiving a value
 
 std::array<can::Frame, batch> told, bare_told;
-/// So many frames with a value each lie ready; what else was sent is with the other machine.
+/// Prepares that many frames with a value each; all other frames go to the other machine.
 void prepare_hear(std::size_t times) {
     prepare(times);
     for (std::size_t i = 0; i < times; ++i) {
@@ -139,7 +139,8 @@ void event_bare(std::size_t times) {
     }
 }
 
-/// Whether both do what is measured, and the same: else nothing is.
+/// Returns a failure of either or a difference between both, with which nothing is measured; null: there is
+/// none.
 const char* fault() {
     const Ends& all = ends();
     prepare_hear(2);
@@ -147,7 +148,7 @@ const char* fault() {
         const std::size_t length = told[i].length;
         if (length == 0 || length != bare_told[i].length || told[i].id != bare_told[i].id)
             return "the frames of a value differ";
-        // The checksum and the counter go on; the valid bit and the value stand behind them.
+        // The checksum and the counter change; the valid bit and the value follow them.
         for (std::size_t byte = 2; byte < length; ++byte)
             if (told[i].data[byte] != bare_told[i].data[byte]) return "a value stands otherwise in a frame";
     }

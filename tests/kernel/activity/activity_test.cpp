@@ -1,6 +1,6 @@
-// An activity in a thread of its own (thesis 4.2.2: lifetime and trigger semantics): inactive, started,
-// waiting, running, stopped and started again, on one thread that is kept; what the starter and the stopper
-// do is theirs. The components' states are asked for by several threads at once.
+// An activity in its own thread (thesis 4.2.2: lifetime and trigger semantics): it becomes inactive, started,
+// waiting, running, stopped and started again on one thread. The starter and the stopper run their own
+// functions. Several threads query component states at the same time.
 #include "kernel/activity/activity.hpp"
 
 #include "kernel/base/random.hpp"
@@ -20,7 +20,7 @@
 namespace tappet {
 namespace {
 
-/// Notes on whose thread each function of its life ran, and whether any ran out of turn.
+/// Notes which thread ran each life-cycle function, and whether any ran out of order.
 struct Worker {
     std::atomic<int> initialised{0}, started{0}, stepped{0}, stopped{0}, finalised{0};
     std::atomic<int> out_of_turn{0};
@@ -116,7 +116,7 @@ struct AnActivity : testing::Test {
     }
 };
 
-TEST_F(AnActivity, is_inactive_upon_its_creation_and_runs_nothing) {
+TEST_F(AnActivity, is_inactive_and_runs_nothing_after_its_creation) {
     os::sleep_for(20ms);
     EXPECT_EQ(activity.state(), Activity::State::inactive);
     EXPECT_FALSE(engine.is_active());
@@ -138,7 +138,7 @@ TEST_F(AnActivity, runs_start_cycles_and_stop_on_its_own_thread_and_nothing_else
     }
 }
 
-TEST_F(AnActivity, starts_again_as_often_as_one_likes_on_the_thread_that_it_has) {
+TEST_F(AnActivity, restarts_any_number_of_times_on_its_own_thread) {
     start();
     const pthread_t thread = workers[0].stepper;
     for (int n = 0; n < 50; ++n) {
@@ -157,7 +157,7 @@ TEST_F(AnActivity, starts_again_as_often_as_one_likes_on_the_thread_that_it_has)
     EXPECT_EQ(workers[2].out_of_turn, 0);
 }
 
-TEST_F(AnActivity, a_stop_before_any_start_and_a_second_stop_do_nothing) {
+TEST_F(AnActivity, ignores_a_stop_before_any_start_and_a_second_stop) {
     EXPECT_TRUE(stops_within(patience_ms));
     start();
     stop();
@@ -165,7 +165,7 @@ TEST_F(AnActivity, a_stop_before_any_start_and_a_second_stop_do_nothing) {
     EXPECT_EQ(workers[0].stopped, 1);
 }
 
-TEST_F(AnActivity, is_not_started_when_a_component_refuses_and_those_before_it_are_finalised) {
+TEST_F(AnActivity, finalises_earlier_components_when_one_refuses_and_does_not_start) {
     workers[1].refuses = true;
     EXPECT_EQ(engine.initialise().view(), "component \"worker\" could not be initialised: it will not");
     EXPECT_EQ(workers[0].finalised, 1);
@@ -178,7 +178,7 @@ TEST_F(AnActivity, is_not_started_when_a_component_refuses_and_those_before_it_a
     stop();
 }
 
-TEST_F(AnActivity, that_hangs_does_not_stop_and_one_that_was_given_up_runs_no_stop_when_it_comes_back) {
+TEST_F(AnActivity, never_runs_its_stop_after_it_hung_and_was_abandoned) {
     start();
     workers[0].hang = true;
     os::sleep_for(5ms);
@@ -188,13 +188,13 @@ TEST_F(AnActivity, that_hangs_does_not_stop_and_one_that_was_given_up_runs_no_st
     workers[0].hang = false;
     EXPECT_TRUE(activity.is_stopped_within(patience_ms));
     EXPECT_EQ(workers[0].stopped, 0);
-    // Nobody joins it, and it still stands on this test and on the next one's stack.
+    // No thread joins it, and it still uses this test's stack and the next one's.
     const std::string thread = "/proc/self/task/" + std::to_string(workers[0].stepper_of_system);
     for (int i = 0; i < patience_ms && std::filesystem::exists(thread); ++i) os::sleep_for(1ms);
     ASSERT_FALSE(std::filesystem::exists(thread));
 }
 
-TEST_F(AnActivity, answers_each_of_many_threads_that_ask_for_its_components_lives) {
+TEST_F(AnActivity, answers_life_cycle_requests_from_many_threads) {
     start();
     constexpr int askers = 3, wishes_each = 200;
     std::array<std::atomic<int>, 4> outcomes{};

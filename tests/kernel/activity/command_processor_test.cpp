@@ -1,5 +1,5 @@
-// The command processor (thesis 4.5.2) without a machine: who may touch a slot when, commands that end while
-// others begin, receivers that stop under them, and senders that wait.
+// The command processor (thesis 4.5.2) without a machine: access rights to a slot, commands that end while
+// others start, receivers that stop during a command, and waiting senders.
 #include "kernel/activity/command_processor.hpp"
 
 #include "tests/kernel/exchange/placed.hpp"
@@ -17,10 +17,10 @@ namespace {
 
 using Value = Sealed<64>;
 
-/// Triples numbers, some only after a while: rejects every seventh, fails every eleventh.
+/// Triples numbers, some only after a delay; rejects every seventh and fails every eleventh.
 struct Tripler {
     Random random{1};
-    std::array<std::uint64_t, 4> newest{}; ///< of each sender, its number is in the lowest bits
+    std::array<std::uint64_t, 4> newest{}; ///< newest goal of each sender, whose number is in the lowest bits
     std::uint64_t torn = 0, out_of_order = 0, taken_up = 0;
 
     bool begin(Value in, Value&) noexcept TAPPET_REALTIME {
@@ -85,7 +85,7 @@ private:
 
 using Call = CommandCall<Value, Value&>;
 
-/// What a sender saw of one command; a state that cannot follow the one before is counted.
+/// A sender's view of one command; counts each impossible change of state.
 struct Watched {
     Call call;
     std::uint64_t number = 0;
@@ -112,7 +112,7 @@ struct Seen {
     std::uint64_t done = 0, rejected = 0, failed = 0, wrong_results = 0, wrong_states = 0, not_sent = 0;
 };
 
-/// Sends whatever has ended, `rounds` times, to receivers that stop now and then.
+/// Resends every ended command, `rounds` times, to receivers that occasionally stop.
 Seen send_many(std::size_t sender, std::span<const std::unique_ptr<Watched>> calls, std::uint64_t rounds,
                std::uint64_t seed) {
     Seen seen;
@@ -150,10 +150,10 @@ Seen send_many(std::size_t sender, std::span<const std::unique_ptr<Watched>> cal
     return seen;
 }
 
-TEST(CommandProcessor, under_any_schedule_every_command_ends_with_its_own_results_in_its_senders_order) {
+TEST(CommandProcessor, completes_every_command_with_its_own_results_in_sender_order) {
     constexpr std::size_t senders = 3, slots = 4;
     const os::Clock clock{os::Clock::Kind::real};
-    Seen all; // of one sender a schedule may show one ending only
+    Seen all; // a schedule may show only one end for one sender
     for (std::uint64_t seed = stress_seed(); seed < stress_seed() + 4; ++seed) {
         std::array<Receiver, 2> receivers{Receiver{senders, slots}, Receiver{senders, slots}};
         std::array<std::vector<std::unique_ptr<Watched>>, senders> calls;
@@ -204,7 +204,7 @@ TEST(CommandProcessor, under_any_schedule_every_command_ends_with_its_own_result
     EXPECT_GT(all.failed, 0u);
 }
 
-/// A receiver of one command, and its only sender.
+/// A receiver of one command and its only sender.
 struct OneCommand : testing::Test {
     const os::Clock clock{os::Clock::Kind::real};
     Receiver receiver{1, 1};
@@ -214,7 +214,7 @@ struct OneCommand : testing::Test {
     OneCommand() { call.slot().place(route, call.values()); }
 };
 
-TEST_F(OneCommand, wakes_its_waiting_sender_by_every_end) {
+TEST_F(OneCommand, wakes_its_waiting_sender_however_it_ends) {
     std::atomic<bool> over{false};
     std::thread serving([&] {
         Random random{stress_seed()};
@@ -239,11 +239,11 @@ TEST_F(OneCommand, wakes_its_waiting_sender_by_every_end) {
     EXPECT_EQ(missed, 0u);
 }
 
-TEST_F(OneCommand, is_waited_for_no_longer_than_told) {
+TEST_F(OneCommand, limits_a_wait_to_the_given_time) {
     EXPECT_TRUE(call.wait(10s)); // nothing was sent
     ASSERT_TRUE(call.send(Value::of(4)));
     const Time before = clock.now();
-    EXPECT_FALSE(call.wait(20ms)); // nobody serves
+    EXPECT_FALSE(call.wait(20ms)); // no engine serves
     EXPECT_GE(clock.now() - before, 20ms);
     EXPECT_EQ(call.state(), CommandState::sent);
     receiver.cycle();
@@ -251,17 +251,17 @@ TEST_F(OneCommand, is_waited_for_no_longer_than_told) {
     EXPECT_TRUE(call.wait(0ms));
 }
 
-TEST_F(OneCommand, wakes_its_senders_activity_by_its_end) {
+TEST_F(OneCommand, wakes_its_senders_activity_when_it_ends) {
     int wakes = 0;
     route.wake_sender = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
     call.slot().place(route, call.values());
     ASSERT_TRUE(call.send(Value::of(4)));
     EXPECT_EQ(wakes, 0);
     while (in_flight(call.state())) receiver.cycle();
-    EXPECT_EQ(wakes, 1); // not for each state on the way
+    EXPECT_EQ(wakes, 1); // not for each intermediate state
 }
 
-TEST_F(OneCommand, is_rejected_at_once_by_who_failed_or_stopped_and_taken_up_later_by_who_never_ran) {
+TEST_F(OneCommand, is_rejected_by_a_stopped_component_but_queued_for_an_inactive_one) {
     for (const ComponentState state : {ComponentState::stopped, ComponentState::failed}) {
         receiver.gate.state.store(state);
         ASSERT_TRUE(call.send(Value::of(4)));

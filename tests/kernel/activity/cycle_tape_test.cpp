@@ -1,5 +1,5 @@
-// The tape of an activity: what was recorded is read back, the oldest is overwritten, and a reader in another
-// thread never gets a cycle that is torn.
+// The tape of an activity: recorded cycles are read back, the oldest is overwritten, and a reader in another
+// thread never gets a torn cycle.
 #include "kernel/activity/cycle_tape.hpp"
 
 #include "kernel/base/random.hpp"
@@ -37,7 +37,7 @@ void record(CycleTape& tape, std::int64_t release, std::int64_t begin, const std
     tape.end(release, begin, begin + end);
 }
 
-TEST(CycleTape, gives_back_each_cycle_with_its_functions_from_the_last_one_on) {
+TEST(CycleTape, returns_each_cycle_with_its_functions_newest_first) {
     const Tape tape = make_tape(256);
     record(*tape, 990, 1000, {{4, 10}, {0, 25}});
     record(*tape, 2000, 2000, {});
@@ -63,7 +63,7 @@ TEST(CycleTape, gives_back_each_cycle_with_its_functions_from_the_last_one_on) {
     EXPECT_FALSE(tape->cycle_before(cycle.at, cycle)) << "before the first one there is none";
 }
 
-TEST(CycleTape, an_empty_one_has_no_cycle) {
+TEST(CycleTape, has_no_cycle_while_it_is_empty) {
     const Tape tape = make_tape(CycleTape::fewest_words);
     TapeCycle cycle;
     EXPECT_FALSE(tape->cycle_before(tape->head(), cycle));
@@ -72,7 +72,7 @@ TEST(CycleTape, an_empty_one_has_no_cycle) {
     EXPECT_FALSE(tape->copy(0, {&word, 1}));
 }
 
-TEST(CycleTape, functions_beyond_the_room_of_a_cycle_are_counted) {
+TEST(CycleTape, counts_functions_that_exceed_the_room_of_a_cycle) {
     const Tape tape = make_tape(64);
     const std::size_t room = tape->most_words() - TapeCycle::words_beside_marks;
     std::vector<Mark> marks;
@@ -88,7 +88,7 @@ TEST(CycleTape, functions_beyond_the_room_of_a_cycle_are_counted) {
     EXPECT_EQ(cycle.left_out, 0u);
 }
 
-/// What a cycle of this number holds, so that a reader can tell a torn one.
+/// The expected content of a cycle with this number, to detect torn cycles.
 std::uint32_t marks_of(std::uint64_t number) { return static_cast<std::uint32_t>(number * 7 % 8); }
 
 void record_numbered(CycleTape& tape, std::uint64_t number) {
@@ -101,7 +101,7 @@ void record_numbered(CycleTape& tape, std::uint64_t number) {
     tape.end(base - 1, base, base + static_cast<std::int64_t>(number % 900));
 }
 
-/// Reads back from the head and checks all of each cycle; how many there were.
+/// Reads back from the head and checks each cycle completely; returns their number.
 std::size_t check_all(const CycleTape& tape) {
     std::size_t read = 0;
     TapeCycle cycle;
@@ -124,7 +124,7 @@ std::size_t check_all(const CycleTape& tape) {
     return read;
 }
 
-TEST(CycleTape, holds_the_last_cycles_whatever_their_lengths) {
+TEST(CycleTape, keeps_the_last_cycles_whatever_their_lengths) {
     const Tape tape = make_tape(128);
     for (std::uint64_t number = 1; number < 500; ++number) {
         record_numbered(*tape, number);
@@ -133,7 +133,7 @@ TEST(CycleTape, holds_the_last_cycles_whatever_their_lengths) {
     }
 }
 
-TEST(CycleTape, a_reader_beside_the_writer_gets_whole_cycles_only) {
+TEST(CycleTape, gives_whole_cycles_to_a_reader_during_writes) {
     const Tape tape = make_tape(256);
     std::atomic<bool> ends{false};
     std::atomic<std::uint64_t> written{0};

@@ -1,11 +1,11 @@
-// The execution engine under virtual time: the order of a cycle, timers, messages, deadlines and who missed
-// them; when its periods begin, and parts of it that run by turns.
+// The execution engine in virtual time: cycle order, timers, messages, deadlines and the function that missed
+// them; the start of its periods, and parts that run by turns.
 #include "tests/kernel/activity/execution_engine.hpp"
 
 namespace tappet {
 namespace {
 
-/// A behaviour that wants a step at a time.
+/// A behaviour that requests one step at a time.
 struct Wish {
     Log* log;
     Time at = never;
@@ -53,7 +53,7 @@ TEST_F(EngineWithABehaviour, starts_components_before_behaviours_and_stops_behav
     EXPECT_EQ(log.lines, (Lines{"behaviour stops", "a stops", "b stops"}));
 }
 
-TEST_F(ExecutionEngine, releases_periodic_cycles_at_whole_periods_whenever_they_begin) {
+TEST_F(ExecutionEngine, releases_cycles_at_whole_periods_even_after_a_late_one) {
     begin();
     EXPECT_EQ(engine.next_wake(), at_ns(0) + period);
     clock.advance_to(at_ns(0) + period + 70us);
@@ -64,7 +64,7 @@ TEST_F(ExecutionEngine, releases_periodic_cycles_at_whole_periods_whenever_they_
     EXPECT_EQ(engine.next_wake(), at_ns(0) + 2 * period);
 }
 
-TEST_F(ExecutionEngine, runs_a_timer_between_two_periods_and_no_component_with_it) {
+TEST_F(ExecutionEngine, runs_a_timer_between_two_periods_without_stepping_components) {
     begin();
     workers[0].timer.arm(at_ns(0) + 300us);
     EXPECT_EQ(engine.next_wake(), at_ns(0) + 300us);
@@ -74,7 +74,7 @@ TEST_F(ExecutionEngine, runs_a_timer_between_two_periods_and_no_component_with_i
     EXPECT_EQ(engine.next_wake(), at_ns(0) + period) << "a one-shot timer";
 }
 
-TEST_F(ExecutionEngine, makes_up_for_no_turns_of_a_timer_that_were_missed) {
+TEST_F(ExecutionEngine, skips_missed_periods_of_a_timer) {
     plan.periodic = false;
     begin();
     workers[0].rings_every = 300us;
@@ -89,14 +89,14 @@ TEST_F(ExecutionEngine, makes_up_for_no_turns_of_a_timer_that_were_missed) {
     EXPECT_EQ(engine.next_wake(), late + 300us);
 }
 
-TEST_F(ExecutionEngine, serves_a_message_that_wakes_a_periodic_activity_without_stepping_its_components) {
+TEST_F(ExecutionEngine, serves_messages_between_periods_without_stepping_components) {
     begin();
     tell(1);
     engine.run(true);
     EXPECT_EQ(log.lines, (Lines{"b hears"}));
 }
 
-TEST_F(ExecutionEngine, steps_the_components_of_a_sporadic_activity_when_it_is_woken_and_not_for_a_timer) {
+TEST_F(ExecutionEngine, steps_sporadic_components_when_woken_but_not_for_a_timer) {
     plan.periodic = false;
     begin();
     EXPECT_EQ(engine.next_wake(), never);
@@ -108,7 +108,7 @@ TEST_F(ExecutionEngine, steps_the_components_of_a_sporadic_activity_when_it_is_w
     EXPECT_EQ(log.lines, (Lines{"b rings"}));
 }
 
-TEST_F(EngineWithABehaviour, steps_a_behaviour_when_it_asked_for_it) {
+TEST_F(EngineWithABehaviour, steps_a_behaviour_at_the_time_it_requested) {
     plan.periodic = false;
     begin();
     wish.at = at_ns(0) + 250us;
@@ -134,9 +134,9 @@ TEST_F(ExecutionEngine, times_every_function_of_every_component) {
     EXPECT_EQ(statistics().misses, 0u);
 }
 
-TEST_F(ExecutionEngine, blames_a_missed_deadline_on_the_function_that_took_more_than_usual) {
+TEST_F(ExecutionEngine, blames_a_missed_deadline_on_the_function_that_exceeded_its_usual_time) {
     plan.deadline = 200us;
-    workers[0].load = 100us; // always slow: not the culprit
+    workers[0].load = 100us; // always slow: not the cause
     workers[1].load = 10us;
     begin();
     for (int i = 0; i < 5; ++i) next_cycle();
@@ -154,7 +154,7 @@ TEST_F(ExecutionEngine, blames_a_missed_deadline_on_the_function_that_took_more_
     EXPECT_TRUE(stops.empty()) << "counted, unless the row says stop_when_late";
 }
 
-TEST_F(ExecutionEngine, blames_nobody_when_the_cycle_itself_began_late) {
+TEST_F(ExecutionEngine, blames_no_function_when_the_cycle_began_late) {
     plan.deadline = 200us;
     workers[0].load = 10us;
     begin();
@@ -168,7 +168,7 @@ TEST_F(ExecutionEngine, blames_nobody_when_the_cycle_itself_began_late) {
     for (const FunctionTiming& each : functions) EXPECT_EQ(each.blamed, 0u);
 }
 
-TEST_F(ExecutionEngine, blames_a_reaction_as_it_blames_a_step) {
+TEST_F(ExecutionEngine, blames_a_slow_reaction_like_a_slow_step) {
     plan.deadline = 200us;
     workers[0].load = 100us;
     begin();
@@ -185,7 +185,7 @@ TEST_F(ExecutionEngine, blames_a_reaction_as_it_blames_a_step) {
     EXPECT_EQ(last_miss().took, 130us);
 }
 
-TEST_F(ExecutionEngine, asks_for_a_stop_when_the_row_says_that_a_late_cycle_stops_the_machine) {
+TEST_F(ExecutionEngine, requests_a_stop_when_the_row_makes_late_cycles_fatal) {
     plan.deadline = 50us;
     plan.stop_when_late = true;
     begin();
@@ -196,7 +196,7 @@ TEST_F(ExecutionEngine, asks_for_a_stop_when_the_row_says_that_a_late_cycle_stop
     EXPECT_EQ(stops, (Stops{{StopReason::missed_deadline, index(0, FunctionKind::step)}}));
 }
 
-TEST_F(ExecutionEngine, counts_no_deadline_of_an_activity_that_is_not_real_time) {
+TEST_F(ExecutionEngine, counts_no_missed_deadlines_without_real_time) {
     plan.real_time = false;
     plan.deadline = 10us;
     workers[0].load = 500us;
@@ -206,7 +206,7 @@ TEST_F(ExecutionEngine, counts_no_deadline_of_an_activity_that_is_not_real_time)
     EXPECT_EQ(statistics().misses, 0u);
 }
 
-TEST_F(ExecutionEngine, skips_and_counts_the_periods_that_an_overrun_swallowed) {
+TEST_F(ExecutionEngine, skips_and_counts_the_periods_lost_to_an_overrun) {
     begin();
     next_cycle();
     workers[0].load = 3500us;
@@ -219,7 +219,7 @@ TEST_F(ExecutionEngine, skips_and_counts_the_periods_that_an_overrun_swallowed) 
     EXPECT_EQ(statistics().skipped_periods, 3u);
 }
 
-TEST_F(ExecutionEngine, counts_wakes_beyond_the_promise_of_the_row) {
+TEST_F(ExecutionEngine, counts_wakes_above_the_rate_in_its_row) {
     plan.periodic = false;
     plan.at_most_n = 2;
     plan.at_most_per = 1ms;
@@ -231,15 +231,15 @@ TEST_F(ExecutionEngine, counts_wakes_beyond_the_promise_of_the_row) {
     woken_at(0us);
     woken_at(100us);
     EXPECT_EQ(statistics().wakes_too_many, 0u) << "two may come together";
-    woken_at(1ms); // the first one's window is just over
+    woken_at(1ms); // the first wake's window has just ended
     EXPECT_EQ(statistics().wakes_too_many, 0u);
-    woken_at(1050us); // the third within 1 ms from 100 us on
+    woken_at(1050us); // the third wake within 1 ms from 100 us on
     EXPECT_EQ(statistics().wakes_too_many, 1u);
     woken_at(5ms);
     EXPECT_EQ(statistics().wakes_too_many, 1u);
 }
 
-/// A value that a writer elsewhere keeps good for a while, without waking anybody.
+/// A value that a writer elsewhere keeps valid for a while without a wake.
 struct Aging {
     const os::Clock* clock = nullptr;
     Time good_until = never;
@@ -255,7 +255,7 @@ constexpr PortOperations aging_port = [] {
     return operations;
 }();
 
-TEST_F(ExecutionEngine, wakes_a_sporadic_activity_by_itself_when_a_guarded_input_grows_stale) {
+TEST_F(ExecutionEngine, wakes_a_sporadic_activity_when_a_guarded_input_becomes_stale) {
     Aging aging{&clock, at_ns(0) + 20ms};
     std::array guarded{GuardedInput{.input = &aging, .port = &aging_port, .connection = 17, .stops = true}};
     plan.periodic = false;
@@ -263,7 +263,7 @@ TEST_F(ExecutionEngine, wakes_a_sporadic_activity_by_itself_when_a_guarded_input
     plan.at_most_per = 1ms;
     plan.guarded = guarded;
     begin();
-    next_cycle(); // the first look, at the start
+    next_cycle(); // the first check, at the start
     EXPECT_EQ(engine.next_wake(), at_ns(0) + 20ms + 1ns);
     aging.good_until += 30ms; // written meanwhile
     next_cycle();
@@ -277,7 +277,7 @@ TEST_F(ExecutionEngine, wakes_a_sporadic_activity_by_itself_when_a_guarded_input
     EXPECT_EQ(statistics().wakes_too_many, 0u);
 }
 
-TEST_F(EngineWithABehaviour, does_what_was_told_before_the_stop_then_what_the_behaviours_tell_at_their_end) {
+TEST_F(EngineWithABehaviour, serves_messages_sent_before_and_during_the_stop_of_behaviours) {
     behaviours[0].self = this;
     behaviours[0].stop = [](void* self, Time) noexcept TAPPET_REALTIME {
         auto& test = *static_cast<ExecutionEngine*>(self);
@@ -291,13 +291,13 @@ TEST_F(EngineWithABehaviour, does_what_was_told_before_the_stop_then_what_the_be
     EXPECT_EQ(log.lines, (Lines{"b hears", "behaviour stops", "a hears", "a stops", "b stops"}));
 }
 
-TEST_F(ExecutionEngine, compares_the_processor_time_of_a_cycle_with_the_budget_of_its_row) {
+TEST_F(ExecutionEngine, compares_processor_time_with_the_budget_of_the_row) {
     plan.budget = 100us;
     begin();
     for (int n = 0; n < 5; ++n) next_cycle();
     EXPECT_EQ(statistics().over_claim, 0u);
     workers[0].load = 150us;
-    next_cycle(); // from now on it is measured
+    next_cycle(); // measured from now on
     for (int n = 0; n < 3; ++n) next_cycle();
     EXPECT_EQ(statistics().over_claim, 3u);
     EXPECT_EQ(statistics().most_processor, 150us);
@@ -306,7 +306,7 @@ TEST_F(ExecutionEngine, compares_the_processor_time_of_a_cycle_with_the_budget_o
     EXPECT_EQ(statistics().over_claim, 3u);
 }
 
-TEST_F(ExecutionEngine, measures_each_claim_at_first_and_then_one_of_many) {
+TEST_F(ExecutionEngine, measures_every_claim_at_first_and_samples_later_ones) {
     plan.budget = 100us;
     workers[0].load = 150us;
     begin();
@@ -325,7 +325,7 @@ TEST_F(ExecutionEngine, measures_each_claim_at_first_and_then_one_of_many) {
     EXPECT_EQ(measured(Engine::measured_at_first), Engine::measured_at_first);
 }
 
-TEST_F(ExecutionEngine, finds_what_takes_too_much_at_regular_times) {
+TEST_F(ExecutionEngine, finds_periodic_overruns_of_the_budget_by_sampling) {
     plan.budget = 100us;
     begin();
     for (std::uint32_t n = 0; n < 200 * Engine::measured_one_of; ++n) {
@@ -336,7 +336,7 @@ TEST_F(ExecutionEngine, finds_what_takes_too_much_at_regular_times) {
     EXPECT_EQ(statistics().most_processor, 150us);
 }
 
-TEST_F(ExecutionEngine, compares_what_a_sporadic_activity_uses_within_the_time_of_at_most) {
+TEST_F(ExecutionEngine, compares_the_use_of_a_sporadic_activity_with_its_claim) {
     plan.budget = 100us;
     plan.periodic = false;
     plan.at_most_n = 3;
@@ -350,7 +350,7 @@ TEST_F(ExecutionEngine, compares_what_a_sporadic_activity_uses_within_the_time_o
         }
     };
     wakes(1ms, {50us, 50us});
-    wakes(3ms, {250us}); // from the next one on it is measured
+    wakes(3ms, {250us}); // measured from the next one on
     wakes(5ms, {250us, 25us, 25us});
     EXPECT_EQ(statistics().over_claim, 0u) << "three times 100 us were claimed, whoever took them";
     wakes(7ms, {250us, 25us, 26us, 100us});
@@ -358,7 +358,7 @@ TEST_F(ExecutionEngine, compares_what_a_sporadic_activity_uses_within_the_time_o
     EXPECT_EQ(statistics().most_processor, 401us);
 }
 
-TEST_F(ExecutionEngine, measures_at_once_when_somebody_wants_to_know_though_a_claim_has_begun) {
+TEST_F(ExecutionEngine, measures_at_once_on_request_even_within_a_claim) {
     plan.budget = 100us;
     plan.periodic = false;
     plan.at_most_n = 3;
@@ -370,7 +370,7 @@ TEST_F(ExecutionEngine, measures_at_once_when_somebody_wants_to_know_though_a_cl
         engine.run(true);
     }
     const std::uint64_t before = statistics().over_claim;
-    engine.run(true); // still within a claim that is not measured
+    engine.run(true); // still within an unmeasured claim
     EXPECT_EQ(statistics().over_claim, before);
     engine.measure_as_at_first();
     engine.run(true);
@@ -385,7 +385,7 @@ TEST_F(ExecutionEngine, shows_an_even_generation_between_two_cycles) {
     EXPECT_EQ(engine.generation(), before + 2);
 }
 
-TEST_F(ExecutionEngine, keeps_its_generation_odd_while_components_start_run_and_stop) {
+TEST_F(ExecutionEngine, keeps_its_generation_odd_while_components_run) {
     workers[0].observed = &engine;
     begin();
     tell(0);
@@ -396,7 +396,7 @@ TEST_F(ExecutionEngine, keeps_its_generation_odd_while_components_start_run_and_
     EXPECT_EQ(engine.generation() % 2, 0u);
 }
 
-TEST_F(ExecutionEngine, begins_its_periods_on_the_grid_that_all_have_whenever_it_is_started) {
+TEST_F(ExecutionEngine, aligns_its_periods_to_the_common_grid_whenever_it_starts) {
     clock.advance_to(Time{} + 7'400us);
     begin();
     next_cycle();
@@ -405,7 +405,7 @@ TEST_F(ExecutionEngine, begins_its_periods_on_the_grid_that_all_have_whenever_it
     EXPECT_EQ(workers[0].last.release, Time{} + 9ms);
 }
 
-TEST_F(ExecutionEngine, begins_them_behind_the_grid_by_its_phase) {
+TEST_F(ExecutionEngine, delays_its_periods_by_its_phase) {
     plan.phase = 200us;
     clock.advance_to(Time{} + 7'100us);
     begin();
@@ -415,7 +415,7 @@ TEST_F(ExecutionEngine, begins_them_behind_the_grid_by_its_phase) {
     EXPECT_EQ(workers[0].last.release, Time{} + 8'200us);
 }
 
-TEST_F(ExecutionEngine, starts_parts_that_run_by_turns_all_or_none) {
+TEST_F(ExecutionEngine, starts_all_parts_of_a_turn_or_none) {
     begin();
     engine.rest(0b10, 0b10);
     engine.leave(0b10);

@@ -1,4 +1,4 @@
-// The execution engine under virtual time, for tests: two workers that note what they do.
+// The execution engine in virtual time, for tests: two workers that note their calls.
 #pragma once
 
 #include "kernel/activity/engine.hpp"
@@ -12,7 +12,7 @@
 
 namespace tappet {
 
-/// What happened, in order, in one list for all.
+/// The common log of all notes, in order.
 struct Log {
     std::vector<std::string> lines;
     void add(std::string_view line) noexcept TAPPET_REALTIME {
@@ -28,10 +28,10 @@ struct Worker {
     Duration load{};
     Duration reaction_load{};
     Timer timer;
-    Duration rings_every{}; ///< in turns; none: once
+    Duration rings_every{}; ///< period of the timer; none: one shot
     Cycle last{};
     const Engine* observed = nullptr;
-    std::vector<std::string> unguarded; ///< what it did while observers took its values for whole
+    std::vector<std::string> unguarded; ///< its calls under an even generation
     void note(std::string_view what) noexcept TAPPET_REALTIME {
         if (observed != nullptr && observed->generation() % 2 == 0)
             TAPPET_ESCAPE("a test remembers", unguarded.emplace_back(what));
@@ -93,7 +93,7 @@ struct ExecutionEngine : testing::Test {
         engine.start(clock.now());
         log.lines.clear();
     }
-    /// The time of the next cycle comes, and it runs.
+    /// Advances to the next cycle and runs it.
     void next_cycle() {
         clock.advance_to(engine.next_wake());
         engine.run(false);

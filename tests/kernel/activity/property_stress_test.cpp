@@ -1,5 +1,5 @@
 // Properties changed by another thread while their component runs (thesis 4.7.1): its steps see all of a
-// transaction or nothing of it, and every transaction ends once.
+// transaction or none, and every transaction ends once.
 #include "kernel/component/property_transaction.hpp"
 
 #include "tests/kernel/exchange/placed.hpp"
@@ -14,7 +14,7 @@
 namespace tappet {
 namespace {
 
-/// Its values follow each other; it does not accept a first one that seven divides.
+/// Its values are consecutive; it rejects a first value divisible by seven.
 struct Row {
     Property<std::int64_t> first{1}, second{2}, third{3};
     std::uint64_t steps = 0, mixed = 0, changes = 0;
@@ -32,7 +32,7 @@ struct Row {
     }
 };
 
-TEST(PropertyStress, steps_see_all_of_a_transaction_or_nothing) {
+TEST(PropertyStress, shows_a_step_all_of_a_transaction_or_none) {
     constexpr std::int64_t transactions = 5000;
     PlacedInbox placed{16};
     Inbox& inbox = placed.inbox;

@@ -1,4 +1,4 @@
-// What is told of a function's times without a division is what a division tells.
+// Function times evaluated without a division give the same result as with one.
 #include "kernel/activity/timing.hpp"
 
 #include "kernel/base/random.hpp"
@@ -8,7 +8,7 @@
 namespace tappet {
 namespace {
 
-TEST(FunctionTiming, leaves_out_the_first_pass_and_keeps_the_longest_of_the_others) {
+TEST(FunctionTiming, ignores_the_first_pass_and_keeps_the_longest_later_one) {
     FunctionTiming timing;
     timing.add(900us);
     EXPECT_EQ(timing.usual(), 900us) << "all that is known";
@@ -24,7 +24,7 @@ TEST(FunctionTiming, leaves_out_the_first_pass_and_keeps_the_longest_of_the_othe
     EXPECT_EQ(timing.usual(), Duration{13'333});
 }
 
-TEST(FunctionTiming, exceeds_its_usual_time_exactly_when_the_quotient_says_so) {
+TEST(FunctionTiming, detects_excess_exactly_as_division_would) {
     Random random{20'26};
     FunctionTiming timing;
     std::uint64_t above = 0;
@@ -43,7 +43,7 @@ TEST(FunctionTiming, exceeds_its_usual_time_exactly_when_the_quotient_says_so) {
     EXPECT_LT(above, 19'000u);
 }
 
-TEST(FunctionTiming, is_not_misled_by_times_whose_product_with_the_passes_is_no_number) {
+TEST(FunctionTiming, handles_times_whose_product_with_the_passes_overflows) {
     FunctionTiming timing;
     for (int i = 0; i < 100; ++i) timing.add(1us);
     EXPECT_TRUE(timing.exceeds_usual(Duration::max(), 0us));

@@ -26,7 +26,7 @@ TEST(Bounded, is_empty_at_first) {
     EXPECT_EQ(items.begin(), items.end());
 }
 
-TEST(Bounded, keeps_what_is_pushed_in_order) {
+TEST(Bounded, keeps_pushed_elements_in_order) {
     Bounded<int, 4> items;
     for (const int item : {7, 5, 9}) EXPECT_TRUE(items.push(item));
     EXPECT_EQ(items.size(), 3u);
@@ -36,7 +36,7 @@ TEST(Bounded, keeps_what_is_pushed_in_order) {
     EXPECT_EQ(items.data(), items.begin());
 }
 
-TEST(Bounded, refuses_a_push_when_full_and_keeps_what_it_has) {
+TEST(Bounded, refuses_a_push_when_full_and_keeps_its_elements) {
     Bounded<int, 2> items;
     EXPECT_TRUE(items.push(1));
     EXPECT_FALSE(items.full());

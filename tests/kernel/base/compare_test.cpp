@@ -1,4 +1,4 @@
-// Texts compare as the library's do, in constant expressions and at run time, wherever their characters lie.
+// Text comparison agrees with the standard library, in constant expressions and at run time.
 #include "kernel/base/compare.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Contracts: numbers that stay, values that are reported, handlers that are called.
+// Contracts: permanent numbers, reported values, called handlers.
 #include "kernel/base/contract.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ constexpr int checked_half(int n) noexcept TAPPET_REALTIME {
 template <int n>
 concept half_is_constant = requires { typename std::integral_constant<int, checked_half(n)>; };
 
-TEST(Contract, numbers_never_change) {
+TEST(Contract, has_an_id_that_never_changes) {
     using enum Contract;
     constexpr std::pair<Contract, int> numbers[] = {{index_out_of_range, 1},     {precondition, 2},
                                                     {single_writer, 103},        {single_reader, 104},
@@ -53,7 +53,7 @@ TEST(Contract, numbers_never_change) {
     EXPECT_EQ(contract_texts.size(), std::size(numbers)) << "a new contract gets its number here";
 }
 
-/// As the way to the safe state may: it allocates, which is a breach of its own.
+/// Allocates, as the way to the safe state may; that is another breach.
 void allocates(const ContractViolation& breach) noexcept TAPPET_REALTIME {
     remember(breach);
     if (breach.id == Contract::precondition) TAPPET_CONTRACT(false, Contract::allocation_after_seal, 1, 2);
@@ -61,7 +61,7 @@ void allocates(const ContractViolation& breach) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("what the handler does at its end", std::_Exit(calls));
 }
 
-TEST(ContractDeathTest, that_goes_on_is_heard_also_inside_the_handler_of_another) {
+TEST(ContractDeathTest, reports_a_breach_inside_the_handler_of_another_breach) {
     EXPECT_EXIT(
         {
             const Handler handler{allocates};
@@ -92,14 +92,14 @@ TEST(Contract, is_described_with_every_value) {
     const ContractViolation breach{Contract::index_out_of_range, {8, -4}, 0xbeef};
     EXPECT_EQ(
         describe(breach).view(),
-        "contract 1 index-out-of-range: Element 8 was asked of something that has -4. [code at 0xbeef]");
+        "contract 1 index-out-of-range: Element 8 was accessed, but there are only -4. [code at 0xbeef]");
     EXPECT_EQ(describe({Contract::heap_double_free, {0x10}, 0}).view(),
               "contract 205 heap-double-free: Address 0x10 was freed twice. [code at 0x0]");
     EXPECT_EQ(describe({static_cast<Contract>(9999), {}, 0}).view(),
               "contract 9999 is not in the table of this build");
 }
 
-TEST(Contract, leaves_no_hole_in_any_sentence) {
+TEST(Contract, describes_every_breach_with_a_complete_sentence) {
     for (const ContractText& row : contract_texts) {
         const ContractViolation breach{row.id, {11, 22, 33, 44}, 1};
         EXPECT_EQ(describe(breach).view().find('{'), std::string_view::npos) << row.name;
@@ -112,7 +112,7 @@ TEST(Contract, takes_durations_and_enumerations_as_values) {
     EXPECT_EQ(contract_value(Contract::precondition), 2);
 }
 
-TEST(Contract, is_reported_again_after_the_thread_went_on) {
+TEST(Contract, is_reported_again_after_the_thread_continued) {
     const Handler handler{remember};
     for (int n = 0; n < 3; ++n) TAPPET_CONTRACT(n < 0, Contract::mapping_after_seal, n, 0);
     EXPECT_EQ(calls, 3);
@@ -135,10 +135,10 @@ using ContractDeathTest = ::testing::Test;
 
 TEST(ContractDeathTest, prints_and_aborts_without_a_handler) {
     EXPECT_DEATH(TAPPET_CONTRACT(false, Contract::index_out_of_range, 9, 4),
-                 "contract 1 index-out-of-range: Element 9 was asked of something that has 4");
+                 "contract 1 index-out-of-range: Element 9 was accessed, but there are only 4");
 }
 
-TEST(ContractDeathTest, aborts_when_the_handler_lets_a_stopped_thread_go_on) {
+TEST(ContractDeathTest, aborts_when_the_handler_resumes_a_stopped_thread) {
     const Handler handler{remember};
     EXPECT_DEATH(TAPPET_CONTRACT(false, Contract::index_out_of_range, 9, 4), "contract 1 ");
 }

@@ -1,4 +1,4 @@
-// Checksums as others compute them: the catalogue's check values, and bit by bit.
+// Checksums against the catalogue's check values and a bit-by-bit computation.
 #include "kernel/base/crc.hpp"
 #include "kernel/base/random.hpp"
 
@@ -25,7 +25,7 @@ unsigned by_bits(unsigned polynomial, unsigned width, unsigned rest, std::span<c
     return rest;
 }
 
-TEST(Crc, is_what_the_shift_register_leaves) {
+TEST(Crc, equals_the_result_of_the_shift_register) {
     Random random{1};
     for (int i = 0; i < 1000; ++i) {
         std::vector<std::uint8_t> bytes(random.below(70));
@@ -36,7 +36,7 @@ TEST(Crc, is_what_the_shift_register_leaves) {
     }
 }
 
-TEST(Crc, of_parts_in_steps_is_that_of_the_whole) {
+TEST(Crc, gives_the_same_value_in_parts_and_at_once) {
     for (std::size_t cut = 0; cut <= digits.size(); ++cut) {
         const auto all = std::span{digits};
         EXPECT_EQ(crc16_ccitt.steps(crc16_ccitt.steps(crc16_ccitt.first(), all.first(cut)), all.subspan(cut)),

@@ -1,4 +1,4 @@
-// Digest: one number that tells whether two logs are the same.
+// Digest: one number that shows whether two logs are equal.
 #include "kernel/base/digest.hpp"
 
 #include <gtest/gtest.h>
@@ -20,21 +20,21 @@ static_assert(of({1, 2, 3}) == of({1, 2, 3}));
 
 TEST(Digest, depends_on_the_order) { EXPECT_NE(of({1, 2}), of({2, 1})); }
 
-TEST(Digest, depends_on_how_many_zeros_were_added) { EXPECT_NE(of({0}), of({0, 0})); }
+TEST(Digest, depends_on_the_number_of_zeros_added) { EXPECT_NE(of({0}), of({0, 0})); }
 
-TEST(Digest, takes_signed_words_as_their_bits) {
+TEST(Digest, encodes_signed_words_as_their_bits) {
     Digest digest;
     digest.add(std::int64_t{-1});
     EXPECT_EQ(digest, of({~std::uint64_t{0}}));
 }
 
-TEST(Digest, shows_every_single_bit_in_what_follows) {
+TEST(Digest, changes_with_every_single_bit) {
     std::set<std::uint64_t> values;
     for (unsigned bit = 0; bit < 64; ++bit) values.insert(of({std::uint64_t{1} << bit, 5}).value());
     EXPECT_EQ(values.size(), 64u);
 }
 
-TEST(Digest, carries_the_highest_bit_down) {
+TEST(Digest, propagates_the_highest_bit_to_lower_bits) {
     const std::uint64_t difference = of({std::uint64_t{1} << 63}).value() ^ of({0}).value();
     EXPECT_NE(difference << 16, 0u);
 }

@@ -1,4 +1,4 @@
-// What no sensor should say and no clock should show, drawn at random, for whatever has to stand it.
+// Extreme sensor values and clock times, drawn at random, for code that must survive them.
 #pragma once
 
 #include "kernel/base/number.hpp"
@@ -18,8 +18,7 @@ struct Hostile : Seeded {
     T one_of(const std::array<T, n>& of) {
         return of[random.below(n)];
     }
-    /// What has no end, what is none, what has an end far away, any bits at all, and now and then what is
-    /// usual.
+    /// Infinite, not a number, extremely large or small, random bits, and occasionally a usual value.
     double value() {
         using Real = std::numeric_limits<double>;
         static constexpr std::array worst{
@@ -32,9 +31,9 @@ struct Hostile : Seeded {
         for (;;)
             if (const double drawn = value(); is_number(drawn)) return drawn;
     }
-    /// That may be allowed as a limit, a gain or a width.
+    /// A value that may be allowed as a limit, a gain or a width.
     double positive() { return std::fabs(number()); }
-    /// Over all that a double holds, or what machines have.
+    /// Over the whole range of double, or the usual range of machines.
     double any_size() {
         if (random.one_in(3)) return std::bit_cast<double>(random.next());
         return usual_size();
@@ -46,7 +45,7 @@ struct Hostile : Seeded {
             random.one_in(4) ? Duration{random.between(0, to_ns(never) - 1)} : one_of(worst);
         return random.one_in(3) ? -size : size;
     }
-    /// After `before`, at it, far from it in either direction, or one of the ends of time.
+    /// After `before`, equal to it, far from it in either direction, or the earliest or latest time.
     Time stamp(Time before) {
         if (random.one_in(2)) return before + 1ms;
         return random.one_in(8) ? one_of(std::array{Time::min(), Time{}, never}) : before + step();

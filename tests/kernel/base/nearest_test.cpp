@@ -26,18 +26,18 @@ static_assert(edit_distance("", "") == 0);
 static_assert(edit_distance("kitten", "sitting") == 3);
 static_assert(nearest("shfat", {"encoder", "shaft", "panel"}) == "shaft", "in a constant expression");
 
-TEST(EditDistance, counts_a_swap_of_neighbours_once) {
+TEST(EditDistance, counts_swapped_neighbours_as_one_edit) {
     EXPECT_EQ(edit_distance("shfat", "shaft"), 1u);
     EXPECT_EQ(edit_distance("ab", "ba"), 1u);
     EXPECT_EQ(edit_distance("ca", "abc"), 3u) << "no character is edited twice";
 }
 
-TEST(EditDistance, tells_capitals_apart_unless_asked_not_to) {
+TEST(EditDistance, distinguishes_case_unless_asked_to_ignore_it) {
     EXPECT_EQ(edit_distance("Shaft", "shaft"), 1u);
     EXPECT_EQ(edit_distance("SHAFT", "shaft", 64, LetterCase::ignored), 0u);
 }
 
-TEST(EditDistance, compares_64_characters_and_not_65) {
+TEST(EditDistance, compares_names_of_up_to_64_characters) {
     const std::string longest(64, 'x');
     EXPECT_EQ(edit_distance(longest, longest), 0u);
     EXPECT_EQ(edit_distance(longest + "x", longest + "x", 5), 6u);
@@ -62,7 +62,7 @@ std::size_t textbook_distance(std::string_view a, std::string_view b) {
     return d[a.size()][b.size()];
 }
 
-TEST(EditDistance, agrees_with_the_textbook_under_every_limit) {
+TEST(EditDistance, agrees_with_the_textbook_algorithm_under_every_limit) {
     Random random{11};
     const auto word = [&random] {
         std::string text(random.below(9), ' ');
@@ -84,7 +84,7 @@ TEST(Nearest, finds_the_misspelt_name) {
               "tension.feed_forward");
 }
 
-TEST(Nearest, suggests_nothing_that_is_far) {
+TEST(Nearest, suggests_no_distant_name) {
     EXPECT_EQ(nearest("panel", {"shaft", "encoder"}), "");
     EXPECT_EQ(nearest("panel", {}), "");
     EXPECT_EQ(nearest("abcdefghi", {"abcdefxyz"}), "abcdefxyz") << "three of nine is a third";
@@ -92,36 +92,36 @@ TEST(Nearest, suggests_nothing_that_is_far) {
     EXPECT_EQ(nearest("abcd", {"abxy"}), "abxy") << "two are always near";
 }
 
-TEST(Nearest, suggests_nothing_without_a_letter_in_common) {
+TEST(Nearest, suggests_no_name_without_a_letter_in_common) {
     EXPECT_EQ(nearest("ab", {"xy"}), "");
     EXPECT_EQ(nearest("a", {"b", "a1"}), "a1");
     EXPECT_EQ(nearest("", {"a"}), "");
 }
 
-TEST(Nearest, prefers_fewer_edits_whatever_the_order) {
+TEST(Nearest, prefers_fewer_edits_in_any_order_of_candidates) {
     EXPECT_EQ(nearest("weft", {"west", "wefts_", "weft1"}), "west");
     EXPECT_EQ(nearest("weftx", {"wefty1", "weft"}), "weft");
 }
 
-TEST(Nearest, breaks_a_tie_by_characters_that_differ_in_case_only) {
+TEST(Nearest, breaks_a_tie_by_preferring_differences_in_case) {
     EXPECT_EQ(nearest("shaft", {"shift", "Shaft"}), "Shaft");
     EXPECT_EQ(nearest("shaft", {"Shaft", "shift"}), "Shaft");
 }
 
-TEST(Nearest, breaks_a_further_tie_by_order) { EXPECT_EQ(nearest("shaft", {"shift", "shaft1"}), "shift"); }
+TEST(Nearest, breaks_remaining_ties_by_order) { EXPECT_EQ(nearest("shaft", {"shift", "shaft1"}), "shift"); }
 
-TEST(Nearest, recognises_the_same_name_in_other_case_however_long) {
+TEST(Nearest, recognises_a_long_name_in_another_case) {
     EXPECT_EQ(nearest("OPERATORPANEL", {"OPERATORPAN", "operatorpanel"}), "operatorpanel");
     EXPECT_EQ(nearest("AB", {"ab"}), "ab");
 }
 
-TEST(Nearest, recognises_a_name_that_goes_on_after_a_dot) {
+TEST(Nearest, recognises_a_name_that_continues_after_a_dot) {
     EXPECT_EQ(nearest("start", {"stop.rises", "start.rises", "start.falls"}), "start.rises");
     EXPECT_EQ(nearest("start", {"starts.rises"}), "");
     EXPECT_EQ(nearest("start", {"start.rises", "Start"}), "Start") << "one letter's case is nearer";
 }
 
-TEST(Nearest, compares_names_of_more_than_64_characters_with_nothing) {
+TEST(Nearest, compares_no_names_of_more_than_64_characters) {
     const std::string long_name(65, 'x');
     Nearest search{long_name};
     search.consider(long_name);

@@ -17,7 +17,7 @@ constexpr std::uint64_t draw(std::uint64_t seed, int nth) {
 }
 static_assert(draw(42, 5) == draw(42, 5) && draw(42, 5) != draw(43, 5), "usable in constant expressions");
 
-// The published algorithms, written out a second time from their papers' formulas.
+// The published algorithms, written again from the formulas of their papers.
 struct Reference {
     std::array<std::uint64_t, 4> s{};
     explicit Reference(std::uint64_t x) {
@@ -42,8 +42,8 @@ struct Reference {
     }
 };
 
-TEST(Random, gives_the_numbers_of_splitmix64_and_xoshiro256) {
-    // The first word splitmix64 gives for seed 0 is published; xoshiro's first result follows from its second
+TEST(Random, reproduces_splitmix64_and_xoshiro256) {
+    // The first word of splitmix64 for seed 0 is published; xoshiro's first result follows from its second
     // word.
     EXPECT_EQ(Reference{0}.s[0], 0xe220a8397b1dcdafu);
     for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{1}, ~std::uint64_t{0}}) {
@@ -76,14 +76,14 @@ TEST(Random, reaches_both_ends_of_a_range) {
     EXPECT_EQ(random.between(5, 5), 5);
 }
 
-TEST(Random, spreads_evenly) {
+TEST(Random, is_distributed_evenly) {
     Random random{99};
     std::array<int, 10> hits{};
     for (int i = 0; i < 100'000; ++i) ++hits[random.below(10)];
     for (const int n : hits) EXPECT_NEAR(n, 10'000, 500);
 }
 
-TEST(Random, is_true_once_in_n) {
+TEST(Random, is_true_with_a_probability_of_one_in_n) {
     Random random{5};
     int hits = 0;
     for (int i = 0; i < 100'000; ++i) hits += random.one_in(50) ? 1 : 0;
@@ -92,7 +92,7 @@ TEST(Random, is_true_once_in_n) {
     EXPECT_TRUE(random.one_in(1));
 }
 
-TEST(Random, gives_reals_from_zero_up_to_but_not_one) {
+TEST(Random, gives_reals_from_zero_up_to_but_below_one) {
     Random random{8};
     double sum = 0;
     for (int i = 0; i < 10'000; ++i) {

@@ -1,4 +1,4 @@
-// Numbers as decimals: shortest, exact both ways, laid out as the standard library does it.
+// Numbers as decimals: shortest, exact in both directions, in the standard library's layout.
 #include "kernel/base/random.hpp"
 #include "kernel/base/real_text.hpp"
 
@@ -32,11 +32,10 @@ std::string six_of_library(double value) {
     return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr};
 }
 
-// Whole numbers beyond 2^53 are padded with zeros where the standard library writes what their bits are
-// worth.
+// Whole numbers beyond 2^53 are padded with zeros; the standard library prints the exact value of their bits.
 bool is_padded(double value) { return std::fabs(value) >= 9007199254740992.0; }
 
-TEST(RealText, AnyNumberReadsBackAsItself) {
+TEST(RealText, reads_back_every_number_unchanged) {
     Random random{20261121};
     for (int i = 0; i < 100000; ++i) {
         const auto value = std::bit_cast<double>(random.next());
@@ -52,7 +51,7 @@ TEST(RealText, AnyNumberReadsBackAsItself) {
     }
 }
 
-TEST(RealText, TheLayoutIsThatOfTheStandardLibrary) {
+TEST(RealText, has_the_layout_of_the_standard_library) {
     Random random{7};
     for (int i = 0; i < 100000; ++i) {
         auto value = std::bit_cast<double>(random.next());
@@ -74,7 +73,7 @@ TEST(RealText, TheLayoutIsThatOfTheStandardLibrary) {
     }
 }
 
-TEST(RealText, WhatIsNoNumberIsSaidSo) {
+TEST(RealText, reports_text_that_is_not_a_number) {
     double value = 7;
     for (const char* text :
          {"",    "-",  ".",   "e5",   "1e", "1e+", "+1",  " 1",  "1 ",   "1.2.3",    "0x10",
@@ -89,7 +88,7 @@ TEST(RealText, WhatIsNoNumberIsSaidSo) {
     EXPECT_EQ(narrow, 7);
 }
 
-TEST(RealText, EachSpellingOfANumberIsTaken) {
+TEST(RealText, accepts_each_spelling_of_a_number) {
     const struct {
         const char* text;
         double value;
@@ -100,7 +99,7 @@ TEST(RealText, EachSpellingOfANumberIsTaken) {
         ASSERT_EQ(read_real_text(each.text, value), RealTextFault::none) << each.text;
         EXPECT_EQ(value, each.value) << each.text;
     }
-    // A thousand digits, of which the last decides: half way between 1 and its neighbour, and a little more.
+    // A thousand digits, of which the last decides: half way between 1 and its neighbour, plus a little.
     const std::string half =
         "1.00000000000000011102230246251565404236316680908203125" + std::string(1000, '0');
     double value = 0;

@@ -1,5 +1,4 @@
-// Tests that draw at random, from another seed each time, which is told when one fails; and numbers that are
-// none.
+// Tests that draw from a new random seed each time and print it on failure; and values that are not numbers.
 #pragma once
 
 #include "kernel/base/random.hpp"

@@ -24,7 +24,7 @@ TEST(Sentence, is_empty_at_first) {
     EXPECT_EQ(Sentence{}.size(), 0u);
 }
 
-TEST(Sentence, is_built_piece_by_piece) {
+TEST(Sentence, grows_piece_by_piece) {
     Sentence sentence;
     sentence.add("connection ").add(2).add(Sentence{": ", std::string_view{"unknown"}});
     EXPECT_EQ(sentence.view(), "connection 2: unknown");
@@ -41,7 +41,7 @@ TEST(Sentence, writes_every_whole_number) {
     EXPECT_EQ(Sentence{std::numeric_limits<unsigned>::max()}.view(), "4294967295");
 }
 
-TEST(Sentence, cuts_what_does_not_fit_visibly) {
+TEST(Sentence, marks_text_that_it_had_to_cut) {
     Sentence sentence{std::string_view{std::string(Sentence::capacity, 'x')}};
     EXPECT_EQ(sentence.view().back(), 'x') << "what fits exactly is whole";
     sentence.add("y");
@@ -50,7 +50,7 @@ TEST(Sentence, cuts_what_does_not_fit_visibly) {
     EXPECT_EQ(sentence.data()[Sentence::capacity], '\0');
 }
 
-TEST(Text, holds_its_characters_without_the_closing_zero) {
+TEST(Text, stores_its_characters_without_a_terminating_zero) {
     constexpr text name{"shaft"};
     EXPECT_EQ(name.view(), "shaft");
     EXPECT_EQ(name.view().size(), 5u);

@@ -1,4 +1,4 @@
-// Sums and differences with a time: what lies beyond the earliest or the latest one is that one.
+// Sums and differences with a time saturate at the earliest and the latest time.
 #include "kernel/base/time.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace tappet {
 namespace {
 
-TEST(TimeSums, are_what_they_are_between_the_ends) {
+TEST(TimeSums, are_exact_within_the_range) {
     EXPECT_EQ(at_ns(5) + 3ns, at_ns(8));
     EXPECT_EQ(1us + at_ns(5), at_ns(1005));
     EXPECT_EQ(at_ns(5) - 2ms, at_ns(-1'999'995));
@@ -14,7 +14,7 @@ TEST(TimeSums, are_what_they_are_between_the_ends) {
     EXPECT_EQ(at_ns(5) + std::chrono::hours{1} - std::chrono::hours{1}, at_ns(5));
 }
 
-TEST(TimeSums, end_at_the_latest_time_and_at_the_earliest) {
+TEST(TimeSums, saturate_at_the_latest_and_the_earliest_time) {
     constexpr Duration longest = Duration::max();
     EXPECT_EQ(at_ns(1) + longest, never);
     EXPECT_EQ(longest + at_ns(1), never);
@@ -25,7 +25,7 @@ TEST(TimeSums, end_at_the_latest_time_and_at_the_earliest) {
     EXPECT_EQ(at_ns(-2) + Duration::min(), Time::min());
 }
 
-TEST(TimeSums, keep_their_sign_in_a_difference) {
+TEST(TimeSums, keep_the_sign_of_a_difference) {
     EXPECT_EQ(never - at_ns(-1), Duration::max());
     EXPECT_EQ(Time::min() - at_ns(1), Duration::min());
     EXPECT_EQ(at_ns(1) - Time::min(), Duration::max());

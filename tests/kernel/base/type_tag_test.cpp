@@ -1,4 +1,4 @@
-// Type tags: what a value's bytes mean, told by plain data (thesis 4.7.2: a facet is found by name and type).
+// Type tags: plain data describes the bytes of a value (thesis 4.7.2: a facet is found by name and type).
 #include "kernel/base/only_numbers.hpp"
 #include "kernel/base/type_tag.hpp"
 
@@ -50,12 +50,12 @@ static_assert(type_id<bool>->kind == ValueKind::boolean && type_id<std::int8_t>-
 static_assert(type_id<long double>->kind == ValueKind::opaque && type_id<Secret>->kind == ValueKind::opaque &&
               type_id<int*>->kind == ValueKind::opaque);
 
-TEST(TypeTag, tells_two_types_of_one_shape_apart) {
+TEST(TypeTag, distinguishes_two_types_of_one_shape) {
     EXPECT_NE(type_id<long>, type_id<long long>);
     EXPECT_EQ(type_id<double>, type_id<double>);
 }
 
-TEST(TypeTag, tells_the_shape_of_a_matrix_and_how_its_elements_lie) {
+TEST(TypeTag, describes_the_shape_and_element_order_of_a_matrix) {
     const TypeTag& columns = *type_id<Eigen::Matrix<float, 2, 3>>;
     EXPECT_EQ(columns.kind, ValueKind::matrix);
     EXPECT_EQ(columns.element, type_id<float>);
@@ -68,7 +68,7 @@ TEST(TypeTag, tells_the_shape_of_a_matrix_and_how_its_elements_lie) {
     EXPECT_EQ(type_id<Eigen::VectorXd>->kind, ValueKind::opaque) << "it points to its numbers";
 }
 
-TEST(TypeTag, finds_the_fields_of_a_record_where_the_compiler_laid_them) {
+TEST(TypeTag, finds_the_fields_of_a_record_at_their_offsets) {
     const TypeTag& tag = *type_id<Plan>;
     ASSERT_EQ(tag.kind, ValueKind::record);
     ASSERT_EQ(tag.fields.size(), 3u);
@@ -83,7 +83,7 @@ TEST(TypeTag, finds_the_fields_of_a_record_where_the_compiler_laid_them) {
     EXPECT_EQ(pose[3].offset(), offsetof(Pose, cause));
 }
 
-TEST(TypeTag, knows_the_names_of_an_enumeration_and_the_integer_beneath) {
+TEST(TypeTag, knows_the_names_and_the_underlying_integer_of_an_enumeration) {
     EXPECT_EQ(type_id<Cause>->kind, ValueKind::enumeration);
     EXPECT_EQ(type_id<Cause>->names[2], "warp");
     EXPECT_EQ(type_id<Cause>->element, type_id<std::uint8_t>);
@@ -110,7 +110,7 @@ TEST(TypeTag, finds_the_length_of_a_text_and_of_a_sequence) {
     EXPECT_EQ((type_id<Bounded<double, 3>>->columns), 3u);
 }
 
-TEST(Text, refuses_what_is_longer_than_its_room_and_keeps_what_it_has) {
+TEST(Text, refuses_text_longer_than_its_capacity_and_keeps_its_content) {
     Text<4> text{"warp"};
     EXPECT_FALSE(text.assign("shaft"));
     EXPECT_EQ(text.view(), "warp");
@@ -125,7 +125,7 @@ bool is_good(const T& value) {
     return has_only_numbers(*type_id<T>, reinterpret_cast<const std::byte*>(&value));
 }
 
-TEST(OnlyNumbers, are_looked_for_in_all_parts_of_a_value_that_are_used) {
+TEST(OnlyNumbers, are_required_in_all_used_parts_of_a_value) {
     for (const double bad :
          {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
         EXPECT_FALSE(is_good(bad));

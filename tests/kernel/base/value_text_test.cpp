@@ -1,5 +1,5 @@
-// Values as text and back: exactly the same value, or a sentence that says what is wrong (thesis 4.7.1, 4.8:
-// what a browser shows and sets).
+// Values as text and back: exactly the same value, or a message with the fault (thesis 4.7.1, 4.8: a browser
+// shows and sets them).
 #include "kernel/base/random.hpp"
 #include "kernel/base/value_text.hpp"
 
@@ -49,7 +49,7 @@ std::string json_of(const T& value) {
     char room[400];
     return {room, format_json(*type_id<T>, bytes_of(value), room)};
 }
-/// What is wrong with a text, "" when nothing is.
+/// The fault of a text; "" when there is none.
 template <class T>
 std::string fault_in(std::string_view text, T& into) {
     return std::string{parse_value(*type_id<T>, text, reinterpret_cast<std::byte*>(&into)).view()};
@@ -96,7 +96,7 @@ TEST(ValueText, spells_each_kind_of_value_as_an_engineer_writes_it) {
               R"({valid: true, turn: 0.5, place: [1, 2], name: "roll"})");
 }
 
-TEST(ValueText, writes_a_matrix_row_by_row_however_it_lies) {
+TEST(ValueText, writes_a_matrix_row_by_row_in_any_storage_order) {
     Eigen::Matrix<int, 2, 3> columns;
     columns << 1, 2, 3, 4, 5, 6;
     const Eigen::Matrix<int, 2, 3, Eigen::RowMajor> rows = columns;
@@ -106,7 +106,7 @@ TEST(ValueText, writes_a_matrix_row_by_row_however_it_lies) {
     EXPECT_EQ((parsed<Eigen::Matrix<int, 2, 3, Eigen::RowMajor>>("[[1 2 3] [4 5 6]]")), rows);
 }
 
-TEST(ValueText, writes_json_that_any_reader_of_json_takes) {
+TEST(ValueText, writes_standard_json) {
     EXPECT_EQ(json_of(Duration{4ms}), "\"4ms\"");
     EXPECT_EQ(json_of(Cause::weft), "\"weft\"");
     EXPECT_EQ(json_of(std::nan("")), "\"nan\"");
@@ -117,7 +117,7 @@ TEST(ValueText, writes_json_that_any_reader_of_json_takes) {
               R"({"valid": true, "turn": 0.5, "place": [1, 2], "name": "roll"})");
 }
 
-TEST(ValueText, shows_an_opaque_value_by_its_size_and_reads_none) {
+TEST(ValueText, shows_an_opaque_value_by_its_size_and_never_parses_one) {
     struct Secret {
         int bits[4];
     };
@@ -127,7 +127,7 @@ TEST(ValueText, shows_an_opaque_value_by_its_size_and_reads_none) {
               std::string::npos);
 }
 
-TEST(ValueText, never_writes_half_a_value) {
+TEST(ValueText, writes_a_value_in_full_or_not_at_all) {
     const Eigen::Vector3d value{1, 2.5, -3};
     const std::string whole = text_of(value);
     for (std::size_t room = 0; room <= whole.size(); ++room) {
@@ -137,7 +137,7 @@ TEST(ValueText, never_writes_half_a_value) {
     }
 }
 
-TEST(ValueText, of_bytes_that_are_no_value_stays_inside_the_value) {
+TEST(ValueText, stays_inside_the_value_when_its_bytes_are_invalid) {
     Text<4> torn;
     torn.length = 4000;
     EXPECT_EQ(text_of(torn), R"("\x00\x00\x00\x00")");
@@ -146,7 +146,7 @@ TEST(ValueText, of_bytes_that_are_no_value_stays_inside_the_value) {
     EXPECT_EQ(text_of(list), "[0, 0, 0]");
 }
 
-/// Any bit pattern of a number, with the ones that are special more often than chance has it.
+/// Any bit pattern of a number; special ones are more frequent than by chance.
 class AnyValue : public testing::Test {
 protected:
     Random random{static_cast<std::uint64_t>(testing::UnitTest::GetInstance()->random_seed())};
@@ -160,7 +160,7 @@ protected:
     }
 };
 
-TEST_F(AnyValue, of_a_number_or_a_time_comes_back_as_the_same_bits) {
+TEST_F(AnyValue, restores_the_same_bits_of_a_number_or_time) {
     for (int i = 0; i < 20'000; ++i) {
         expect_round_trip(any<std::int8_t>());
         expect_round_trip(any<std::uint16_t>());
@@ -180,7 +180,7 @@ TEST_F(AnyValue, of_a_number_or_a_time_comes_back_as_the_same_bits) {
         EXPECT_NE(fault_in<double>(text_of(none)), "") << "it is told, and taken from nobody";
 }
 
-TEST_F(AnyValue, of_a_text_comes_back_letter_by_letter_whatever_its_characters_are) {
+TEST_F(AnyValue, restores_every_character_of_a_text) {
     for (int i = 0; i < 5'000; ++i) {
         Text<12> text;
         std::string characters;
@@ -190,7 +190,7 @@ TEST_F(AnyValue, of_a_text_comes_back_letter_by_letter_whatever_its_characters_a
     }
 }
 
-TEST_F(AnyValue, of_lists_and_records_comes_back_with_all_that_is_inside) {
+TEST_F(AnyValue, restores_lists_and_records_with_all_elements) {
     for (int i = 0; i < 2'000; ++i) {
         expect_round_trip(Eigen::Matrix<float, 3, 2>{Eigen::Matrix<float, 3, 2>::NullaryExpr(
             [&] { return static_cast<float>(any<std::int32_t>()); })});
@@ -211,7 +211,7 @@ TEST_F(AnyValue, of_lists_and_records_comes_back_with_all_that_is_inside) {
     }
 }
 
-TEST_F(AnyValue, of_no_type_is_harmed_by_any_text) {
+TEST_F(AnyValue, survives_parsing_any_text) {
     constexpr std::string_view characters = "[]{}(),:\"\\ux0189.-+eEinfams valdtruplcenowgz\t";
     for (int i = 0; i < 40'000; ++i) {
         std::string text;
@@ -231,7 +231,7 @@ TEST_F(AnyValue, of_no_type_is_harmed_by_any_text) {
     }
 }
 
-TEST(ParseValue, takes_times_with_parts_and_larger_units_when_they_are_whole_nanoseconds) {
+TEST(ParseValue, accepts_times_in_several_units_that_are_whole_nanoseconds) {
     EXPECT_EQ(parsed<Duration>("1.5s"), 1500ms);
     EXPECT_EQ(parsed<Duration>("-0.25us"), -250ns);
     EXPECT_EQ(parsed<Duration>(" 2h "), 2h);
@@ -244,7 +244,7 @@ TEST(ParseValue, takes_times_with_parts_and_larger_units_when_they_are_whole_nan
         EXPECT_NE(fault_in<Duration>(none), "") << none;
 }
 
-TEST(ParseValue, refuses_what_does_not_fit_the_type_and_says_what_does) {
+TEST(ParseValue, refuses_text_of_another_type_and_states_the_expected_one) {
     EXPECT_EQ(fault_in<std::int8_t>("128"), "128 is out of range; write a number from -128 to 127");
     EXPECT_EQ(fault_in<std::uint8_t>("-1"), "-1 is out of range; write a number from 0 to 255");
     EXPECT_EQ(fault_in<std::uint64_t>("18446744073709551616"),
@@ -257,20 +257,20 @@ TEST(ParseValue, refuses_what_does_not_fit_the_type_and_says_what_does) {
     EXPECT_EQ(fault_in<Text<4>>("shaft"), "the text has 5 characters, but there is room for 4; shorten it");
 }
 
-TEST(ParseValue, suggests_the_name_that_was_probably_meant) {
+TEST(ParseValue, suggests_the_nearest_name) {
     EXPECT_NE(fault_in<Cause>("wefd").find("did you mean \"weft\"?"), std::string::npos);
     EXPECT_NE(fault_in<Cause>("lubrication").find("write one of none, weft, warp"), std::string::npos);
     EXPECT_NE(fault_in<Pose>("{trun: 1}").find("has no field \"trun\"; did you mean \"turn\"?"),
               std::string::npos);
 }
 
-TEST(ParseValue, says_where_in_a_composed_value_the_fault_is) {
+TEST(ParseValue, locates_the_fault_in_a_composed_value) {
     EXPECT_EQ(fault_in<Eigen::Vector3d>("[1, x, 3]"),
               "element 2: \"x\" is not a number; write one such as 0.5 or 2e-3");
     EXPECT_EQ(fault_in<Eigen::Vector3d>("[1, 2]"), "has 2 elements instead of 3; write all of them");
     EXPECT_EQ(fault_in<Eigen::Vector3d>("[1, 2, 3, 4]"), "has more than 3 elements; remove what is too much");
     EXPECT_EQ(fault_in<Eigen::Vector3d>("1, 2, 3"),
-              "\"1\" is no list; write one in brackets, such as [1, 2]");
+              "\"1\" is not a list; write one in brackets, such as [1, 2]");
     EXPECT_EQ(fault_in<Eigen::Vector3d>("[1, 2, 3,]"),
               "the list breaks off; write another element, or \"]\" without a comma before it");
     EXPECT_EQ(fault_in<Eigen::Matrix2d>("[[1, 2], [3, q]]"),
@@ -282,12 +282,12 @@ TEST(ParseValue, says_where_in_a_composed_value_the_fault_is) {
               std::string::npos);
 }
 
-TEST(ParseValue, takes_the_fields_of_a_record_in_any_order_and_quoted_names) {
+TEST(ParseValue, accepts_record_fields_in_any_order_and_with_quoted_names) {
     const Pose pose = parsed<Pose>(R"({"place": [3, 4], name: roll, valid: true, "turn": -1})");
     EXPECT_EQ(text_of(pose), R"({valid: true, turn: -1, place: [3, 4], name: "roll"})");
 }
 
-TEST(ParseValue, takes_a_text_without_quotes_when_it_stands_alone) {
+TEST(ParseValue, accepts_a_lone_text_without_quotes) {
     EXPECT_EQ(parsed<Text<20>>("  the weft, broken "), Text<20>{"the weft, broken"});
     EXPECT_EQ(parsed<Text<20>>("\" weft\""), Text<20>{" weft"});
     EXPECT_EQ(parsed<Text<20>>(""), Text<20>{});
@@ -296,7 +296,7 @@ TEST(ParseValue, takes_a_text_without_quotes_when_it_stands_alone) {
         EXPECT_NE(fault_in<Text<20>>(broken), "") << broken;
 }
 
-TEST(ParseValue, takes_the_arguments_of_a_call_with_or_without_parentheses) {
+TEST(ParseValue, accepts_call_arguments_with_or_without_parentheses) {
     using Packed = std::array<std::byte, sizeof(double) + sizeof(Duration) + sizeof(Cause)>;
     const TypeTag& tag = *type_id<Arguments<double, Duration, Cause>>;
     ASSERT_EQ(tag.size, sizeof(Packed));

@@ -1,4 +1,4 @@
-// Angles are exact, wrap by themselves and know the shortest way.
+// Angles are exact, wrap automatically and give the shortest way.
 #include "kernel/cam/angle.hpp"
 
 #include "tests/kernel/base/seeded.hpp"
@@ -17,7 +17,7 @@ TEST(Angle, wraps_within_one_turn) {
     EXPECT_NEAR(Angle::degrees(-0.5).in_degrees(), 359.5, 1e-7);
 }
 
-TEST(Angle, difference_is_the_shortest_way_with_its_sign) {
+TEST(Angle, has_a_signed_difference_along_the_shortest_way) {
     static_assert(Angle{10_deg} - Angle{350_deg} == 20_deg);
     static_assert(Angle{350_deg} - Angle{10_deg} == -(20_deg));
     static_assert(Angle{180_deg} - Angle{0_deg} == -(180_deg));
@@ -27,14 +27,14 @@ TEST(Angle, difference_is_the_shortest_way_with_its_sign) {
 
 using AnyAngle = test::Seeded;
 
-TEST_F(AnyAngle, in_degrees_there_and_back_loses_less_than_a_unit) {
+TEST_F(AnyAngle, survives_conversion_to_degrees_and_back_within_one_unit) {
     for (int i = 0; i < 100'000; ++i) {
         const double degrees = random.unit() * 360.0;
         EXPECT_NEAR(Angle::degrees(degrees).in_degrees(), degrees, 360.0 / 0x1p32);
     }
 }
 
-TEST(Angle, eighth_turns_are_exact) {
+TEST(Angle, represents_eighth_turns_exactly) {
     for (int i = 0; i < 8; ++i) EXPECT_EQ(Angle::degrees(45.0 * i).in_degrees(), 45.0 * i);
 }
 
@@ -45,7 +45,7 @@ TEST(ShaftPosition, keeps_its_precision_after_a_thousand_million_turns) {
     EXPECT_EQ(((far + Rotation::units(1)) - far).in_units(), 1);
 }
 
-TEST(ShaftPosition, differences_do_not_notice_the_wrap_of_the_counter) {
+TEST(ShaftPosition, has_differences_unaffected_by_counter_wrap) {
     const ShaftPosition last{(std::int64_t{1} << 31) - 1, 270_deg};
     const ShaftPosition next = last + 180_deg;
     EXPECT_EQ(next - last, 180_deg);
@@ -60,7 +60,7 @@ TEST(ShaftPosition, counts_negative_turns_downwards) {
     EXPECT_NEAR(behind.in_degrees(), -10.0, 1e-7);
 }
 
-TEST(Rotation, cuts_what_no_shaft_can_turn) {
+TEST(Rotation, clamps_values_beyond_any_real_shaft) {
     const double infinity = std::numeric_limits<double>::infinity();
     const Rotation most = Rotation::turns(std::int64_t{1} << 30);
     EXPECT_EQ(Rotation::degrees(infinity), most);
@@ -69,7 +69,7 @@ TEST(Rotation, cuts_what_no_shaft_can_turn) {
     EXPECT_EQ(Rotation::degrees(std::nan("")), -most);
 }
 
-TEST(Speed, turns_per_minute_and_degrees_per_second_agree) {
+TEST(Speed, has_consistent_turns_per_minute_and_degrees_per_second) {
     static_assert((600_rpm).in_deg_s() == 3600.0);
     EXPECT_EQ(Speed::deg_s(-6.0).in_rpm(), -1.0);
 }

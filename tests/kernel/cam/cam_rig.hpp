@@ -1,4 +1,4 @@
-// A true shaft, its encoder, the estimator and the schedule in virtual time: samples arrive, timers go off
+// A true shaft, its encoder, the estimator and the schedule in virtual time: samples arrive, and timers fire
 // exactly.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tappet::test {
 
-/// One firing, with the truth beside it.
+/// One firing with the true values.
 struct Fired {
     CamEvent event;
     Time at{};
@@ -17,7 +17,7 @@ struct Fired {
 
 inline ShaftProperties patient_properties_for(const Sampling& sampling) {
     ShaftProperties p = properties_for(sampling);
-    p.max_age = 8ms; // so many samples in a row are never missing by chance
+    p.max_age = 8ms; // chance never loses so many samples in a row
     return p;
 }
 
@@ -30,7 +30,7 @@ template <std::size_t N> struct CamRig {
           estimator(patient_properties_for(how)),
           schedule(table, properties) {}
 
-    /// Until the true shaft's time `until_s`; the encoder is silent from `dark_from_s` to `dark_to_s`.
+    /// Runs until the true shaft's time `until_s`; the encoder is silent from `dark_from_s` to `dark_to_s`.
     void run(double until_s, double dark_from_s = 1e9, double dark_to_s = 1e9) {
         while (instant_s < until_s) {
             const double period_noise = random.unit() - 0.5;

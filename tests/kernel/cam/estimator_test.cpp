@@ -1,4 +1,4 @@
-// The estimator against a simulated true shaft: how near it is, and what it does with bad samples.
+// The estimator against a simulated true shaft: its accuracy, and its response to bad samples.
 
 #include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/cam/true_shaft.hpp"
@@ -8,8 +8,7 @@ namespace {
 
 using AnEstimator = Seeded;
 
-// Follows the shaft and collects the angle's error between the samples (up to 0.9 ms after one) from
-// `from_s` on.
+// Follows the shaft and collects the angle error between samples (up to 0.9 ms after one) from `from_s` on.
 void follow(const TrueShaft& shaft, const Sampling& sampling, double from_s, Random& random, Errors& errors) {
     ShaftEstimator estimator{properties_for(sampling)};
     const double offset = random.unit() * 360.0;
@@ -68,7 +67,7 @@ TEST_F(AnEstimator, is_near_the_true_angle_between_samples) {
                                          (delay_s > 0.0 ? ", stamps late up to 100 us" : "");
                 errors.print(what.c_str());
                 const double step = 360.0 / codes;
-                const double late = one.most_speed_deg_s * delay_s * 0.29; // one deviation of the stamps
+                const double late = one.most_speed_deg_s * delay_s * 0.29; // sigma of the stamps
                 EXPECT_LT(errors.p50(), (one.braking ? 0.65 : 0.3) * step + late) << what;
                 EXPECT_LT(errors.p99(), (one.braking ? 2.0 : 0.7) * step + 3.5 * late) << what;
                 EXPECT_LT(errors.max(),
@@ -79,7 +78,7 @@ TEST_F(AnEstimator, is_near_the_true_angle_between_samples) {
     }
 }
 
-// A shaft at an even speed and an estimator that has settled on it.
+// A shaft at constant speed and an estimator that has settled on it.
 struct Settled {
     explicit Settled(double deg_s, const ShaftProperties& properties = {})
         : speed(deg_s), codes(properties.codes_per_turn), estimator(properties) {
@@ -102,7 +101,7 @@ struct Settled {
     ShaftEstimator estimator;
 };
 
-TEST(ShaftEstimator, counts_turns_both_ways_over_the_wrap) {
+TEST(ShaftEstimator, counts_turns_in_both_directions_across_the_wrap) {
     for (const double speed : {3600.0, -3600.0}) {
         Settled s(speed);
         const ShaftPosition from = s.estimator.at(at_s(s.t)).position;
@@ -113,7 +112,7 @@ TEST(ShaftEstimator, counts_turns_both_ways_over_the_wrap) {
     }
 }
 
-TEST(ShaftEstimator, stands_with_speed_exactly_zero_and_does_not_creep) {
+TEST(ShaftEstimator, reports_exactly_zero_speed_at_standstill_without_drift) {
     for (const std::uint32_t codes : {4096u, 180u}) {
         ShaftEstimator estimator({.codes_per_turn = codes});
         const TrueShaft shaft = TrueShaft(0.0).jump(3600.0).hold(0.3).brake(80.0).hold(20.0);
@@ -134,7 +133,7 @@ TEST(ShaftEstimator, stands_with_speed_exactly_zero_and_does_not_creep) {
     }
 }
 
-TEST_F(AnEstimator, stands_too_when_the_shaft_rests_on_the_edge_of_two_codes) {
+TEST_F(AnEstimator, is_at_standstill_when_the_shaft_rests_between_two_codes) {
     Settled s(0.0);
 
     const std::uint32_t code = s.code();
@@ -164,7 +163,7 @@ TEST(ShaftEstimator, rejects_and_counts_duplicates_old_stamps_and_impossible_cod
     EXPECT_FALSE(s.estimator.fault());
 }
 
-TEST(ShaftEstimator, raises_a_fault_on_an_impossible_jump_and_keeps_its_place) {
+TEST(ShaftEstimator, raises_a_fault_on_an_impossible_jump_and_keeps_its_position) {
     Settled s(3600.0);
     s.t += 1e-3;
     s.estimator.sample((s.code() + 2048) % 4096, at_s(s.t));
@@ -178,7 +177,7 @@ TEST(ShaftEstimator, raises_a_fault_on_an_impossible_jump_and_keeps_its_place) {
     EXPECT_FALSE(s.estimator.fault());
 }
 
-TEST(ShaftEstimator, believes_a_jump_after_three_samples_that_agree) {
+TEST(ShaftEstimator, accepts_a_jump_after_three_consistent_samples) {
     Settled s(3600.0);
     const auto jumped = [&] {
         s.t += 1e-3;
@@ -196,7 +195,7 @@ TEST(ShaftEstimator, believes_a_jump_after_three_samples_that_agree) {
                 1500 * 360.0 / 4096, 0.3);
 }
 
-TEST(ShaftEstimator, does_not_believe_jumps_that_do_not_agree) {
+TEST(ShaftEstimator, rejects_jumps_that_disagree) {
     Settled s(0.0);
     const std::uint32_t code = s.code();
     for (int i = 0; i < 6; ++i) {
@@ -208,7 +207,7 @@ TEST(ShaftEstimator, does_not_believe_jumps_that_do_not_agree) {
     EXPECT_LT(std::fabs(s.error()), 0.1);
 }
 
-TEST(ShaftEstimator, lets_one_outlier_pass_by) {
+TEST(ShaftEstimator, ignores_a_single_outlier) {
     Settled s(3600.0);
     const std::uint32_t stale = s.code();
     s.t += 1e-3;
@@ -220,7 +219,7 @@ TEST(ShaftEstimator, lets_one_outlier_pass_by) {
     EXPECT_FALSE(s.estimator.fault());
 }
 
-TEST(ShaftEstimator, follows_a_crash_harder_than_any_braking) {
+TEST(ShaftEstimator, follows_a_crash_stronger_than_any_braking) {
     Settled s(3600.0);
     const double stopped_at = s.speed * s.t + 10.0;
     s.speed = 0.0;
@@ -232,7 +231,7 @@ TEST(ShaftEstimator, follows_a_crash_harder_than_any_braking) {
     EXPECT_LT(std::fabs(apart(s.estimator.at(at_s(s.t)).position.angle().in_degrees(), stopped_at)), 0.1);
 }
 
-TEST(ShaftEstimator, goes_stale_and_starts_anew_after_a_long_gap) {
+TEST(ShaftEstimator, becomes_stale_and_restarts_after_a_long_gap) {
     Settled s(3600.0);
     EXPECT_TRUE(s.estimator.valid(at_s(s.t + 4e-3)));
     EXPECT_FALSE(s.estimator.valid(at_s(s.t + 4.1e-3)));
@@ -246,7 +245,7 @@ TEST(ShaftEstimator, goes_stale_and_starts_anew_after_a_long_gap) {
     EXPECT_LT(std::fabs(s.error()), 0.2);
 }
 
-TEST(ShaftEstimator, keeps_its_place_over_a_gap_at_standstill_but_not_when_moved_unseen) {
+TEST(ShaftEstimator, keeps_its_position_over_a_gap_only_at_standstill) {
     Settled s(0.0);
     s.t += 10.0;
     s.step();
@@ -257,7 +256,7 @@ TEST(ShaftEstimator, keeps_its_place_over_a_gap_at_standstill_but_not_when_moved
     EXPECT_EQ(s.estimator.epoch(), 1u);
 }
 
-TEST(ShaftEstimator, knows_the_time_of_a_crossing_ahead) {
+TEST(ShaftEstimator, predicts_the_time_of_a_crossing) {
     for (const double speed : {3600.0, -3600.0}) {
         Settled s(speed);
         const ShaftState here = s.estimator.at(at_s(s.t));
@@ -281,7 +280,7 @@ TEST_F(AnEstimator, survives_any_bytes) {
         ASSERT_TRUE(std::isfinite(state.velocity_deg_s) && std::isfinite(estimator.deviation_deg()));
         ASSERT_LE(std::fabs(state.velocity_deg_s), (2200_rpm).in_deg_s() * 3.0);
     }
-    const double true_speed = 1200.0; // and follows again when sense returns
+    const double true_speed = 1200.0; // and follows again when samples are valid
     for (int i = 0; i < 200; ++i) {
         t += 1'000'000;
         estimator.sample(code_at(true_speed * static_cast<double>(t) * 1e-9, 4096), at_ns(t));
@@ -291,7 +290,7 @@ TEST_F(AnEstimator, survives_any_bytes) {
     EXPECT_LT(std::fabs(apart(estimator.at(at_ns(t)).position.angle().in_degrees(), truth)), 0.2);
 }
 
-TEST(ShaftProperties, are_checked_with_a_sentence) {
+TEST(ShaftProperties, are_checked_with_a_message) {
     static_assert(check(ShaftProperties{}).empty());
     EXPECT_EQ(check({.codes_per_turn = 4}).view(),
               "shaft: codes_per_turn is 4; give a number from 8 to 16777216");

@@ -1,4 +1,4 @@
-// A shaft's motion ahead: positions follow the quadratic, crossings are their inverse.
+// Prediction of a shaft's motion: positions follow the quadratic, crossings are their inverse.
 #include "kernel/cam/motion.hpp"
 
 #include "tests/kernel/base/seeded.hpp"
@@ -13,14 +13,14 @@ ShaftMotion moving(double velocity, double acceleration) {
     return motion;
 }
 
-TEST(ShaftMotion, holds_the_acceleration_for_its_horizon_only) {
+TEST(ShaftMotion, extrapolates_acceleration_only_within_its_horizon) {
     const ShaftMotion motion = moving(1000.0, 10'000.0);
     EXPECT_NEAR((motion.at(Time{1010ms}).position - motion.state.position).in_degrees(), 10.5, 1e-6);
     EXPECT_NEAR((motion.at(Time{1030ms}).position - motion.state.position).in_degrees(), 22.0 + 12.0, 1e-6);
     EXPECT_NEAR(motion.at(Time{1030ms}).velocity_deg_s, 1200.0, 1e-9);
 }
 
-TEST(ShaftMotion, stops_and_does_not_turn_back_when_braked) {
+TEST(ShaftMotion, stops_without_reversing_when_braked) {
     const ShaftMotion motion = moving(1000.0, -100'000.0);
     const ShaftState stopped = motion.at(Time{2s});
     EXPECT_NEAR((stopped.position - motion.state.position).in_degrees(), 5.0, 1e-6);
@@ -29,7 +29,7 @@ TEST(ShaftMotion, stops_and_does_not_turn_back_when_braked) {
     EXPECT_NE(motion.when(motion.state.position + 4_deg, motion.stamp), never);
 }
 
-TEST(ShaftMotion, never_reaches_what_lies_behind_or_anything_when_it_stands) {
+TEST(ShaftMotion, never_reaches_angles_behind_it_or_any_at_standstill) {
     const ShaftMotion forward = moving(1000.0, 0.0);
     EXPECT_EQ(forward.when(forward.state.position - 1_deg, forward.stamp), never);
     const ShaftMotion backward = moving(-1000.0, 0.0);
@@ -45,7 +45,7 @@ TEST(ShaftMotion, does_not_predict_beyond_an_hour) {
 
 using AnyShaftMotion = test::Seeded;
 
-TEST_F(AnyShaftMotion, is_at_the_target_at_the_time_it_says) {
+TEST_F(AnyShaftMotion, reaches_the_target_at_the_predicted_time) {
     int reached = 0;
     for (int i = 0; i < 100'000; ++i) {
         const double velocity = (random.unit() - 0.5) * 24'000.0;
@@ -59,8 +59,8 @@ TEST_F(AnyShaftMotion, is_at_the_target_at_the_time_it_says) {
         if (when == never) continue;
         ++reached;
         ASSERT_GE(when, std::max(not_before, motion.stamp));
-        // At the instant of stopping a nanosecond's rounding is a place's; elsewhere it is speed times a
-        // nanosecond.
+        // At the instant of stopping, rounding by a nanosecond shifts the position; elsewhere the error is
+        // speed times a nanosecond.
         ASSERT_NEAR((motion.at(when).position - target).in_degrees(), 0.0, 1e-4);
     }
     EXPECT_GT(reached, 10'000);

@@ -17,7 +17,7 @@ static_assert(check(loom.view()).empty());
 
 using Cams = Seeded;
 
-// The angle at which the effect of a firing falls on the true shaft, against the angle asked for.
+// The true shaft angle at which the effect of a firing occurs, relative to the requested angle.
 template <std::size_t N>
 double effect_error(const CamRig<N>& rig, const CamTable<N>& table, const Fired& fired) {
     const CamRow& row = table.rows[fired.event.row];
@@ -25,9 +25,8 @@ double effect_error(const CamRig<N>& rig, const CamTable<N>& table, const Fired&
     return apart(rig.shaft.degrees(in_s(fired.at + dead)), fired.event.target.angle().in_degrees());
 }
 
-// Each row fired once for each crossing between the first and the last, none twice, none left out. A window
-// that was entered just before the shaft counted as standing is left at once, and once more at its angle in
-// the next turn.
+// Each row fired exactly once for each crossing between the first and the last. A window entered just before
+// standstill is left at once, and again at its angle in the next turn.
 template <std::size_t N> void expect_once_per_turn(const CamRig<N>& rig, const CamTable<N>& table, int step) {
     for (std::size_t row = 0; row < N; ++row) {
         for (const CamKind kind : {CamKind::point, CamKind::enter, CamKind::leave}) {
@@ -66,7 +65,7 @@ TEST_F(Cams, fires_every_row_exactly_once_per_turn_with_jitter_and_missing_sampl
 TEST_F(Cams, fires_in_the_order_of_the_effects) {
     CamRig rig(loom, TrueShaft(10.0).jump(3600.0).hold(10.0), {}, random.next());
     rig.run_to_the_end();
-    // No dead time lies between these two rows: the one at the greater angle comes later.
+    // No dead time separates these two rows: the one at the greater angle fires later.
     ShaftPosition last{-100, {}};
     for (const Fired& fired : rig.fired) {
         if (fired.event.row != 0 && fired.event.row != 5) continue;
@@ -120,7 +119,7 @@ TEST_F(Cams, puts_the_effect_on_the_angle_during_the_run_up) {
     }
 }
 
-TEST_F(Cams, fires_both_ways_when_a_row_says_so) {
+TEST_F(Cams, fires_in_both_directions_when_a_row_says_so) {
     constexpr auto table =
         cam_table(700_rpm, cam("both", at(90_deg), direction(Direction::both), dead_time(2ms)),
                   cam("forward", at(90_deg)),
@@ -151,7 +150,7 @@ TEST_F(Cams, fires_both_ways_when_a_row_says_so) {
     }
 }
 
-TEST_F(Cams, has_nothing_due_while_the_shaft_stands) {
+TEST_F(Cams, has_no_due_event_at_standstill) {
     for (const std::uint32_t codes : {4096u, 180u}) {
         CamRig rig(loom, TrueShaft(80.0).hold(5.0), {.codes_per_turn = codes}, random.next());
         rig.run(5.0);
@@ -161,13 +160,13 @@ TEST_F(Cams, has_nothing_due_while_the_shaft_stands) {
     }
 }
 
-TEST_F(Cams, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
+TEST_F(Cams, does_not_fire_again_when_the_shaft_jitters_at_a_cam) {
     constexpr auto table =
         cam_table(700_rpm, cam("cam", at(90_deg)), cam("both", at(90_deg), direction(Direction::both)));
     TrueShaft shaft(0.0);
-    shaft.hold(0.1).ramp(360.0, 0.1).hold(0.2).ramp(0.0, 0.1); // to 108 degrees, 90 lying behind
+    shaft.hold(0.1).ramp(360.0, 0.1).hold(0.2).ramp(0.0, 0.1); // to 108 degrees, 90 is behind it
     for (int i = 0; i < 2; ++i) shaft.ramp(-180.0, 0.1).ramp(0.0, 0.1);
-    // Now at 72: over the cam again, forward, then to and fro by a degree around it.
+    // Now at 72: over the cam again, forward, then back and forth by a degree around it.
     shaft.ramp(90.0, 0.1).hold(0.1).ramp(0.0, 0.1);
     const double there = shaft.degrees(shaft.end_s());
     ASSERT_NEAR(there, 90.0, 1e-6);
@@ -181,13 +180,13 @@ TEST_F(Cams, does_not_fire_again_when_the_shaft_trembles_on_a_cam) {
     shaft.ramp(180.0, 0.1).ramp(0.0, 0.1);
     CamRig rig(table, shaft, {}, random.next());
     rig.run(shaft.end_s());
-    EXPECT_EQ(rig.count(0, CamKind::point), 2u); // once on the way out, once after the way back
+    EXPECT_EQ(rig.count(0, CamKind::point), 2u); // once on the way out, once after the return
     EXPECT_EQ(rig.count(1, CamKind::point), 3u);
 }
 
 TEST_F(Cams, fires_once_when_the_shaft_stops_between_firing_and_effect) {
     constexpr auto table = cam_table(700_rpm, cam("slow_valve", at(180_deg), dead_time(20ms)));
-    // 72 degrees ahead at 600 rpm; braked at 120, the shaft stands at about 160 and goes on later.
+    // 72 degrees ahead at 600 rpm; braked at 120, the shaft stops at about 160 and continues later.
     CamRig rig(table,
                TrueShaft(-150.0).jump(3600.0).hold(0.075).brake(40.0).hold(0.5).ramp(360.0, 0.05).hold(0.2),
                {}, random.next());
@@ -195,9 +194,9 @@ TEST_F(Cams, fires_once_when_the_shaft_stops_between_firing_and_effect) {
     EXPECT_EQ(rig.count(0, CamKind::point), 1u);
 }
 
-TEST_F(Cams, fires_late_at_once_and_counts_it_when_a_dead_time_reaches_back_before_now) {
+TEST_F(Cams, fires_immediately_and_counts_events_whose_dead_time_has_passed) {
     constexpr auto table = cam_table(700_rpm, cam("valve", at(30_deg), dead_time(10ms), min_speed(300_rpm)));
-    // min_speed is reached at about 20 degrees, where the effect already lies 18 degrees ahead.
+    // min_speed is reached at about 20 degrees, where the effect is already 18 degrees ahead.
     CamRig rig(table, TrueShaft(0.0).hold(0.1).accelerate(1800.0 * 1800.0 / 40.0, 40.0 / 1800.0).hold(0.3),
                {}, random.next());
     rig.run(0.16);
@@ -207,7 +206,7 @@ TEST_F(Cams, fires_late_at_once_and_counts_it_when_a_dead_time_reaches_back_befo
     EXPECT_EQ(rig.schedule.counters().latest_deg, rig.fired[0].event.late_deg);
 }
 
-TEST_F(Cams, fires_nothing_below_its_least_speed_but_leaves_windows) {
+TEST_F(Cams, fires_nothing_below_its_minimum_speed_but_leaves_windows) {
     constexpr auto table = cam_table(700_rpm, cam("point", at(90_deg), min_speed(100_rpm)),
                                      cam("window", window(40_deg, 270_deg), min_speed(100_rpm)));
     TrueShaft shaft(0.0);
@@ -226,7 +225,7 @@ TEST_F(Cams, fires_nothing_below_its_least_speed_but_leaves_windows) {
     EXPECT_FALSE(rig.schedule.inside(1));
 }
 
-TEST_F(Cams, skips_and_counts_what_passed_in_the_dark_and_never_fires_a_burst) {
+TEST_F(Cams, skips_and_counts_unseen_cams_without_a_burst) {
     for (const double dark_s : {0.03, 0.35, 2.0}) {
         SCOPED_TRACE("dark " + std::to_string(dark_s));
         CamRig rig(loom, TrueShaft(0.0).jump(3600.0).hold(4.0), {}, random.next());
@@ -235,7 +234,7 @@ TEST_F(Cams, skips_and_counts_what_passed_in_the_dark_and_never_fires_a_burst) {
         rig.run(1.0 + dark_s, 0.0, 1.0 + dark_s);
         EXPECT_FALSE(rig.estimator.valid(at_s(1.0 + dark_s)));
         rig.run(1.01 + dark_s);
-        // 10 ms turn 36 degrees: no more rows can truly have passed, and two windows may have to be left.
+        // 10 ms turn 36 degrees: no more rows can have passed, and two windows may have to be left.
         EXPECT_LE(rig.fired.size() - before, 16u);
         EXPECT_GE(rig.estimator.epoch(), 1u);
         rig.run(4.0);
@@ -249,12 +248,12 @@ TEST_F(Cams, skips_and_counts_what_passed_in_the_dark_and_never_fires_a_burst) {
     }
 }
 
-TEST_F(Cams, leaves_an_open_window_when_the_encoder_comes_back_elsewhere) {
+TEST_F(Cams, leaves_an_open_window_when_the_encoder_returns_elsewhere) {
     constexpr auto table = cam_table(700_rpm, cam("valve", window(60_deg, 120_deg)));
-    // At 0.12 s the shaft is at 72 degrees, inside; the encoder is dark until 0.2 s, at 0 degrees.
+    // At 0.12 s the shaft is at 72 degrees, inside; the encoder is silent until 0.2 s, at 0 degrees.
     CamRig rig(table, TrueShaft(-360.0).jump(3600.0).hold(1.0), {}, random.next());
     rig.run(0.21, 0.12, 0.2);
-    ASSERT_EQ(rig.count(0, CamKind::enter), 2u); // a turn before, too
+    ASSERT_EQ(rig.count(0, CamKind::enter), 2u); // also one turn before
     ASSERT_EQ(rig.count(0, CamKind::leave), 2u);
     EXPECT_TRUE(rig.fired.back().event.forced);
     EXPECT_EQ(rig.schedule.counters().forced, 1u);
@@ -263,7 +262,7 @@ TEST_F(Cams, leaves_an_open_window_when_the_encoder_comes_back_elsewhere) {
     EXPECT_EQ(rig.count(0, CamKind::enter), rig.count(0, CamKind::leave));
 }
 
-// The valve of a loom: what an angle opened is closed when the closing angle will not come.
+// The valve of a loom: an opened valve is closed when its closing angle will not be reached.
 constexpr auto valves =
     cam_table(700_rpm, cam("valve", window(60_deg, 180_deg), dead_time(2500us, 1800us)),
               cam("both", window(60_deg, 180_deg), direction(Direction::both), dead_time(2500us)));
@@ -275,7 +274,7 @@ void expect_left_once(const CamRig<2>& rig) {
     }
 }
 
-TEST_F(Cams, leaves_a_window_in_which_the_shaft_comes_to_stand) {
+TEST_F(Cams, leaves_a_window_in_which_the_shaft_stops) {
     TrueShaft shaft(-360.0);
     shaft.jump(3600.0).hold(460.0 / 3600.0).brake(40.0); // from 100 to 140 degrees
     const double stands = shaft.end_s();
@@ -296,16 +295,16 @@ TEST_F(Cams, leaves_a_window_in_which_the_shaft_comes_to_stand) {
     EXPECT_GE(rig.count(0, CamKind::enter), 4u) << "from the next turn on it is entered as before";
 }
 
-TEST_F(Cams, leaves_a_window_that_a_dead_time_entered_ahead_of_a_shaft_that_stops_before_it) {
+TEST_F(Cams, leaves_an_anticipated_window_when_the_shaft_stops_before_it) {
     constexpr auto table = cam_table(700_rpm, cam("slow_valve", window(180_deg, 300_deg), dead_time(20ms)));
-    // 72 degrees ahead: entered at 108; braked at 120, it stands at 160
+    // 72 degrees ahead: entered at 108; braked at 120, it stops at 160
     CamRig rig(table, TrueShaft(-150.0).jump(3600.0).hold(0.075).brake(40.0).hold(0.1), {}, random.next());
     rig.run_to_the_end();
     EXPECT_EQ(rig.count(0, CamKind::enter), 1u);
     EXPECT_EQ(rig.count(0, CamKind::leave), 1u);
 }
 
-TEST_F(Cams, leaves_a_window_that_was_entered_backward_and_in_which_the_shaft_stands) {
+TEST_F(Cams, leaves_a_window_entered_backward_when_the_shaft_stops_in_it) {
     TrueShaft shaft(360.0);
     shaft.hold(0.1).ramp(-1800.0, 0.05).hold(0.1).ramp(0.0, 0.02).hold(0.1); // to 117 degrees
     CamRig rig(valves, shaft, {}, random.next());
@@ -315,7 +314,7 @@ TEST_F(Cams, leaves_a_window_that_was_entered_backward_and_in_which_the_shaft_st
     expect_left_once(rig);
 }
 
-TEST_F(Cams, leaves_a_window_whose_shaft_turns_back_out_of_it) {
+TEST_F(Cams, leaves_a_window_when_the_shaft_turns_back_out_of_it) {
     TrueShaft shaft(0.0);
     shaft.hold(0.1).ramp(1800.0, 0.02).hold(0.045).ramp(-1800.0, 0.02).hold(0.08);
     CamRig rig(valves, shaft, {}, random.next());
@@ -324,10 +323,10 @@ TEST_F(Cams, leaves_a_window_whose_shaft_turns_back_out_of_it) {
     expect_left_once(rig);
 }
 
-TEST_F(Cams, leaves_an_open_window_as_soon_as_the_encoder_is_silent_for_too_long) {
-    // At 0.12 s the shaft is at 72 degrees, inside, and turns on in the dark.
+TEST_F(Cams, leaves_an_open_window_when_the_encoder_times_out) {
+    // At 0.12 s the shaft is at 72 degrees, inside, and continues to turn unseen.
     CamRig rig(valves, TrueShaft(-360.0).jump(3600.0).hold(2.0), {}, random.next());
-    rig.run(0.12 + 0.011, 0.12, 1.0); // 8 ms are the age of what is believed
+    rig.run(0.12 + 0.011, 0.12, 1.0); // 8 ms are the maximum age of a sample
     expect_left_once(rig);
     EXPECT_EQ(rig.count(0, CamKind::enter), 2u);
     EXPECT_TRUE(rig.fired.back().event.forced);
@@ -335,7 +334,7 @@ TEST_F(Cams, leaves_an_open_window_as_soon_as_the_encoder_is_silent_for_too_long
     EXPECT_EQ(rig.count(0, CamKind::leave), 2u) << "once";
 }
 
-TEST_F(Cams, leaves_all_for_who_follows_the_shaft_no_longer) {
+TEST_F(Cams, leaves_all_windows_on_request_exactly_once) {
     CamRig rig(valves, TrueShaft(0.0).jump(3600.0).hold(1.0), {}, random.next());
     rig.run(0.03); // 108 degrees
     ASSERT_TRUE(rig.schedule.inside(0) && rig.schedule.inside(1));
@@ -348,7 +347,7 @@ TEST_F(Cams, leaves_all_for_who_follows_the_shaft_no_longer) {
     EXPECT_FALSE(rig.schedule.inside(0) || rig.schedule.inside(1));
 }
 
-TEST_F(Cams, keeps_exclusive_windows_apart_when_they_touch) {
+TEST_F(Cams, keeps_touching_exclusive_windows_apart) {
     constexpr auto table = cam_table(2200_rpm, cam("b", window(120_deg, 240_deg), exclusive("g")),
                                      cam("a", window(0_deg, 120_deg), exclusive("g")),
                                      cam("c", window(240_deg, 0_deg), exclusive("g")));
@@ -363,8 +362,8 @@ TEST_F(Cams, keeps_exclusive_windows_apart_when_they_touch) {
     EXPECT_GT(rig.fired.size(), 400u);
 }
 
-// A shaft that is run up, braked, turned back and forth at random: what fires alternates as the truth does.
-TEST_F(Cams, keeps_windows_paired_on_any_way_of_the_shaft) {
+// A shaft that accelerates, brakes and reverses at random: enter and leave alternate as on the true shaft.
+TEST_F(Cams, pairs_enter_and_leave_for_any_motion) {
     constexpr auto table =
         cam_table(1500_rpm, cam("w", window(50_deg, 170_deg), direction(Direction::both), dead_time(3ms)),
                   cam("v", window(250_deg, 20_deg), direction(Direction::forward), dead_time(1ms, 4ms)));
@@ -395,7 +394,7 @@ TEST_F(Cams, keeps_windows_paired_on_any_way_of_the_shaft) {
     }
 }
 
-TEST_F(Cams, does_the_same_to_the_bit_for_the_same_seed) {
+TEST_F(Cams, repeats_bit_for_bit_with_the_same_seed) {
     const auto run = [] {
         CamRig rig(loom, TrueShaft(0.0).hold(0.1).ramp(3600.0, 0.5).hold(1.0).brake(80.0),
                    {.stamp_delay_s = 100e-6, .missing_one_in = 20}, 4711);
@@ -414,7 +413,7 @@ TEST_F(Cams, does_the_same_to_the_bit_for_the_same_seed) {
     EXPECT_EQ(once, 336675540384717305u) << "another compiler, or another estimator";
 }
 
-TEST_F(Cams, fires_nothing_on_a_stale_estimate_even_when_the_timer_comes_late) {
+TEST_F(Cams, fires_nothing_on_a_stale_estimate_even_when_the_timer_is_late) {
     constexpr auto table = cam_table(700_rpm, cam("cam", at(0_deg)));
     CamRig rig(table, TrueShaft(-6.0 - 360.0).jump(3600.0).hold(1.0), {.period_jitter_s = 0.0},
                random.next());

@@ -1,4 +1,4 @@
-// A cam table that cannot work is refused with one sentence that names the row, the fault and the cure.
+// An impossible cam table is refused with one message that names the row, the fault and the cure.
 #include "kernel/cam/table.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ template <class... Rows> constexpr Sentence fault_of(const Rows&... rows) {
     return check(cam_table(600_rpm, rows...).view());
 }
 
-TEST(CamTable, says_nothing_of_a_good_table) {
+TEST(CamTable, accepts_a_good_table) {
     static constexpr auto cams = cam_table(
         700_rpm, cam("beat_up", at(0_deg)), cam("pick_window", at(80_deg), dead_time(2500us)),
         cam("arrival", window(200_deg, 260_deg), min_speed(60_rpm), direction(Direction::both)),
@@ -76,11 +76,11 @@ constexpr Refused refused[] = {
      "cam table: the maximum speed is not above 0; give the fastest speed of the shaft"},
 };
 
-TEST(CamTable, refuses_what_cannot_work) {
+TEST(CamTable, refuses_impossible_rows) {
     for (const Refused& each : refused) EXPECT_EQ(each.fault.view(), each.says) << each.what;
 }
 
-// As near to it as a table may come, and a little nearer.
+// The closest allowed rows, and slightly closer ones.
 static_assert(fault_of(cam("weft", at(80_deg), dead_time(99ms))).empty());
 static_assert(!fault_of(cam("weft", at(80_deg), dead_time(99ms), dead_time_jitter(2ms))).empty());
 static_assert(!fault_of(cam("valve", window(60_deg, 90_deg), dead_time(1ms, 10ms))).empty());

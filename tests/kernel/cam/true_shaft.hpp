@@ -1,5 +1,5 @@
-// A simulated shaft whose true angle is known, its encoder, and the statistics of an error: what the tests of
-// kernel/cam measure against.
+// A simulated shaft with a known true angle, its encoder, and error statistics: the reference for the tests
+// of kernel/cam.
 #pragma once
 
 #include "kernel/base/random.hpp"
@@ -27,7 +27,7 @@ public:
         return *this;
     }
     TrueShaft& hold(double for_s) { return accelerate(0.0, for_s); }
-    /// From whatever speed to `deg_s` within `for_s`.
+    /// Changes from the present speed to `deg_s` within `for_s`.
     TrueShaft& ramp(double deg_s, double for_s) {
         accelerate((deg_s - pieces_.back().v) / for_s, for_s);
         pieces_.back().v = deg_s;
@@ -37,7 +37,7 @@ public:
         pieces_.back().v = deg_s;
         return *this;
     }
-    /// From whatever speed to standstill within `way_deg`.
+    /// Changes from the present speed to standstill within `way_deg`.
     TrueShaft& brake(double way_deg) { return ramp(0.0, 2.0 * way_deg / std::fabs(pieces_.back().v)); }
 
     [[nodiscard]] double end_s() const { return pieces_.back().t; }
@@ -60,14 +60,14 @@ private:
     std::vector<Piece> pieces_;
 };
 
-/// What the encoder shows at a true angle.
+/// The encoder's reading at a true angle.
 inline std::uint32_t code_at(double degrees, std::uint32_t codes_per_turn) {
     const double turns = degrees / 360.0;
     const auto code = static_cast<std::uint32_t>((turns - std::floor(turns)) * codes_per_turn);
     return std::min(code, codes_per_turn - 1);
 }
 
-/// The way from b to a within half a turn, degrees.
+/// The distance from b to a within half a turn, in degrees.
 inline double apart(double a_deg, double b_deg) {
     const double turns = (a_deg - b_deg) / 360.0;
     return (turns - std::floor(turns + 0.5)) * 360.0;
@@ -76,13 +76,13 @@ inline double apart(double a_deg, double b_deg) {
 inline Time at_s(double s) { return at_ns(static_cast<std::int64_t>(s * 1e9 + 0.5)); }
 inline double in_s(Time t) { return static_cast<double>(to_ns(t)) * 1e-9; }
 
-/// Absolute errors, their percentiles.
+/// Absolute errors and their percentiles.
 class Errors {
 public:
     void add(double error) { all_.push_back(std::fabs(error)); }
     [[nodiscard]] std::size_t count() const { return all_.size(); }
     [[nodiscard]] double percentile(double part) {
-        if (all_.empty()) return 1e9; // a test that measured nothing must not pass
+        if (all_.empty()) return 1e9; // a test without measurements must fail
         std::sort(all_.begin(), all_.end());
         return all_[std::min(all_.size() - 1,
                              static_cast<std::size_t>(part * static_cast<double>(all_.size())))];
@@ -99,12 +99,12 @@ private:
     std::vector<double> all_;
 };
 
-/// How the encoder's samples arrive.
+/// The arrival of encoder samples.
 struct Sampling {
     std::uint32_t codes_per_turn = 4096;
     double period_s = 1e-3;
     double period_jitter_s = 1e-4; // the instants themselves
-    double stamp_delay_s = 0.0;    // the stamp lies up to so much behind the instant, uniformly
+    double stamp_delay_s = 0.0;    // the stamp is late by up to this time, uniformly
     std::uint64_t missing_one_in = 0;
 };
 

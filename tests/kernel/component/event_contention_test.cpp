@@ -1,5 +1,6 @@
-// How long emitting, connecting and disconnecting take while another core does the opposite (thesis 4.6:
-// events in real time), beside the same undisturbed. Figures to read; that both sides really met is asserted.
+// Times of emitting, connecting and disconnecting while another core does the opposite (thesis 4.6: events in
+// real time), compared with the undisturbed case. The figures are for reading; the test asserts only that
+// both sides met.
 #include "kernel/component/current.hpp"
 
 #include "tests/kernel/component/event_rig.hpp"
@@ -16,7 +17,7 @@ struct Listener {
 
 inline constexpr const OperationOperations& hear = detail::operation_of<&Listener::hear>;
 
-TEST_F(Contention, of_an_event_with_one_row_that_comes_and_goes) {
+TEST_F(Contention, leaves_an_event_intact_while_its_row_connects_and_disconnects) {
     for (const bool latest : {false, true}) {
         Emitter emitter;
         Receiver receiver{16};

@@ -1,4 +1,4 @@
-// An event with its subscribers, lanes and a receiving end in place, as start-up gives them.
+// An event with its subscribers, lanes and a receiving end, as start-up places them.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -17,7 +17,7 @@ struct EmitterOf {
     static constexpr const EventOperations& operations = PortAccess::event<A...>;
     Event<A...> event;
     std::array<Subscriber<A...>, 8> subscribers{};
-    std::deque<GatedComponent> gates; ///< of the components that are called
+    std::deque<GatedComponent> gates; ///< gates of the called components
     std::size_t rows = 0;
     EmitterOf() { operations.give_storage(&event, subscribers.data()); }
 
@@ -41,9 +41,9 @@ struct EmitterOf {
 
 using Emitter = EmitterOf<double>;
 
-using Receiver = PlacedInbox; ///< the receiving end, of so many sending activities
+using Receiver = PlacedInbox; ///< the receiving end for several sending activities
 
-/// An asynchronous row into a receiver with a lane for each of its senders; activity 0 is the first of them.
+/// An asynchronous row to a receiver with a lane for each of its senders; activity 0 is the first of them.
 struct Row {
     Row(Receiver& receiver, const OperationOperations& operation, void* component, std::uint32_t quota,
         bool keeps_latest = false, std::size_t argument_bytes = 0)

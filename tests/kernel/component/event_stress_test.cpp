@@ -1,6 +1,6 @@
-// Storms of connect and disconnect, by threads of their own and out of reactions, while two activities emit
-// and a third serves (thesis 4.6.1: self and cross unsubscription from any concurrent activity). Schedules
-// follow from TAPPET_SEED.
+// Storms of connect and disconnect, by threads of their own and from reactions, while two activities emit and
+// a third serves (thesis 4.6.1: self and cross unsubscription from any concurrent activity). TAPPET_SEED
+// determines the schedules.
 #include "tests/kernel/component/event_rig.hpp"
 #include "tests/kernel/exchange/stress.hpp"
 
@@ -19,26 +19,26 @@ using namespace tappet;
 using Argument = Sealed<48>; // as large as a message carries
 using LargeArgument = Sealed<160>;
 constexpr std::size_t emitters = 2;
-constexpr std::uint64_t emissions = 20'000; // of each
+constexpr std::uint64_t emissions = 20'000; // of each kind
 
-/// One controller connects and disconnects some rows, and says where it is: 0 disconnected, 1 connecting,
+/// One controller connects and disconnects some rows, and publishes its phase: 0 disconnected, 1 connecting,
 /// 2 connected, 3 disconnecting, and on from 4. An emission that began and ended in one phase lay in it.
 using Phase = std::uint32_t;
 constexpr Phase never_served = ~Phase{0};
 
-/// What happened to the emissions of one emitter.
+/// The fate of the emissions of one emitter.
 struct Emissions {
     std::vector<Phase> begun = std::vector<Phase>(emissions), ended = std::vector<Phase>(emissions);
 };
 
-/// A reaction that remembers in which phase each emission reached it.
+/// A reaction that records the phase in which each emission arrived.
 template <class Argument>
 struct Witness {
     std::array<std::vector<Phase>, emitters> heard{std::vector<Phase>(emissions, never_served),
                                                    std::vector<Phase>(emissions, never_served)};
     std::array<std::uint64_t, emitters> last{};
-    std::atomic<std::uint64_t> torn{0}, disordered{0}; // a synchronous one is run by both emitters
-    const Phase* serving = nullptr; ///< of an asynchronous one: the phase before it was served
+    std::atomic<std::uint64_t> torn{0}, disordered{0}; // both emitters run a synchronous one
+    const Phase* serving = nullptr;                    ///< asynchronous row: the phase before it was served
     void hear(Argument argument) noexcept TAPPET_REALTIME {
         if (!argument.whole()) {
             ++torn;
@@ -136,7 +136,7 @@ struct Storm {
             ++phase;
             for (const EventHandle& handle : watched) handle.connect();
             ++phase;
-            // Of each emitter one is heard, whoever has the processor for how long.
+            // Wait for one emission of each emitter, however the scheduler treats them.
             while (heard_once.load() < emitters) std::this_thread::yield();
             dither(random);
             ++phase;
@@ -178,9 +178,9 @@ struct Storm {
                     ++heard;
                     const Phase begun = log[e].begun[n];
                     if (begun != log[e].ended[n]) continue;
-                    if (begun % 4 == 0) ++inside; // wholly while disconnected
+                    if (begun % 4 == 0) ++inside; // entirely while disconnected
                     if (!synchronous && begun % 4 == 2 && one.heard[e][n] >= begun + 2)
-                        ++late; // queued before it was
+                        ++late; // queued before the disconnection
                 }
             EXPECT_EQ(one.torn, 0u);
             EXPECT_EQ(one.disordered, 0u) << "an emitter's own order is kept";
@@ -233,12 +233,12 @@ struct Storm {
     }
 };
 
-TEST(AStorm, reaches_nobody_after_disconnect_tears_nothing_and_loses_nothing_uncounted) {
+TEST(AStorm, reaches_no_disconnected_row_and_counts_every_loss) {
     std::make_unique<Storm<Argument>>()->rages();
     std::make_unique<Storm<LargeArgument>>()->rages();
 }
 
-TEST(AStorm, leaves_rows_that_work_as_before) {
+TEST(AStorm, leaves_working_rows_unchanged) {
     std::make_unique<Storm<Argument>>()->abates();
     std::make_unique<Storm<LargeArgument>>()->abates();
 }

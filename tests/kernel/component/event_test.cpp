@@ -1,5 +1,5 @@
-// Events (thesis 4.6): reactions here and now, reactions posted to another engine within their quota, and
-// connecting and disconnecting them, out of reactions too.
+// Events (thesis 4.6): immediate reactions, reactions posted to another engine within their quota, and
+// connecting and disconnecting them, also from reactions.
 #include "tests/kernel/component/event_rig.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace tappet;
 
-/// Records what it was told, in order, and does what a test wants then.
+/// Records its arguments in order, then runs the test's action.
 struct Listener {
     std::vector<double> heard;
     std::function<void()> then;
@@ -29,7 +29,7 @@ struct AnEvent : testing::Test {
     Listener first, second, third;
 };
 
-/// The only asynchronous row into a receiver, which has more room than the row may take.
+/// The only asynchronous row to a receiver, which has more room than the row's quota.
 struct Told : Receiver, Row {
     EventHandle handle;
 
@@ -39,7 +39,7 @@ struct Told : Receiver, Row {
           handle{emitter.tell(row)} {}
 };
 
-TEST_F(AnEvent, without_subscribers_is_emitted_into_nothing) {
+TEST_F(AnEvent, has_no_effect_without_subscribers) {
     Event<double> event;
     event.emit(1.0);
     event(2.0);
@@ -69,14 +69,14 @@ TEST_F(AnEvent, posts_its_asynchronous_reactions_and_wakes_the_receiver) {
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
 }
 
-TEST_F(AnEvent, loses_and_counts_what_exceeds_the_quota_of_the_row) {
+TEST_F(AnEvent, loses_and_counts_emissions_above_the_quota_of_the_row) {
     Told told{emitter, first, 2};
     for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
     EXPECT_EQ(told.row.counts().lost, 1u);
     EXPECT_EQ(told.row.counts().high_water, 2u);
     told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
-    emitter.event(4.0); // served messages give their place back
+    emitter.event(4.0); // served messages free their places
     told.inbox.run_all();
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0, 4.0}));
     EXPECT_EQ(told.row.counts().lost, 1u);
@@ -84,7 +84,7 @@ TEST_F(AnEvent, loses_and_counts_what_exceeds_the_quota_of_the_row) {
     EXPECT_EQ(told.row.counts().served, 3u);
 }
 
-TEST_F(AnEvent, lets_one_rows_flood_not_take_another_rows_place) {
+TEST_F(AnEvent, keeps_the_quota_of_a_row_when_another_row_floods) {
     Emitter other;
     Receiver receiver{3}; // two for the one row, one for the other, as the planner sizes it
     Row many{receiver, hear, &first, 2}, one{receiver, hear, &second, 1};
@@ -98,7 +98,7 @@ TEST_F(AnEvent, lets_one_rows_flood_not_take_another_rows_place) {
     EXPECT_EQ(one.row.counts().lost, 0u);
 }
 
-/// What an operation is called with stays as it is while it runs, whatever comes meanwhile.
+/// Arguments of a running operation stay unchanged, whatever arrives meanwhile.
 using Large = std::array<double, 9>;
 struct Handler {
     Event<Large>& event;
@@ -122,7 +122,7 @@ struct Handler {
     }
 };
 
-/// What is heard and what is lost when 1 is emitted, and so many more numbers while it is handled.
+/// The numbers received and lost when 1 is emitted, and `more` further numbers while it is handled.
 std::pair<std::vector<double>, std::uint64_t> emitted(std::uint32_t more, std::uint32_t quota,
                                                       bool keeps_latest) {
     EmitterOf<Large> large;
@@ -139,7 +139,7 @@ std::pair<std::vector<double>, std::uint64_t> emitted(std::uint32_t more, std::u
     return {handler.heard, row.row.counts().lost};
 }
 
-TEST_F(AnEvent, of_large_arguments_keeps_those_that_are_handled_while_the_queue_is_filled) {
+TEST_F(AnEvent, keeps_large_arguments_in_use_while_the_queue_fills) {
     for (const std::uint32_t quota : {1u, 2u, 3u, 4u, 8u}) {
         std::vector<double> all;
         for (std::uint32_t i = 0; i <= quota; ++i) all.push_back(1.0 + i);
@@ -147,11 +147,11 @@ TEST_F(AnEvent, of_large_arguments_keeps_those_that_are_handled_while_the_queue_
     }
 }
 
-TEST_F(AnEvent, of_large_arguments_of_which_the_latest_is_kept_keeps_the_one_that_is_handled) {
+TEST_F(AnEvent, keeps_the_large_argument_in_use_when_a_newer_one_arrives) {
     EXPECT_EQ(emitted(3, 1, true), (std::pair{std::vector{1.0, 4.0}, std::uint64_t{2}}));
 }
 
-TEST_F(AnEvent, of_which_the_latest_is_kept_delivers_that_and_counts_the_ones_it_replaced) {
+TEST_F(AnEvent, delivers_only_the_latest_and_counts_replaced_emissions) {
     Told told{emitter, first, 1, true};
     int wakes = 0;
     told.row.waker = {[](void* count) noexcept TAPPET_REALTIME { ++*static_cast<int*>(count); }, &wakes};
@@ -166,26 +166,26 @@ TEST_F(AnEvent, of_which_the_latest_is_kept_delivers_that_and_counts_the_ones_it
     EXPECT_EQ(told.row.counts().lost, 2u);
 }
 
-TEST_F(AnEvent, reaches_no_reaction_that_was_disconnected_and_each_that_was_connected_again) {
+TEST_F(AnEvent, runs_no_disconnected_reaction_but_each_reconnected_one) {
     const EventHandle handle = emitter.call(hear, &first);
     EXPECT_TRUE(handle.connected());
     handle.disconnect();
     EXPECT_FALSE(handle.connected());
     emitter.event(1.0);
     handle.connect();
-    handle.connect(); // once is as good as twice
+    handle.connect(); // a second call changes nothing
     emitter.event(2.0);
     EXPECT_EQ(first.heard, (std::vector{2.0}));
 }
 
-TEST_F(AnEvent, has_handles_whose_copies_stand_for_the_same_row) {
+TEST_F(AnEvent, copies_handles_that_control_the_same_row) {
     const EventHandle handle = emitter.call(hear, &first);
     const EventHandle copy = handle;
     copy.disconnect();
     EXPECT_FALSE(handle.connected());
 }
 
-TEST_F(AnEvent, drops_and_counts_what_was_caught_before_the_row_was_disconnected) {
+TEST_F(AnEvent, drops_and_counts_emissions_queued_before_a_disconnect) {
     Told told{emitter, first, 4};
     emitter.event(1.0);
     emitter.event(2.0);
@@ -196,7 +196,7 @@ TEST_F(AnEvent, drops_and_counts_what_was_caught_before_the_row_was_disconnected
     EXPECT_EQ(told.row.counts().served, 2u) << "their places are free again";
 }
 
-TEST_F(AnEvent, drops_what_was_caught_before_even_when_the_row_is_connected_again) {
+TEST_F(AnEvent, drops_emissions_queued_before_a_disconnect_even_after_a_reconnect) {
     for (const bool keeps_latest : {false, true}) {
         Emitter emits;
         Listener listener;
@@ -211,7 +211,7 @@ TEST_F(AnEvent, drops_what_was_caught_before_even_when_the_row_is_connected_agai
     }
 }
 
-TEST_F(AnEvent, passes_over_a_gap_among_its_rows) {
+TEST_F(AnEvent, skips_gaps_among_its_rows) {
     const EventHandle one = emitter.call(hear, &first);
     emitter.call(hear, &second).disconnect();
     const EventHandle three = emitter.call(hear, &third);
@@ -222,13 +222,13 @@ TEST_F(AnEvent, passes_over_a_gap_among_its_rows) {
     EXPECT_EQ(third.heard, (std::vector{1.0}));
 }
 
-TEST_F(AnEvent, may_have_its_rows_changed_by_a_reaction_that_it_runs) {
+TEST_F(AnEvent, lets_a_running_reaction_change_its_rows) {
     enum Change { connect, disconnect };
     static constexpr struct {
         std::size_t who;
         Change does;
         std::size_t to;
-        std::size_t times_heard[3]; ///< of two emissions
+        std::size_t times_heard[3]; ///< counts for two emissions
         const char* what;
     } cases[] = {{0, disconnect, 0, {1, 2, 2}, "itself: what stands after it is not skipped"},
                  {0, disconnect, 1, {2, 0, 2}, "a later one: it does not run in the same emission"},
@@ -252,7 +252,7 @@ TEST_F(AnEvent, may_have_its_rows_changed_by_a_reaction_that_it_runs) {
     }
 }
 
-TEST_F(AnEvent, may_have_its_reactions_connect_and_disconnect_each_other_and_those_of_other_events) {
+TEST_F(AnEvent, lets_reactions_connect_and_disconnect_each_other) {
     Emitter other;
     const EventHandle elsewhere = other.call(hear, &third);
     const EventHandle one = emitter.call(hear, &first);
@@ -261,7 +261,7 @@ TEST_F(AnEvent, may_have_its_reactions_connect_and_disconnect_each_other_and_tho
     first.then = [&] { one.disconnect(), two.connect(), elsewhere.disconnect(); };
     second.then = [&] { two.disconnect(), one.connect(), elsewhere.connect(); };
     for (double value : {1.0, 2.0}) {
-        emitter.event(value); // the first hands over to the second, which is run in the same emission
+        emitter.event(value); // the first connects the second, which runs in the same emission
         other.event(value);
     }
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
@@ -269,7 +269,7 @@ TEST_F(AnEvent, may_have_its_reactions_connect_and_disconnect_each_other_and_tho
     EXPECT_EQ(third.heard, (std::vector{1.0, 2.0}));
 }
 
-TEST_F(AnEvent, may_be_disconnected_in_the_receivers_engine_with_all_that_waits_there) {
+TEST_F(AnEvent, can_be_disconnected_with_emissions_pending_in_the_receiver) {
     Told told{emitter, first, 4};
     first.then = [&] { told.handle.disconnect(); };
     for (double value : {1.0, 2.0, 3.0}) emitter.event(value);
@@ -278,7 +278,7 @@ TEST_F(AnEvent, may_be_disconnected_in_the_receivers_engine_with_all_that_waits_
     EXPECT_EQ(told.row.counts().outdated, 2u);
 }
 
-TEST_F(AnEvent, may_be_emitted_again_out_of_its_own_reaction) {
+TEST_F(AnEvent, can_be_emitted_by_its_own_reaction) {
     emitter.call(hear, &first);
     first.then = [&] {
         if (first.heard.size() < 3) emitter.event(first.heard.back() + 1);
@@ -287,7 +287,7 @@ TEST_F(AnEvent, may_be_emitted_again_out_of_its_own_reaction) {
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0, 3.0}));
 }
 
-TEST_F(AnEvent, gives_each_emitting_activity_a_quota_of_its_own_and_keeps_its_order) {
+TEST_F(AnEvent, gives_each_emitting_activity_its_own_quota_and_order) {
     Receiver receiver{2, 2};
     Row row{receiver, hear, &first, 2};
     emitter.tell(row.row);
@@ -302,7 +302,7 @@ TEST_F(AnEvent, gives_each_emitting_activity_a_quota_of_its_own_and_keeps_its_or
     EXPECT_EQ(row.row.counts().posted, 4u);
 }
 
-TEST_F(AnEvent, counts_as_stray_what_an_activity_emits_to_which_no_row_leads) {
+TEST_F(AnEvent, counts_emissions_of_an_activity_without_a_row_as_stray) {
     Told told{emitter, first, 2};
     emitter.call(hear, &second);
     for (const std::uint32_t activity : {1u, no_activity}) {
@@ -316,7 +316,7 @@ TEST_F(AnEvent, counts_as_stray_what_an_activity_emits_to_which_no_row_leads) {
     EXPECT_EQ(second.heard, (std::vector{1.0, 1.0})) << "what runs in the emitter needs no lane";
 }
 
-TEST_F(AnEvent, reaches_no_component_that_does_not_run) {
+TEST_F(AnEvent, runs_no_reaction_of_a_component_that_is_not_running) {
     Told told{emitter, first, 2};
     told.gate.state.store(ComponentState::stopped);
     emitter.event(1.0);
@@ -328,7 +328,7 @@ TEST_F(AnEvent, reaches_no_component_that_does_not_run) {
     EXPECT_EQ(first.heard, (std::vector{2.0}));
 }
 
-TEST_F(AnEvent, is_connected_as_long_as_a_scoped_handle_lives) {
+TEST_F(AnEvent, stays_connected_while_a_scoped_handle_exists) {
     const EventHandle handle = emitter.call(hear, &first);
     handle.disconnect();
     {
@@ -350,7 +350,7 @@ TEST_F(AnEvent, is_connected_as_long_as_a_scoped_handle_lives) {
     EXPECT_EQ(first.heard, (std::vector{1.0, 2.0}));
 }
 
-TEST_F(AnEvent, has_handles_that_do_nothing_while_they_stand_for_no_row) {
+TEST_F(AnEvent, has_handles_that_do_nothing_without_a_row) {
     const EventHandle handle;
     handle.connect();
     handle.disconnect();

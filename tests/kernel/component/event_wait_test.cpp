@@ -1,5 +1,5 @@
-// Waiting for an event (thesis 4.6.1): an activity blocks until it comes or a time is over, and is still
-// there for whatever else wants it.
+// Waiting for an event (thesis 4.6.1): an activity blocks until the event or a time-out, and still serves
+// everything else.
 #include "tests/kernel/component/event_rig.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace tappet;
 
-/// A wait of one number with room for four emissions; the waiter stands for its activity's.
+/// A wait for one number with room for four emissions; the waiter replaces that of its activity.
 struct AWait : testing::Test {
     AWait() {
         row.row.run = &EventWaitState::receive;
@@ -43,7 +43,7 @@ struct AWait : testing::Test {
     double value = 0;
 };
 
-TEST_F(AWait, is_over_when_its_time_is) {
+TEST_F(AWait, ends_at_its_time_out) {
     bool came = true;
     const Duration took = time_of([&] { came = wait.wait(20ms, value); });
     EXPECT_FALSE(came);
@@ -51,7 +51,7 @@ TEST_F(AWait, is_over_when_its_time_is) {
     EXPECT_FALSE(waiter.is_woken()) << "nobody wanted the activity";
 }
 
-TEST_F(AWait, is_over_at_once_for_what_came_before_and_takes_one_emission_at_a_time) {
+TEST_F(AWait, ends_at_once_for_each_earlier_emission) {
     emit(1.0);
     emit(2.0);
     EXPECT_TRUE(wait.wait(10s, value));
@@ -60,7 +60,7 @@ TEST_F(AWait, is_over_at_once_for_what_came_before_and_takes_one_emission_at_a_t
     EXPECT_EQ(value, 2.0);
 }
 
-TEST_F(AWait, is_over_when_the_event_comes) {
+TEST_F(AWait, ends_when_the_event_is_emitted) {
     std::thread other{[this] {
         std::this_thread::sleep_for(20ms);
         emit(3.0);
@@ -73,7 +73,7 @@ TEST_F(AWait, is_over_when_the_event_comes) {
     EXPECT_LT(took, 30s);
 }
 
-TEST_F(AWait, sleeps_on_although_an_emission_that_was_taken_had_come_before) {
+TEST_F(AWait, sleeps_again_after_the_earlier_emission_was_accepted) {
     emit(1.0);
     ASSERT_TRUE(wait.take(value));
     bool came = true;
@@ -82,7 +82,7 @@ TEST_F(AWait, sleeps_on_although_an_emission_that_was_taken_had_come_before) {
     EXPECT_GE(took, 20ms);
 }
 
-TEST_F(AWait, may_be_interrupted_while_it_lasts_and_just_before) {
+TEST_F(AWait, can_be_interrupted_during_and_just_before_it) {
     std::thread other{[this] {
         std::this_thread::sleep_for(20ms);
         wait.interrupt();
@@ -97,12 +97,12 @@ TEST_F(AWait, may_be_interrupted_while_it_lasts_and_just_before) {
     EXPECT_GE(time_of([&] { came = wait.wait(20ms, value); }), 20ms) << "one interrupt ends one wait";
 }
 
-TEST_F(AWait, wakes_its_activity_for_an_emission_that_nobody_waits_for) {
+TEST_F(AWait, wakes_its_activity_when_an_emission_arrives_outside_a_wait) {
     emit(1.0);
     EXPECT_TRUE(waiter.is_woken());
 }
 
-TEST_F(AWait, hears_nothing_of_an_event_from_which_it_was_disconnected) {
+TEST_F(AWait, ignores_an_event_after_its_disconnection) {
     emit(1.0);
     handle.disconnect();
     emit(2.0);
@@ -114,7 +114,7 @@ TEST_F(AWait, hears_nothing_of_an_event_from_which_it_was_disconnected) {
     EXPECT_EQ(row.row.counts().outdated, 1u);
 }
 
-TEST_F(AWait, counts_what_nobody_took_in_time) {
+TEST_F(AWait, counts_emissions_that_no_wait_accepted_in_time) {
     for (double each : {1.0, 2.0, 3.0, 4.0, 5.0}) emit(each);
     for (double each : {1.0, 2.0, 3.0, 4.0}) {
         ASSERT_TRUE(wait.take(value));
@@ -124,13 +124,13 @@ TEST_F(AWait, counts_what_nobody_took_in_time) {
     EXPECT_EQ(row.row.counts().lost, 1u);
 }
 
-TEST_F(AWait, sleeps_through_no_emission_whenever_it_comes) {
+TEST_F(AWait, misses_no_emission_whenever_it_comes) {
     std::atomic<int> taken{0};
     constexpr int all = 2000;
     std::thread other{[&] {
         for (int i = 0; i < all; ++i) {
             emit(i);
-            while (taken.load() <= i) std::this_thread::yield(); // one is under way at a time
+            while (taken.load() <= i) std::this_thread::yield(); // one is running at a time
         }
     }};
     int wrong = 0;
@@ -143,7 +143,7 @@ TEST_F(AWait, sleeps_through_no_emission_whenever_it_comes) {
     EXPECT_EQ(row.row.counts().lost, 0u);
 }
 
-TEST(AWaitThatNoRowTells, is_over_at_once) {
+TEST(AWaitThatNoRowTells, ends_at_once_without_a_value) {
     EventWait<double, int> wait;
     double value = 0;
     int number = 0;

@@ -1,4 +1,4 @@
-// A component with a property of every kind, for what reads and writes them.
+// A component with a property of every kind, for code that reads and writes them.
 #pragma once
 
 #include "kernel/component/component.hpp"
@@ -87,7 +87,7 @@ struct Arm {
     }
 };
 
-/// Whether two have the same properties, byte for byte as they are read and written.
+/// Whether two components have equal properties, compared by their stored bytes.
 inline bool same_properties(Arm& a, Arm& b) {
     PropertyTransaction one, other;
     one.begin("a", component_type<Arm>, &a);

@@ -1,5 +1,5 @@
-// Forced ports (thesis 4.8: a browser changes what a task reads and writes): what is forced is what flows,
-// whatever the component does, and releasing leaves no trace.
+// Forced ports (thesis 4.8: a browser changes what a task reads and writes): the forced value flows whatever
+// the component does, and a release leaves no trace.
 #include "tests/kernel/component/port_rig.hpp"
 
 namespace {
@@ -14,7 +14,7 @@ struct Forcing : PortsOfEachTopology {
 
 INSTANTIATE_TEST_SUITE_P(, Forcing, testing::Bool(), topology);
 
-TEST_P(Forcing, an_output_publishes_the_forced_value_at_once_and_whatever_its_component_writes) {
+TEST_P(Forcing, publishes_the_forced_output_instead_of_component_writes) {
     output.write(1.0);
     force_output(9.0);
     EXPECT_EQ(read(), (Read{Flow::fresh, 9.0}));
@@ -23,7 +23,7 @@ TEST_P(Forcing, an_output_publishes_the_forced_value_at_once_and_whatever_its_co
     EXPECT_EQ(output.last(), 2.0) << "what the component knows of its own is what it wrote";
 }
 
-TEST_P(Forcing, releasing_an_output_publishes_what_its_component_wrote_last) {
+TEST_P(Forcing, publishes_the_last_written_value_on_release_of_an_output) {
     output.write(1.0);
     force_output(9.0);
     port.release(&output, false);
@@ -38,7 +38,7 @@ TEST_P(Forcing, releasing_an_output_publishes_what_its_component_wrote_last) {
     EXPECT_EQ(input.get(), 3.0);
 }
 
-TEST_P(Forcing, an_output_that_its_component_never_wrote_is_not_forced) {
+TEST_P(Forcing, is_refused_for_an_output_that_was_never_written) {
     const double to = 9.0;
     EXPECT_FALSE(port.force(&output, false, reinterpret_cast<const std::byte*>(&to)));
     EXPECT_EQ(input.read(value), Flow::never_written);
@@ -46,7 +46,7 @@ TEST_P(Forcing, an_output_that_its_component_never_wrote_is_not_forced) {
     EXPECT_EQ(input.read(value), Flow::never_written);
 }
 
-TEST_P(Forcing, releasing_an_output_makes_no_old_value_new) {
+TEST_P(Forcing, keeps_the_age_of_a_value_on_release_of_an_output) {
     port.set_policy(&input, {.max_age = 4ms});
     output.write(1.0);
     now += 1h;
@@ -64,7 +64,7 @@ TEST_P(Forcing, releasing_an_output_makes_no_old_value_new) {
     EXPECT_EQ(input.read(value), Flow::stale);
 }
 
-TEST_P(Forcing, an_input_reads_the_forced_value_fresh_once_and_never_stale) {
+TEST_P(Forcing, makes_an_input_fresh_once_and_never_stale) {
     port.set_policy(
         &input,
         {.max_age = 4ms, .when_stale = WhenStale::substitute, .substitute = {.given = true, .number = -5}});
@@ -78,7 +78,7 @@ TEST_P(Forcing, an_input_reads_the_forced_value_fresh_once_and_never_stale) {
     EXPECT_EQ(read(), (Read{Flow::old, 9.0}));
 }
 
-TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
+TEST_P(Forcing, ends_when_the_writer_has_left_its_safe_value) {
     std::atomic<std::uint32_t> forced{1};
     Stops writer;
     writer.forced = &forced;
@@ -97,14 +97,14 @@ TEST_P(Forcing, an_input_lets_go_when_its_writer_has_left_its_safe_value) {
     EXPECT_EQ(input.get(), 9.0) << "forced after that";
 }
 
-TEST_P(Forcing, an_input_that_nobody_ever_wrote_can_be_forced) {
+TEST_P(Forcing, accepts_an_input_that_was_never_written) {
     force_input(9.0);
     EXPECT_EQ(read(), (Read{Flow::fresh, 9.0}));
     port.release(&input, true);
     EXPECT_EQ(read(), (Read{Flow::never_written, 0.0}));
 }
 
-TEST_P(Forcing, releasing_an_input_reads_again_what_stands_at_the_other_end) {
+TEST_P(Forcing, shows_the_connected_value_again_on_release_of_an_input) {
     output.write(1.0);
     EXPECT_EQ(input.get(), 1.0);
     force_input(9.0);
@@ -113,7 +113,7 @@ TEST_P(Forcing, releasing_an_input_reads_again_what_stands_at_the_other_end) {
     EXPECT_EQ(read(), (Read{Flow::fresh, 1.0})) << "although nothing was written meanwhile";
 }
 
-TEST_P(Forcing, releasing_what_is_not_forced_changes_nothing) {
+TEST_P(Forcing, ignores_the_release_of_an_unforced_port) {
     output.write(1.0);
     EXPECT_EQ(input.get(), 1.0);
     port.release(&input, true);
@@ -121,7 +121,7 @@ TEST_P(Forcing, releasing_what_is_not_forced_changes_nothing) {
     EXPECT_EQ(read(), (Read{Flow::old, 1.0}));
 }
 
-TEST_P(Forcing, an_observer_finds_value_time_and_flag) {
+TEST_P(Forcing, shows_an_observer_value_time_and_flag) {
     now = at_ns(700);
     output.write(1.0);
     static_cast<void>(input.get());
@@ -141,7 +141,7 @@ TEST_P(Forcing, an_observer_finds_value_time_and_flag) {
     EXPECT_EQ(at<double>(port.places(&input, true).forced_value), 8.0);
 }
 
-/// The writer of what is forced, and its reader, as engines stop and start them.
+/// The writer and the reader of a forced value, as engines stop and start them.
 struct AbandonedValue : Forcing {
     Stops writer;
     AbandonedValue() {
@@ -183,27 +183,27 @@ struct AbandonedValue : Forcing {
 
 INSTANTIATE_TEST_SUITE_P(, AbandonedValue, testing::Bool(), topology);
 
-TEST_P(AbandonedValue, is_what_a_force_hid_when_it_ended_with_a_stop) {
+TEST_P(AbandonedValue, is_the_value_hidden_by_a_force_that_a_stop_ended) {
     stop();
     expect_abandoned();
     output.write(2.0);
     expect(2.0);
 }
 
-TEST_P(AbandonedValue, is_none_that_a_stop_left_whatever_its_time) {
+TEST_P(AbandonedValue, excludes_the_safe_value_of_a_stop_whatever_its_time) {
     begin_stop();
     output.write(0.5, at_ns(0));
     end_stop();
     expect(0.5);
 }
 
-TEST_P(AbandonedValue, is_none_that_is_written_after_a_stop_before_anybody_looks) {
+TEST_P(AbandonedValue, excludes_a_value_written_after_the_stop) {
     stop();
     output.write(3.0, at_ns(0));
     expect(3.0);
 }
 
-TEST_P(AbandonedValue, is_none_that_a_stop_left_when_a_second_one_comes_before_anybody_looks) {
+TEST_P(AbandonedValue, excludes_the_safe_value_when_a_second_stop_follows) {
     begin_stop();
     output.write(0.5);
     end_stop();
@@ -211,7 +211,7 @@ TEST_P(AbandonedValue, is_none_that_a_stop_left_when_a_second_one_comes_before_a
     expect(0.5);
 }
 
-TEST_P(AbandonedValue, is_one_whose_time_lies_ahead_or_is_that_of_the_stop) {
+TEST_P(AbandonedValue, includes_values_stamped_at_the_stop_or_in_the_future) {
     output.write(4.0, now + 2s);
     stop();
     expect_abandoned();
@@ -221,7 +221,7 @@ TEST_P(AbandonedValue, is_one_whose_time_lies_ahead_or_is_that_of_the_stop) {
     expect_abandoned();
 }
 
-TEST_P(AbandonedValue, stays_so_when_it_is_forced_again_and_released) {
+TEST_P(AbandonedValue, stays_abandoned_after_another_force_and_its_release) {
     stop();
     expect_abandoned();
     force_input(9.0);
@@ -230,19 +230,19 @@ TEST_P(AbandonedValue, stays_so_when_it_is_forced_again_and_released) {
     expect_abandoned();
 }
 
-TEST_P(AbandonedValue, is_wanted_again_when_the_reader_stood_and_its_writer_did_not) {
+TEST_P(AbandonedValue, becomes_valid_when_only_the_reader_restarts) {
     restart_reader();
     expect(1.0);
 }
 
-TEST_P(AbandonedValue, is_one_when_its_writer_stops_while_the_reader_stands) {
+TEST_P(AbandonedValue, includes_values_whose_writer_stops_while_the_reader_is_stopped) {
     port.end_force(&input, true);
     stop();
     port.resume(&input);
     expect_abandoned();
 }
 
-TEST_P(AbandonedValue, stays_so_when_it_is_forced_again_and_the_reader_starts_anew) {
+TEST_P(AbandonedValue, stays_abandoned_after_another_force_and_a_reader_restart) {
     stop();
     expect_abandoned();
     force_input(9.0);
@@ -254,7 +254,7 @@ TEST_P(AbandonedValue, stays_so_when_it_is_forced_again_and_the_reader_starts_an
     expect(2.0);
 }
 
-TEST_P(AbandonedValue, is_what_the_force_of_an_output_hid_with_or_without_one_of_the_input) {
+TEST_P(AbandonedValue, includes_the_value_hidden_by_a_force_of_the_output) {
     force_output(8.0);
     stop();
     expect_abandoned();
@@ -271,7 +271,7 @@ TEST_P(AbandonedValue, is_what_the_force_of_an_output_hid_with_or_without_one_of
     expect(0.5);
 }
 
-TEST_P(AbandonedValue, is_none_of_a_force_that_came_during_the_stop) {
+TEST_P(AbandonedValue, excludes_the_safe_value_when_the_force_began_during_the_stop) {
     port.release(&input, true);
     begin_stop();
     output.write(0.5);
@@ -280,7 +280,7 @@ TEST_P(AbandonedValue, is_none_of_a_force_that_came_during_the_stop) {
     expect(0.5);
 }
 
-TEST_P(AbandonedValue, is_none_of_a_writer_that_is_stopped_once_more_and_runs_again) {
+TEST_P(AbandonedValue, excludes_the_safe_value_when_a_stopped_writer_stops_again) {
     begin_stop();
     output.write(0.5);
     end_stop();
@@ -294,7 +294,7 @@ TEST_P(AbandonedValue, is_none_of_a_writer_that_is_stopped_once_more_and_runs_ag
     expect(2.0);
 }
 
-TEST_P(AbandonedValue, stays_one_when_the_force_is_released_after_the_stop_and_before_anybody_looks) {
+TEST_P(AbandonedValue, stays_abandoned_when_the_force_is_released_after_the_stop) {
     stop();
     port.release(&input, true);
     expect_abandoned();
@@ -313,7 +313,7 @@ struct AbandonedByTurns : AbandonedValue {
 
 INSTANTIATE_TEST_SUITE_P(, AbandonedByTurns, testing::Values(false));
 
-TEST_P(AbandonedByTurns, stays_so_when_a_turn_is_refused) {
+TEST_P(AbandonedByTurns, stays_abandoned_when_a_turn_is_refused) {
     stop();
     expect_abandoned();
     turn_to(other, other_writer);
@@ -322,7 +322,7 @@ TEST_P(AbandonedByTurns, stays_so_when_a_turn_is_refused) {
     expect_abandoned();
 }
 
-TEST_P(AbandonedByTurns, is_none_of_the_next_turn_however_few_it_wrote) {
+TEST_P(AbandonedByTurns, excludes_values_of_the_next_turn_however_few) {
     for (int i = 0; i < 50; ++i) output.write(1.0);
     stop();
     expect_abandoned();
@@ -334,7 +334,7 @@ TEST_P(AbandonedByTurns, is_none_of_the_next_turn_however_few_it_wrote) {
     expect(2.0);
 }
 
-TEST_P(AbandonedByTurns, is_what_the_force_hid_that_was_handed_over) {
+TEST_P(AbandonedByTurns, is_the_value_hidden_by_a_handed_over_force) {
     turn_to(other, other_writer);
     stop();
     port.hand_force_to(&input, &other_writer);
@@ -345,7 +345,7 @@ TEST_P(AbandonedByTurns, is_what_the_force_hid_that_was_handed_over) {
     expect_abandoned();
 }
 
-TEST_P(AbandonedByTurns, counts_what_all_of_them_wrote) {
+TEST_P(AbandonedByTurns, counts_the_writes_of_all_writers) {
     port.release(&input, true);
     expect(1.0);
     const std::uint64_t before = input.writes();

@@ -1,5 +1,5 @@
-// A component's interface as data: facets, calls through packed arguments, timers; and what of a
-// component's functions its type finds.
+// A component's interface as data: facets, calls through packed arguments, timers; and the component
+// functions that its type finds.
 #include "kernel/component/component.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ const Facet& facet(std::string_view name) {
     throw std::string{"no facet of that name"};
 }
 
-TEST(Interface, tells_the_kind_and_the_type_of_each_facet) {
+TEST(Interface, describes_the_kind_and_the_type_of_each_facet) {
     EXPECT_EQ(facet("measured").kind, FacetKind::input);
     EXPECT_EQ(facet("samples").kind, FacetKind::buffer_input);
     EXPECT_EQ(facet("speed").kind, FacetKind::output);
@@ -79,7 +79,7 @@ TEST(Interface, tells_the_kind_and_the_type_of_each_facet) {
     EXPECT_EQ(facet("speed").unit, "rpm");
 }
 
-TEST(Interface, demands_inputs_unless_optional_and_operations_only_when_required) {
+TEST(Interface, requires_inputs_unless_optional_and_operations_only_when_stated) {
     EXPECT_TRUE(facet("measured").required);
     EXPECT_TRUE(facet("samples").required);
     EXPECT_FALSE(facet("extra").required);
@@ -96,7 +96,7 @@ TEST(Interface, finds_each_member_in_a_component) {
     EXPECT_EQ(facet("gain").at(&probe, 0), &probe.gain);
 }
 
-TEST(Interface, finds_the_functions_that_a_component_has_and_no_others) {
+TEST(Interface, finds_exactly_the_functions_that_a_component_has) {
     const ComponentType& type = component_type<Probe>;
     EXPECT_EQ(type.size, sizeof(Probe));
     EXPECT_NE(type.step, nullptr);
@@ -125,7 +125,7 @@ struct Siren {
     }
 };
 
-TEST(Interface, takes_functions_that_can_be_called_as_those_of_its_life_and_leaves_others_alone) {
+TEST(Interface, accepts_callable_life_cycle_functions_and_ignores_others) {
     const ComponentType& type = component_type<Siren>;
     EXPECT_EQ(type.never_run.member, "");
     EXPECT_NE(type.configure, nullptr);
@@ -152,7 +152,7 @@ TEST(Operation, runs_on_packed_arguments_of_any_sizes) {
     EXPECT_TRUE(probe.homed_);
 }
 
-TEST(Timer, stands_still_until_armed_and_is_moved_by_arming_again) {
+TEST(Timer, is_idle_until_armed_and_moves_when_armed_again) {
     Timer timer;
     timer.serve();
     EXPECT_EQ(timer.when(), never);
@@ -163,7 +163,7 @@ TEST(Timer, stands_still_until_armed_and_is_moved_by_arming_again) {
     EXPECT_EQ(timer.when(), never);
 }
 
-TEST(Timer, that_no_engine_serves_breaks_a_contract_when_it_is_armed) {
+TEST(Timer, breaks_a_contract_when_it_is_armed_without_an_engine) {
     Timer timer;
     EXPECT_DEATH(timer.arm(at_ns(42)), "contract 106 timer-unserved: .* armed for 42 ns .* timer<");
 }

@@ -1,5 +1,5 @@
 // A peer sets and reads a property by rows of the table: in the owner's engine, within its range, with its
-// consent, and only while it runs.
+// consent, and only while the owner runs.
 #include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <limits>
@@ -36,7 +36,7 @@ struct Pump {
     }
 };
 
-/// Inherits the member, and states less of it.
+/// Inherits the member and declares a narrower range.
 struct SmallPump : Pump {
     Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
         return proposal.of(limit) == 3.0 ? Sentence{"not that one"} : Sentence{};
@@ -100,12 +100,12 @@ constexpr auto table = machine("pressure",
     behaviours());
 // clang-format on
 
-/// By a peer of another activity, and by one of the owner's own.
+/// Set by a peer of another activity and by one of the owner's activity.
 struct PeerProperty : testing::TestWithParam<const char*>, RunningRig<table> {
     Pump& pump = the<Pump>("pump");
     Tuner& tuner = the<Tuner>(GetParam());
 
-    const int configured = pump.changes; ///< told as it was configured
+    const int configured = pump.changes; ///< changed() ran during configuration
 
     template <class Call, class... Values> CommandState send(Call& call, const Values&... values) {
         EXPECT_TRUE(call.reset());
@@ -128,14 +128,14 @@ TEST_P(PeerProperty, is_set_and_read) {
     EXPECT_EQ(tuner.get.result(), 7.5);
 }
 
-TEST_P(PeerProperty, is_set_in_the_owners_engine_only) {
+TEST_P(PeerProperty, changes_only_in_the_owners_engine) {
     ASSERT_TRUE(tuner.set.send(7.5));
     EXPECT_EQ(pump.limit.get(), 4.0);
     pass(20ms);
     EXPECT_EQ(pump.limit.get(), 7.5);
 }
 
-TEST_P(PeerProperty, keeps_its_value_when_the_new_one_is_out_of_range_or_no_number) {
+TEST_P(PeerProperty, keeps_its_value_when_the_new_one_is_invalid) {
     for (const double wrong :
          {16.5, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         EXPECT_EQ(send(tuner.set, wrong), CommandState::rejected) << wrong;
@@ -145,13 +145,13 @@ TEST_P(PeerProperty, keeps_its_value_when_the_new_one_is_out_of_range_or_no_numb
     EXPECT_EQ(send(tuner.set, 16.0), CommandState::done) << "the end of the range is in it";
 }
 
-TEST_P(PeerProperty, keeps_its_value_when_the_owner_does_not_consent) {
+TEST_P(PeerProperty, keeps_its_value_when_the_owner_rejects_the_new_one) {
     EXPECT_EQ(send(tuner.set, 0.5), CommandState::rejected);
     EXPECT_EQ(pump.limit.get(), 4.0);
     EXPECT_EQ(pump.changes, configured);
 }
 
-TEST_P(PeerProperty, is_not_reached_while_the_owner_does_not_run) {
+TEST_P(PeerProperty, is_unreachable_while_the_owner_is_not_running) {
     ASSERT_EQ(change(0, LifeChange::stop, 20ms).outcome, LifeOutcome::done);
     EXPECT_EQ(send(tuner.set, 7.5), CommandState::rejected);
     EXPECT_EQ(send(tuner.get), CommandState::rejected);
@@ -160,7 +160,7 @@ TEST_P(PeerProperty, is_not_reached_while_the_owner_does_not_run) {
     EXPECT_EQ(send(tuner.set, 7.5), CommandState::done);
 }
 
-TEST_F(RunningMode, of_an_enumeration_is_one_of_its_values) {
+TEST_F(RunningMode, accepts_only_values_of_its_enumeration) {
     ASSERT_TRUE(tuner.set_mode.send(Mode::fast));
     pass(20ms);
     EXPECT_EQ(pump.mode.get(), Mode::fast);
@@ -173,7 +173,7 @@ TEST_F(RunningMode, of_an_enumeration_is_one_of_its_values) {
     EXPECT_EQ(pump.mode.get(), Mode::fast);
 }
 
-/// Sends and lets it be served.
+/// Sends, and lets the owner serve it.
 struct Served : testing::Test, RunningRig<table> {
     template <class Call, class... Values> CommandState send(Call& call, const Values&... values) {
         EXPECT_TRUE(call.reset());
@@ -183,7 +183,7 @@ struct Served : testing::Test, RunningRig<table> {
     }
 };
 
-TEST_F(Served, inherited_property_is_set_by_the_rules_of_the_component_in_the_table) {
+TEST_F(Served, property_follows_the_rules_of_the_derived_component) {
     auto& small = the<SmallPump>("small");
     auto& careful = the<Tuner>("careful");
     const int configured = small.changes;
@@ -195,7 +195,7 @@ TEST_F(Served, inherited_property_is_set_by_the_rules_of_the_component_in_the_ta
     EXPECT_EQ(small.changes, configured + 100) << "its own changed()";
 }
 
-TEST_F(Served, list_that_is_longer_than_its_type_is_rejected) {
+TEST_F(Served, list_is_rejected_when_longer_than_its_type) {
     auto& recipe = the<Recipe>("recipe");
     Sequence<double, 4> list{{1.0, 2.0, 3.0, std::numeric_limits<double>::quiet_NaN()}, 3};
     EXPECT_EQ(send(the<Desk>("desk").steps, list), CommandState::done) << "behind its end may stand anything";
@@ -208,7 +208,7 @@ TEST_F(Served, list_that_is_longer_than_its_type_is_rejected) {
     }
 }
 
-TEST_F(Served, text_that_is_longer_than_its_type_or_that_no_file_keeps_is_rejected) {
+TEST_F(Served, text_is_rejected_when_too_long_or_impossible_to_save) {
     auto& recipe = the<Recipe>("recipe");
     EXPECT_EQ(send(the<Desk>("desk").name, Text<8>{"plate"}), CommandState::done);
     Text<8> wild{"wild"};

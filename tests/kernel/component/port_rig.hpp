@@ -28,7 +28,7 @@ template <class T> struct LinkedPorts {
         else
             port.link_local(&input, &output, writer);
     }
-    /// How the input's value flows, and the value.
+    /// The flow of the input's value, and the value.
     std::pair<Flow, T> read() {
         T value{};
         const Flow flow = input.read(value);
@@ -37,7 +37,7 @@ template <class T> struct LinkedPorts {
     const bool across;
     Output<T> output;
     Input<T> input;
-    Time now = at_ns(0); ///< of both
+    Time now = at_ns(0); ///< time of both ports
     alignas(512) std::array<std::byte, 8192> memory{};
 };
 

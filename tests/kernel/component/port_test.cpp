@@ -1,6 +1,5 @@
-// Ports: what reading an input tells, with both ends in one activity and across two. What a row gives in
-// place of a value, and in what order buffers are read: tests/kernel/machine/instance/flow_test.cpp, for any
-// type.
+// Ports: the results of reading an input, with both ends in one activity and across two. Row values and the
+// order of buffers are tested for any type in tests/kernel/machine/instance/flow_test.cpp.
 #include "tests/kernel/component/port_rig.hpp"
 #include "tests/kernel/exchange/placed.hpp"
 
@@ -11,35 +10,35 @@ using namespace tappet;
 using Ports = PortsOfEachTopology;
 INSTANTIATE_TEST_SUITE_P(, Ports, testing::Bool(), topology);
 
-TEST_P(Ports, tell_a_value_that_was_never_written_and_give_its_default) {
+TEST_P(Ports, report_a_never_written_value_and_give_its_default) {
     EXPECT_EQ(read(), (Read{Flow::never_written, 0.0}));
 }
 
-TEST_P(Ports, tell_a_fresh_value_once_and_an_old_one_afterwards) {
+TEST_P(Ports, report_a_value_as_fresh_once_and_then_as_old) {
     output.write(2.5);
     EXPECT_EQ(read(), (Read{Flow::fresh, 2.5}));
     EXPECT_EQ(read(), (Read{Flow::old, 2.5}));
-    output.write(2.5); // the same value is news all the same
+    output.write(2.5); // a write of the same value is also fresh
     EXPECT_EQ(input.read(value), Flow::fresh);
 }
 
-TEST_P(Ports, give_the_last_of_several_writes) {
+TEST_P(Ports, keep_the_last_of_several_writes) {
     for (double each : {1.0, 2.0, 3.0}) output.write(each);
     EXPECT_EQ(input.get(), 3.0);
     EXPECT_EQ(output.last(), 3.0);
 }
 
-TEST_P(Ports, carry_the_time_at_which_the_value_was_true) {
+TEST_P(Ports, carry_the_time_stamp_of_the_value) {
     now = at_ns(1000);
     output.write(1.0);
     EXPECT_EQ(input.read(value), Flow::fresh);
     EXPECT_EQ(input.stamp(), at_ns(1000));
-    output.write(1.0, at_ns(700)); // a sample that was taken before this cycle
+    output.write(1.0, at_ns(700)); // a sample taken before this cycle
     EXPECT_EQ(input.read(value), Flow::fresh);
     EXPECT_EQ(input.stamp(), at_ns(700));
 }
 
-TEST_P(Ports, do_not_spend_freshness_when_only_asked_about_it) {
+TEST_P(Ports, keep_freshness_when_only_queried) {
     output.write(1.0);
     EXPECT_EQ(input.flow(), Flow::fresh);
     EXPECT_EQ(input.flow(), Flow::fresh);
@@ -47,7 +46,7 @@ TEST_P(Ports, do_not_spend_freshness_when_only_asked_about_it) {
     EXPECT_EQ(input.flow(), Flow::old);
 }
 
-TEST_P(Ports, hold_a_stale_value_and_say_so) {
+TEST_P(Ports, hold_a_stale_value_and_report_it_as_stale) {
     port.set_policy(&input, {.max_age = 4ms});
     output.write(7.0);
     now = at_ns(0) + 4ms;
@@ -56,7 +55,7 @@ TEST_P(Ports, hold_a_stale_value_and_say_so) {
     EXPECT_EQ(read(), (Read{Flow::stale, 7.0}));
 }
 
-TEST_P(Ports, call_a_value_stale_that_is_of_a_far_future) {
+TEST_P(Ports, report_a_far_future_value_as_stale) {
     port.set_policy(&input, {.max_age = 4ms});
     output.write(7.0, at_ns(0) + 900ms);
     EXPECT_EQ(input.read(value), Flow::fresh) << "a cycle of the reader may be a long one";
@@ -66,7 +65,7 @@ TEST_P(Ports, call_a_value_stale_that_is_of_a_far_future) {
     EXPECT_EQ(input.read(value), Flow::stale);
 }
 
-TEST_P(Ports, keep_a_value_stale_that_is_of_a_far_future) {
+TEST_P(Ports, keep_a_far_future_value_stale) {
     port.set_policy(&input, {.max_age = 4ms});
     output.write(9.0, at_ns(0) + 5s);
     for (const Duration each : {Duration{1ms}, Duration{4s}, Duration{5s}, Duration{6s}}) {
@@ -75,7 +74,7 @@ TEST_P(Ports, keep_a_value_stale_that_is_of_a_far_future) {
     }
 }
 
-TEST_P(Ports, count_the_age_of_a_value_from_its_first_sight_at_the_latest) {
+TEST_P(Ports, count_age_from_the_first_read_at_the_latest) {
     port.set_policy(&input, {.max_age = 4ms});
     output.write(9.0, at_ns(0) + 990ms);
     EXPECT_EQ(input.read(value), Flow::fresh);
@@ -84,7 +83,7 @@ TEST_P(Ports, count_the_age_of_a_value_from_its_first_sight_at_the_latest) {
     EXPECT_EQ(input.read(value), Flow::stale);
 }
 
-TEST_P(Ports, believe_a_time_ahead_no_longer_when_it_is_written_again) {
+TEST_P(Ports, age_a_future_stamp_although_it_is_written_again) {
     port.set_policy(&input, {.max_age = 4ms});
     for (int ms = 0; ms <= 5; ++ms) {
         now = at_ns(0) + ms * 1ms;
@@ -93,7 +92,7 @@ TEST_P(Ports, believe_a_time_ahead_no_longer_when_it_is_written_again) {
     }
 }
 
-TEST_P(Ports, take_the_time_of_a_value_for_its_own_that_another_one_claimed_before) {
+TEST_P(Ports, accept_a_stamp_that_an_earlier_value_already_claimed) {
     port.set_policy(&input, {.max_age = 4ms});
     output.write(9.0, at_ns(0) + 100ms);
     EXPECT_EQ(input.read(value), Flow::fresh);
@@ -103,7 +102,7 @@ TEST_P(Ports, take_the_time_of_a_value_for_its_own_that_another_one_claimed_befo
     EXPECT_EQ(input.stamp(), at_ns(0) + 100ms);
 }
 
-TEST_P(Ports, never_call_a_value_stale_whose_row_states_no_age) {
+TEST_P(Ports, never_report_staleness_without_a_maximum_age) {
     output.write(7.0);
     now = at_ns(0) + 10h;
     EXPECT_EQ(input.read(value), Flow::fresh);
@@ -119,7 +118,7 @@ TEST_P(Ports, wake_the_reader_once_for_each_write) {
     EXPECT_EQ(wakes, 2);
 }
 
-TEST(Port, of_an_input_that_no_row_connects_is_never_written) {
+TEST(Port, stays_unwritten_when_no_row_connects_it) {
     Input<int> input;
     EXPECT_FALSE(input.connected());
     int value = 9;
@@ -127,7 +126,7 @@ TEST(Port, of_an_input_that_no_row_connects_is_never_written) {
     EXPECT_EQ(value, 0);
 }
 
-TEST(Port, of_one_output_feeds_readers_in_its_own_activity_and_in_others) {
+TEST(Port, feeds_readers_in_its_own_and_other_activities) {
     LinkedPorts<int> ports{true};
     Input<int> near;
     ports.port.link_local(&near, &ports.output, nullptr);
@@ -162,7 +161,7 @@ class BufferPort : public testing::TestWithParam<bool> {};
 
 INSTANTIATE_TEST_SUITE_P(, BufferPort, testing::Bool(), topology);
 
-TEST_P(BufferPort, rejects_and_counts_what_has_no_room) {
+TEST_P(BufferPort, rejects_and_counts_values_when_full) {
     BufferOutput<int> output;
     BufferInput<int> input;
     BufferRow row{GetParam(), output, input, 2, Overflow::reject};
@@ -186,7 +185,7 @@ TEST_P(BufferPort, gives_every_reader_of_one_output_every_value) {
     EXPECT_EQ(second.lost(), 1u);
 }
 
-TEST(UnconnectedBufferPort, without_a_row_takes_values_and_gives_none) {
+TEST(UnconnectedBufferPort, accepts_values_and_gives_none) {
     BufferOutput<int> output;
     BufferInput<int> input;
     EXPECT_TRUE(output.push(1));

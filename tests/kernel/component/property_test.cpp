@@ -1,5 +1,5 @@
-// Properties, their bags and their transactions (thesis 4.7, 4.7.1): every value type, the names in nested
-// bags, and several values changed as one, or not at all.
+// Properties, their bags and their transactions (thesis 4.7, 4.7.1): every value type, names in nested bags,
+// and several values changed together or not at all.
 #include "kernel/base/number.hpp"
 #include "tests/kernel/component/every_property.hpp"
 
@@ -55,7 +55,7 @@ struct Ends {
     }
 };
 
-TEST(Range, has_both_its_ends_although_a_float_rounds_them_and_a_second_has_nanoseconds) {
+TEST(Range, includes_both_ends_despite_rounding) {
     const auto fault = [](std::size_t facet, const auto& value) {
         const auto* const bytes = static_cast<const std::byte*>(static_cast<const void*>(&value));
         return std::string{check_range(component_type<Ends>.facets[facet], bytes).view()};
@@ -69,7 +69,7 @@ TEST(Range, has_both_its_ends_although_a_float_rounds_them_and_a_second_has_nano
     EXPECT_NE(fault(1, Duration{9ms - 1ns}), "");
 }
 
-TEST(Bag, gives_each_property_in_it_its_whole_name) {
+TEST(Bag, qualifies_the_name_of_each_property) {
     std::vector<std::string> names;
     for (const Facet& each : type.facets) names.emplace_back(each.name);
     const std::vector<std::string> expected{
@@ -81,7 +81,7 @@ TEST(Bag, gives_each_property_in_it_its_whole_name) {
     EXPECT_EQ(names, expected);
 }
 
-TEST(Bag, says_how_many_facets_are_in_it) {
+TEST(Bag, counts_its_facets) {
     EXPECT_EQ(facet("gains").kind, FacetKind::bag);
     EXPECT_EQ(facet("gains").members, 7u);
     EXPECT_EQ(facet("gains.roll").members, 2u);
@@ -90,7 +90,7 @@ TEST(Bag, says_how_many_facets_are_in_it) {
     EXPECT_EQ(facet("gains.pitch.i").unit, "N/(deg s)");
 }
 
-TEST(Bag, of_one_struct_used_twice_reaches_two_members) {
+TEST(Bag, of_one_type_used_twice_reaches_two_members) {
     Arm arm;
     EXPECT_EQ(facet("gains.roll.p").at(&arm, 0), &arm.roll.p);
     EXPECT_EQ(facet("gains.pitch.p").at(&arm, 0), &arm.pitch.p);
@@ -144,7 +144,7 @@ TEST_F(Proposed, values_are_seen_together_by_the_component_that_is_asked) {
     EXPECT_EQ(arm.limits.high.get(), 6.0);
 }
 
-TEST_F(Proposed, values_that_the_component_refuses_change_nothing_at_all) {
+TEST_F(Proposed, values_change_nothing_when_the_component_refuses) {
     real("gains.roll.p", 9.0);
     real("limits.low", 5.0);
     transaction.commit();
@@ -155,7 +155,7 @@ TEST_F(Proposed, values_that_the_component_refuses_change_nothing_at_all) {
     EXPECT_EQ(arm.changes, 0);
 }
 
-TEST_F(Proposed, value_given_twice_is_one_proposal_and_the_last_one_counts) {
+TEST_F(Proposed, value_given_twice_counts_once_with_its_last_value) {
     real("gains.roll.p", 2.0);
     real("gains.roll.p", 3.0);
     EXPECT_EQ(transaction.values().size(), 1u);
@@ -163,7 +163,7 @@ TEST_F(Proposed, value_given_twice_is_one_proposal_and_the_last_one_counts) {
     EXPECT_EQ(arm.roll.p.get(), 3.0);
 }
 
-TEST_F(Proposed, ranges_hold_for_numbers_times_and_every_element) {
+TEST_F(Proposed, values_obey_ranges_in_numbers_times_and_every_element) {
     real("gains.roll.p", 10.0);
     EXPECT_EQ(range_fault("gains.roll.p"), "");
     real("gains.roll.p", std::nextafter(10.0, 11.0));
@@ -171,7 +171,7 @@ TEST_F(Proposed, ranges_hold_for_numbers_times_and_every_element) {
     real("gains.roll.p", -0.001);
     EXPECT_THAT(range_fault("gains.roll.p"), testing::HasSubstr("under its least value 0"));
     real("gains.roll.p", std::numeric_limits<double>::quiet_NaN());
-    EXPECT_THAT(range_fault("gains.roll.p"), testing::HasSubstr("is no number"));
+    EXPECT_THAT(range_fault("gains.roll.p"), testing::HasSubstr("is not a finite number"));
     real("limits.low", std::numeric_limits<double>::quiet_NaN());
     EXPECT_NE(range_fault("limits.low"), "") << "also where every number is allowed";
     set("filter", {.kind = PropertySetting::Kind::duration, .integer = 500'000'001});
@@ -181,7 +181,7 @@ TEST_F(Proposed, ranges_hold_for_numbers_times_and_every_element) {
     EXPECT_THAT(range_fault("offsets"), testing::HasSubstr("element 1 is over its greatest value 5"));
 }
 
-/// What has no range, or one without an end.
+/// Properties without a range, or with an open one.
 struct Free {
     Property<double> gain{1.0}, time{1.0};
     Property<float> scale{1.0f};
@@ -197,7 +197,7 @@ struct Free {
     }
 };
 
-TEST(PropertyWithoutRange, is_a_number_all_the_same_as_is_each_of_its_elements) {
+TEST(PropertyWithoutRange, accepts_only_numbers_in_each_element) {
     using Real = std::numeric_limits<double>;
     static std::array<double, 4> four{};
     static constexpr ListSetting list{4, [](std::size_t i) { return real_setting(four[i]); }};
@@ -217,17 +217,17 @@ TEST(PropertyWithoutRange, is_a_number_all_the_same_as_is_each_of_its_elements) 
             if (is_good) continue;
             EXPECT_EQ(fault.view(),
                       Sentence("property \"", each.name, "\": ", each.property->is_list ? "element 2 " : "",
-                               "is no number; propose a finite one")
+                               "is not a finite number; propose a finite one")
                           .view());
         }
 }
 
-TEST_F(Proposed, transaction_is_for_properties_only) {
+TEST_F(Proposed, transaction_accepts_only_properties) {
     EXPECT_EQ(transaction.change(index_of("angle")), nullptr);
     EXPECT_EQ(transaction.change(index_of("gains")), nullptr);
 }
 
-TEST_F(Proposed, message_runs_the_transaction_where_it_is_served) {
+TEST_F(Proposed, transaction_runs_in_the_engine_that_serves_its_message) {
     real("gains.roll.p", 2.5);
     const Message message = transaction.commit_message(3);
     EXPECT_EQ(transaction.state(), PropertyTransaction::State::posted);
@@ -238,7 +238,7 @@ TEST_F(Proposed, message_runs_the_transaction_where_it_is_served) {
     EXPECT_EQ(arm.roll.p.get(), 2.5);
 }
 
-TEST_F(Proposed, capture_takes_every_property_as_it_is) {
+TEST_F(Proposed, values_can_capture_every_property) {
     arm.roll.p.set(8.0);
     arm.label.set("both");
     transaction.change_all();
@@ -255,7 +255,7 @@ TEST_F(Proposed, capture_takes_every_property_as_it_is) {
     EXPECT_EQ(other.axis.get(), arm.axis.get());
 }
 
-TEST(Sequence, does_not_take_more_than_it_has_room_for) {
+TEST(Sequence, refuses_more_elements_than_its_capacity) {
     const PropertyOperations& offsets = *facet("offsets").property;
     Sequence<double, 4> value;
     auto* bytes = reinterpret_cast<std::byte*>(&value);

@@ -1,4 +1,5 @@
-// Values between those of a slower writer: held, on a line to the last one, or beyond the last two.
+// Values between those of a slower writer: held, interpolated to the last one, or extrapolated from the last
+// two.
 #include "kernel/component/rate_transition.hpp"
 
 #include <gtest/gtest.h>
@@ -8,8 +9,7 @@
 namespace tappet {
 namespace {
 
-/// A writer of a ramp of 1 each 4 ms, from 1 at 0 ms on; the reader looks each millisecond, and the value is
-/// there when it looks.
+/// A writer of a ramp of 1 every 4 ms, from 1 at 0 ms on; the reader reads each millisecond, after the write.
 struct Reader {
     explicit Reader(RateTransition how) : between{how, 4ms} {}
     double at_ms(int ms) {
@@ -23,7 +23,7 @@ struct Reader {
     int silent_from = 1000;
 };
 
-TEST(RateTransitions, interpolate_without_a_step_and_later_by_one_period) {
+TEST(RateTransitions, interpolate_smoothly_with_a_delay_of_one_period) {
     Reader reader{RateTransition::interpolate};
     double before = reader.at_ms(0);
     EXPECT_EQ(before, 1.0) << "the first value is as it is";
@@ -44,7 +44,7 @@ TEST(RateTransitions, extrapolate_without_delay) {
     }
 }
 
-TEST(RateTransitions, between_numbers_that_no_number_lies_as_far_apart_are_numbers) {
+TEST(RateTransitions, stay_finite_between_the_largest_numbers) {
     for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
         BetweenValues between{how, 4ms};
         for (int period = 0; period < 10; ++period)
@@ -55,7 +55,7 @@ TEST(RateTransitions, between_numbers_that_no_number_lies_as_far_apart_are_numbe
     }
 }
 
-TEST(RateTransitions, lead_nowhere_from_what_a_writer_wrote_before_it_stopped) {
+TEST(RateTransitions, never_interpolate_across_a_stop_of_the_writer) {
     for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
         BetweenValues between{how, 4ms};
         static_cast<void>(between.at(at_ns(0), true, 30.0, at_ns(0)));
@@ -64,7 +64,7 @@ TEST(RateTransitions, lead_nowhere_from_what_a_writer_wrote_before_it_stopped) {
     }
 }
 
-TEST(RateTransitions, of_two_values_of_almost_one_time_lead_no_further_than_from_one_to_the_other) {
+TEST(RateTransitions, limit_extrapolation_between_nearly_simultaneous_values) {
     BetweenValues between{RateTransition::extrapolate, 4ms};
     const Time second = at_ns(0) + 4ms, third = second + 10us;
     static_cast<void>(between.at(at_ns(0), true, 10.0, at_ns(0)));
@@ -74,7 +74,7 @@ TEST(RateTransitions, of_two_values_of_almost_one_time_lead_no_further_than_from
         EXPECT_LE(between.at(third + later, false, 10.5, third), 11.0);
 }
 
-TEST(RateTransitions, forget_what_is_no_number) {
+TEST(RateTransitions, ignore_values_that_are_not_numbers) {
     for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
         BetweenValues between{how, 4ms};
         Time now{1s};
@@ -88,7 +88,7 @@ TEST(RateTransitions, forget_what_is_no_number) {
     }
 }
 
-TEST(RateTransitions, begin_anew_when_nobody_read_for_a_while) {
+TEST(RateTransitions, restart_after_a_pause_of_the_reader) {
     for (const RateTransition how : {RateTransition::interpolate, RateTransition::extrapolate}) {
         Reader reader{how};
         for (int ms = 0; ms < 20; ++ms) static_cast<void>(reader.at_ms(ms));
@@ -96,7 +96,7 @@ TEST(RateTransitions, begin_anew_when_nobody_read_for_a_while) {
     }
 }
 
-TEST(RateTransitions, go_on_for_one_period_of_a_writer_that_falls_silent) {
+TEST(RateTransitions, extrapolate_for_one_period_after_the_writer_falls_silent) {
     Reader ahead{RateTransition::extrapolate};
     Reader behind{RateTransition::interpolate};
     ahead.silent_from = behind.silent_from = 9;

@@ -1,4 +1,4 @@
-// What belongs to one activity is used by it alone: a device by its component, a port by its own.
+// Only its own activity uses a resource: a component its device, an activity its ports.
 #include "kernel/component/one_activity.hpp"
 #include "tests/kernel/component/port_rig.hpp"
 
@@ -6,9 +6,9 @@ namespace {
 
 using namespace tappet;
 
-TEST(OneActivity, is_the_first_that_uses_it_and_whoever_runs_none) {
+TEST(OneActivity, accepts_its_first_activity_and_threads_without_one) {
     OneActivity device;
-    device.used(); // at start-up: nobody's yet
+    device.used(); // at start-up: no activity owns it yet
     for (int again = 0; again < 2; ++again) {
         const RunsActivity here{3};
         device.used();
@@ -16,15 +16,14 @@ TEST(OneActivity, is_the_first_that_uses_it_and_whoever_runs_none) {
     device.used(); // the supervisor, at the end
 }
 
-TEST(OneActivityDeathTest, is_not_any_other) {
+TEST(OneActivityDeathTest, refuses_any_other_activity) {
     OneActivity device;
     {
         const RunsActivity here{3};
         device.used();
     }
     const RunsActivity there{4};
-    EXPECT_DEATH(device.used(),
-                 "contract 109 one-activity: A device that activity 3 uses was used in activity 4");
+    EXPECT_DEATH(device.used(), "contract 109 one-activity: A device of activity 3 was used in activity 4");
 }
 
 #ifdef TAPPET_ASSERTS_THREADS
@@ -35,19 +34,19 @@ struct PortsOfAnActivityDeathTest : testing::Test, LinkedPorts<double> {
     PortsOfAnActivityDeathTest() : LinkedPorts{false} {}
 };
 
-TEST_F(PortsOfAnActivityDeathTest, are_used_in_it_and_by_who_runs_none) {
+TEST_F(PortsOfAnActivityDeathTest, accept_their_activity_and_threads_without_one) {
     output.write(1.0);
     const RunsActivity here{0, &now};
     output.write(2.0);
     EXPECT_EQ(input.get(), 2.0);
 }
 
-TEST_F(PortsOfAnActivityDeathTest, are_not_written_in_another) {
+TEST_F(PortsOfAnActivityDeathTest, refuse_a_write_in_another_activity) {
     const RunsActivity there{1, &others};
     EXPECT_DEATH(output.write(1.0), "contract 103 single-writer: An output was written in activity 1");
 }
 
-TEST_F(PortsOfAnActivityDeathTest, are_not_read_in_another) {
+TEST_F(PortsOfAnActivityDeathTest, refuse_a_read_in_another_activity) {
     const RunsActivity there{1, &others};
     double value = 0;
     EXPECT_DEATH(static_cast<void>(input.get()),

@@ -1,5 +1,4 @@
-// One axis for tests: a slide that goes where its rate leads it, and the components of a control kernel
-// around it.
+// One axis for tests: a slide that integrates its rate, and the components of a control kernel around it.
 #pragma once
 
 #include "kernel/control/control.hpp"
@@ -10,9 +9,9 @@
 
 namespace tappet {
 
-inline constexpr double step_s = 1e-3; ///< of the level
+inline constexpr double step_s = 1e-3; ///< period of the level
 
-/// Sends the velocity, within its limit, and says what it sent.
+/// Sends the velocity within its limit and publishes the sent value.
 struct Limiter {
     Input<double> velocity;
     Output<double> sent;
@@ -30,7 +29,7 @@ struct Limiter {
     }
 };
 
-/// The plant: it has no role, as a driver has none.
+/// The plant: it has no role, like a driver.
 struct Slide {
     Input<double> driven;
     Output<double> place;
@@ -60,7 +59,7 @@ struct Encoder {
     }
 };
 
-/// Set points from where the slide is: on at a constant speed, or standing.
+/// Set points from the present position of the slide: constant speed, or standstill.
 struct Mover {
     Input<double> measured;
     Output<double> target;
@@ -79,7 +78,7 @@ struct Mover {
     }
 };
 
-/// Proportional, and it begins with what was sent: the difference fades with the loop.
+/// Proportional; it starts with the velocity sent last, and the difference decays with the loop.
 struct Follower {
     Input<double> target;
     Input<double> measured;
@@ -106,7 +105,7 @@ struct Follower {
     }
 };
 
-/// What sees the whole and changes nothing but by its commands; it counts how far each cycle's events go.
+/// Sees the whole machine and changes it only by commands; it counts each cycle's events.
 struct Watcher {
     Input<double> measured;
     Output<double> seen;
@@ -125,7 +124,7 @@ struct Watcher {
     }
 };
 
-/// The table with other sections of control, and other rows of it where a test wants them.
+/// The table with another control section, and with other rows where a test needs them.
 template <class... Extra>
 constexpr auto axis_machine(const Extra&... extra) {
     return machine(

@@ -1,5 +1,5 @@
-// Method calls that components answer by turns: whoever asks, in whatever activity, is answered in each of
-// its steps by the one that runs.
+// Method calls that components answer by turns: the running component answers each step of each caller, in
+// any activity.
 #include "tests/kernel/control/axis.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
 
@@ -8,7 +8,7 @@
 namespace tappet {
 namespace {
 
-/// Process component: it answers with a number that tells who it was.
+/// Process component: it answers with a number that identifies it.
 struct Gauge {
     Property<std::int64_t> answer{0};
     std::int64_t starts = 0;
@@ -81,7 +81,7 @@ TEST_F(Calls, are_answered_by_the_fallback_first) {
     EXPECT_EQ(gauge("measured").asked, 0);
 }
 
-TEST_F(Calls, are_answered_by_the_one_that_runs_from_the_step_of_the_hand_over_on) {
+TEST_F(Calls, are_answered_by_the_running_component_from_the_hand_over_step) {
     std::int64_t wanted = 1;
     for (const auto& [chain, answer] :
          {std::pair{"measured", 2}, {"guessed", 3}, {"drawn", 1}, {"guessed", 3}}) {
@@ -99,7 +99,7 @@ TEST_F(Calls, are_answered_by_the_one_that_runs_from_the_step_of_the_hand_over_o
     EXPECT_EQ(gauge("guessed").starts, 2);
 }
 
-TEST_F(Calls, go_to_the_fallback_when_who_answers_stops) {
+TEST_F(Calls, go_to_the_fallback_when_the_answering_component_stops) {
     hand_over_to("measured");
     EXPECT_TRUE(run(10ms));
     EXPECT_EQ(asker("far").got, 2);
@@ -110,7 +110,7 @@ TEST_F(Calls, go_to_the_fallback_when_who_answers_stops) {
     EXPECT_EQ(answers(), asker("near").steps + asker("far").steps);
 }
 
-TEST_F(Calls, stop_the_machine_when_nobody_is_left_who_answers) {
+TEST_F(Calls, stop_the_machine_when_no_component_remains_to_answer) {
     change("drawn", LifeChange::stop);
     run(10ms);
     ASSERT_TRUE(instance.stop_asked());
@@ -118,7 +118,7 @@ TEST_F(Calls, stop_the_machine_when_nobody_is_left_who_answers) {
                 testing::HasSubstr("\"drawn\" stopped, could not start"));
 }
 
-TEST_F(Calls, begin_with_the_fallback_again_when_their_activity_does) {
+TEST_F(Calls, return_to_the_fallback_when_their_activity_restarts) {
     hand_over_to("guessed");
     EXPECT_TRUE(run(10ms));
     instance.life().ask_activity(0, LifeChange::restart);

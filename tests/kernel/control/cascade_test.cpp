@@ -1,4 +1,4 @@
-// A level that commands a faster one: the command arrives as the row says, and its silence does too.
+// A level that commands a faster one: the row determines how the command, and its silence, arrive.
 #include "tests/kernel/control/axis.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
 
@@ -7,7 +7,7 @@
 namespace tappet {
 namespace {
 
-/// The outer level: a set point on the move, and a Controller that passes its speed on.
+/// The outer level: a moving set point, and a Controller that passes its speed on.
 struct Outer {
     Input<double> measured;
     Output<double> command;
@@ -21,7 +21,7 @@ struct Outer {
     }
 };
 
-/// The inner Generator, which remembers what it was commanded.
+/// The inner Generator, which records its commands.
 struct Inner {
     Input<double> command;
     Output<double> target;
@@ -66,7 +66,7 @@ struct Rig : VirtualRig {
     Inner* inner = instance.find<Inner>("inner");
 
     Rig() : VirtualRig{AtRunTime<cascade<how>, box>::machine()} { start(); }
-    /// The largest change of the command from step to step, once all is under way.
+    /// The largest change of the command between steps, after the start.
     double largest_step(Duration time) {
         EXPECT_TRUE(run(time));
         double largest = 0.0;
@@ -76,13 +76,13 @@ struct Rig : VirtualRig {
     }
 };
 
-TEST(Cascade, is_commanded_in_steps_or_on_a_line_as_its_row_says) {
+TEST(Cascade, commands_in_steps_or_interpolates_as_its_row_says) {
     EXPECT_NEAR(Rig<in_steps>{}.largest_step(200ms), 0.04, 1e-9);
     EXPECT_NEAR(Rig<interpolated>{}.largest_step(200ms), 0.01, 1e-9);
     EXPECT_NEAR(Rig<extrapolated>{}.largest_step(200ms), 0.01, 1e-9);
 }
 
-TEST(Cascade, does_what_its_row_says_when_the_outer_level_stops) {
+TEST(Cascade, follows_its_row_when_the_outer_level_stops) {
     Rig<interpolated> rig;
     EXPECT_TRUE(rig.run(50ms));
     rig.change("outer", LifeChange::stop);

@@ -1,5 +1,5 @@
-// Loops: what the compiler says of gain times period times delay agrees with the closed form and with the
-// axis itself; and the contact with a stiff surface behaves as computed.
+// Loops: the compiler's bound on gain times period times delay agrees with the closed form and with the axis;
+// and the contact with a stiff surface behaves as computed.
 #include "kernel/base/random.hpp"
 #include "tests/kernel/control/axis.hpp"
 
@@ -19,7 +19,7 @@ using control_detail::SampledLoop;
 
 static_assert(is_stable({0.9, 0.0, 1}) && !is_stable({1.1, 0.0, 1}), "the compiler answers");
 
-TEST(Loops, have_the_bounds_of_the_closed_form) {
+TEST(Loops, have_the_closed_form_bounds) {
     for (std::size_t d = 0; d <= 12; ++d) {
         const double n = static_cast<double>(2 * d + 1);
         EXPECT_NEAR(most_stable(d), 2.0 * std::sin(std::numbers::pi / (2.0 * n)), 1e-9) << d;
@@ -29,11 +29,11 @@ TEST(Loops, have_the_bounds_of_the_closed_form) {
 }
 
 struct Run {
-    double largest = 0.0; ///< of the place, after a step to 1
+    double largest = 0.0; ///< largest position after a step to 1
     bool settles = false;
 };
 
-/// The loop itself, sample by sample.
+/// The loop, sample by sample.
 Run simulate(const SampledLoop& loop) {
     std::array<double, 64> sent{};
     double x = 0.0, sum = 0.0;
@@ -50,7 +50,7 @@ Run simulate(const SampledLoop& loop) {
     return run;
 }
 
-TEST(Loops, behave_as_the_test_says_with_any_delay_and_an_integral) {
+TEST(Loops, settle_exactly_when_the_stability_test_says_so) {
     for (std::size_t d = 0; d <= 6; ++d)
         for (const double share : {0.3, 0.6, 0.9, 0.98, 1.02, 1.2})
             for (const double integral_share : {0.0, 0.002, 0.02, 0.2}) {
@@ -61,14 +61,14 @@ TEST(Loops, behave_as_the_test_says_with_any_delay_and_an_integral) {
             }
 }
 
-TEST(Loops, overshoot_above_that_bound_and_not_below) {
+TEST(Loops, overshoot_only_above_their_overshoot_bound) {
     for (std::size_t d = 1; d <= 6; ++d) {
         EXPECT_LE(simulate({0.999 * most_without_overshoot(d), 0.0, d}).largest, 1.0 + 1e-9) << d;
         EXPECT_GT(simulate({1.2 * most_without_overshoot(d), 0.0, d}).largest, 1.0 + 1e-6) << d;
     }
 }
 
-/// The loop with a delay that is another one in each step, from a pattern or by chance.
+/// The loop with a delay that changes in each step, by a pattern or at random.
 bool diverges(const SampledLoop& loop, Random& random) {
     std::array<double, 64> seen{};
     double x = 1.0, sum = 0.0;
@@ -88,7 +88,7 @@ bool diverges(const SampledLoop& loop, Random& random) {
     return false;
 }
 
-TEST(Loops, are_stable_below_the_bound_whatever_their_delay_does) {
+TEST(Loops, stay_stable_below_the_bound_with_varying_delay) {
     Random random{7};
     for (std::size_t d = 1; d <= 6; ++d)
         for (int i = 0; i < 200; ++i) {
@@ -100,7 +100,7 @@ TEST(Loops, are_stable_below_the_bound_whatever_their_delay_does) {
     EXPECT_FALSE(is_stable({0.60, 0.0, 2, 1})) << "there is a pattern by which it grows";
 }
 
-TEST(Loops, with_an_integral_that_are_accepted_never_diverge_and_most_that_do_not_are_accepted) {
+TEST(Loops, never_diverge_when_accepted_and_mostly_diverge_when_refused) {
     Random random{11};
     int accepted = 0, refused = 0, refused_well = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -122,13 +122,13 @@ TEST(Loops, with_an_integral_that_are_accepted_never_diverge_and_most_that_do_no
     EXPECT_GT(accepted, 500);
 }
 
-// ---- the contact: an axis that is moved by the force it lacks meets a surface of 1e5 N/m, 20 N are wanted;
-// one sample is 2 ms, the delay two of them
+// ---- the contact: a force-controlled axis meets a surface of 1e5 N/m with a set point of 20 N; one sample
+// is 2 ms, the delay two samples
 
 constexpr double contact_stiffness = 1e5;
 constexpr double wanted_force = 20.0;
 
-/// The largest force, in N, from the free approach on; and whether it comes to rest at the wanted one.
+/// The largest force in N from the free approach on, and whether it settles at the set point.
 Run touch(double gain) {
     constexpr double period = 2e-3;
     std::array<double, 3> sent{};
@@ -144,7 +144,7 @@ Run touch(double gain) {
     return run;
 }
 
-TEST(Contact, behaves_as_computed_with_each_of_four_gains) {
+TEST(Contact, behaves_as_computed_for_each_of_four_gains) {
     const double gentle = most_without_overshoot(2) / (contact_stiffness * 2e-3);
     EXPECT_NEAR(gentle, 7.4e-4, 0.01e-4);
     EXPECT_NEAR(gentle * wanted_force, 14.8e-3, 0.1e-3) << "m/s, on the approach";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Control structures by chance, judged as the compiler judges a table, and then run: what is accepted never
-// grows, whatever time its cycles take, and most of what does not grow is accepted.
+// Random control structures, judged as the compiler judges a table, and then run: accepted ones never grow,
+// whatever time their cycles take, and most of those that do not grow are accepted.
 #include "kernel/base/random.hpp"
 #include "kernel/control/control.hpp"
 #include "kernel/machine/firmware.hpp"
@@ -18,7 +18,7 @@
 namespace tappet {
 namespace {
 
-/// Goes as fast as it was told a while ago, at any time between two steps.
+/// Moves at the velocity it was commanded a delay ago, evaluated at any time between two steps.
 struct Slide {
     struct Order {
         Time from;
@@ -58,7 +58,7 @@ struct Scale {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { place.write(0); }
     static constexpr auto interface() { return facets(output<&Scale::place>("place", "m", "of the slide")); }
 };
-/// Stands at zero, or hands on what it is told.
+/// Holds zero, or passes its command on.
 struct Path {
     Input<double> measured;
     Output<double> target;
@@ -105,7 +105,7 @@ struct Valve {
                       output<&Valve::sent>("sent", "m/s", "to the drive"));
     }
 };
-/// Takes the time of the others.
+/// Uses the time of the other components.
 struct Work {
     Input<double> seen;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
@@ -130,14 +130,14 @@ Structure drawn(Random& random, bool is_cascade) {
     made.others_budget = made.others_period * random.between(1, 25) / 100;
     made.is_late_in = !is_cascade && random.one_in(3);
     made.is_late_out = random.one_in(3);
-    made.kp = std::pow(10.0, 3.5 * random.unit()); // whatever the rest is
+    made.kp = std::pow(10.0, 3.5 * random.unit()); // for any other parameters
     made.ki = random.one_in(2) ? 0.0 : made.kp * made.kp * random.unit() * 0.4;
     return made;
 }
 
 constexpr Board box{.name = "box", .memory_budget_bytes = 1 << 20};
 
-/// That of Axis, of which people may set only the gains that it has.
+/// The type of Axis, with ranges that allow only its present gains.
 struct TunedType {
     std::vector<Facet> facets{component_type<Axis>.facets.begin(), component_type<Axis>.facets.end()};
     ComponentType type = component_type<Axis>;
@@ -173,7 +173,7 @@ auto single(const Structure& s, const ComponentRow& axis) {
                 loop("place", gain("axis.kp"), integral("axis.ki"), transport(s.transport), may_overshoot)));
 }
 
-/// The Sensor is of a slower level, whose command is none.
+/// The Sensor is in a slower level, whose command is not connected.
 auto cascade(const Structure& s, const ComponentRow& axis) {
     return machine(
         "cascade",
@@ -202,7 +202,7 @@ struct Count {
     int accepted = 0, refused_loops = 0, refused_well = 0, others = 0;
 };
 
-/// It grows when in the last third it is farther out than in the first.
+/// It grows when the last third goes farther out than the first.
 template <class Table>
 bool grows(const Table& table, const auto& index, const Structure& s, std::uint64_t seed) {
     auto plan = plan_for<0>(table, box, unbound, index, 0);
@@ -230,7 +230,7 @@ bool grows(const Table& table, const auto& index, const Structure& s, std::uint6
         own.farthest = 0.0;
         static_cast<void>(world.run_until(clock.now() + samples / parts * step));
         if (part < parts / 3) first = std::max(first, own.farthest);
-        is_far = !(own.farthest < (part < parts * 2 / 3 ? 1e6 : first)); // or no number any more
+        is_far = !(own.farthest < (part < parts * 2 / 3 ? 1e6 : first)); // or not a number any more
     }
     world.stop();
     return is_far;
@@ -261,7 +261,7 @@ void judge_and_run(const Make& make, const Structure& s, std::uint64_t seed, Cou
     }
 }
 
-TEST(Structures, that_are_accepted_never_grow_and_most_that_do_not_are_accepted) {
+TEST(Structures, never_grow_when_accepted_and_mostly_grow_when_refused) {
     const char* const wanted = std::getenv("TAPPET_STRUCTURES");
     const int structures = wanted == nullptr ? 10'000 : std::atoi(wanted);
     Count count;

@@ -1,5 +1,5 @@
-// Components that run by turns: one writer in every cycle, a hand-over within one cycle and without a bump,
-// and what happens when a part fails.
+// Components that run by turns: one writer in every cycle, a bumpless hand-over within one cycle, and the
+// response to a failing part.
 #include "tests/kernel/control/axis.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
 
@@ -25,7 +25,7 @@ struct Rig : VirtualRig {
 
     std::string running() { return std::string{the<ChainSwitch>("mode").chain.last().view()}; }
     std::string hindered() { return std::string{the<ChainSwitch>("mode").hindered.last().view()}; }
-    /// Asks as a component would, and waits for the end.
+    /// Commands like a component and waits for the end.
     CommandState ask(const char* chain) {
         ScriptText name;
         EXPECT_TRUE(name.assign(chain));
@@ -46,14 +46,14 @@ struct Rig : VirtualRig {
         place = instance.place_of(end);
         port->force(place, true, reinterpret_cast<const std::byte*>(&to));
     }
-    /// What was forced last.
+    /// Whether the input forced last is still forced.
     [[nodiscard]] bool is_forced() const { return *port->places(place, true).forced; }
 
     const PortOperations* port = nullptr;
     void* place = nullptr;
 };
 
-TEST(Turns, begin_with_the_fallback_and_the_others_wait) {
+TEST(Turns, start_the_fallback_and_let_the_others_wait) {
     Rig rig;
     EXPECT_EQ(rig.running(), "stand");
     EXPECT_EQ(rig.state("standing"), ComponentState::running);
@@ -62,8 +62,8 @@ TEST(Turns, begin_with_the_fallback_and_the_others_wait) {
     EXPECT_EQ(rig.state("gentle"), ComponentState::stopped);
 }
 
-/// It has measured nothing until it is told to.
-TEST(Turns, begin_when_every_input_has_a_valid_value_and_not_with_a_zero) {
+/// It measures nothing until the test enables it.
+TEST(Turns, begin_only_when_every_input_has_a_valid_value) {
     Rig rig{false};
     EXPECT_TRUE(rig.run(5ms));
     EXPECT_EQ(rig.state("standing"), ComponentState::waiting);
@@ -77,7 +77,7 @@ TEST(Turns, begin_when_every_input_has_a_valid_value_and_not_with_a_zero) {
     EXPECT_GT(rig.the<Limiter>("limiter").cycles, 0u);
 }
 
-TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {
+TEST(Turns, are_requested_by_a_command_that_ends_when_the_chain_runs) {
     Rig rig;
     EXPECT_EQ(rig.ask("jog"), CommandState::done);
     EXPECT_EQ(rig.running(), "jog");
@@ -92,10 +92,10 @@ TEST(Turns, are_asked_for_by_a_command_that_is_done_when_the_chain_runs) {
     EXPECT_EQ(rig.instance.observation().counted(0, 1).times, 1u);
 }
 
-// At 1000 instants, from any chain to any other, with the axis under way: in every cycle one of the writers
-// runs, the set point goes on from where the axis is, and the velocity does not jump by more than the loop
-// itself would move it in one step.
-TEST(Turns, leave_one_writer_in_every_cycle_and_no_jump_of_the_velocity) {
+// At 1000 instants, from any chain to any other, with the axis moving: in every cycle one of the writers
+// runs, the set point continues from the axis position, and the velocity jumps by no more than the loop
+// itself would change it in one step.
+TEST(Turns, keep_one_writer_in_every_cycle_without_a_velocity_jump) {
     Rig rig;
     auto& mode = rig.the<ChainSwitch>("mode");
     auto& sent = rig.the<Limiter>("limiter");
@@ -121,17 +121,16 @@ TEST(Turns, leave_one_writer_in_every_cycle_and_no_jump_of_the_velocity) {
             before = sent.sent.last();
         }
     }
-    // In one step: kp 20/s times the way of the set point against that of the slide, each at 0.3 m/s for 1
-    // ms, and of what was sent before 5 parts of 1000.
+    // In one step: kp 20/s times the difference between the ways of set point and slide, each at 0.3 m/s for
+    // 1 ms, plus 5 parts of 1000 of the velocity sent before.
     EXPECT_LT(worst, 20.0 * (0.3 + 0.3) * step_s + 0.3 * 5.0 * step_s);
     EXPECT_GT(worst, 1e-4) << "the axis was under way";
     EXPECT_TRUE(std::isfinite(slide.at));
 }
 
-TEST(Turns, do_not_happen_when_one_cannot_start_and_say_what_hinders) {
+TEST(Turns, are_refused_with_the_reason_when_a_component_cannot_start) {
     Rig rig;
-    rig.the<Mover>("jogging").is_mute =
-        true; // its start() writes nothing: nobody reads what it wrote long ago
+    rig.the<Mover>("jogging").is_mute = true; // its start() writes nothing: no reader sees its old value
     EXPECT_EQ(rig.ask("jog"), CommandState::failed);
     EXPECT_EQ(rig.running(), "stand");
     EXPECT_EQ(rig.hindered(), "position.target") << "it runs on, and would read what was written long ago";
@@ -145,7 +144,7 @@ TEST(Turns, do_not_happen_when_one_cannot_start_and_say_what_hinders) {
     EXPECT_EQ(rig.hindered(), "");
 }
 
-TEST(Turns, asked_for_before_anything_was_measured_leave_all_waiting) {
+TEST(Turns, leave_all_waiting_when_requested_before_any_measurement) {
     Rig rig{false};
     EXPECT_EQ(rig.ask("softly"), CommandState::failed);
     EXPECT_FALSE(rig.instance.stop_asked());
@@ -155,7 +154,7 @@ TEST(Turns, asked_for_before_anything_was_measured_leave_all_waiting) {
     EXPECT_EQ(rig.state("position"), ComponentState::running);
 }
 
-TEST(Turns, stop_the_machine_when_the_fallback_is_asked_for_and_cannot_start) {
+TEST(Turns, stop_the_machine_when_the_requested_fallback_cannot_start) {
     Rig rig;
     EXPECT_EQ(rig.ask("jog"), CommandState::done);
     rig.the<Mover>("standing").is_mute = true;
@@ -187,14 +186,14 @@ TEST(Turns, stop_the_machine_when_the_fallback_itself_fails) {
                 HasSubstr("\"standing\" stopped, could not start"));
 }
 
-TEST(Turns, stop_the_machine_when_a_part_stops_that_always_runs) {
+TEST(Turns, stop_the_machine_when_a_permanent_part_stops) {
     Rig rig;
     rig.change("encoder", LifeChange::stop);
     rig.run(5ms);
     EXPECT_TRUE(rig.instance.stop_asked());
 }
 
-TEST(Turns, end_with_the_component_that_hands_over_and_begin_with_it) {
+TEST(Turns, end_and_begin_with_the_component_that_hands_over) {
     Rig rig;
     EXPECT_EQ(rig.ask("softly"), CommandState::done);
     rig.change("mode", LifeChange::stop);
@@ -211,18 +210,18 @@ TEST(Turns, end_with_the_component_that_hands_over_and_begin_with_it) {
     EXPECT_EQ(rig.ask("softly"), CommandState::done);
 }
 
-/// Whichever row of the input comes last in the table.
-TEST(Turns, leave_what_is_forced_until_the_one_stops_that_writes_it_then) {
+/// Holds whichever row of the input is last in the table.
+TEST(Turns, keep_a_force_until_the_current_writer_stops) {
     Rig rig;
     EXPECT_TRUE(rig.run(5ms));
     ASSERT_EQ(rig.ask("jog"), CommandState::done);
     rig.force("limiter.velocity", 0.3);
-    rig.change("gentle", LifeChange::stop); // which stands, and writes nothing
+    rig.change("gentle", LifeChange::stop); // it is stopped and writes nothing
     EXPECT_TRUE(rig.run(5ms));
     EXPECT_TRUE(rig.is_forced());
     ASSERT_EQ(rig.ask("softly"), CommandState::done);
     EXPECT_TRUE(rig.is_forced());
-    rig.change("position", LifeChange::stop); // which wrote it before
+    rig.change("position", LifeChange::stop); // it wrote the input before
     EXPECT_TRUE(rig.run(5ms));
     EXPECT_TRUE(rig.is_forced());
     rig.change("gentle", LifeChange::stop);
@@ -230,7 +229,7 @@ TEST(Turns, leave_what_is_forced_until_the_one_stops_that_writes_it_then) {
     EXPECT_FALSE(rig.is_forced());
 }
 
-TEST(Turns, are_refused_though_a_force_stands_for_what_nobody_wrote_and_leave_it) {
+TEST(Turns, are_refused_despite_a_force_on_an_unwritten_input_and_keep_it) {
     Rig rig;
     EXPECT_TRUE(rig.run(5ms));
     rig.force("position.target", 0.3);
@@ -240,7 +239,7 @@ TEST(Turns, are_refused_though_a_force_stands_for_what_nobody_wrote_and_leave_it
     EXPECT_TRUE(rig.is_forced());
 }
 
-TEST(Turns, are_not_taken_alone) {
+TEST(Turns, cannot_be_started_component_by_component) {
     Rig rig;
     const std::size_t jogging = find_component(rig.instance.machine().table, "jogging");
     const LifeTicket ticket = rig.change("jogging", LifeChange::start);
@@ -248,10 +247,10 @@ TEST(Turns, are_not_taken_alone) {
     const LifeAnswer answer = rig.instance.life().answer_of_component(jogging, ticket);
     EXPECT_EQ(answer.refusal, LifeRefusal::waits_for_its_turn);
     EXPECT_THAT(std::string{rig.instance.life().describe(0, answer).view()},
-                HasSubstr("it runs by turns with others of activity \"motion\""));
+                HasSubstr("it alternates with other components of activity \"motion\""));
 }
 
-TEST(Turns, begin_anew_with_their_activity) {
+TEST(Turns, restart_with_their_activity) {
     Rig rig;
     EXPECT_EQ(rig.ask("softly"), CommandState::done);
     rig.instance.life().ask_activity(0, LifeChange::restart);
@@ -261,7 +260,7 @@ TEST(Turns, begin_anew_with_their_activity) {
     EXPECT_EQ(rig.state("standing"), ComponentState::running);
 }
 
-// ---- what is forced where several write by turns
+// ---- forced values where several components write by turns
 
 struct ForcedTurn : testing::Test {
     Rig rig;
@@ -280,12 +279,12 @@ struct ForcedTurn : testing::Test {
     }
 };
 
-TEST_F(ForcedTurn, ends_with_a_stop_of_its_writer) {
+TEST_F(ForcedTurn, ends_when_its_writer_stops) {
     rig.change("position", LifeChange::restart);
     expect_it_ends();
 }
 
-TEST_F(ForcedTurn, ends_with_a_stop_of_its_writer_before_a_turn_that_it_writes_too) {
+TEST_F(ForcedTurn, ends_when_its_writer_stops_before_another_turn_of_that_writer) {
     rig.change("position", LifeChange::restart);
     ScriptText jog{"jog"};
     EXPECT_TRUE(rig.the<ChainSwitch>("mode").run(jog));
@@ -293,19 +292,19 @@ TEST_F(ForcedTurn, ends_with_a_stop_of_its_writer_before_a_turn_that_it_writes_t
     EXPECT_EQ(rig.running(), "jog");
 }
 
-TEST_F(ForcedTurn, ends_with_a_restart_of_the_switch) {
+TEST_F(ForcedTurn, ends_when_the_switch_restarts) {
     rig.change("mode", LifeChange::restart);
     expect_it_ends();
 }
 
-TEST_F(ForcedTurn, ends_with_a_restart_of_the_switch_in_another_turn) {
+TEST_F(ForcedTurn, ends_when_the_switch_restarts_in_another_turn) {
     ASSERT_EQ(rig.ask("jog"), CommandState::done);
     EXPECT_TRUE(rig.is_forced()) << "it is the next writer's now";
     rig.change("mode", LifeChange::restart);
     expect_it_ends();
 }
 
-/// The chain before it writes the input again, and nobody else.
+/// Only the chain before it writes the input again.
 struct ForcedAfterFallBack : ForcedTurn {
     void SetUp() override {
         ForcedTurn::SetUp();
@@ -318,12 +317,12 @@ struct ForcedAfterFallBack : ForcedTurn {
     }
 };
 
-TEST_F(ForcedAfterFallBack, ends_with_a_stop_of_who_writes_the_input_now) {
+TEST_F(ForcedAfterFallBack, ends_when_the_current_writer_stops) {
     rig.change("position", LifeChange::restart);
     expect_it_ends();
 }
 
-TEST_F(ForcedAfterFallBack, lasts_when_somebody_stops_whose_turn_it_is_not) {
+TEST_F(ForcedAfterFallBack, lasts_when_a_component_of_another_turn_stops) {
     rig.change("gentle", LifeChange::stop);
     EXPECT_TRUE(rig.run(20ms));
     EXPECT_TRUE(rig.is_forced());

@@ -1,5 +1,5 @@
 // Measures an operation between activities alone, and while another core does the opposite one without a
-// pause. Figures to read: a box under load says nothing about absolute times.
+// pause. The figures are for reading: a box under load says nothing about absolute times.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ using Nanoseconds = std::vector<std::uint32_t>;
 
 inline constexpr std::size_t samples = 100'000;
 
-/// The thread stays on the nth of the processors that the process may use; without two of them the sides take
-/// turns.
+/// Binds the thread to the nth processor that the process may use; with only one processor the sides
+/// alternate.
 inline void stay_on(std::size_t nth) {
     cpu_set_t allowed;
     if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
@@ -36,7 +36,7 @@ inline void stay_on(std::size_t nth) {
     }
 }
 
-/// Of the calls that did their whole work, not of those that were refused at once.
+/// Counts only calls that did their whole work, not those refused at once.
 inline Nanoseconds measure(const std::function<bool()>& operation, const std::function<void()>& before_each) {
     using Clock = std::chrono::steady_clock;
     Nanoseconds took;
@@ -63,14 +63,14 @@ protected:
         if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "two cores are needed to meet on";
     }
 
-    /// Measures `operation` alone, then while `other` runs on another core. Returns how often that one ran
+    /// Measures `operation` alone, then while `other` runs on another core. Returns how often `other` ran
     /// meanwhile.
     static std::uint64_t show(const char* name, const std::function<bool()>& operation,
                               const std::function<bool()>& other) {
         Nanoseconds alone;
         Nanoseconds contended;
         std::uint64_t met = 0;
-        // In threads of their own: where they stay is not where the next test begins.
+        // In separate threads: the processor they stay on must not affect the next test.
         std::thread{[&] {
             stay_on(0);
             alone = measure(operation, [&] { static_cast<void>(other()); });
@@ -88,7 +88,7 @@ protected:
             stay_on(0);
             while (rounds.load() == 0) std::this_thread::yield();
             const std::uint64_t before = rounds.load();
-            // On a busy box the other side may not get its core at once.
+            // On a busy box the other side may have to wait for its core.
             for (int pass = 0; pass < 100 && met < 1'000; ++pass) {
                 contended = measure(operation, [] {});
                 met = rounds.load() - before;

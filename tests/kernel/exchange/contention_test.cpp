@@ -1,6 +1,6 @@
-// How long each operation between activities takes while another core does the opposite one without a pause,
-// beside the same operation undisturbed (thesis 4.4: bounded in time). Figures to read: a box under load says
-// nothing about absolute times, so none is asserted; that both sides really met is.
+// Times of each operation between activities while another core does the opposite one without a pause,
+// compared with the undisturbed operation (thesis 4.4: bounded in time). A box under load says nothing about
+// absolute times, so the test asserts only that both sides met.
 #include "kernel/exchange/data_object.hpp"
 #include "kernel/exchange/mailbox.hpp"
 #include "kernel/exchange/ring.hpp"
@@ -15,7 +15,7 @@
 namespace {
 
 using namespace tappet;
-TEST_F(Contention, of_a_data_object) {
+TEST_F(Contention, leaves_a_data_object_intact) {
     auto object = std::make_unique<DataObject<Sealed<160>>>();
     std::uint64_t number = 0;
     std::uint64_t generation = 0;
@@ -25,14 +25,14 @@ TEST_F(Contention, of_a_data_object) {
         return true;
     };
     const auto read = [&] {
-        generation = 0; // so that there is a value to copy although nobody writes
+        generation = 0; // so that there is a value to copy without a writer
         return object->read(value, generation);
     };
     EXPECT_GT(show("data object, write", write, read), 0u);
     EXPECT_GT(show("data object, read", read, write), 0u);
 }
 
-TEST_F(Contention, of_a_ring) {
+TEST_F(Contention, leaves_a_ring_intact) {
     using Queue = Ring<Sealed<160>>;
 
     for (const Overflow overflow : {Overflow::reject, Overflow::drop_oldest}) {
@@ -48,7 +48,7 @@ TEST_F(Contention, of_a_ring) {
     }
 }
 
-TEST_F(Contention, of_an_inbox) {
+TEST_F(Contention, leaves_an_inbox_intact) {
     PlacedInbox placed{8, 2};
     const Message message{};
     const auto post = [&] { return placed.inbox.post(0, message); };

@@ -1,4 +1,4 @@
-// DataObject: the last value of one writer for many readers, by itself and under chosen interleavings.
+// DataObject: the last value of one writer for many readers, undisturbed and under chosen interleavings.
 #include "kernel/exchange/data_object.hpp"
 
 #include "tests/kernel/exchange/preemption.hpp"
@@ -26,7 +26,7 @@ TEST(DataObject, holds_nothing_before_the_first_write) {
     EXPECT_EQ(object.generation(), 0u);
 }
 
-TEST(DataObject, gives_the_last_value_and_its_number) {
+TEST(DataObject, returns_the_last_value_and_its_number) {
     DataObject<double> object;
     for (int i = 1; i <= 9; ++i) object.write(i);
     double value = 0;
@@ -37,7 +37,7 @@ TEST(DataObject, gives_the_last_value_and_its_number) {
     EXPECT_EQ(object.generation(), 9u);
 }
 
-TEST(DataObject, gives_a_value_once_to_a_reader_that_keeps_its_number) {
+TEST(DataObject, returns_a_value_once_to_a_reader_that_keeps_its_number) {
     DataObject<int> object;
     object.write(5);
     int value = 0;
@@ -63,12 +63,12 @@ TEST(DataObject, serves_readers_independently) {
     EXPECT_EQ(a, b);
 }
 
-TEST(DataObject, keeps_the_writers_private_line_and_the_published_one_apart) {
+TEST(DataObject, separates_private_and_published_data_by_cache_lines) {
     EXPECT_GE(sizeof(DataObject<int>), 2 * line_pair_bytes);
     EXPECT_GE(alignof(DataObject<int>), line_pair_bytes);
 }
 
-/// Values of a few words, of pairs that stay in registers, and of more pairs than that.
+/// Values of a few words, of pairs that stay in registers, and of more pairs.
 template <class T, template <class> class A> struct Carried {
     using Value = T;
     template <std::size_t slots, std::size_t attempts> using Object = DataObject<T, slots, attempts, A>;
@@ -107,7 +107,7 @@ TYPED_TEST(InterruptedDataObject, withstands_any_burst_of_writes_at_any_point_of
     EXPECT_GE(accesses, 5u) << "index, some of the value, number";
 }
 
-TEST(DataObject, lets_a_reader_finish_in_its_first_attempt_while_fewer_than_slots_values_are_written) {
+TEST(DataObject, completes_a_read_at_once_while_fewer_than_slots_values_are_written) {
     using Object = DataObject<Sealed<24>, 4, 1, Preemptible>;
     for (std::size_t at = 1; at < 5; ++at) {
         for (std::uint64_t burst : {3u, 4u}) {
@@ -125,7 +125,7 @@ TEST(DataObject, lets_a_reader_finish_in_its_first_attempt_while_fewer_than_slot
     }
 }
 
-TEST(DataObject, gives_up_after_its_attempts_and_leaves_the_last_good_value) {
+TEST(DataObject, gives_up_after_its_attempts_and_keeps_the_last_good_value) {
     DataObject<Sealed<24>, 4, 3, Preemptible> object;
     std::uint64_t written = 0;
     object.write(Sealed<24>::of(++written));
@@ -146,7 +146,7 @@ TEST(DataObject, gives_up_after_its_attempts_and_leaves_the_last_good_value) {
         << "the worst case is counted: index, three words and number, three times";
 }
 
-TEST(DataObject, lets_readers_run_at_any_point_of_a_write) {
+TEST(DataObject, allows_reads_at_any_point_of_a_write) {
     using Object = DataObject<Sealed<24>, 2, 1, Preemptible>;
     std::size_t accesses = 1;
     for (std::size_t at = 0; at < accesses; ++at) {
@@ -167,8 +167,7 @@ TEST(DataObject, lets_readers_run_at_any_point_of_a_write) {
     EXPECT_EQ(accesses, 3u + 3u) << "a write is its words and three stores, and no load";
 }
 
-// Every order in which two cores may make their accesses, sampled: both sides may stand in the middle of a
-// copy.
+// Samples every order in which two cores may make their accesses: both sides may be in the middle of a copy.
 TYPED_TEST(InterruptedDataObject, never_tears_and_never_goes_backwards_under_random_interleavings) {
     using Value = typename TypeParam::Value;
     Random random{stress_seed()};
@@ -202,7 +201,7 @@ template <class T> class DataObjectAcrossThreads : public testing::Test {};
 using Sizes = testing::Types<Sealed<8>, Sealed<160>, Sealed<4096>>;
 TYPED_TEST_SUITE(DataObjectAcrossThreads, Sizes);
 
-// The writer goes on until every reader has seen enough values, so that they really met.
+// The writer continues until every reader has seen enough values, so that both sides met.
 TYPED_TEST(DataObjectAcrossThreads, never_tears_and_never_goes_backwards) {
     constexpr std::size_t reader_count = 3;
     constexpr std::uint64_t enough = sizeof(TypeParam) > 1000 ? 500 : 3'000;

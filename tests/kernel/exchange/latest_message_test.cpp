@@ -15,7 +15,7 @@ namespace {
 
 using namespace tappet;
 
-/// Every byte of it follows from the number.
+/// The number determines every byte.
 Message numbered(std::uint32_t number) {
     Message message;
     message.id = message.epoch = number;
@@ -26,7 +26,7 @@ bool whole(const Message& message) {
     return message.epoch == message.id && message.arguments == numbered(message.id).arguments;
 }
 
-TEST(LatestMessage, gives_nothing_before_the_first_and_each_one_once) {
+TEST(LatestMessage, is_empty_at_first_and_returns_each_message_once) {
     LatestMessage latest;
     EXPECT_EQ(latest.take(), nullptr);
     EXPECT_TRUE(latest.put(numbered(1)));
@@ -36,7 +36,7 @@ TEST(LatestMessage, gives_nothing_before_the_first_and_each_one_once) {
     EXPECT_EQ(latest.take(), nullptr);
 }
 
-TEST(LatestMessage, replaces_what_nobody_took_and_says_so) {
+TEST(LatestMessage, replaces_an_unread_message_and_reports_it) {
     LatestMessage latest;
     EXPECT_TRUE(latest.put(numbered(1))) << "the receiver is to be told";
     EXPECT_FALSE(latest.put(numbered(2))) << "it is told already";
@@ -47,7 +47,7 @@ TEST(LatestMessage, replaces_what_nobody_took_and_says_so) {
     EXPECT_TRUE(latest.put(numbered(4))) << "it took the one before";
 }
 
-TEST(LatestMessage, leaves_what_was_taken_as_it_is_until_the_next_take) {
+TEST(LatestMessage, keeps_a_read_message_unchanged_until_the_next_read) {
     LatestMessage latest;
     EXPECT_TRUE(latest.put(numbered(1)));
     const Message* const taken = latest.take();
@@ -57,8 +57,8 @@ TEST(LatestMessage, leaves_what_was_taken_as_it_is_until_the_next_take) {
     EXPECT_TRUE(whole(*taken));
 }
 
-// The receiver takes only when it is told; the sender tells it when put() says so.
-TEST(LatestMessage, tears_nothing_and_forgets_no_newest_across_threads) {
+// The receiver reads only when notified; the sender notifies it when put() says so.
+TEST(LatestMessage, never_tears_a_message_or_loses_the_newest_across_threads) {
     constexpr std::uint32_t last = 200'000;
     for (std::uint64_t seed = stress_seed(); seed < stress_seed() + 3; ++seed) {
         LatestMessage latest;

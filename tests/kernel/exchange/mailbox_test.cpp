@@ -1,4 +1,4 @@
-// Inbox: messages of many senders to one engine, each sender's order kept.
+// Inbox: messages of many senders to one engine, in each sender's order.
 #include "kernel/exchange/mailbox.hpp"
 
 #include "tests/kernel/exchange/placed.hpp"
@@ -37,13 +37,13 @@ Ids served(Inbox& inbox) {
     return {ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-TEST(Inbox, has_nothing_at_first) {
+TEST(Inbox, is_empty_at_first) {
     PlacedInbox post{4, 3};
     EXPECT_FALSE(post.inbox.pending());
     EXPECT_EQ(served(post.inbox), Ids{});
 }
 
-TEST(Inbox, serves_senders_in_their_order_and_each_in_the_order_it_sent) {
+TEST(Inbox, serves_senders_in_their_order_and_keeps_each_senders_order) {
     PlacedInbox post{4, 3};
     for (const std::uint32_t id : {20u, 1u, 21u, 10u, 2u})
         EXPECT_TRUE(post.inbox.post(id / 10, numbered(id))) << id;
@@ -52,7 +52,7 @@ TEST(Inbox, serves_senders_in_their_order_and_each_in_the_order_it_sent) {
     EXPECT_FALSE(post.inbox.pending());
 }
 
-TEST(Inbox, takes_64_senders_and_no_65th) {
+TEST(Inbox, accepts_at_most_64_senders) {
     PlacedInbox post{1, 65};
     EXPECT_TRUE(post.inbox.post(63, numbered(63)));
     EXPECT_TRUE(post.inbox.post(0, numbered(0)));
@@ -61,7 +61,7 @@ TEST(Inbox, takes_64_senders_and_no_65th) {
     EXPECT_EQ(served(post.inbox), (Ids{0, 63}));
 }
 
-TEST(Inbox, without_mailboxes_refuses_every_post) {
+TEST(Inbox, refuses_every_post_without_mailboxes) {
     Inbox inbox;
     EXPECT_FALSE(inbox.post(0, numbered(1)));
     EXPECT_FALSE(inbox.pending());
@@ -78,7 +78,7 @@ TEST(Inbox, refuses_a_message_when_the_senders_mailbox_is_full_and_counts_it) {
     EXPECT_EQ(served(post.inbox), (Ids{4, 1, 2}));
 }
 
-TEST(Inbox, leaves_what_is_posted_while_it_serves_a_mailbox_for_the_next_call) {
+TEST(Inbox, defers_messages_posted_while_it_serves_their_mailbox) {
     PlacedInbox post{8};
     EXPECT_TRUE(post.inbox.post(0, numbered(1)));
     EXPECT_TRUE(post.inbox.post(0, numbered(2)));
@@ -113,13 +113,12 @@ TEST(Inbox, runs_each_message_with_its_object_and_its_arguments) {
     EXPECT_EQ(sum, 3.5);
 }
 
-TEST(Message, keeps_its_arguments_aligned_for_any_number) {
+TEST(Message, aligns_its_arguments_for_any_number) {
     EXPECT_EQ(offsetof(Message, arguments) % alignof(std::uint64_t), 0u);
     EXPECT_EQ(Message{}.arguments.size(), 48u);
 }
 
-// Several senders and one receiver that sleeps unless pending() says there is something: no message may be
-// forgotten.
+// Several senders and one receiver that sleeps unless pending() is true: no message may be lost.
 TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
     constexpr std::size_t senders = 4;
     constexpr std::uint32_t last = 10'000;
@@ -163,7 +162,7 @@ TEST(Inbox, loses_no_message_and_keeps_each_senders_order_across_threads) {
     for (auto& thread : threads) thread.join();
     EXPECT_TRUE(ordered);
     for (const std::uint32_t number : seen) EXPECT_EQ(number, last);
-    // The bit of a message that was served already may have come after it.
+    // The pending bit may have been set after its message was served.
     EXPECT_EQ(post.inbox.serve(visit), 0u);
     EXPECT_FALSE(post.inbox.pending());
 }

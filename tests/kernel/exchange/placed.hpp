@@ -1,4 +1,5 @@
-// Memory for what is placed in memory of others, as start-up gives it: rings, and the mailboxes of an inbox.
+// Memory for objects that are placed in foreign memory, as start-up gives it: rings, and the mailboxes of an
+// inbox.
 #pragma once
 
 #include "kernel/exchange/mailbox.hpp"
@@ -30,7 +31,7 @@ struct PlacedRing {
     Queue ring;
 };
 
-/// With room for `capacity` messages of each of so many senders.
+/// With room for `capacity` messages of each sender.
 template <class Mailbox>
 struct PlacedMailboxes {
     explicit PlacedMailboxes(std::size_t capacity, std::size_t senders = 1)

@@ -1,6 +1,6 @@
-// Two sides of an exchange under a schedule that the test chooses, deterministic, with a switch possible
-// before each atomic access: whole operations of one side in the middle of one of the other, or both in
-// turns, as dice fall.
+// Two sides of an exchange under a deterministic schedule that the test chooses. A switch is possible before
+// each atomic access: whole operations of one side run in the middle of one of the other, or both alternate
+// at random.
 #pragma once
 
 #include "kernel/base/random.hpp"
@@ -18,15 +18,15 @@
 
 namespace tappet {
 
-/// One core, the other side of higher priority: at the access with number `at` of the side under test,
-/// `intruder` runs once.
+/// One core, the other side with higher priority: `intruder` runs once at access number `at` of the side
+/// under test.
 class Preemption {
 public:
     static Preemption& here() {
         static thread_local Preemption one;
         return one;
     }
-    /// Runs `operation`, interrupted before its access `at` (from 0). Returns how many accesses it made.
+    /// Runs `operation`, interrupted before its access `at` (from 0). Returns the number of its accesses.
     template <class Operation>
     std::size_t run(std::size_t at, std::function<void()> intruder, Operation&& operation) {
         return run_always(
@@ -59,8 +59,8 @@ private:
     bool armed_ = false;
 };
 
-/// Two cores: both sides advance access by access, in an order that follows from the seed alone. Each is a
-/// thread, but only the one whose turn it is runs.
+/// Two cores: both sides advance access by access, in an order that follows from the seed alone. Each side is
+/// a thread, but only one at a time runs.
 class Interleaving {
 public:
     void run(std::uint64_t seed, const std::function<void()>& first, const std::function<void()>& second) {
@@ -95,8 +95,8 @@ private:
         turn_[side_].acquire();
     }
 
-    /// Not std::binary_semaphore, which yields before it sleeps: on a busy host that lasts as long as all
-    /// others.
+    /// Not std::binary_semaphore: it yields before it sleeps, which on a busy host lasts as long as all other
+    /// threads run.
     class Turn {
     public:
         void acquire() {
@@ -123,7 +123,7 @@ private:
     std::array<bool, 2> finished_{};
 };
 
-/// Stands where std::atomic does.
+/// Replaces std::atomic.
 template <class T> class Preemptible {
 public:
     constexpr Preemptible() = default;
@@ -140,7 +140,7 @@ private:
     T value_{};
 };
 
-/// The same for values that go two words at once.
+/// The same for values accessed as two words at once.
 template <class T> class PreemptiblePair : public Preemptible<T> {
 public:
     static void before_pair() noexcept TAPPET_REALTIME {

@@ -1,5 +1,5 @@
-// Ring: a buffer of one writer and one reader, and what it does when it is full. LocalRing: the one inside
-// one activity (thesis 4.4).
+// Ring: a buffer of one writer and one reader, and its overflow policies. LocalRing: the same within one
+// activity (thesis 4.4).
 #include "kernel/exchange/ring.hpp"
 
 #include "kernel/exchange/local_ring.hpp"
@@ -28,7 +28,7 @@ using Placed = PlacedRing<Ring<T, Atomic>>;
 
 static_assert(LocalRing<int>::bytes_for(7) == sizeof(int) * 7 && LocalRing<double>::alignment == 8);
 
-TEST(Ring, refuses_everything_until_it_is_placed) {
+TEST(Ring, refuses_everything_until_memory_is_assigned) {
     Ring<int> ring;
     int value = 7;
     EXPECT_FALSE(ring.push(1));
@@ -38,7 +38,7 @@ TEST(Ring, refuses_everything_until_it_is_placed) {
     EXPECT_EQ(ring.capacity(), 0u);
 }
 
-TEST(Ring, is_empty_again_after_it_is_placed_anew_in_a_machine_that_restarts) {
+TEST(Ring, is_empty_again_after_a_machine_restart) {
     Placed<int> placed{4, Overflow::reject};
     EXPECT_TRUE(placed.ring.push(1));
     Ring<int> again{placed.memory.data(), 4, Overflow::drop_oldest};
@@ -46,10 +46,10 @@ TEST(Ring, is_empty_again_after_it_is_placed_anew_in_a_machine_that_restarts) {
     EXPECT_FALSE(again.pop(value));
 }
 
-// Any sequence of pushes and pops does what a plain queue with the same rule does, also with room for one: in
-// order; what has no room is refused, or the oldest given up, and counted before the consumer has noticed;
-// the most that were ever inside are remembered; the caller's value stays when nothing is there. `of` makes a
-// number's value.
+// Any sequence of pushes and pops behaves like a plain queue with the same rule, also with room for one.
+// Values stay in order. On overflow the value is refused, or the oldest is dropped and counted before the
+// consumer notices. The maximum fill is recorded. An empty pop leaves the caller's value unchanged. `of`
+// converts a number to a value.
 template <class Queue>
 void agrees_with_a_plain_queue(auto of) {
     Random random{stress_seed()};
@@ -100,8 +100,8 @@ TEST(LocalRing, agrees_with_a_plain_queue_on_random_sequences) {
     });
 }
 
-// What every schedule must keep, checked at the end of one: whole values in order, and each value pushed
-// either popped, lost or still inside.
+// The invariant of every schedule, checked at its end: whole values in order, and each pushed value popped,
+// lost or still inside.
 struct Ledger {
     std::uint64_t pushed = 0;
     std::uint64_t popped = 0;
@@ -173,7 +173,7 @@ TEST(Ring, withstands_any_burst_of_pops_at_any_point_of_a_push) {
     withstands_any_burst(5, pop_one, push_one);
 }
 
-TEST(Ring, that_drops_gives_up_a_pop_after_its_attempts_and_goes_on_after_what_was_lost) {
+TEST(Ring, gives_up_a_pop_after_its_attempts_when_it_drops) {
     Placed<Sealed<16>, Preemptible> placed{2, Overflow::drop_oldest};
     Ledger ledger;
     ledger.push(placed.ring);
@@ -190,7 +190,7 @@ TEST(Ring, that_drops_gives_up_a_pop_after_its_attempts_and_goes_on_after_what_w
     ledger.settle(placed.ring);
 }
 
-TEST(Ring, makes_a_bounded_number_of_accesses_in_a_push_however_the_consumer_lags) {
+TEST(Ring, makes_a_bounded_number_of_accesses_in_a_push) {
     Placed<Sealed<16>, Preemptible> placed{2, Overflow::drop_oldest};
     for (int i = 0; i < 10; ++i) {
         const std::size_t accesses =
@@ -199,7 +199,7 @@ TEST(Ring, makes_a_bounded_number_of_accesses_in_a_push_however_the_consumer_lag
     }
 }
 
-TEST(Ring, that_drops_still_gives_the_oldest_when_two_pushes_come_within_one_pop) {
+TEST(Ring, returns_the_oldest_value_despite_two_pushes_within_a_pop) {
     for (const std::uint64_t burst : {1u, 2u, 3u}) {
         for (std::size_t at = 1; at < 4; ++at) {
             Placed<Sealed<16>, Preemptible> placed{3, Overflow::drop_oldest};
@@ -215,7 +215,7 @@ TEST(Ring, that_drops_still_gives_the_oldest_when_two_pushes_come_within_one_pop
     }
 }
 
-TEST(Ring, asks_for_the_consumers_index_no_more_once_its_mark_stands) {
+TEST(Ring, stops_reading_the_consumer_index_once_its_mark_is_set) {
     Placed<Sealed<16>, Preemptible> placed{8, Overflow::reject};
     Ledger ledger;
     for (int i = 0; i < 4; ++i) ledger.push(placed.ring);
@@ -230,9 +230,8 @@ TEST(Ring, asks_for_the_consumers_index_no_more_once_its_mark_stands) {
     EXPECT_EQ(push(), stores_and_the_mark);
 }
 
-// Every order in which two cores may make their accesses, sampled: both sides may stand in the middle of a
-// copy.
-TEST(Ring, keeps_its_ledger_under_random_interleavings) {
+// Samples every order in which two cores may make their accesses: both sides may be in the middle of a copy.
+TEST(Ring, loses_no_value_uncounted_under_random_interleavings) {
     Random random{stress_seed()};
     Interleaving interleaving;
     for (int round = 0; round < 400; ++round) {
@@ -300,7 +299,7 @@ TEST_P(RingAcrossThreads, keeps_every_value_in_order_when_the_producer_waits_for
     EXPECT_LE(placed.ring.high_water(), GetParam());
 }
 
-TEST_P(RingAcrossThreads, loses_exactly_what_it_counts_when_it_drops) {
+TEST_P(RingAcrossThreads, counts_every_value_that_it_drops) {
     constexpr std::uint64_t last = 150'000;
     Placed<Sealed<160>> placed{GetParam(), Overflow::drop_oldest};
     std::atomic<bool> done{false};

@@ -1,4 +1,4 @@
-// Values that show when they are torn, and threads that meet at random moments.
+// Values that reveal tearing, and threads that meet at random moments.
 #pragma once
 
 #include "kernel/base/random.hpp"
@@ -12,7 +12,7 @@
 
 namespace tappet {
 
-/// Bytes / 8 words that all follow from the first: copies of two values mixed are seen.
+/// Bytes / 8 words that all follow from the first, so that a mix of two values is detected.
 template <std::size_t Bytes> struct Sealed {
     std::array<std::uint64_t, Bytes / 8> words{};
 
@@ -27,16 +27,16 @@ template <std::size_t Bytes> struct Sealed {
     bool operator==(const Sealed&) const = default;
 };
 
-/// What the environment gives, so that a failing seed can be repeated and many can be tried.
+/// The seed from the environment, so that a failing seed can be repeated and many can be tried.
 inline std::uint64_t stress_seed() {
     const char* const text = std::getenv("TAPPET_SEED");
     return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
 }
 
-/// Lets others run. Not by a yield, which on a busy host lasts as long as all others want to run.
+/// Lets other threads run. A yield would last as long as all others want to run on a busy host.
 inline void rest() { std::this_thread::sleep_for(std::chrono::microseconds{1}); }
 
-/// Rests, waits a little, or mostly does neither, as the dice fall.
+/// Sleeps, waits briefly, or mostly does neither, at random.
 inline void dither(Random& random) {
     if (random.one_in(64)) rest();
     if (!random.one_in(8)) return;

@@ -1,4 +1,4 @@
-// Words: a value carried through atomic words, byte by byte the same.
+// Words: atomic words carry a value unchanged, byte by byte.
 #include "kernel/exchange/words.hpp"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ template <class T> T through_words(const T& value, T into) {
     return into;
 }
 
-TEST(Words, carry_every_byte_of_a_size_that_is_no_multiple_of_a_word) {
+TEST(Words, carry_every_byte_of_a_size_that_is_not_a_word_multiple) {
     Odd odd{};
     for (std::size_t i = 0; i < odd.bytes.size(); ++i) odd.bytes[i] = static_cast<std::uint8_t>(200 + i);
     EXPECT_EQ(through_words(odd, Odd{}).bytes, odd.bytes);
@@ -74,7 +74,7 @@ TEST(Words, write_no_byte_after_the_value) {
     EXPECT_EQ(room.guard, (std::array<std::uint8_t, 3>{7, 7, 7}));
 }
 
-TEST(Words, carry_fixed_size_eigen) {
+TEST(Words, carry_fixed_size_eigen_types) {
     const Eigen::Matrix<double, 3, 2> value{{1, 2}, {3, 4}, {5, 6}};
     EXPECT_EQ(through_words(value, Eigen::Matrix<double, 3, 2>::Zero().eval()), value);
 }

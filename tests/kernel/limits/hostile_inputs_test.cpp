@@ -1,5 +1,5 @@
-// Whatever a component writes, whenever and in whichever order, from its start on: what goes out is a number
-// within its limits. Ends that a port cannot have are refused.
+// Whatever a component writes, at any time and in any order, from its start on, each output is a number
+// within its limits. Bounds that do not fit the port are refused.
 #include "kernel/limits/limits.hpp"
 
 #include "tests/kernel/base/hostile.hpp"
@@ -8,7 +8,7 @@
 namespace tappet {
 namespace {
 
-/// Writes what the test wants, as if it had been true then.
+/// Writes the test's value with a stamp of the test's choice.
 struct Drive {
     double speed_wanted = 0.0, force_wanted = 0.0;
     std::int64_t place_wanted = 0;
@@ -30,7 +30,7 @@ private:
     void write() noexcept TAPPET_REALTIME {
         constexpr double most = std::numeric_limits<float>::max();
         speed.write(speed_wanted, stamp);
-        // A double beyond is no float that is a number.
+        // A double beyond this is not a finite float.
         force.write(is_number(force_wanted) ? static_cast<float>(std::clamp(force_wanted, -most, most))
                                             : std::numeric_limits<float>::quiet_NaN(),
                     stamp);
@@ -72,7 +72,7 @@ struct Drives : test::Hostile, VirtualRig {
     }
 };
 
-TEST_F(Drives, leave_their_limits_at_no_time) {
+TEST_F(Drives, never_leave_their_limits) {
     start([this] { want(); });
     ASSERT_NO_FATAL_FAILURE(expect_held()) << "at the start";
     for (int n = 0; n < 2000; ++n) {
@@ -100,7 +100,7 @@ TEST_F(Drives, leave_their_limits_at_no_time) {
     EXPECT_EQ(drive->place.last(), 8);
 }
 
-// ---- rows that hold nothing
+// ---- rows with an empty range
 
 template <class... Rows>
 Sentence refusal(const Rows&... rows) {
@@ -108,7 +108,7 @@ Sentence refusal(const Rows&... rows) {
     return Accepted{table.view(), test_board}.refusal();
 }
 
-TEST(Rows, with_ends_that_a_port_cannot_have_are_refused) {
+TEST(Rows, are_refused_when_a_bound_does_not_fit_the_port) {
     for (const LimitRow& row :
          {limit("drive.speed", no_number, 1.0), limit("drive.speed", 0.0, no_number),
           limit("drive.speed", infinite, infinite), limit("drive.speed", -infinite, -infinite),

@@ -1,5 +1,4 @@
-// Limits of what a component writes: what goes out, what is counted, what stops the machine, and which rows
-// are refused.
+// Limits of written values: outputs, counts, stops of the machine, and refused rows.
 #include "kernel/limits/limits.hpp"
 
 #include "tests/kernel/machine/virtual_rig.hpp"
@@ -15,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Writes what the test wants, each millisecond.
+/// Writes the test's value each millisecond.
 struct Source {
     double speed_wanted = 0.0;
     bool writes_at_start = false;
@@ -43,7 +42,7 @@ struct Source {
     }
 };
 
-/// What reaches another activity.
+/// The receiver in another activity.
 struct Sink {
     double speed_seen = 0.0;
     std::int32_t place_seen = 0;
@@ -74,7 +73,7 @@ struct Rig : VirtualRig {
         : VirtualRig{AtRunTime<table, test_board>::machine()} {
         start([&] { before_start(source); });
     }
-    /// What is seen of a speed that is wanted for so long.
+    /// Wants the speed for so long and returns the speed received.
     double seen(double speed, Duration time) {
         source.speed_wanted = speed;
         EXPECT_TRUE(run(time));
@@ -87,18 +86,18 @@ struct Rig : VirtualRig {
     Sink& sink = *instance.find<Sink>("sink");
 };
 
-// ---- what goes out
+// ---- outputs
 
 constexpr auto clamped =
     machine_with(limits(limit("source.speed", -10.0, 40.0), rate("source.place", 500.0)));
 
-TEST(Limits, let_out_what_they_allow_and_count_nothing) {
+TEST(Limits, pass_allowed_values_and_count_nothing) {
     Rig<clamped> rig;
     EXPECT_EQ(rig.seen(40.0, 10ms), 40.0);
     EXPECT_EQ(rig.breaches(0), 0u);
 }
 
-TEST(Limits, let_out_the_nearest_value_and_count_each_that_they_held_back) {
+TEST(Limits, clamp_to_the_nearest_bound_and_count_each_clamped_value) {
     Rig<clamped> rig;
     for (const auto& [wanted, seen] : {std::pair{41.0, 40.0}, {-11.0, -10.0}, {7.0, 7.0}}) {
         EXPECT_EQ(rig.seen(wanted, 10ms), seen);
@@ -107,7 +106,7 @@ TEST(Limits, let_out_the_nearest_value_and_count_each_that_they_held_back) {
     EXPECT_EQ(rig.breaches(0), 20u);
 }
 
-TEST(Limits, hold_the_last_value_in_place_of_what_is_no_number) {
+TEST(Limits, hold_the_last_value_instead_of_a_value_that_is_not_a_number) {
     Rig<clamped> rig;
     EXPECT_EQ(rig.seen(12.0, 5ms), 12.0);
     EXPECT_EQ(rig.seen(std::nan(""), 5ms), 12.0);
@@ -129,14 +128,14 @@ void expect_numbers_only(double later) {
     }
 }
 
-TEST(Limits, let_nothing_out_that_is_no_number_whichever_ends_they_have) {
+TEST(Limits, never_pass_a_value_that_is_not_a_number) {
     expect_numbers_only<clamped>(10.0);
     expect_numbers_only<half_open>(10.0);
     expect_numbers_only<open_rate>(10.0);
     expect_numbers_only<counted_only>(10.0);
 }
 
-TEST(Limits, hold_for_what_a_start_writes) {
+TEST(Limits, apply_to_values_written_at_start) {
     Rig<clamped> rig{[](Source& source) {
         source.writes_at_start = true;
         source.speed_wanted = 999.0;
@@ -145,9 +144,9 @@ TEST(Limits, hold_for_what_a_start_writes) {
     EXPECT_EQ(rig.breaches(0), 1u);
 }
 
-TEST(Limits, of_a_rate_lead_a_whole_number_to_its_end_by_and_by) {
+TEST(Limits, of_a_rate_lead_an_integer_gradually_to_its_target) {
     Rig<clamped> rig;
-    EXPECT_TRUE(rig.run(4ms)); // it stands at 0
+    EXPECT_TRUE(rig.run(4ms)); // it is at 0
     rig.source.place_wanted = 100;
     EXPECT_TRUE(rig.run(101ms)); // 500 mm/s: half a millimetre in each cycle
     EXPECT_NEAR(rig.sink.place_seen, 50, 2);
@@ -159,7 +158,7 @@ TEST(Limits, of_a_rate_lead_a_whole_number_to_its_end_by_and_by) {
     EXPECT_EQ(rig.breaches(1), on_the_way) << "it is there";
 }
 
-TEST(Limits, of_a_rate_let_the_first_value_after_a_start_be_any) {
+TEST(Limits, of_a_rate_allow_any_first_value_after_a_start) {
     Rig<clamped> rig{[](Source& source) { source.place_wanted = 70; }};
     EXPECT_TRUE(rig.run(4ms));
     EXPECT_EQ(rig.sink.place_seen, 70);
@@ -169,7 +168,7 @@ TEST(Limits, of_a_rate_let_the_first_value_after_a_start_be_any) {
 constexpr auto never_at_rest =
     machine_with(limits(limit("source.speed", 5.0, 40.0), rate("source.speed", 100.0)));
 
-TEST(Limits, do_not_hold_back_the_safe_value_of_a_stop) {
+TEST(Limits, pass_the_safe_value_of_a_stop) {
     Rig<never_at_rest> rig{[](Source& source) { source.speed_wanted = 40.0; }};
     EXPECT_EQ(rig.seen(40.0, 10ms), 40.0);
     rig.change("source", LifeChange::stop);
@@ -178,7 +177,7 @@ TEST(Limits, do_not_hold_back_the_safe_value_of_a_stop) {
     EXPECT_EQ(rig.breaches(0) + rig.breaches(1), 0u);
 }
 
-TEST(Limits, let_no_safe_value_out_that_is_no_number) {
+TEST(Limits, block_a_safe_value_that_is_not_a_number) {
     for (const double left : {std::nan(""), infinite, -infinite}) {
         Rig<clamped> rig;
         rig.source.speed_left = left;
@@ -189,7 +188,7 @@ TEST(Limits, let_no_safe_value_out_that_is_no_number) {
     }
 }
 
-TEST(Limits, of_range_and_rate_hold_both_for_one_port) {
+TEST(Limits, apply_range_and_rate_to_one_port_together) {
     Rig<never_at_rest> rig{[](Source& source) { source.speed_wanted = 10.0; }};
     EXPECT_EQ(rig.seen(10.0, 10ms), 10.0);
     EXPECT_NEAR(rig.seen(90.0, 100ms), 20.0, 0.3) << "to 40 at 0.1 for each millisecond";
@@ -198,11 +197,11 @@ TEST(Limits, of_range_and_rate_hold_both_for_one_port) {
     EXPECT_NEAR(static_cast<double>(rig.breaches(1)), 299.0, 2.0);
 }
 
-// ---- what else a breach does
+// ---- other effects of a breach
 
 constexpr auto counted = machine_with(limits(limit("source.speed", 0.0, 40.0, count_on_breach)));
 
-TEST(Limits, that_only_count_change_nothing) {
+TEST(Limits, change_nothing_when_their_row_only_counts) {
     Rig<counted> rig;
     EXPECT_EQ(rig.seen(90.0, 5ms), 90.0);
     EXPECT_EQ(rig.instance.observation().counted(0, 0).what, "source.speed");
@@ -214,28 +213,28 @@ TEST(Limits, that_only_count_change_nothing) {
 constexpr auto stopping = machine_with(
     limits(limit("source.speed", 0.0, 40.0, stop_on_breach), rate("source.place", 10.0, stop_on_breach)));
 
-TEST(Limits, that_stop_the_machine_say_which_row_and_let_nothing_out) {
+TEST(Limits, name_the_row_and_pass_nothing_when_they_stop_the_machine) {
     Rig<stopping> rig;
     EXPECT_TRUE(rig.run(5ms));
     rig.source.speed_wanted = 41.0;
     EXPECT_FALSE(rig.run(5ms));
     EXPECT_EQ(rig.source.speed.last(), 40.0);
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::section);
-    EXPECT_EQ(rig.instance.describe_stop().view(), "\"source.speed\" was to leave its range from 0 to 40");
+    EXPECT_EQ(rig.instance.describe_stop().view(), "\"source.speed\" would have left its range from 0 to 40");
 }
 
-TEST(Limits, that_stop_the_machine_say_so_of_a_rate) {
+TEST(Limits, report_a_rate_when_they_stop_the_machine) {
     Rig<stopping> rig;
     EXPECT_TRUE(rig.run(5ms));
     rig.source.place_wanted = 9;
     EXPECT_FALSE(rig.run(5ms));
     EXPECT_EQ(rig.instance.describe_stop().view(),
-              "\"source.place\" was to change by more than 10 per second");
+              "\"source.place\" would have changed by more than 10 per second");
 }
 
-// ---- what is forced
+// ---- forced values
 
-TEST(Limits, leave_a_forced_value_alone_and_hold_again_after_it) {
+TEST(Limits, ignore_a_forced_value_and_apply_again_after_it) {
     Rig<clamped> rig;
     EXPECT_EQ(rig.seen(90.0, 5ms), 40.0);
     const AcceptedMachine& accepted = rig.instance.machine();
@@ -257,7 +256,7 @@ std::string refusal(const Rows&... rows) {
     return std::string{Accepted{table.view(), test_board}.refusal().view()};
 }
 
-TEST(LimitRows, are_refused_with_row_fault_and_cure) {
+TEST(LimitRows, are_refused_with_the_row_the_fault_and_the_cure) {
     EXPECT_EQ(refusal(limit("source.speed", -10.0, 40.0), rate("source.place", 500.0)), "");
     EXPECT_EQ(refusal(limit("source.sped", 0.0, 1.0)),
               "press: limit \"source.sped\": component \"source\" has no output \"sped\"; did "
@@ -266,7 +265,7 @@ TEST(LimitRows, are_refused_with_row_fault_and_cure) {
               "press: rate \"sink.speed\": an input has no limits; name an output");
     for (const char* output : {"source.turns", "source.on"})
         EXPECT_THAT(refusal(limit(output, 0.0, 1.0)),
-                    HasSubstr("only numbers that a double holds are limited"));
+                    HasSubstr("cannot be limited, only numbers that a double holds"));
     EXPECT_THAT(refusal(limit("source.samples", 0.0, 1.0)),
                 HasSubstr("a buffered output has no limits; name an output"));
     EXPECT_THAT(refusal(limit("source.speed", 1.0, 0.0)),
@@ -275,19 +274,20 @@ TEST(LimitRows, are_refused_with_row_fault_and_cure) {
                 HasSubstr("its least value is not below its greatest"));
     for (const double none : {0.0, infinite})
         EXPECT_THAT(refusal(rate("source.speed", none)),
-                    HasSubstr("its rate is not above zero or has no end"));
+                    HasSubstr("its rate is not a finite number above 0"));
     EXPECT_THAT(refusal(limit("source.speed", -infinite, infinite)),
-                HasSubstr("it allows everything; give it an end, or leave it out"));
-    EXPECT_THAT(refusal(limit("source.place", 0.5, 3.0)), HasSubstr("an end of it is no value of int;"));
+                HasSubstr("it limits nothing; give it a bound, or leave it out"));
+    EXPECT_THAT(refusal(limit("source.place", 0.5, 3.0)),
+                HasSubstr("one of its bounds is not a value of int;"));
     EXPECT_THAT(refusal(limit("source.place", 0.0, 2147483648.0)),
-                HasSubstr("an end of it is no value of int;"));
+                HasSubstr("one of its bounds is not a value of int;"));
     EXPECT_EQ(refusal(limit("source.place", -2147483648.0, infinite)), "");
     EXPECT_EQ(
         refusal(limit("source.speed", 0.0, 1.0), rate("source.speed", 1.0), limit("source.speed", 0.0, 2.0)),
-        "press: limit \"source.speed\": it stands twice; keep one");
+        "press: limit \"source.speed\": it appears twice; keep one");
 }
 
-/// Writes far jumps, which claim to be true a second later, all but the first.
+/// Writes large jumps; all but the first carry a stamp one second ahead.
 struct Hasty {
     Output<double> speed;
     Duration ahead{};
@@ -303,7 +303,7 @@ constexpr auto hasty = machine("hasty", components(component<Hasty>("source")),
                                activities(activity("motion", every(1ms), budget(50us), runs("source"))),
                                connections(), reactions(), behaviours(), limits(rate("source.speed", 500.0)));
 
-TEST(Rate, is_that_of_the_machines_time_whatever_time_a_value_claims) {
+TEST(Rate, uses_machine_time_whatever_stamp_a_value_has) {
     VirtualRig rig{AtRunTime<hasty, test_board>::machine()};
     rig.start();
     const Output<double>& speed = rig.the<Hasty>("source").speed;

@@ -11,19 +11,18 @@
 
 namespace tappet::bakery {
 
-/// Turns by 10 degrees a millisecond and writes down what it is told.
+/// Turns by 10 degrees a millisecond and records its calls.
 struct Oven : Clocked {
     Output<double> angle_deg;
     Output<std::int64_t> shown;
     Property<double> target{20.0};
     Event<double, std::int64_t> hot;
     Event<> tick;
-    Event<double, double, double, double, double, double, std::int64_t>
-        recipe; ///< a message has no room for it
+    Event<double, double, double, double, double, double, std::int64_t> recipe; ///< too large for a message
     Notes<std::int64_t> told{};
     std::uint64_t steps = 0;
     double from_deg = 0;
-    bool trembles = false; ///< about where it is, and does not turn
+    bool trembles = false; ///< jitters around its angle without turning
     Duration takes{};      ///< in each step
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
@@ -34,12 +33,12 @@ struct Oven : Clocked {
         angle_deg.write(from_deg + goes);
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { angle_deg.write(0); }
-    /// False for what no oven does.
+    /// Returns false for values beyond an oven's range.
     bool note(std::int64_t what) noexcept TAPPET_REALTIME {
         told.add(what);
         return what >= 0;
     }
-    /// Takes so many microseconds.
+    /// Uses so many microseconds.
     void bake(std::int64_t us) noexcept TAPPET_REALTIME { clock->consume(us * 1us); }
     static constexpr auto interface() {
         return facets(output<&Oven::angle_deg>("angle_deg", "deg", "of the turntable"),
@@ -64,7 +63,7 @@ struct Door {
     }
 };
 
-/// Feeds one piece in each of its steps; more than ten it rejects.
+/// Feeds one piece in each of its steps; it rejects more than ten.
 struct Feeder {
     std::int64_t left = 0;
     std::int64_t fed = 0;

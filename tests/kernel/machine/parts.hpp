@@ -1,4 +1,4 @@
-// What components of tests are made of.
+// Parts of test components.
 #pragma once
 
 #include "kernel/machine/instance/instance.hpp"
@@ -8,7 +8,7 @@
 
 namespace tappet {
 
-/// Knows the time, and can take some.
+/// Knows the time and can use some of it.
 struct Clocked {
     os::Clock* clock = nullptr;
     Sentence configure(Setup& setup) {
@@ -17,12 +17,12 @@ struct Clocked {
     }
 };
 
-/// What a component remembers for its test.
+/// The record that a component keeps for its test.
 template <class T> struct Notes : std::vector<T> {
     void add(T each) noexcept TAPPET_REALTIME { TAPPET_ESCAPE("a test's memory", this->push_back(each)); }
 };
 
-/// Sees the machine, whatever it does with it.
+/// Sees the machine; the test decides what it does with it.
 struct Onlooker {
     static constexpr bool sees_machine = true;
     MachineInstance* machine = nullptr;

@@ -1,4 +1,4 @@
-// A machine in threads of its own under real time, as tests want one on a host whose arming checks only warn.
+// A machine in its own threads in real time, on a host whose arming checks only warn.
 #pragma once
 
 #include "kernel/machine/accept.hpp"
@@ -21,7 +21,7 @@ inline constexpr Board real_board{
     .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 // clang-format on
 
-/// Left out, and it says so, where SCHED_FIFO is not granted.
+/// Skips the test with a message where SCHED_FIFO is not granted.
 struct InRealTime : testing::Test {
     void SetUp() override {
         if (os::observe_process(real_board.highest_priority).fifo_error != 0)

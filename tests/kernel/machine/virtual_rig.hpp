@@ -1,4 +1,4 @@
-// A machine under virtual time, as most tests of machines want one.
+// A machine in virtual time, as most tests of machines use it.
 #pragma once
 
 #include "kernel/machine/accept.hpp"
@@ -23,13 +23,13 @@ struct VirtualRig {
         const auto configured = instance.configure({});
         EXPECT_TRUE(configured) << (configured ? "" : configured.error().view());
     }
-    /// Configuring makes the components anew.
+    /// `once_configured` runs after configure() has created the components.
     void start(const std::function<void()>& once_configured = [] {}) {
         configure();
         once_configured();
         EXPECT_EQ(world.start().view(), "");
     }
-    /// False: it stopped meanwhile.
+    /// Returns false when the machine stopped meanwhile.
     bool run(Duration time) { return world.run_until(clock.now() + time); }
     template <class C> C& the(std::string_view name) { return *instance.find<C>(name); }
     LifeTicket change(std::string_view name, LifeChange how) {
@@ -41,24 +41,24 @@ struct VirtualRig {
     VirtualWorld world{instance};
 };
 
-/// A machine that is placed.
+/// A placed machine.
 template <const auto& table, const Board& board = test_board> struct PlacedRig : VirtualRig {
     PlacedRig() : VirtualRig{AtRunTime<table, board>::machine()} {}
 
-    /// It goes on so long.
+    /// Runs it for so long.
     void pass(Duration time) { ASSERT_TRUE(run(time)); }
     template <class T> T& property(std::string_view component, std::string_view name) {
         const MachineView& of = instance.machine().table;
         const std::size_t c = find_component(of, component);
         return *static_cast<T*>(instance.facet({c, find_facet(of.components[c], name)}));
     }
-    /// Why a slot refuses a script; empty: it may take over.
+    /// The slot's reason to refuse a script; empty: the script may take over.
     static std::string compile(BehaviourSlot& slot, std::string_view text, std::string_view name) {
         if (text.size() > slot.text().size()) return "too long for the text";
         std::ranges::copy(text, slot.text().begin());
         return std::string{slot.compile(text.size(), name).view()};
     }
-    /// How it was answered within the time.
+    /// The answer within the time.
     LifeAnswer change(std::size_t component, LifeChange change, Duration within) {
         const LifeTicket ticket = instance.life().ask_component(component, change);
         EXPECT_TRUE(run(within));
@@ -70,11 +70,11 @@ template <const auto& table, const Board& board = test_board> struct PlacedRig :
         EXPECT_TRUE(instance.requests().post_change(slot));
     }
 };
-/// One that is configured.
+/// A configured machine.
 template <const auto& table, const Board& board = test_board> struct ConfiguredRig : PlacedRig<table, board> {
     ConfiguredRig() { this->configure(); }
 };
-/// One that runs.
+/// A running machine.
 template <const auto& table, const Board& board = test_board> struct RunningRig
     : ConfiguredRig<table, board> {
     RunningRig() { EXPECT_EQ(this->world.start().view(), ""); }

@@ -1,5 +1,5 @@
-// A small machine for tests of the worlds: three activities, one of several components, that note what
-// happens to them.
+// A small machine for tests of the worlds: three activities, one with several components, that record their
+// life cycle.
 #pragma once
 
 #include "kernel/base/contract.hpp"
@@ -14,17 +14,16 @@
 
 namespace tappet::watched {
 
-/// Whose stop came when; filled after the cycles, in the supervisor's order, so that no two threads meet in
-/// it.
+/// The stops in the supervisor's order; filled after the cycles, so that no two threads access it at once.
 inline std::vector<std::string>& stops() {
     static std::vector<std::string> list;
     return list;
 }
 
-/// What a worker is told to do once, by the test's thread.
+/// The order that the test's thread gives a worker once.
 enum class Order : int { none, overrun, hang, break_contract, sleep };
 
-/// Costs nothing but what it is told to; its output says whether it is safe.
+/// Uses only the time of its orders; its output shows whether it is safe.
 struct Worker {
     Output<std::int64_t> level;
     std::atomic<Order> order{Order::none};
@@ -67,8 +66,7 @@ struct Worker {
     static constexpr auto interface() { return facets(output<&Worker::level>("level", "", "0: safe")); }
 };
 
-/// May block, and does until another component is safe: as a reader of a terminal that stands still would
-/// hold it up.
+/// May block, and does so until another component is safe, like a writer to a terminal that is stopped.
 struct Blocking {
     std::atomic<const std::atomic<std::int64_t>*> until_safe{nullptr};
     std::atomic<bool> blocks{false};
@@ -97,7 +95,7 @@ constexpr auto watched_machine(std::string_view name, const Extra&... of_motion)
     connections(), reactions(), behaviours()); }
 inline constexpr auto table = watched_machine("watched");
 
-/// What is not real-time stands last, so that it would be stopped first.
+/// The activity without real time is last, so that it would be stopped first.
 inline constexpr auto blocked_table = machine("blocked",
     components(component<Worker>("driver"), component<Worker>("logic"), component<Blocking>("console")),
     activities(
@@ -106,17 +104,17 @@ inline constexpr auto blocked_table = machine("blocked",
         activity("console", every(10ms), runs("console"), not_real_time, stack(256 * 1024))),
     connections(), reactions(), behaviours());
 
-/// The same in memory of their own, for tests that leave a thread behind on one of its stacks.
+/// The same machine in separate memory, for tests that leave a thread behind on one of its stacks.
 inline constexpr auto parked_table = table;
 inline constexpr auto twice_broken_table = table;
 inline constexpr auto supervised_table = table;
 inline constexpr auto hung_table = table;
 
-/// The same, where a late cycle of "motion" stops the machine.
+/// The same machine, stopped by a late cycle of "motion".
 inline constexpr auto strict_table = watched_machine("strict", stop_when_late);
 // clang-format on
 
-/// The name of the component that a miss blames.
+/// The name of the component blamed for a miss.
 inline std::string_view culprit(const Engine& engine, const Miss& miss) {
     return miss.function == Miss::nobody ? "nobody"
                                          : engine.plan().parts[miss.function / functions_per_part].name;

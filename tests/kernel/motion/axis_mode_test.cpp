@@ -1,4 +1,4 @@
-// The state diagram of an axis against PLCopen's, cell by cell.
+// The state diagram of an axis compared with PLCopen's, cell by cell.
 #include "kernel/motion/axis_mode.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ constexpr std::array commands{power_on, power_off, home, move,  move_on, superim
                               release,  halt,      stop, reset, done,    error};
 
 TEST(AxisMode, follows_the_diagram_of_plcopen) {
-    // Rows are modes, columns are commands, in their order; a dot refuses.
+    // Rows are modes, columns are commands, in their order; a dot is a refusal.
     // clang-format off
     constexpr std::array<std::string_view, 8> diagram{
         // on off home move on superimpose sync release halt stop reset done error
@@ -43,13 +43,13 @@ TEST(AxisMode, follows_the_diagram_of_plcopen) {
         "element 0: the axis does not take this command in its state; bring it to standstill, or reset it");
 }
 
-TEST(AxisMode, goes_on_when_a_motion_is_superimposed) {
+TEST(AxisMode, continues_a_motion_when_another_is_superimposed) {
     for (const AxisMode running : {discrete_motion, continuous_motion, synchronized_motion})
         EXPECT_EQ(after(running, superimpose), running) << to_text(running);
     EXPECT_EQ(after(standstill, superimpose), after(standstill, move)) << "a relative motion";
 }
 
-TEST(AxisMode, is_a_trap_nowhere) {
+TEST(AxisMode, reaches_every_mode_from_every_mode) {
     for (const AxisMode from : modes) {
         std::set<AxisMode> reached{from};
         for (std::size_t before = 0; before != reached.size();) {

@@ -1,4 +1,4 @@
-// Kinematics and dynamics of chains against values of the literature, and against what has to hold for any.
+// Kinematics and dynamics of chains against values of the literature, and against general properties.
 #include "kernel/motion/dynamics.hpp"
 #include "kernel/motion/kinematics.hpp"
 #include "tests/kernel/base/seeded.hpp"
@@ -27,13 +27,13 @@ const Joints<6> zero = Joints<6>::Zero();
 const Joints<6> one = Joints<6>::Ones();
 const Joints<6> bent{0, pi / 4, pi, 0, pi / 4, 0};
 
-TEST(Puma560, stands_where_the_literature_has_it) {
+TEST(Puma560, has_the_positions_of_the_literature) {
     const Joints<6> q{.1, .2, .3, .4, .5, .6};
     expect_near<3>(forward(folded<puma_560_links>, q).position,
                    {0.247802746924, -0.125940181452, 0.474457905695}, 1e-12);
 }
 
-TEST(Puma560, takes_the_torques_of_the_literature) {
+TEST(Puma560, needs_the_torques_of_the_literature) {
     const auto& puma = folded<puma_560_links>;
     expect_near<6>(inverse_dynamics(puma, bent, zero, zero), {0, 31.639880378, 6.035138023, 0, .028252800, 0},
                    1e-9);
@@ -46,7 +46,7 @@ TEST(Puma560, takes_the_torques_of_the_literature) {
                    {-1.335289406, 32.180774265, -3.781865110, .002781300, -.021034783, .000017215}, 1e-9);
 }
 
-TEST(Puma560, carries_its_motors) {
+TEST(Puma560, includes_the_inertia_of_its_motors) {
     const auto& puma = folded<puma_560>;
     // The literature gives six digits.
     expect_near<6>(inverse_dynamics(puma, bent, zero, one),
@@ -75,7 +75,7 @@ TEST(Puma560, has_the_friction_of_its_motors_at_its_joints) {
     }
 }
 
-/// From the angles of the two mirrored 30-degree cones to those of the wrist that they amount to.
+/// Converts the angles of the two mirrored 30-degree cones to the equivalent wrist angles.
 Joints<6> of_cones(Joints<6> q) {
     const double alpha = pi / 2 - std::atan2(std::sqrt(3.0) * std::sin(q[4] / 2), 2 * std::cos(q[4] / 2));
     q[4] = 4 * std::asin(std::sin(q[4] / 2) / 2);
@@ -84,7 +84,7 @@ Joints<6> of_cones(Joints<6> q) {
     return q;
 }
 
-TEST_F(K361, stands_where_its_own_formulas_have_it) {
+TEST_F(K361, has_the_positions_of_its_own_formulas) {
     const Joints<6> q = of_cones({.1, .2, 1.2426, 1.0373, 1.197, -1.0373});
     EXPECT_NEAR(q[4], 1.142269598239, 1e-12);
     const auto flange = forward(folded<k361>, q);
@@ -92,7 +92,7 @@ TEST_F(K361, stands_where_its_own_formulas_have_it) {
     expect_near<3>(Eigen::Vector3d{flange.rotation.col(2)}, {-.828109586, .274678942, .488657336}, 1e-9);
 }
 
-TEST_F(K361, is_the_product_of_its_turns_and_ways) {
+TEST_F(K361, equals_the_product_of_its_joint_transforms) {
     const Joints<6> q = any_joints<6>(random, pi);
     const auto x = [](double angle) { return rotation_about({angle, 0, 0}); };
     const auto z = [](double angle) { return rotation_about({0, 0, angle}); };
@@ -106,7 +106,7 @@ TEST_F(K361, is_the_product_of_its_turns_and_ways) {
     EXPECT_NEAR((flange.position - position).norm(), 0.0, 1e-14);
 }
 
-TEST_F(Chains, move_as_their_jacobian_says) {
+TEST_F(Chains, move_as_their_jacobian_predicts) {
     for (int round = 0; round < 200; ++round) {
         const Loaded robot{any_chain<6>(random)};
         const Joints<6> q = any_joints<6>(random, 3.0);
@@ -136,7 +136,7 @@ TEST_F(Chains, carry_a_load_at_their_end_by_the_transposed_jacobian) {
     }
 }
 
-TEST(ChainsDeathTest, refuse_what_is_no_number) {
+TEST(ChainsDeathTest, refuse_values_that_are_not_numbers) {
     Joints<6> q = zero;
     q[4] = no_number;
     EXPECT_DEATH(static_cast<void>(forward(folded<k361>, q)), "contract 4 not-a-number: Element 4 ");

@@ -21,7 +21,7 @@ namespace {
 
 using namespace robots;
 
-/// Nought has one sign here: a type that is nought has none.
+/// Normalises the sign of zero: a compile-time zero has none.
 void add(Digest& digest, double value) { digest.add(std::bit_cast<std::uint64_t>(value + 0.0)); }
 template <class M>
 void add_all(Digest& digest, const M& matrix) {
@@ -33,7 +33,7 @@ void add(Digest& digest, const AxisState& state) {
     add(digest, state.acceleration);
 }
 
-TEST(MotionDigest, of_chains_is_the_same_everywhere) {
+TEST(MotionDigest, is_the_same_everywhere_for_chains) {
     Digest digest;
     Random random{1};
     for (int round = 0; round < 200; ++round) {
@@ -56,7 +56,7 @@ TEST(MotionDigest, of_chains_is_the_same_everywhere) {
     EXPECT_EQ(digest.value(), 15309880377354398204u);
 }
 
-TEST(MotionDigest, of_trajectories_and_paths_is_the_same_everywhere) {
+TEST(MotionDigest, is_the_same_everywhere_for_trajectories_and_paths) {
     Digest digest;
     Random random{2};
     for (int round = 0; round < 200; ++round) {
@@ -76,7 +76,7 @@ TEST(MotionDigest, of_trajectories_and_paths_is_the_same_everywhere) {
     EXPECT_EQ(digest.value(), 15051928072261985076u);
 }
 
-TEST(MotionDigest, of_controllers_is_the_same_everywhere) {
+TEST(MotionDigest, is_the_same_everywhere_for_controllers) {
     Digest digest;
     Random random{3};
     Pid pid{{.proportional = 2.0,

@@ -1,4 +1,4 @@
-// Estimators against what must come out: least squares over all measurements, and each other at rest.
+// Estimators against expected results: least squares over all measurements, and each other at steady state.
 #include "kernel/motion/estimators.hpp"
 #include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
@@ -14,7 +14,7 @@ using namespace tappet::test;
 using KalmanFilter = Seeded;
 using SolvePositive = Seeded;
 
-TEST(AlphaBeta, follows_a_ramp_without_an_error_and_predicts_it) {
+TEST(AlphaBeta, follows_and_predicts_a_ramp_without_error) {
     for (const double memory : {0.0, 0.3, 0.8}) {
         AlphaBeta estimator{AlphaBetaGains::critically_damped(memory)};
         EXPECT_FALSE(estimator.good());
@@ -25,7 +25,7 @@ TEST(AlphaBeta, follows_a_ramp_without_an_error_and_predicts_it) {
     }
 }
 
-TEST(AlphaBeta, forgets_a_jump_by_the_square_of_its_memory) {
+TEST(AlphaBeta, decays_a_jump_by_the_square_of_its_memory) {
     // Both poles at m: the error of the n-th sample after a jump falls like n m^n.
     AlphaBeta estimator{AlphaBetaGains::critically_damped(0.5)};
     for (int k = 0; k < 100; ++k) estimator.sample(0.0, Time{k * 1ms});
@@ -37,7 +37,7 @@ TEST(AlphaBeta, forgets_a_jump_by_the_square_of_its_memory) {
     EXPECT_NEAR(error, 0.0, 50.0 * std::pow(0.5, 40.0));
 }
 
-TEST(AlphaBeta, leaves_out_what_is_no_number_or_too_old_and_says_so) {
+TEST(AlphaBeta, ignores_and_reports_invalid_or_old_samples) {
     AlphaBeta estimator{{0.5, 0.1}};
     estimator.sample(1.0, at_ns(1000));
     estimator.sample(no_number, at_ns(2000));
@@ -49,7 +49,7 @@ TEST(AlphaBeta, leaves_out_what_is_no_number_or_too_old_and_says_so) {
     EXPECT_EQ(estimator.at(at_ns(20)), 4.0);
 }
 
-TEST(AlphaBeta, begins_anew_after_a_time_that_cannot_have_been) {
+TEST(AlphaBeta, restarts_after_an_impossible_time) {
     AlphaBeta estimator{AlphaBetaGains::critically_damped(0.5)};
     Time now{10s};
     for (int i = 0; i < 100; ++i) estimator.sample(0.01 * i, now += 10ms);
@@ -60,16 +60,16 @@ TEST(AlphaBeta, begins_anew_after_a_time_that_cannot_have_been) {
     EXPECT_EQ(estimator.refused(), static_cast<std::uint32_t>(AlphaBeta::most_before));
 }
 
-TEST(AlphaBeta, refuses_gains_that_never_settle) {
+TEST(AlphaBeta, refuses_unstable_gains) {
     EXPECT_EQ(check(AlphaBetaGains{.5, .17}), "");
     for (const AlphaBetaGains bad : {AlphaBetaGains{0.0, 0.1}, {0.5, 0.0}, {1.0, 2.0}, {no_number, 1.0}}) {
         EXPECT_EQ(check(bad),
-                  "these gains never settle; let alpha and beta be positive and 2 alpha + beta below 4");
+                  "these gains are not stable; set alpha and beta positive and 2 alpha + beta below 4");
         EXPECT_DEATH(AlphaBeta{bad}, "contract 5 refused-settings");
     }
 }
 
-TEST(Kalman, comes_to_rest_at_the_gains_of_the_tracking_index) {
+TEST(Kalman, converges_to_the_gains_of_the_tracking_index) {
     const double h = 0.01;
     const double measured = 0.3;
     const double pushed = 50.0;
@@ -91,7 +91,7 @@ TEST(Kalman, comes_to_rest_at_the_gains_of_the_tracking_index) {
     EXPECT_NEAR(spread(1, 0) / total * h, gains.beta, 1e-9);
 }
 
-TEST_F(KalmanFilter, without_noise_of_the_process_is_least_squares) {
+TEST_F(KalmanFilter, equals_least_squares_without_process_noise) {
     const Eigen::Matrix3d prior = Eigen::Vector3d{1.0, 4.0, 9.0}.asDiagonal();
     Kalman<3> filter{Eigen::Vector3d::Zero(), prior};
     Eigen::Matrix3d information = prior.inverse();
@@ -110,7 +110,7 @@ TEST_F(KalmanFilter, without_noise_of_the_process_is_least_squares) {
     EXPECT_NEAR((filter.covariance() - information.inverse()).norm(), 0.0, 1e-10);
 }
 
-TEST(Kalman, refuses_outliers_and_what_is_no_number_and_stays_what_it_was) {
+TEST(Kalman, rejects_outliers_and_invalid_values_and_keeps_its_state) {
     Kalman<2> filter{{1.0, 2.0}, Eigen::Matrix2d::Identity()};
     const Eigen::Matrix2d sees_both = Eigen::Matrix2d::Identity();
     const Eigen::Matrix2d noise = 3.0 * Eigen::Matrix2d::Identity();
@@ -124,7 +124,7 @@ TEST(Kalman, refuses_outliers_and_what_is_no_number_and_stays_what_it_was) {
     EXPECT_DOUBLE_EQ(*distance, 4.0) << "four away, with a deviation of two";
 }
 
-TEST_F(SolvePositive, solves_and_refuses_what_is_singular) {
+TEST_F(SolvePositive, solves_regular_systems_and_refuses_singular_ones) {
     for (int round = 0; round < 100; ++round) {
         Eigen::Matrix<double, 6, 6> factor;
         for (int i = 0; i < 36; ++i) factor(i) = within(random, 1.0);

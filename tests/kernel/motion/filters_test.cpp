@@ -1,4 +1,4 @@
-// Filters by their frequency responses, measured with sines; their begins and their refusals.
+// Filters: their frequency responses, measured with sines, their start and their refusals.
 #include "kernel/motion/filters.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double period_s = 1e-3;
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-/// What a filter makes of e^(iwt), after the first ten seconds, over whole periods of it.
+/// The filter's response to e^(iwt) after the first ten seconds, over whole periods.
 template <class Filter>
 std::complex<double> response(Filter filter, double hz) {
     std::complex<double> sum = 0.0;
@@ -32,10 +32,10 @@ const auto with_steps = [](auto filter) {
     return [filter](double value) mutable { return filter(value, 1ms); };
 };
 
-/// The frequency that Tustin's rule puts in its place, as s.
+/// The frequency to which Tustin's rule maps it, as s.
 std::complex<double> tustin(double hz) { return {0.0, 2.0 / period_s * std::tan(pi * hz * period_s)}; }
 
-TEST(LowPass, answers_a_sine_as_its_difference_equation_does) {
+TEST(LowPass, responds_to_a_sine_as_its_difference_equation_predicts) {
     for (const double hz : {1.0, 10.0, 100.0}) {
         const std::complex<double> back = std::polar(1.0, -2.0 * pi * hz * period_s);
         const auto expected = period_s / (0.02 * (1.0 - back) + period_s);
@@ -43,7 +43,7 @@ TEST(LowPass, answers_a_sine_as_its_difference_equation_does) {
     }
 }
 
-TEST(LowPass, begins_at_its_first_value_and_may_be_none) {
+TEST(LowPass, starts_at_its_first_value_and_can_be_disabled) {
     LowPass filter{1s};
     EXPECT_EQ(filter(5.0, 1ms), 5.0);
     EXPECT_NEAR(filter(6.0, 1ms), 5.000999, 1e-6);
@@ -55,7 +55,7 @@ TEST(LowPass, begins_at_its_first_value_and_may_be_none) {
     EXPECT_EQ(none(2.0, 1ms), 2.0);
 }
 
-TEST(LeadLag, has_its_lead_and_its_lag) {
+TEST(LeadLag, has_the_configured_lead_and_lag) {
     for (const double hz : {1.0, 5.0, 50.0}) {
         const auto s = tustin(hz);
         const auto expected = (1.0 + 0.05 * s) / (1.0 + 0.01 * s);
@@ -69,7 +69,7 @@ TEST(LeadLag, has_its_lead_and_its_lag) {
     EXPECT_DEATH((LeadLag{10ms, 0s}), "contract 2 precondition: A function was called with 0");
 }
 
-TEST(Biquad, passes_what_is_low) {
+TEST(Biquad, passes_low_frequencies) {
     const auto filter = Biquad::low_pass(40.0, 1ms);
     ASSERT_TRUE(filter);
     EXPECT_NEAR(std::abs(response(*filter, 40.0)), std::sqrt(0.5), 1e-9) << "3 dB at the corner";
@@ -81,7 +81,7 @@ TEST(Biquad, passes_what_is_low) {
     }
 }
 
-TEST(Biquad, takes_one_frequency_out) {
+TEST(Biquad, removes_one_frequency) {
     const auto filter = Biquad::notch(50.0, 5.0, 1ms);
     ASSERT_TRUE(filter);
     EXPECT_NEAR(std::abs(response(*filter, 50.0)), 0.0, 1e-9);
@@ -90,7 +90,7 @@ TEST(Biquad, takes_one_frequency_out) {
     EXPECT_NEAR(std::abs(response(*filter, 52.6)), std::sqrt(0.5), 0.03);
 }
 
-TEST(Biquad, begins_at_rest_at_its_first_value) {
+TEST(Biquad, starts_at_rest_at_its_first_value) {
     for (auto filter : {*Biquad::low_pass(40.0, 1ms), *Biquad::notch(50.0, 5.0, 1ms)}) {
         for (int k = 0; k < 5; ++k) EXPECT_NEAR(filter(7.0), 7.0, 1e-12);
         EXPECT_NEAR(filter(no_number), 7.0, 1e-12);
@@ -99,7 +99,7 @@ TEST(Biquad, begins_at_rest_at_its_first_value) {
     }
 }
 
-TEST(Biquad, is_refused_beyond_half_of_the_sampling_rate) {
+TEST(Biquad, is_refused_above_half_the_sampling_rate) {
     const Refused beyond{Refusal::beyond_half_rate};
     EXPECT_EQ(Biquad::low_pass(500.0, 1ms).error(), beyond);
     EXPECT_EQ(Biquad::low_pass(0.0, 1ms).error(), beyond);

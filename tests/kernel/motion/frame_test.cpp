@@ -1,4 +1,4 @@
-// Frames, twists and wrenches: what holds whatever their numbers are, and what does not compile.
+// Frames, twists and wrenches: identities that hold for any numbers, and code that must not compile.
 #include "kernel/exchange/words.hpp"
 #include "kernel/motion/twist.hpp"
 #include "tests/kernel/base/seeded.hpp"
@@ -29,7 +29,7 @@ struct Frames : tappet::test::Seeded {
     }
 };
 
-TEST_F(Frames, follow_one_another_and_lead_back) {
+TEST_F(Frames, compose_and_invert) {
     for (int i = 0; i < 100; ++i) {
         const auto ab = any_frame<A, B>(random);
         const auto bc = any_frame<B, C>(random);
@@ -42,14 +42,14 @@ TEST_F(Frames, follow_one_another_and_lead_back) {
     }
 }
 
-TEST_F(Frames, give_a_vector_no_place) {
+TEST_F(Frames, leave_a_vector_without_a_position) {
     const auto ab = any_frame<A, B>(random);
     const Point<B> from{any_vector(random, 1.0)};
     const Vector<B> way{any_vector(random, 1.0)};
     EXPECT_NEAR((ab * (from + way) - (ab * from + ab * way)).along.norm(), 0.0, 1e-14);
 }
 
-TEST_F(Frames, turn_by_rotation_vectors_and_tell_them) {
+TEST_F(Frames, convert_to_and_from_rotation_vectors) {
     for (const double angle :
          {0.0, 1e-12, 1e-6, 0.9e-4, 1.1e-4, 0.1, 1.0, 2.0, 3.0, std::numbers::pi - 1e-9}) {
         const Eigen::Vector3d v = any_vector(random, 1.0).normalized() * angle;
@@ -65,7 +65,7 @@ TEST_F(Frames, turn_by_rotation_vectors_and_tell_them) {
                 1e-14);
 }
 
-TEST_F(Frames, carry_twists_and_wrenches_without_a_change_of_power) {
+TEST_F(Frames, transform_twists_and_wrenches_at_constant_power) {
     for (int i = 0; i < 100; ++i) {
         const auto ab = any_frame<A, B>(random);
         const auto twist = any_twist<D, C, B, B>();
@@ -78,7 +78,7 @@ TEST_F(Frames, carry_twists_and_wrenches_without_a_change_of_power) {
     }
 }
 
-TEST_F(Frames, add_twists_by_way_of_a_body) {
+TEST_F(Frames, add_twists_through_an_intermediate_body) {
     const auto b = any_twist<B, A, D, D>();
     const auto c = any_twist<C, B, D, D>();
     const Twist<C, A, D, D> sum = b + c;
@@ -95,7 +95,7 @@ TEST_F(Frames, differ_by_the_twist_of_their_motion) {
     EXPECT_NEAR((rotation_about(way.angular) * from.rotation - to.rotation).norm(), 0.0, 1e-13);
 }
 
-// What is said about one frame cannot be used as if it were said about another.
+// A quantity of one frame cannot be used in another.
 template <class X, class Y>
 concept Multiply = requires(X x, Y y) { x * y; };
 template <class X, class Y>
@@ -108,11 +108,11 @@ static_assert(!Add<Twist<B, A, C, D>, Twist<C, B, D, D>>, "at two points");
 static_assert(!Add<Wrench<A, B, C>, Wrench<A, B, D>>, "along the axes of two frames");
 static_assert(Multiply<Frame<A, B>, Twist<C, D, B, B>> && !Multiply<Frame<A, B>, Twist<C, D, C, B>>);
 
-// They cross between threads, and a connection tells one reference from another.
+// They cross between threads, and a connection distinguishes their references.
 static_assert(Exchangeable<Frame<A, B>> && Exchangeable<Twist<B, A, B, A>> && Exchangeable<Wrench<B, B, A>>);
 static_assert(Exchangeable<Point<A>> && Exchangeable<Vector<A>>);
 
-TEST(FramesOnPorts, are_records_of_matrices_and_differ_by_their_references) {
+TEST(FramesOnPorts, are_records_of_matrices_with_distinct_references) {
     const TypeTag& tag = *type_id<Frame<A, B>>;
     ASSERT_EQ(tag.kind, ValueKind::record);
     ASSERT_EQ(tag.fields.size(), 2u);

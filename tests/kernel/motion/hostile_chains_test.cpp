@@ -1,4 +1,4 @@
-// Of whichever numbers: what a chain's inverses give is a number within its limits, or is refused.
+// For any numbers, the inverses of a chain return numbers within its limits, or refuse.
 #include "kernel/motion/closed_form.hpp"
 #include "kernel/motion/least_squares.hpp"
 #include "tests/kernel/base/hostile.hpp"
@@ -20,7 +20,7 @@ struct Chains : tappet::test::Hostile {
         for (int i = 0; i < joints; ++i) q[i] = draw();
         return q;
     }
-    /// Usual, but for a number now and then.
+    /// Usual values, and occasionally any number.
     double mostly(double most) { return random.one_in(8) ? value() : test::within(random, most); }
     double mostly_number(double most) { return random.one_in(8) ? number() : test::within(random, most); }
     template <int joints>
@@ -43,7 +43,7 @@ struct Chains : tappet::test::Hostile {
     }
 };
 
-TEST_F(Chains, stand_where_they_can_reach_whatever_numbers_their_joints_have) {
+TEST_F(Chains, have_positions_within_reach_for_any_joint_values) {
     for (int n = 0; n < rounds; ++n) {
         const Joints<6> q = joints_by<6>([&] { return number(); });
         const auto pose = forward_with_jacobian(folded<puma_560>, q);
@@ -54,7 +54,7 @@ TEST_F(Chains, stand_where_they_can_reach_whatever_numbers_their_joints_have) {
     }
 }
 
-TEST_F(Chains, give_rates_within_their_limits_or_none) {
+TEST_F(Chains, return_rates_within_their_limits_or_none) {
     int made = 0;
     for (int n = 0; n < 10 * rounds; ++n) {
         JacobianOf<Loaded<test::Base, test::End, 4>> jacobian;
@@ -77,7 +77,7 @@ TEST_F(Chains, give_rates_within_their_limits_or_none) {
     EXPECT_GT(made, rounds / 10);
 }
 
-TEST_F(Chains, are_led_to_places_within_their_ranges_or_to_none) {
+TEST_F(Chains, return_joint_values_within_their_ranges_or_none) {
     int found = 0;
     for (int n = 0; n < rounds; ++n) {
         const Loaded robot{any_chain<4>(random)};
@@ -97,7 +97,7 @@ TEST_F(Chains, are_led_to_places_within_their_ranges_or_to_none) {
     EXPECT_GT(found, rounds / 20);
 }
 
-TEST_F(Chains, have_closed_forms_of_numbers_of_which_the_nearest_is_within_its_ranges) {
+TEST_F(Chains, return_finite_solutions_with_the_nearest_in_range) {
     int found = 0;
     for (int n = 0; n < rounds; ++n) {
         const Joints<6> near = joints_by<6>([&] { return mostly_number(3.0); });
@@ -116,8 +116,8 @@ TEST_F(Chains, have_closed_forms_of_numbers_of_which_the_nearest_is_within_its_r
     EXPECT_GT(found, rounds / 20);
 }
 
-/// Of a table that came from a file: what is no number stays none, and is no undefined conversion.
-TEST_F(Chains, of_any_table_are_computed) {
+/// From a table of a file: an invalid number stays invalid, without an undefined conversion.
+TEST_F(Chains, from_any_table_are_computed) {
     for (int n = 0; n < rounds; ++n) {
         auto table = any_chain<3>(random);
         for (Link& link : table.links) {
@@ -128,7 +128,7 @@ TEST_F(Chains, of_any_table_are_computed) {
     }
 }
 
-TEST_F(Chains, turn_by_sines_and_cosines_of_one_circle) {
+TEST_F(Chains, use_sines_and_cosines_on_the_unit_circle) {
     for (int n = 0; n < 10 * rounds; ++n) {
         const double angle = number(), other = value();
         for (const auto& [sine, cosine] : {sine_cosine(angle), sine_cosine_of_degrees(angle)})

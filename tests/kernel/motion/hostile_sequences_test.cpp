@@ -1,5 +1,5 @@
-// Whatever comes in whichever order, what keeps a state lets no value out that is no number, keeps its
-// limits, and forgets it all within so many samples.
+// For any inputs in any order, stateful blocks return only numbers, respect their limits, and forget all
+// inputs after a bounded number of samples.
 #include "kernel/motion/estimators.hpp"
 #include "kernel/motion/filters.hpp"
 #include "kernel/motion/pid.hpp"
@@ -12,7 +12,7 @@ constexpr int sequences = 40, long_one = 200, settles = 8000;
 constexpr Duration usual = 1ms;
 
 struct Sequences : test::Hostile {
-    /// Of filters that are asked for a value with a step.
+    /// For filters that are called with a value and a step.
     template <class Filter>
     void expect_forgets(Filter filter, bool between) {
         double before = filter(number(), usual);
@@ -37,7 +37,7 @@ struct Sequences : test::Hostile {
     }
 };
 
-TEST_F(Sequences, are_forgotten_by_a_low_pass_which_stays_between_what_it_was_given) {
+TEST_F(Sequences, are_forgotten_by_a_low_pass_within_their_bounds) {
     for (int n = 0; n < sequences; ++n)
         for (const Duration constant : {Duration{10ms}, Duration{0}, Duration{-1s}})
             expect_forgets(LowPass{constant}, true);
@@ -61,7 +61,7 @@ TEST_F(Sequences, are_forgotten_by_filters_of_second_order) {
         }
 }
 
-TEST_F(Sequences, of_settings_make_filters_of_second_order_that_are_stable_or_none) {
+TEST_F(Sequences, of_settings_make_stable_second_order_filters_or_none) {
     int made = 0;
     for (int n = 0; n < 20'000; ++n) {
         const double hz = value(), second = value();
@@ -107,7 +107,7 @@ TEST_F(Sequences, are_forgotten_by_an_estimator_of_a_value_and_its_speed) {
     }
 }
 
-TEST_F(Sequences, of_gains_make_an_estimator_that_settles_or_are_refused) {
+TEST_F(Sequences, of_gains_make_a_stable_estimator_or_are_refused) {
     int made = 0;
     for (int n = 0; n < 10'000; ++n) {
         const double first = value();
@@ -166,7 +166,7 @@ TEST_F(Sequences, are_forgotten_by_a_kalman_filter) {
     }
 }
 
-TEST_F(Sequences, of_models_leave_a_kalman_filter_with_numbers) {
+TEST_F(Sequences, of_models_keep_a_kalman_filter_finite) {
     const auto matrix = [&] {
         Two::Covariance m;
         for (int i = 0; i < 4; ++i) m(i) = value();
@@ -192,7 +192,7 @@ TEST_F(Sequences, of_models_leave_a_kalman_filter_with_numbers) {
 // ---- the controller
 
 struct Controllers : Sequences {
-    /// With limits that hold something, and gains that are hostile, or 0 or those of a usual loop.
+    /// With usable limits, and gains that are extreme, zero or those of a usual loop.
     PidGains gains() {
         const auto gain = [&](double most) {
             return random.one_in(3) ? number() : random.one_in(2) ? most : 0.0;
@@ -212,7 +212,7 @@ struct Controllers : Sequences {
             if (check(of).empty()) return of;
         }
     }
-    /// Anything that a program can do with one.
+    /// Any call that a program can make.
     double any_call(Pid& pid, PidGains& of) {
         const double a = value(), b = value(), c = value(), d = random.one_in(2) ? 0.0 : value();
         switch (random.below(12)) {
@@ -225,7 +225,7 @@ struct Controllers : Sequences {
     }
 };
 
-TEST_F(Controllers, put_out_numbers_between_their_limits_whatever_is_done_with_them) {
+TEST_F(Controllers, output_numbers_within_their_limits_after_any_calls) {
     for (int n = 0; n < 20 * sequences; ++n) {
         PidGains of = gains();
         Pid pid{of};
@@ -239,7 +239,7 @@ TEST_F(Controllers, put_out_numbers_between_their_limits_whatever_is_done_with_t
     }
 }
 
-TEST_F(Controllers, without_limits_are_begun_anew_by_somebodys_hand) {
+TEST_F(Controllers, without_limits_recover_by_manual_tracking) {
     for (int n = 0; n < sequences; ++n) {
         Pid pid{{.proportional = 2.0, .integral = 5.0, .derivative = 0.1}};
         for (int k = 0; k < long_one; ++k) ASSERT_TRUE(is_number(pid(1.0, value(), usual)));
@@ -248,8 +248,8 @@ TEST_F(Controllers, without_limits_are_begun_anew_by_somebodys_hand) {
     }
 }
 
-/// The heater of a plant of first order is at its set point again.
-TEST_F(Controllers, forget_what_was_measured_and_wanted_in_any_order) {
+/// Afterwards the heater of a first-order plant returns to its set point.
+TEST_F(Controllers, recover_after_any_sequence_of_measurements_and_set_points) {
     for (int n = 0; n < sequences / 4; ++n)
         for (const double tracking_s : {0.0, 0.05})
             for (const double derivative : {0.0, 0.01}) {
@@ -264,7 +264,7 @@ TEST_F(Controllers, forget_what_was_measured_and_wanted_in_any_order) {
                     const double set_point = value(), measured = value(), before = pid.integral();
                     static_cast<void>(pid(set_point, measured, step()));
                     const bool begins_anew = pid.integral() == 0.0;
-                    // One beyond them returns, in one step, as far as they are or less.
+                    // One step leaves it between its old value and the limits, plus or minus their span.
                     const auto [low, high] = std::minmax({before, std::clamp(before, 0.0, 10.0)});
                     ASSERT_TRUE(begins_anew ||
                                 (pid.integral() >= low - 10.0 - 1e-9 && pid.integral() <= high + 10.0 + 1e-9))

@@ -1,4 +1,4 @@
-// Of whichever numbers: what is planned holds its limits and is a number at all times, or it is refused.
+// For any numbers, a plan respects its limits and is a number at all times, or it is refused.
 #include "kernel/motion/axis_mode.hpp"
 #include "kernel/motion/path.hpp"
 #include "kernel/motion/synchronised.hpp"
@@ -8,7 +8,7 @@ namespace tappet::motion {
 namespace {
 
 constexpr int rounds = 20'000;
-constexpr double instant = 1e-300; // times that are shorter have few digits, and move nothing
+constexpr double instant = 1e-300; // shorter times have few digits and move nothing
 
 struct World;
 struct Tool;
@@ -21,7 +21,7 @@ bool is_whole(const AxisState& state) {
 }
 
 struct Plans : test::Hostile {
-    /// As values of one axis go, or each of any size.
+    /// Usual values of one axis, or each of any size.
     bool is_usual = random.one_in(2);
     double draw() {
         return is_usual && !random.one_in(20) ? (2.0 * random.unit() - 1.0) * usual_size() : value();
@@ -37,7 +37,7 @@ struct Plans : test::Hostile {
         const double velocity = limit(), acceleration = limit();
         return {velocity, acceleration, limit()};
     }
-    /// How often a plan was made; that each is whole is looked at here.
+    /// The number of plans made; each is checked here for validity.
     int made = 0;
     void expect_whole(const Planned& plan, const AxisState& from, const AxisLimits& most, bool has_jerk) {
         if (!plan) return;
@@ -60,7 +60,7 @@ struct Plans : test::Hostile {
                       1.001 * hardest + 1e-100 + (has_jerk ? instant * most.jerk : 0.0))
                 << t << " s of " << end;
         }
-        // It is where it ends shortly before, as nearly as its numbers on the way can say.
+        // Just before its end it is at its end position, as precisely as its numbers on the way allow.
         const AxisState last = plan->at_s(std::nexttoward(end, 0.0));
         double far = std::max(std::fabs(from.position), std::fabs(plan->end().position));
         for (int i = 0; i <= 20; ++i) far = std::max(far, std::fabs(plan->at_s(0.05 * i * end).position));
@@ -71,7 +71,7 @@ struct Plans : test::Hostile {
     void TearDown() override { EXPECT_GT(made, rounds / 50) << "else nothing was tested"; }
 };
 
-TEST_F(Plans, by_trapezoid_are_whole_or_refused) {
+TEST_F(Plans, by_trapezoid_are_valid_or_refused) {
     for (int n = 0; n < rounds; ++n) {
         const AxisState from = any_state();
         const AxisLimits most = any_limits();
@@ -80,7 +80,7 @@ TEST_F(Plans, by_trapezoid_are_whole_or_refused) {
     }
 }
 
-TEST_F(Plans, of_bounded_jerk_are_whole_or_refused) {
+TEST_F(Plans, of_bounded_jerk_are_valid_or_refused) {
     for (int n = 0; n < rounds; ++n) {
         const AxisState from{any_state().position, 0.0, 0.0};
         const AxisLimits most = any_limits();
@@ -89,18 +89,18 @@ TEST_F(Plans, of_bounded_jerk_are_whole_or_refused) {
     }
 }
 
-TEST_F(Plans, of_a_stop_are_whole_or_refused) {
+TEST_F(Plans, of_a_stop_are_valid_or_refused) {
     for (int n = 0; n < rounds; ++n) {
         const AxisState from = any_state();
         AxisLimits most = any_limits();
         const Planned plan = stop(from, most);
-        // It gains speed until its acceleration has gone.
+        // It gains speed until its acceleration is zero.
         most.velocity = std::fabs(from.velocity) + from.acceleration / most.jerk * from.acceleration;
         ASSERT_NO_FATAL_FAILURE(expect_whole(plan, from, most, true));
     }
 }
 
-TEST_F(Plans, of_axes_that_arrive_together_are_whole_or_refused) {
+TEST_F(Plans, of_synchronised_axes_are_valid_or_refused) {
     for (int n = 0; n < rounds; ++n) {
         is_usual = random.one_in(4);
         Joints<3> from, target;
@@ -129,7 +129,7 @@ TEST_F(Plans, of_axes_that_arrive_together_are_whole_or_refused) {
 // ---- paths
 
 struct Ways : test::Hostile {
-    /// A rotation; its place is anywhere, and now and then a number of it is any.
+    /// A rotation at any position; occasionally one of its numbers is any value.
     Place any_place(double size) {
         Place place;
         for (int i = 0; i < 3; ++i) place.position[i] = (2.0 * random.unit() - 1.0) * size;
@@ -150,7 +150,7 @@ struct Ways : test::Hostile {
     double positive_mostly() { return random.one_in(5) ? value() : 10.0 * random.unit(); }
 };
 
-TEST_F(Ways, through_any_places_are_numbers_all_along_or_are_refused) {
+TEST_F(Ways, through_any_points_are_finite_or_refused) {
     int made = 0;
     for (int n = 0; n < rounds; ++n) {
         const double size = random.one_in(2) ? 1.0 : positive();
@@ -176,7 +176,7 @@ TEST_F(Ways, through_any_places_are_numbers_all_along_or_are_refused) {
     EXPECT_GT(made, rounds / 10);
 }
 
-TEST_F(Ways, with_what_is_no_number_anywhere_are_refused) {
+TEST_F(Ways, with_invalid_numbers_are_refused) {
     const Place good = any_place(1.0);
     for (const double bad : {test::no_number, test::infinite})
         for (int i = 0; i < 12; ++i) {
@@ -194,7 +194,7 @@ TEST_F(Ways, with_what_is_no_number_anywhere_are_refused) {
         }
 }
 
-TEST(AxisModes, of_any_byte_are_modes_or_refuse_every_command) {
+TEST(AxisModes, from_any_byte_are_valid_or_refuse_every_command) {
     constexpr std::size_t modes = names_of<AxisMode>.size();
     for (unsigned mode = 0; mode < 256; ++mode) {
         for (unsigned command = 0; command < 256; ++command) {

@@ -1,4 +1,4 @@
-// Inverse kinematics: what leads there must be there, every branch of it, and no step may be too large.
+// Inverse kinematics: solutions reach the target, all branches are found, and steps are limited.
 #include "kernel/motion/closed_form.hpp"
 #include "kernel/motion/least_squares.hpp"
 #include "tests/kernel/base/seeded.hpp"
@@ -20,7 +20,7 @@ using DampedRates = Seeded;
 
 constexpr double pi = std::numbers::pi;
 
-/// An arm of any signs and lengths that has a closed form.
+/// An arm with a closed form, with any signs and lengths.
 constexpr Chain<Base, End, 6> draw_arm(std::uint64_t seed) {
     Random random{seed};
     const auto sign = [&] { return random.one_in(2) ? -1.0 : 1.0; };
@@ -56,7 +56,7 @@ double largest_turn_between(const Joints<6>& a, const Joints<6>& b) {
     return largest;
 }
 
-/// Every solution leads there, eight are different, and the joints that the target was made of are among
+/// Every solution reaches the target, eight are different, and the joints that produced the target are among
 /// them.
 template <const auto& chain>
 void leads_back(Random& random) {
@@ -86,13 +86,13 @@ void all_lead_back(std::integer_sequence<std::uint64_t, seeds...>, Random& rando
     (leads_back<arm<seeds>>(random), ...);
 }
 
-TEST_F(ClosedForm, leads_back_to_the_joints_that_made_the_target) {
+TEST_F(ClosedForm, returns_the_joints_that_produced_the_target) {
     leads_back<robots::puma_560_links>(random);
     leads_back<robots::k361>(random);
     all_lead_back(std::make_integer_sequence<std::uint64_t, 16>{}, random);
 }
 
-TEST_F(ClosedForm, leaves_free_turns_where_they_are) {
+TEST_F(ClosedForm, keeps_undetermined_joints_at_their_values) {
     const auto& k361 = folded<robots::k361>;
     // Stretched wrist: only the sum of joints 4 and 6 is known.
     const Joints<6> stretched{.3, .4, 1.1, .7, 0, -.2};
@@ -107,7 +107,7 @@ TEST_F(ClosedForm, leaves_free_turns_where_they_are) {
     EXPECT_LT((*kept - above).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST_F(ClosedForm, says_what_is_out_of_reach_and_what_is_outside_the_limits) {
+TEST_F(ClosedForm, reports_targets_out_of_reach_or_outside_the_limits) {
     const auto& puma = folded<robots::puma_560_links>;
     const Joints<6> q{.1, .2, .3, .4, .5, .6};
     auto far = forward(puma, q);
@@ -118,14 +118,14 @@ TEST_F(ClosedForm, says_what_is_out_of_reach_and_what_is_outside_the_limits) {
     ranges[4] = {5.0, 5.1};
     EXPECT_EQ(nearest<6>(closed_form(puma, forward(puma, q), q), q, ranges).error(),
               (Refused{Refusal::outside_limits, 4}));
-    // A whole turn further it is within.
+    // One whole turn further it is within the range.
     ranges[4] = {6.0, 8.0};
     const auto turned = nearest<6>(closed_form(puma, forward(puma, q), q), q, ranges);
     ASSERT_TRUE(turned);
     EXPECT_NEAR((*turned)[4], .5 + 2.0 * pi, 1e-9);
 }
 
-TEST_F(ClosedForm, is_had_by_arms_with_a_wrist_only) {
+TEST_F(ClosedForm, exists_only_for_arms_with_a_spherical_wrist) {
     Chain<Base, End, 6> offset = draw_arm(1);
     static_assert(has_closed_form(draw_arm(1)));
     offset.links[4].d_m = 0.1;
@@ -139,7 +139,7 @@ TEST_F(ClosedForm, is_had_by_arms_with_a_wrist_only) {
     EXPECT_FALSE(has_closed_form(Chain<Base, End, 5>{}));
 }
 
-TEST_F(LeastSquares, leads_back_from_nearby_in_a_few_steps) {
+TEST_F(LeastSquares, converges_from_nearby_in_a_few_steps) {
     int most_steps = 0;
     int failures = 0;
     for (int round = 0; round < 300; ++round) {
@@ -167,7 +167,7 @@ TEST_F(LeastSquares, leads_back_from_nearby_in_a_few_steps) {
     EXPECT_LT((found->q - q).cwiseAbs().maxCoeff(), 1e-7);
 }
 
-TEST_F(LeastSquares, is_refused_where_no_joints_lead_and_holds_the_limits) {
+TEST_F(LeastSquares, refuses_unreachable_targets_and_respects_the_limits) {
     const auto& puma = folded<robots::puma_560_links>;
     const Joints<6> q{.1, .2, .3, .4, .9, .6};
     auto far = forward(puma, q);
@@ -179,7 +179,7 @@ TEST_F(LeastSquares, is_refused_where_no_joints_lead_and_holds_the_limits) {
               Refused{Refusal::not_converged});
 }
 
-TEST_F(DampedRates, bring_about_the_twist_and_spare_the_joints_where_they_cannot) {
+TEST_F(DampedRates, produce_the_twist_and_stay_small_near_singularities) {
     const auto& k361 = folded<robots::k361>;
     const Joints<6> most = Joints<6>::Constant(2.0);
     for (int round = 0; round < 100; ++round) {
@@ -190,7 +190,7 @@ TEST_F(DampedRates, bring_about_the_twist_and_spare_the_joints_where_they_cannot
         const auto reached = pose.jacobian * *found;
         EXPECT_LT((reached.linear - twist.linear).norm() + (reached.angular - twist.angular).norm(), 1e-5);
     }
-    // Stretched: a turn across the wrist's plane would need joints without end.
+    // Stretched: a turn across the plane of the wrist would need unlimited joint rates.
     const auto pose = forward_with_jacobian(k361, Joints<6>{0, .3, 1.2, 0, 0, 0});
     TwistOf<std::remove_cvref_t<decltype(k361)>> twist;
     twist.angular = pose.frame.rotation.col(0) + pose.frame.rotation.col(1);

@@ -1,4 +1,4 @@
-// A table of ours as a chain of KDL.
+// Converts a table to a KDL chain.
 #pragma once
 
 #include "kernel/motion/chain.hpp"

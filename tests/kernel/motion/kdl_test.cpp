@@ -1,4 +1,4 @@
-// Random chains against KDL, which computes the same another way: joint by joint, with dense matrices.
+// Random chains against KDL, which uses another method: joint by joint, with dense matrices.
 #include "kernel/motion/dynamics.hpp"
 #include "kernel/motion/kinematics.hpp"
 #include "tests/kernel/base/seeded.hpp"
@@ -62,7 +62,7 @@ void many_agree(int rounds, Random& random) {
     }
 }
 
-TEST_F(Kdl, agrees_on_thousands_of_chains_that_are_loaded) {
+TEST_F(Kdl, agrees_on_thousands_of_loaded_chains) {
     many_agree<1>(300, random);
     many_agree<2>(300, random);
     many_agree<3>(500, random);
@@ -78,14 +78,14 @@ constexpr Chain<Base, End, joints> draw(std::uint64_t seed) {
 template <std::uint64_t seed, int joints>
 constexpr Chain<Base, End, joints> drawn = draw<joints>(seed);
 
-/// The compiler drew these: each is code of its own.
+/// The compiler generated these: each has its own code.
 template <int joints, std::uint64_t... seeds>
 void folded_agree(std::integer_sequence<std::uint64_t, seeds...>, Random& random) {
     for (int round = 0; round < 100; ++round)
         (agree<joints>(folded<drawn<seeds, joints>>, drawn<seeds, joints>, random), ...);
 }
 
-TEST_F(Kdl, agrees_on_chains_that_the_compiler_folds) {
+TEST_F(Kdl, agrees_on_chains_folded_by_the_compiler) {
     folded_agree<3>(std::make_integer_sequence<std::uint64_t, 8>{}, random);
     folded_agree<6>(std::make_integer_sequence<std::uint64_t, 8>{}, random);
 }

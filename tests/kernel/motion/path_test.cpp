@@ -1,4 +1,4 @@
-// Lines and arcs: where they lead, that their twists are the derivatives of their frames, and their limits.
+// Lines and arcs: their end points, twists as derivatives of their frames, and limits.
 #include "kernel/motion/path.hpp"
 #include "kernel/motion/trajectory.hpp"
 #include "tests/kernel/base/seeded.hpp"
@@ -23,7 +23,7 @@ struct Paths : tappet::test::Seeded {
             EXPECT_NEAR((there.rotation - place.rotation).norm(), 0.0, 1e-12) << share;
         }
     }
-    /// By differences over a motion of any rate and change.
+    /// Computed by differences over a motion of any rate and change.
     void expect_is_derived(const Way& way) {
         const double s0 = random.unit();
         const double rate = within(random, 1.0);
@@ -44,7 +44,7 @@ struct Paths : tappet::test::Seeded {
     }
 };
 
-TEST_F(Paths, straight_lead_from_one_place_to_another) {
+TEST_F(Paths, connect_two_points_in_a_straight_line) {
     for (int round = 0; round < 100; ++round) {
         const auto from = any_frame<World, Tool>(random);
         const auto to = any_frame<World, Tool>(random);
@@ -58,9 +58,9 @@ TEST_F(Paths, straight_lead_from_one_place_to_another) {
     }
 }
 
-TEST_F(Paths, along_an_arc_pass_the_point_between) {
+TEST_F(Paths, along_an_arc_pass_through_the_via_point) {
     for (int round = 0; round < 100; ++round) {
-        // A circle of which the points are known, in any plane.
+        // A circle with known points, in any plane.
         const auto plane = any_frame<World, Tool>(random);
         const double radius = 0.1 + random.unit();
         const double end = 0.2 + 6.0 * random.unit();
@@ -84,7 +84,7 @@ TEST_F(Paths, along_an_arc_pass_the_point_between) {
     }
 }
 
-TEST_F(Paths, are_gone_within_their_limits) {
+TEST_F(Paths, are_followed_within_their_limits) {
     const PathLimits most{{0.5, 2.0, 20.0}, {1.0, 4.0, 40.0}};
     for (int round = 0; round < 50; ++round) {
         const auto from = any_frame<World, Tool>(random);
@@ -108,7 +108,7 @@ TEST_F(Paths, are_gone_within_their_limits) {
     }
 }
 
-TEST_F(Paths, are_refused_where_nothing_says_where_they_lead) {
+TEST_F(Paths, are_refused_when_their_shape_is_undetermined) {
     const auto from = any_frame<World, Tool>(random);
     auto to = any_frame<World, Tool>(random);
     const Refused open{Refusal::no_direction};

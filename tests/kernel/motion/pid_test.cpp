@@ -1,4 +1,4 @@
-// The PID controller against formulas and against a plant; what a step, a limit and a change of hands do.
+// The PID controller against formulas and against a plant; the effects of a step, a limit and a hand-over.
 #include "kernel/base/random.hpp"
 #include "kernel/motion/pid.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-TEST(Pid, is_the_sum_of_its_parts) {
+TEST(Pid, equals_the_sum_of_its_terms) {
     Pid p{{.proportional = 2.0}};
     EXPECT_DOUBLE_EQ(p(3.0, 1.0, 1ms), 4.0);
     Pid i{{.integral = 10.0}};
@@ -29,7 +29,7 @@ TEST(Pid, is_the_sum_of_its_parts) {
     EXPECT_DOUBLE_EQ(ff(1.0, 1.0, 1ms, 7.0), 7.0);
 }
 
-TEST(Pid, gives_no_kick_when_the_set_point_jumps_unless_told_to) {
+TEST(Pid, has_no_set_point_kick_unless_configured) {
     const PidGains smooth{.proportional = 1.0, .derivative = 1.0, .set_point_weight = 0.5};
     Pid weighted{smooth};
     weighted(0.0, 0.0, 1ms);
@@ -41,7 +41,7 @@ TEST(Pid, gives_no_kick_when_the_set_point_jumps_unless_told_to) {
     EXPECT_DOUBLE_EQ(kicked(2.0, 0.0, 1ms), 1.0 + 2000.0);
 }
 
-TEST(Pid, filters_its_derivative_to_that_of_a_ramp) {
+TEST(Pid, filters_its_derivative) {
     Pid d{{.derivative = 2.0, .derivative_filter_s = 0.05}};
     double output = 0.0;
     for (int k = 0; k < 1000; ++k) output = d(0.0, 3.0 * k * 1e-3, 1ms);
@@ -57,7 +57,7 @@ struct Axis {
     void run(double speed, double seconds) { position += speed * seconds; }
 };
 
-TEST(Pid, leads_an_axis_to_its_set_point_and_follows_a_ramp_with_feed_forward_only) {
+TEST(Pid, reaches_its_set_point_and_follows_a_ramp_with_feed_forward) {
     Pid step{{.proportional = 10.0}};
     Axis axis;
     for (int k = 0; k < 2000; ++k) axis.run(step(1.0, axis.position, 2ms), 2e-3);
@@ -74,7 +74,7 @@ TEST(Pid, leads_an_axis_to_its_set_point_and_follows_a_ramp_with_feed_forward_on
     }
 }
 
-/// A plant of first order, 1 / (1 + s), driven into its limit for long and then asked for less.
+/// A first-order plant, 1 / (1 + s), held at its limit for long, then with a lower set point.
 double overshoot(const PidGains& gains, bool limit_is_behind) {
     Pid pid{gains};
     double y = 0.0;
@@ -90,7 +90,7 @@ double overshoot(const PidGains& gains, bool limit_is_behind) {
     return most;
 }
 
-TEST(Pid, does_not_wind_up_at_its_own_limits_nor_at_those_behind_it) {
+TEST(Pid, avoids_wind_up_at_its_own_and_at_downstream_limits) {
     const PidGains free{.proportional = 5.0, .integral = 5.0};
     EXPECT_GT(overshoot(free, false), 0.4) << "it must show what winding up is";
     PidGains limited = free;
@@ -104,14 +104,14 @@ TEST(Pid, does_not_wind_up_at_its_own_limits_nor_at_those_behind_it) {
     EXPECT_LT(overshoot(behind, true), 0.02);
 }
 
-TEST(Pid, takes_over_without_a_bump) {
+TEST(Pid, takes_over_bumplessly) {
     Pid pid{{.proportional = 3.0, .integral = 2.0, .derivative = 0.1, .set_point_weight = 0.7}};
     for (int k = 0; k < 100; ++k) pid.track(1.0 + k, 0.5, 4.25, 0.5);
     EXPECT_EQ(pid.output(), 4.25);
     EXPECT_NEAR(pid(100.0, 0.5, 1ms, 0.5), 4.25, 1e-12);
 }
 
-TEST(Pid, takes_over_without_a_bump_between_its_limits_however_far_the_set_point_is) {
+TEST(Pid, takes_over_bumplessly_within_its_limits_from_any_set_point) {
     for (const double tracking : {0.0, 0.1}) {
         Pid pid{
             {.proportional = 1.0, .integral = 0.5, .tracking_s = tracking, .lowest = -10.0, .highest = 10.0}};
@@ -122,10 +122,10 @@ TEST(Pid, takes_over_without_a_bump_between_its_limits_however_far_the_set_point
     }
 }
 
-/// An axis stands at nought while somebody else drives; the set point is 0 from the hand-over on.
+/// An axis is at zero while another controller drives it; the set point is 0 from the hand-over on.
 struct HandOver {
     double away = 0.0;
-    double until = 0.0; ///< then it is back, s
+    double until = 0.0; ///< time of its return, s
 };
 HandOver hand_over(const PidGains& gains, double set_point, double actual, double feed_forward = 0.0) {
     Pid pid{gains};
@@ -140,11 +140,11 @@ HandOver hand_over(const PidGains& gains, double set_point, double actual, doubl
     return seen;
 }
 
-TEST(Pid, forgets_what_it_tracked_beyond_its_limits_in_one_step) {
+TEST(Pid, recovers_from_tracking_beyond_its_limits_in_one_step) {
     for (const double tracking : {0.0, 0.1}) {
         const PidGains gains{
             .proportional = 1.0, .integral = 0.5, .tracking_s = tracking, .lowest = -10.0, .highest = 10.0};
-        // No integral between the limits can do more than the one that lies at an end of them.
+        // No integral between the limits has more effect than one at either limit.
         const HandOver worst = hand_over(gains, 0.0, 10.0);
         ASSERT_LT(worst.away, 6.5);
         for (const double far : {10.0, 12.0, 1e3, 1e5, 1e100, 1e308, -1e3, -1e308})
@@ -156,7 +156,7 @@ TEST(Pid, forgets_what_it_tracked_beyond_its_limits_in_one_step) {
     }
 }
 
-TEST(Pid, has_an_integral_that_alone_asks_for_what_its_limits_allow) {
+TEST(Pid, bounds_its_integral_by_its_limits) {
     Random random{3};
     const auto any = [&] {
         const double size = std::pow(10.0, 300.0 * random.unit() - 2.0);
@@ -175,14 +175,14 @@ TEST(Pid, has_an_integral_that_alone_asks_for_what_its_limits_allow) {
     }
 }
 
-TEST(Pid, does_nothing_about_errors_in_its_dead_band) {
+TEST(Pid, ignores_errors_within_its_dead_band) {
     Pid pid{{.proportional = 2.0, .integral = 1.0, .dead_band = 0.5}};
     EXPECT_EQ(pid(1.0, 0.6, 1s), 0.0);
     EXPECT_EQ(pid(1.0, 1.4, 1s), 0.0);
     EXPECT_DOUBLE_EQ(pid(1.0, 0.0, 1s), 1.0);
 }
 
-TEST(Pid, refuses_what_is_no_number_and_stays_what_it_was) {
+TEST(Pid, rejects_invalid_numbers_and_keeps_its_state) {
     Pid pid{{.proportional = 2.0, .integral = 1.0}};
     pid(1.0, 0.0, 1s);
     for (const double bad : {no_number, infinite}) {
@@ -199,13 +199,13 @@ TEST(Pid, refuses_what_is_no_number_and_stays_what_it_was) {
     EXPECT_EQ(pid(0.0, 0.0, 1s), 0.0);
 }
 
-TEST(Pid, says_what_is_wrong_with_its_gains) {
+TEST(Pid, reports_faulty_gains) {
     EXPECT_EQ(check(PidGains{}), "");
-    EXPECT_EQ(check(PidGains{.integral = no_number}), "a gain is no number; write one");
-    EXPECT_EQ(check(PidGains{.tracking_s = -1.0}), "a time constant is negative; write nought for none");
+    EXPECT_EQ(check(PidGains{.integral = no_number}), "a gain is not a finite number; write one");
+    EXPECT_EQ(check(PidGains{.tracking_s = -1.0}), "a time constant is negative; write 0 for none");
     EXPECT_EQ(check(PidGains{.lowest = 1.0, .highest = 1.0}),
-              "the limits of the output hold nothing; let lowest be below highest");
-    EXPECT_EQ(check(PidGains{.dead_band = -1.0}), "the dead band is negative; write nought for none");
+              "the output limits are an empty range; set lowest below highest");
+    EXPECT_EQ(check(PidGains{.dead_band = -1.0}), "the dead band is negative; write 0 for none");
     const PidGains none{.lowest = 2.0, .highest = 1.0};
     EXPECT_DEATH(Pid{none}, "contract 5 refused-settings");
 }

@@ -1,4 +1,4 @@
-// Frames, joints and chains drawn at random, for whatever has to hold for all of them.
+// Frames, joints and chains drawn at random, for general properties.
 #pragma once
 
 #include "kernel/base/random.hpp"
@@ -33,14 +33,14 @@ Joints<joints> any_joints(Random& random, double most) {
 struct Base;
 struct End;
 
-/// Half of its numbers are nought and quarter turns, as those of real robots are. The mass of a link is four
-/// points about its centre, so that its inertia is one that a body can have.
+/// Half of its numbers are zero or quarter turns, as in real robots. The mass of a link is four points about
+/// its centre, so that its inertia is physical.
 template <int joints>
 constexpr Chain<Base, End, joints> any_chain(Random& random) {
     Chain<Base, End, joints> chain{};
     const auto some = [&](double most) { return random.one_in(2) ? 0.0 : within(random, most); };
     for (Link& link : chain.links) {
-        link = Link{}; // without it g++ 12 does not take the table for a constant
+        link = Link{}; // without it g++ 12 does not treat the table as a constant
         link.a_m = some(1.0);
         link.d_m = some(1.0);
         link.alpha_deg =

@@ -1,5 +1,5 @@
 // Two robots of the literature as tables: the PUMA 560 with standard parameters, masses and drives (Corke and
-// Armstrong-Helouvry 1994), and KUKA's K361 with the wrist that its two mirrored cones amount to.
+// Armstrong-Helouvry 1994), and KUKA's K361 with the wrist equivalent to its two mirrored cones.
 #pragma once
 
 #include "kernel/motion/chain.hpp"

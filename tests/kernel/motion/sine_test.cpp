@@ -1,4 +1,4 @@
-// Sine and cosine against those of 80 bits, and where they have to be exact.
+// Sine and cosine against 80-bit results, and where they must be exact.
 #include "kernel/motion/sine.hpp"
 #include "tests/kernel/base/seeded.hpp"
 #include "tests/kernel/motion/random_motion.hpp"
@@ -11,7 +11,7 @@ namespace {
 using namespace tappet::test;
 using Sine = Seeded;
 
-// Constants and run time are one function.
+// Constant evaluation and run time use the same function.
 static_assert(sine_cosine(0.0).sine == 0.0 && sine_cosine(0.0).cosine == 1.0);
 static_assert(sine_cosine_of_degrees(90).cosine == 0.0 && sine_cosine_of_degrees(90).sine == 1.0);
 static_assert(sine_cosine_of_degrees(-180).sine == 0.0 && sine_cosine_of_degrees(-180).cosine == -1.0);
@@ -23,7 +23,7 @@ void expect_near_the_truth(double angle, SineCosine found) {
         << angle;
 }
 
-TEST_F(Sine, is_within_the_last_bit_over_many_turns) {
+TEST_F(Sine, is_exact_to_the_last_bit_over_many_turns) {
     for (const double most : {1e-9, 0.8, 3.2, 100.0, 1e5, 1e7})
         for (int i = 0; i < 20000; ++i) {
             const double angle = within(random, most);
@@ -36,7 +36,7 @@ TEST_F(Sine, is_within_the_last_bit_over_many_turns) {
     }
 }
 
-TEST_F(Sine, of_degrees_is_that_of_their_angle) {
+TEST_F(Sine, is_the_same_in_degrees) {
     for (int i = 0; i < 20000; ++i) {
         const double degrees = within(random, 400.0);
         const auto found = sine_cosine_of_degrees(degrees);
@@ -47,7 +47,7 @@ TEST_F(Sine, of_degrees_is_that_of_their_angle) {
     }
 }
 
-TEST_F(Sine, of_two_angles_is_that_of_each) {
+TEST_F(Sine, is_the_same_for_two_angles_at_once) {
     for (int i = 0; i < 20000; ++i) {
         const double a = within(random, 1e5);
         const double b = within(random, 7.0);
@@ -61,7 +61,7 @@ TEST_F(Sine, of_two_angles_is_that_of_each) {
     }
 }
 
-TEST_F(Sine, of_what_is_no_number_is_none) {
+TEST_F(Sine, is_not_a_number_when_its_angle_is_not) {
     for (const double bad : {no_number, infinite}) {
         EXPECT_TRUE(std::isnan(sine_cosine(bad).sine));
         EXPECT_TRUE(std::isnan(sine_cosine(bad).cosine));

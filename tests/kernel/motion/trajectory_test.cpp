@@ -1,4 +1,4 @@
-// Trajectories against their limits, an integrator and a search for something shorter; whatever the numbers.
+// Trajectories against their limits, an integrator and a search for shorter ones, for any numbers.
 #include "kernel/motion/synchronised.hpp"
 #include "kernel/motion/trajectory.hpp"
 #include "tests/kernel/base/seeded.hpp"
@@ -28,8 +28,8 @@ struct Most {
     double velocity, acceleration, jerk;
 };
 
-/// Walks over a profile in equal steps: position is the integral of velocity (Simpson), velocity that of
-/// acceleration, and nothing exceeds `most`. A kink inside a step costs what is allowed here.
+/// Samples a profile in equal steps: position is the integral of velocity (Simpson), velocity that of
+/// acceleration, and nothing exceeds `most`. The tolerance allows for a kink inside a step.
 void expect_whole(const Profile& profile, const Most& most) {
     constexpr int steps = 3000;
     const double h = profile.duration_s() / steps;
@@ -53,14 +53,14 @@ void expect_whole(const Profile& profile, const Most& most) {
     EXPECT_NEAR(position, profile.end().position, kinks * most.acceleration * h * h + 1e-9 * largest);
     const double jumps = std::isinf(most.jerk) ? most.acceleration * h : most.jerk * h * h;
     EXPECT_NEAR(velocity, 0.0, kinks * jumps + 1e-9 * most.velocity);
-    // The end is set, not computed; the last piece leads there all the same.
+    // The end is set, not computed; the last piece still reaches it.
     EXPECT_NEAR(before.position, profile.end().position, 1e-9 * (largest + most.velocity * h));
     EXPECT_NEAR(before.velocity, 0.0, 1e-7 * (most.velocity + most.acceleration * h));
     EXPECT_EQ(profile.end().velocity, 0.0);
     EXPECT_EQ(profile.end().acceleration, 0.0);
 }
 
-TEST_F(Trajectories, by_trapezoid_lead_from_any_state_to_rest_within_limits) {
+TEST_F(Trajectories, by_trapezoid_reach_rest_from_any_state_within_limits) {
     for (int round = 0; round < 300; ++round) {
         const AxisLimits limits = any_limits();
         const AxisState from{within(random, 10.0), limits.velocity * within(random, 3.0), 0.0};
@@ -75,8 +75,8 @@ TEST_F(Trajectories, by_trapezoid_lead_from_any_state_to_rest_within_limits) {
     }
 }
 
-TEST_F(Trajectories, by_trapezoid_lose_no_time) {
-    // Full acceleration at all times, but at full speed: nothing is shorter.
+TEST_F(Trajectories, by_trapezoid_are_time_optimal) {
+    // Full acceleration at all times except at full speed is time optimal.
     for (int round = 0; round < 100; ++round) {
         const AxisLimits limits = any_limits();
         const AxisState from{0.0, limits.velocity * within(random, 2.0), 0.0};
@@ -92,15 +92,15 @@ TEST_F(Trajectories, by_trapezoid_lose_no_time) {
     }
 }
 
-TEST_F(Trajectories, by_trapezoid_turn_back_when_they_cannot_stop_in_time) {
+TEST_F(Trajectories, by_trapezoid_reverse_when_they_cannot_stop_in_time) {
     const auto plan = trapezoid({0.0, 10.0, 0.0}, 1.0, {20.0, 10.0, 0.0});
     ASSERT_TRUE(plan);
-    // It stands at 5 after 1 s, and needs 2 sqrt(4 / 10) s back.
+    // It is at 5 after 1 s, and needs 2 sqrt(4 / 10) s to return.
     EXPECT_NEAR(plan->at_s(1.0).position, 5.0, 1e-12);
     EXPECT_NEAR(plan->duration_s(), 1.0 + 2.0 * std::sqrt(0.4), 1e-12);
 }
 
-/// The time from rest to rest, found another way: by bisection on the highest speed.
+/// The time from rest to rest by another method: bisection on the highest speed.
 double searched_duration(double way, const AxisLimits& limits) {
     const auto ramp = [&](double peak) {
         const double flat = peak - limits.acceleration * limits.acceleration / limits.jerk;
@@ -117,7 +117,7 @@ double searched_duration(double way, const AxisLimits& limits) {
     return 2.0 * ramp(high);
 }
 
-TEST_F(Trajectories, of_bounded_jerk_lead_from_rest_to_rest_within_limits_and_lose_no_time) {
+TEST_F(Trajectories, of_bounded_jerk_are_time_optimal_within_limits) {
     for (int round = 0; round < 300; ++round) {
         const AxisLimits limits = any_limits();
         const double from = within(random, 10.0);
@@ -142,7 +142,7 @@ TEST_F(Trajectories, of_bounded_jerk_stop_from_any_state) {
         const double gained = 0.5 * from.acceleration * from.acceleration / limits.jerk;
         expect_whole(*plan, {std::fabs(from.velocity) + gained,
                              std::max(limits.acceleration, std::fabs(from.acceleration)), limits.jerk});
-        // Full jerk at all times, but at full deceleration: nothing is shorter. A look may meet an edge of
+        // Full jerk at all times except at full deceleration is time optimal. A sample may hit the edge of
         // two pieces, once in a million.
         int misses = 0;
         for (int i = 0; i < 100; ++i) {
@@ -158,7 +158,7 @@ TEST_F(Trajectories, of_bounded_jerk_stop_from_any_state) {
     }
 }
 
-TEST_F(Trajectories, stop_at_once_what_stands) {
+TEST_F(Trajectories, stop_immediately_when_already_at_rest) {
     const auto plan = stop({3.0, 0.0, 0.0}, {1.0, 1.0, 1.0});
     ASSERT_TRUE(plan);
     EXPECT_EQ(plan->duration_s(), 0.0);
@@ -167,13 +167,13 @@ TEST_F(Trajectories, stop_at_once_what_stands) {
     EXPECT_EQ(Profile{}.at_s(-1.0).position, 0.0);
 }
 
-TEST_F(Trajectories, of_many_axes_end_together_within_the_limits_of_each) {
+TEST_F(Trajectories, of_many_axes_end_together_within_each_limit) {
     for (int round = 0; round < 100; ++round) {
         Synchronised<6>::Limits limits;
         for (AxisLimits& one : limits) one = any_limits();
         const Joints<6> from = any_joints<6>(random, 3.0);
         Joints<6> target = any_joints<6>(random, 3.0);
-        target[2] = from[2]; // one that stands
+        target[2] = from[2]; // already at rest
         const auto plan = Synchronised<6>::plan(from, target, limits);
         ASSERT_TRUE(plan);
         const double end = plan->duration_s();
@@ -199,7 +199,7 @@ TEST_F(Trajectories, of_many_axes_end_together_within_the_limits_of_each) {
     }
 }
 
-TEST_F(Trajectories, are_refused_for_what_is_no_number_and_no_limit) {
+TEST_F(Trajectories, are_refused_for_invalid_numbers_and_limits) {
     const AxisLimits good{1.0, 1.0, 1.0};
     EXPECT_EQ(trapezoid({no_number, 0, 0}, 1.0, good).error(), Refused{Refusal::not_a_number});
     EXPECT_EQ(trapezoid({0, 0, 0}, no_number, good).error(), Refused{Refusal::not_a_number});
@@ -217,7 +217,7 @@ TEST_F(Trajectories, are_refused_for_what_is_no_number_and_no_limit) {
     const auto plan = Synchronised<3>::plan({0, 0, 0}, {1, 1, 1}, limits);
     ASSERT_FALSE(plan);
     EXPECT_EQ(describe(plan.error()).view(),
-              "element 2: a limit is not positive; give each one a value above nought");
+              "element 2: a limit is not positive; give each one a value above 0");
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// Arming: each check passes on a box as it must be, and refuses with a cure on a box that is not, shown by
-// made-up /proc and /sys trees; what a board downgrades warns, and a name it misspells refuses.
+// Arming: each check passes on a correctly configured box and refuses with a cure on a faulty one, using
+// simulated /proc and /sys trees. A check that the board downgrades only warns; a misspelt name refuses.
 #include "kernel/os/arming.hpp"
 
 #include "kernel/os/memory.hpp"
@@ -92,7 +92,7 @@ std::string printed(const ArmingReport& report) {
     return text;
 }
 
-TEST(Arming, arms_on_a_box_as_it_must_be) {
+TEST(Arming, succeeds_on_a_correctly_configured_box) {
     const Situation situation;
     const auto report = situation.report();
     EXPECT_TRUE(report->can_arm()) << printed(*report);
@@ -101,7 +101,7 @@ TEST(Arming, arms_on_a_box_as_it_must_be) {
     EXPECT_EQ(printed(*report), "can arm: 14 checks made\n");
 }
 
-TEST(Arming, has_a_name_a_subject_and_a_cure_for_each_check) {
+TEST(Arming, defines_a_name_a_subject_and_a_cure_for_each_check) {
     for (const SystemCheck& check : system_checks()) {
         EXPECT_FALSE(check.name.empty() || check.looks_at.empty() || check.claims.empty() ||
                      check.cure.empty())
@@ -166,7 +166,7 @@ const Fault faults[] = {
 
 class BadBox : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(BadBox, is_refused_by_the_check_that_sees_it_with_a_cure) {
+TEST_P(BadBox, is_refused_by_the_matching_check_with_a_cure) {
     Situation situation;
     GetParam().make(situation);
     const auto report = situation.report();
@@ -181,7 +181,7 @@ TEST_P(BadBox, is_refused_by_the_check_that_sees_it_with_a_cure) {
     EXPECT_TRUE(printed(*report).starts_with("cannot arm: 1 reason\n")) << printed(*report);
 }
 
-TEST_P(BadBox, only_warns_where_the_board_downgrades_the_check) {
+TEST_P(BadBox, only_causes_a_warning_where_the_board_downgrades_the_check) {
     Situation situation;
     GetParam().make(situation);
     const std::array downgraded{std::string_view{GetParam().check}};
@@ -208,7 +208,7 @@ const Fault no_faults[] = {
 
 class GoodBox : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(GoodBox, arms) {
+TEST_P(GoodBox, is_armed) {
     Situation situation;
     GetParam().make(situation);
     const auto report = situation.report();
@@ -219,13 +219,13 @@ TEST_P(GoodBox, arms) {
 INSTANTIATE_TEST_SUITE_P(With, GoodBox, ::testing::ValuesIn(no_faults),
                          [](const auto& fault) { return std::string{fault.param.what}; });
 
-TEST(Arming, takes_a_kernel_of_unknown_release_for_one_with_a_fair_server) {
+TEST(Arming, assumes_a_fair_server_in_a_kernel_of_unknown_release) {
     const Situation situation;
     situation.box.remove("proc/sys/kernel/osrelease");
     EXPECT_THAT(printed(*situation.report()), HasSubstr("refused  rt-throttling: kernel of unknown release"));
 }
 
-TEST(Arming, warns_of_an_untried_kernel_and_names_the_kernels_tried) {
+TEST(Arming, warns_about_an_untried_kernel_and_names_the_tried_ones) {
     const Situation situation;
     situation.run_on_6_12();
     for (const std::string kernel : {"6.18.44", "6.11.0-rt", "6.13.1", "7.1.0", "5.12.3", "6"}) {
@@ -262,7 +262,7 @@ TEST(Arming, refuses_a_misspelt_downgrade_with_the_nearest_name) {
                           "list of downgraded checks\n"));
 }
 
-TEST(Arming, takes_the_findings_of_other_layers_and_lets_them_be_downgraded) {
+TEST(Arming, includes_findings_of_other_layers_and_allows_downgrades) {
     const Situation situation;
     const std::array downgraded{"bus-load"sv};
     ArmingReport report{downgraded};
@@ -293,7 +293,7 @@ TEST(Arming, observes_its_own_process_without_changing_it) {
     EXPECT_NE(observe_process(1000).fifo_error, 0) << "there is no priority 1000";
 }
 
-TEST(Arming, looks_at_this_box_without_a_made_up_root) {
+TEST(Arming, checks_this_box_without_a_simulated_root) {
     ArmingReport report;
     check_system(report, {});
     EXPECT_FALSE(report.conclude()) << "this test seals no heap and holds no latency";

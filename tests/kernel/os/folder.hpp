@@ -1,4 +1,4 @@
-// A folder of a test's own, of which nothing is left.
+// A temporary folder for one test, removed afterwards.
 #pragma once
 
 #include <cstdlib>

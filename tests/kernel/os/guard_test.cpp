@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two processes of one program: what the guardian learns of the other, and the other of the guardian.
+// Two processes of one program: what the guardian and the machine learn of each other.
 #include "kernel/os/guard.hpp"
 
 #include "kernel/os/sleep.hpp"
@@ -21,9 +21,10 @@ namespace {
 
 using Seen = Guard::Seen;
 
-/// A process of its own splits; it ends with what `guardian` answers, or the machine's side with what
+/// Splits a process of its own; its exit code is the result of `guardian`, or on the machine's side that of
+/// `machine`.
 /// `machine` does.
-constexpr int kept_open[] = {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}; // what a test reads from
+constexpr int kept_open[] = {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}; // the test reads from it
 template <class Machine, class Guardian>
 int split(Machine machine, Guardian guardian, std::string_view refusal = {}, int crash_patience_ms = 60'000) {
     const pid_t child = ::fork();
@@ -32,7 +33,7 @@ int split(Machine machine, Guardian guardian, std::string_view refusal = {}, int
         const auto side = guard.split(crash_patience_ms);
         if (!side) std::_Exit(99);
         if (*side == Guard::Side::machine) std::_Exit(machine(guard));
-        static_cast<void>(guard.become_guardian(kept_open)); // where FIFO is not granted, the rest is
+        static_cast<void>(guard.become_guardian(kept_open)); // run the rest where FIFO is not granted
         if (refusal.empty())
             guard.be_ready();
         else
@@ -43,7 +44,7 @@ int split(Machine machine, Guardian guardian, std::string_view refusal = {}, int
     ::waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
-/// What is seen first, other than nothing.
+/// The first result other than nothing.
 Seen next(Guard& guard) {
     for (;;)
         if (const Seen seen = guard.look(20ms); seen != Seen::nothing) return seen;
@@ -71,7 +72,7 @@ int arm_and_die(Guard& guard) {
     return 0;
 }
 
-TEST(Guard, hands_on_the_code_of_a_machine_that_ended_well) {
+TEST(Guard, returns_the_exit_code_of_a_machine_that_ended_well) {
     const int code = split(
         [](Guard& guard) {
             if (arm(guard) != 0) return 98;
@@ -85,7 +86,7 @@ TEST(Guard, hands_on_the_code_of_a_machine_that_ended_well) {
     EXPECT_EQ(code, 4);
 }
 
-TEST(Guard, tells_a_death_without_a_word_and_its_signal) {
+TEST(Guard, reports_a_silent_death_and_its_signal) {
     const int code = split(arm_and_die, [](Guard& guard) {
         const Seen first = next(guard);
         if (first != Seen::dying && first != Seen::end) return 96;
@@ -95,13 +96,13 @@ TEST(Guard, tells_a_death_without_a_word_and_its_signal) {
     EXPECT_EQ(code, 128 + SIGKILL);
 }
 
-TEST(Guard, learns_the_end_of_a_machine_though_it_was_started_by_one_who_ignores_children) {
+TEST(Guard, detects_the_end_of_a_machine_although_sigchld_is_ignored) {
     const auto kept = ::signal(SIGCHLD, SIG_IGN);
     int told[2];
     ASSERT_EQ(::pipe(told), 0);
     static_cast<void>(split(arm_and_die, [&](Guard& guard) {
         const int code = code_at_the_end(guard);
-        return static_cast<int>(::write(told[1], &code, sizeof code)); // its own parent learns nothing
+        return static_cast<int>(::write(told[1], &code, sizeof code)); // its own parent is not notified
     }));
     int code = 0;
     EXPECT_EQ(::read(told[0], &code, sizeof code), static_cast<ssize_t>(sizeof code));
@@ -113,7 +114,7 @@ TEST(Guard, learns_the_end_of_a_machine_though_it_was_started_by_one_who_ignores
 
 [[gnu::noinline]] int crash_here() { return ::raise(SIGSEGV) + 1; }
 
-TEST(Guard, tells_a_crash_before_the_process_ends_and_by_what_thread) {
+TEST(Guard, reports_a_crash_and_its_thread_before_the_process_ends) {
     const int code = split(
         [](Guard& guard) {
             if (arm(guard) != 0) return 98;
@@ -132,8 +133,8 @@ TEST(Guard, tells_a_crash_before_the_process_ends_and_by_what_thread) {
     EXPECT_EQ(code, 128 + SIGKILL) << "the crashed thread sleeps until the guardian ends it";
 }
 
-/// Uses so many bytes of its stack in frames of that size, writes to the lowest of each, and tells the
-/// compiler so.
+/// Uses so many bytes of its stack in frames of that size, writes to the lowest of each, and makes the write
+/// visible to the compiler.
 template <std::size_t frame>
 [[gnu::noinline]] int use_stack(std::size_t bytes, const volatile std::byte* above) {
     volatile std::byte room[frame];
@@ -143,7 +144,7 @@ template <std::size_t frame>
 
 class StackUsedUp : public testing::TestWithParam<int (*)(std::size_t, const volatile std::byte*)> {};
 
-TEST_P(StackUsedUp, is_told_and_nothing_below_it_was_written) {
+TEST_P(StackUsedUp, is_reported_without_a_write_below_the_stack) {
     static ParamType use;
     use = GetParam();
     struct Below {
@@ -183,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(in_frames_of, StackUsedUp,
                          testing::Values(&use_stack<1024>, &use_stack<9 * 4096>, &use_stack<60 * 1024>),
                          [](const auto& each) { return frames[each.index]; });
 
-TEST(Guard, a_crash_that_nobody_acts_on_ends_the_process_all_the_same) {
+TEST(Guard, lets_an_unhandled_crash_end_the_process) {
     const int code = split(
         [](Guard& guard) {
             if (arm(guard) != 0) return 98;
@@ -194,7 +195,7 @@ TEST(Guard, a_crash_that_nobody_acts_on_ends_the_process_all_the_same) {
     EXPECT_EQ(code, 128 + SIGFPE);
 }
 
-TEST(Guard, what_it_tries_apart_ends_nobody_else) {
+TEST(Guard, isolates_the_failures_of_a_trial) {
     const int code = split([](Guard& guard) { return arm(guard); },
                            [](Guard& guard) {
                                int here = 0;
@@ -206,7 +207,7 @@ TEST(Guard, what_it_tries_apart_ends_nobody_else) {
     EXPECT_EQ(code, 0);
 }
 
-TEST(Guard, hands_on_what_is_signalled_to_it) {
+TEST(Guard, forwards_signals_sent_to_it) {
     const int code = split(
         [](Guard& guard) {
             static sig_atomic_t volatile asked = 0;
@@ -217,19 +218,19 @@ TEST(Guard, hands_on_what_is_signalled_to_it) {
             return 7;
         },
         [](Guard& guard) {
-            await_activities(guard); // then its handler is there
+            await_activities(guard); // then its handler is installed
             ::kill(::getpid(), SIGTERM);
             return code_at_the_end(guard);
         });
     EXPECT_EQ(code, 7);
 }
 
-TEST(Guard, the_machine_sees_that_its_guardian_is_gone) {
+TEST(Guard, shows_the_machine_that_the_guardian_has_died) {
     int told[2];
     ASSERT_EQ(::pipe(told), 0);
     const int code = split(
         [&](Guard& guard) {
-            ::signal(SIGTERM, SIG_IGN); // which asks for the orderly stop
+            ::signal(SIGTERM, SIG_IGN); // which requests the orderly stop
             if (arm(guard) != 0) return 98;
             while (!guard.guardian_is_lost()) sleep_for(1ms);
             return static_cast<int>(::write(told[1], "gone", 4)) - 4;
@@ -245,7 +246,7 @@ TEST(Guard, the_machine_sees_that_its_guardian_is_gone) {
     ::close(told[1]);
 }
 
-TEST(Guard, the_machine_sees_that_its_guardian_looks_at_nothing) {
+TEST(Guard, shows_the_machine_that_the_guardian_has_stopped_looking) {
     const int code = split(
         [](Guard& guard) {
             if (arm(guard) != 0) return 98;
@@ -262,7 +263,7 @@ TEST(Guard, the_machine_sees_that_its_guardian_looks_at_nothing) {
     EXPECT_EQ(code, 5);
 }
 
-TEST(Guard, a_guardian_that_cannot_act_says_why) {
+TEST(Guard, reports_why_the_guardian_cannot_act) {
     const int code =
         split([](Guard& guard) { return guard.wait_for_guardian().view() == "no wires" ? 3 : 89; },
               code_at_the_end, "no wires");

@@ -1,4 +1,4 @@
-// The arena's allocator: pieces are aligned, apart, remembered and merged again, for any sequence of calls.
+// The arena's allocator: for any sequence of calls, blocks are aligned, separate, tracked and merged again.
 #include "kernel/os/heap_allocator.hpp"
 
 #include "kernel/base/random.hpp"
@@ -47,7 +47,7 @@ std::size_t drawn_size(Random& random) {
 
 class AllocatorSequence : public ::testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(AllocatorSequence, keeps_pieces_aligned_apart_and_unchanged) {
+TEST_P(AllocatorSequence, keeps_blocks_aligned_separate_and_unchanged) {
     Random random{GetParam()};
     const std::size_t arena_bytes = 40'000 + random.below(60'000);
     const std::size_t offset = random.below(64);
@@ -115,7 +115,7 @@ TEST_P(AllocatorSequence, keeps_pieces_aligned_apart_and_unchanged) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, AllocatorSequence, ::testing::Range(std::uint64_t{1}, std::uint64_t{25}));
 
-TEST(Allocator, gives_the_whole_arena_in_one_piece) {
+TEST(Allocator, allocates_the_whole_arena_in_one_block) {
     Arena arena{4096};
     const std::size_t all = arena.allocator.capacity_bytes();
     EXPECT_GE(all, 4096 - 3 * Allocator::header_bytes);
@@ -127,7 +127,7 @@ TEST(Allocator, gives_the_whole_arena_in_one_piece) {
     EXPECT_EQ(arena.allocator.largest_free_bytes(), all);
 }
 
-TEST(Allocator, refuses_more_than_there_is) {
+TEST(Allocator, refuses_more_than_is_available) {
     Arena arena{4096};
     EXPECT_EQ(arena.allocator.allocate(arena.allocator.capacity_bytes() + 1), nullptr);
     EXPECT_EQ(arena.allocator.allocate(~std::size_t{0}), nullptr);
@@ -138,7 +138,7 @@ TEST(Allocator, refuses_more_than_there_is) {
     EXPECT_EQ(arena.allocator.used_bytes(), 0u);
 }
 
-TEST(Allocator, gives_zero_bytes_a_piece_of_their_own) {
+TEST(Allocator, allocates_a_separate_block_for_zero_bytes) {
     Arena arena{4096};
     void* one = arena.allocator.allocate(0);
     void* two = arena.allocator.allocate(0);
@@ -146,7 +146,7 @@ TEST(Allocator, gives_zero_bytes_a_piece_of_their_own) {
     EXPECT_NE(one, two);
 }
 
-TEST(Allocator, refuses_an_arena_it_cannot_keep_books_on) {
+TEST(Allocator, refuses_an_arena_too_small_to_manage) {
     Arena small{Allocator::arena_bytes_min - 1};
     EXPECT_FALSE(small.allocator.is_open());
     EXPECT_EQ(small.allocator.allocate(1), nullptr);
@@ -164,7 +164,7 @@ TEST(Allocator, grows_in_place_into_a_free_neighbour) {
     EXPECT_TRUE(arena.allocator.is_sound());
 }
 
-TEST(Allocator, tells_pieces_in_use_from_others) {
+TEST(Allocator, distinguishes_allocated_blocks_from_other_pointers) {
     Arena arena{8192};
     auto* piece = static_cast<std::byte*>(arena.allocator.allocate(64));
     auto* wall = static_cast<std::byte*>(arena.allocator.allocate(64));
@@ -172,13 +172,13 @@ TEST(Allocator, tells_pieces_in_use_from_others) {
     EXPECT_EQ(arena.allocator.look_at(piece), Allocator::Piece::in_use);
     EXPECT_EQ(arena.allocator.look_at(&elsewhere), Allocator::Piece::foreign);
     EXPECT_EQ(arena.allocator.look_at(piece + 1), Allocator::Piece::foreign);
-    std::memset(piece, 0x5a, 64 + 8); // over the end, into the header of the next
+    std::memset(piece, 0x5a, 64 + 8); // past the end, into the header of the next
     EXPECT_EQ(arena.allocator.look_at(wall), Allocator::Piece::damaged);
     EXPECT_EQ(arena.allocator.look_at(piece), Allocator::Piece::damaged);
     EXPECT_FALSE(arena.allocator.is_sound());
 }
 
-TEST(Allocator, tells_a_piece_freed_before) {
+TEST(Allocator, recognises_a_block_that_was_already_freed) {
     Arena arena{8192};
     void* piece = arena.allocator.allocate(64);
     void* wall = arena.allocator.allocate(64);

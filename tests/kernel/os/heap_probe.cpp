@@ -1,6 +1,6 @@
-// A small static firmware with a sealed heap, which does after sealing what its argument names and reports
-// the counts. Exit: 0 nothing broken, 3 a contract was broken and reported, 2 the heap is not the arena, 1
-// anything else.
+// A small static firmware with a sealed heap. After sealing it executes the action named by its argument and
+// prints the counts. Exit: 0 no breach, 3 a contract was broken and reported, 2 the heap is not the arena, 1
+// any other failure.
 #include "kernel/base/contract.hpp"
 #include "kernel/os/heap.hpp"
 
@@ -33,7 +33,7 @@ void stop_safely(const tappet::ContractViolation& breach) noexcept TAPPET_REALTI
     last_id.store(static_cast<int>(breach.id));
 }
 
-// What the compiler must not optimise away.
+// Keeps the compiler from optimising the object away.
 template <class T> T* kept(T* pointer) {
     asm volatile("" : "+r"(pointer) : : "memory");
     return pointer;
@@ -52,7 +52,7 @@ void expects_refusal(const void* mapped) {
     if (mapped != MAP_FAILED || errno != ENOMEM) std::exit(1);
 }
 
-// A stack that glibc does not have in reserve: it maps one, by its internal name.
+// A stack without a cached spare in glibc: glibc maps one, by its internal name.
 void start_thread_with_new_stack() {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
@@ -98,7 +98,7 @@ constexpr Action actions[] = {
     {"sbrk", [] { expects_refusal(sbrk(4096)); }},
 };
 
-// Before sealing, the arena serves everything a program does.
+// Before sealing, the arena serves all allocations of a program.
 bool configures() {
     std::vector<std::string> names;
     for (int i = 0; i < 100; ++i) names.emplace_back(50, static_cast<char>('a' + i % 26));
@@ -155,7 +155,7 @@ int main(int count, char** arguments) {
                     static_cast<unsigned long long>(heap::refused_allocations()));
         return 3;
     }
-    if (wanted == "exhaust_new") { // in a thread of its own, as an activity's would be
+    if (wanted == "exhaust_new") { // in a separate thread, like an activity
         tappet::install_contract_handler(
             [](const tappet::ContractViolation& breach) noexcept TAPPET_REALTIME {
                 stop_safely(breach);

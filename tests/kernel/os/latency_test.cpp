@@ -1,4 +1,4 @@
-// The latency request: held as long as its owner lives, refused with a cure.
+// The latency request: held while its owner lives, refused with a cure.
 #include "kernel/os/latency.hpp"
 
 #include "tests/kernel/os/folder.hpp"
@@ -20,7 +20,7 @@ struct FakeRoot : test::Folder {
     FakeRoot() { std::filesystem::create_directory(path + "/dev"); }
 };
 
-TEST(CpuDmaLatency, is_held_at_zero_as_long_as_its_owner_lives) {
+TEST(CpuDmaLatency, is_held_at_zero_during_the_life_of_its_owner) {
     const FakeRoot root;
     std::ofstream{root.device} << "";
     EXPECT_FALSE(cpu_dma_latency_is_held());

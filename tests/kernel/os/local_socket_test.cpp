@@ -1,4 +1,4 @@
-// The door of a browser (thesis 4.8): packets arrive whole, both ends are known, nothing blocks.
+// The socket of a browser (thesis 4.8): packets arrive whole, both ends are identified, nothing blocks.
 #include "kernel/os/local_socket.hpp"
 
 #include "tests/kernel/os/folder.hpp"
@@ -23,13 +23,13 @@ namespace {
 using What = LocalConnection::Received::What;
 using Sent = LocalConnection::Sent;
 
-/// How many descriptors this process holds.
+/// The number of descriptors of this process.
 std::ptrdiff_t open_descriptors() {
     std::filesystem::directory_iterator all{"/proc/self/fd"};
     return std::distance(begin(all), end(all));
 }
 
-/// A packet with as many descriptors of one file, as only a foreign program sends it.
+/// A packet with several descriptors of one file, which only a foreign program sends.
 bool send_with_descriptors(const LocalConnection& from, std::string_view packet, std::size_t count) {
     const int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
     std::array<int, 8> passed{};
@@ -63,7 +63,7 @@ protected:
     }
 };
 
-/// Connected, and here are both ends.
+/// Connects and returns both ends.
 struct ConnectedSocket : LocalSocket {
     LocalConnection client, server;
 
@@ -77,7 +77,7 @@ struct ConnectedSocket : LocalSocket {
     }
 };
 
-TEST_F(ConnectedSocket, carries_packets_both_ways_each_whole) {
+TEST_F(ConnectedSocket, carries_whole_packets_in_both_directions) {
     EXPECT_EQ(client.send("1 hello"), Sent::sent);
     EXPECT_EQ(client.send("2 map"), Sent::sent);
     EXPECT_EQ(text(server.receive(room)), "1 hello");
@@ -87,7 +87,7 @@ TEST_F(ConnectedSocket, carries_packets_both_ways_each_whole) {
     EXPECT_EQ(text(client.receive(room)), "{}");
 }
 
-TEST_F(ConnectedSocket, tells_who_is_at_the_other_end) {
+TEST_F(ConnectedSocket, identifies_its_peer) {
     const auto peer = server.peer();
     ASSERT_TRUE(peer);
     EXPECT_EQ(peer->process, getpid());
@@ -107,7 +107,7 @@ TEST_F(ConnectedSocket, passes_a_descriptor) {
     for (const int each : {received.passed, pipe_ends[0], pipe_ends[1]}) close(each);
 }
 
-TEST_F(ConnectedSocket, keeps_no_descriptor_that_nobody_asked_for) {
+TEST_F(ConnectedSocket, closes_a_descriptor_that_was_not_requested) {
     const auto before = open_descriptors();
     for (const std::size_t count : {1u, 2u, 8u}) {
         ASSERT_TRUE(send_with_descriptors(client, "1 hello", count));
@@ -118,7 +118,7 @@ TEST_F(ConnectedSocket, keeps_no_descriptor_that_nobody_asked_for) {
     }
 }
 
-TEST_F(ConnectedSocket, takes_one_descriptor_at_most_however_many_are_passed) {
+TEST_F(ConnectedSocket, accepts_at_most_one_descriptor) {
     const auto before = open_descriptors();
     for (const std::size_t count : {2u, 8u}) {
         ASSERT_TRUE(send_with_descriptors(server, "{}", count));
@@ -133,37 +133,37 @@ TEST_F(ConnectedSocket, takes_one_descriptor_at_most_however_many_are_passed) {
     EXPECT_EQ(open_descriptors(), before) << "what came with an end that is none";
 }
 
-TEST_F(ConnectedSocket, says_when_a_packet_was_longer_than_the_room_for_it) {
+TEST_F(ConnectedSocket, reports_a_packet_longer_than_its_buffer) {
     EXPECT_EQ(client.send(std::string(300, 'x')), Sent::sent);
     const auto received = server.receive(room);
     EXPECT_TRUE(received.cut);
     EXPECT_EQ(received.bytes, room.size());
 }
 
-TEST_F(ConnectedSocket, a_reader_that_does_not_read_fills_its_own_buffer_and_blocks_nobody) {
+TEST_F(ConnectedSocket, blocks_no_sender_when_its_reader_does_not_read) {
     const std::string packet(2000, 'x');
     Sent last = Sent::sent;
     for (int i = 0; i < 100'000 && last == Sent::sent; ++i) last = server.send(packet);
     EXPECT_EQ(last, Sent::full);
 }
 
-TEST_F(ConnectedSocket, says_when_the_other_end_is_gone) {
+TEST_F(ConnectedSocket, reports_that_its_peer_has_closed) {
     client.close();
     EXPECT_EQ(server.receive(room).what, What::closed);
     EXPECT_EQ(server.send("{}"), Sent::closed);
 }
 
-TEST_F(LocalSocket, has_the_permissions_that_were_asked_for) {
+TEST_F(LocalSocket, has_the_requested_permissions) {
     ASSERT_TRUE(listener.listen(path, 0640));
     struct stat facts{};
     ASSERT_EQ(stat(path.c_str(), &facts), 0);
     EXPECT_EQ(facts.st_mode & 0777u, 0640u);
 }
 
-TEST_F(LocalSocket, replaces_what_a_killed_machine_left_and_removes_its_own) {
+TEST_F(LocalSocket, replaces_the_socket_of_a_killed_machine_and_removes_its_own) {
     ASSERT_TRUE(listener.listen(path, 0600));
     const std::string kept = folder.path + "/kept";
-    std::filesystem::rename(path, kept); // so that closing does not remove it: as after a kill
+    std::filesystem::rename(path, kept); // so that closing does not remove it, as after a kill
     listener.close();
     std::filesystem::rename(kept, path);
     ASSERT_TRUE(listener.listen(path, 0600));
@@ -171,7 +171,7 @@ TEST_F(LocalSocket, replaces_what_a_killed_machine_left_and_removes_its_own) {
     EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST_F(LocalSocket, does_not_take_the_place_of_a_running_machine_nor_of_another_file) {
+TEST_F(LocalSocket, keeps_the_socket_of_a_running_machine_and_any_other_file) {
     ASSERT_TRUE(listener.listen(path, 0600));
     LocalListener second;
     const auto refused = second.listen(path, 0600);
@@ -183,14 +183,14 @@ TEST_F(LocalSocket, does_not_take_the_place_of_a_running_machine_nor_of_another_
     EXPECT_TRUE(std::filesystem::is_regular_file(file));
 }
 
-TEST_F(LocalSocket, refuses_a_path_that_is_too_long_or_cannot_be_made) {
+TEST_F(LocalSocket, refuses_a_path_that_is_too_long_or_cannot_be_created) {
     const auto too_long = listener.listen(std::string(200, 'x'), 0600);
     ASSERT_FALSE(too_long);
     EXPECT_NE(too_long.error().view().find("107 characters"), std::string_view::npos);
     EXPECT_FALSE(listener.listen("/proc/nowhere/x.socket", 0600));
 }
 
-TEST_F(LocalSocket, connecting_to_nobody_says_so_with_the_cure) {
+TEST_F(LocalSocket, reports_a_missing_server_with_the_cure) {
     const auto refused = LocalConnection::connect(path.c_str());
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().view().find("start the machine"), std::string_view::npos);

@@ -1,4 +1,4 @@
-// Memory and page faults: what is touched is there, what is used leaves a trace, and the counters show the
+// Memory and page faults: touched pages are resident, used stack is detected, and the counters show the
 // difference.
 #include "kernel/os/memory.hpp"
 
@@ -22,7 +22,7 @@ public:
     explicit Pages(std::size_t count)
         : bytes_{count * page_bytes()},
           at_{mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)} {
-        madvise(at_, bytes_, MADV_NOHUGEPAGE); // one fault a page, whatever the box is set to
+        madvise(at_, bytes_, MADV_NOHUGEPAGE); // one fault a page, whatever the box's setting
     }
     ~Pages() { munmap(at_, bytes_); }
     Pages(const Pages&) = delete;
@@ -34,7 +34,7 @@ private:
     void* at_;
 };
 
-TEST(PageFaults, rise_with_each_fresh_page_and_not_with_a_touched_one) {
+TEST(PageFaults, increase_with_each_fresh_page_but_not_with_touched_ones) {
     if (heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer has pages of its own beside each of ours";
     const Pages pages{200};
     const PageFaults before = page_faults_of_this_thread();
@@ -47,7 +47,7 @@ TEST(PageFaults, rise_with_each_fresh_page_and_not_with_a_touched_one) {
     EXPECT_LT(touched.minor, 20u) << "the pages are there already";
 }
 
-TEST(PageFaults, are_the_threads_own) {
+TEST(PageFaults, are_counted_per_thread) {
     const PageFaults process = page_faults_of_this_process();
     const PageFaults mine = page_faults_of_this_thread();
     pthread_t thread{};
@@ -106,14 +106,14 @@ StackUse on_stack(const Pages& stack, StackUse use) {
     return use;
 }
 
-TEST(Memory, makes_a_touched_stack_free_of_faults) {
+TEST(Memory, makes_a_touched_stack_free_of_page_faults) {
     if (heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer has pages of its own beside each of ours";
     const std::size_t used = 64 * page_bytes();
     EXPECT_GE(on_stack(Pages{128}, {0, used, 0}).faults, 50u) << "without touching, each page is a fault";
     EXPECT_LT(on_stack(Pages{128}, {used + 16 * page_bytes(), used, 0}).faults, 5u);
 }
 
-TEST(Memory, shows_how_deep_a_painted_stack_was_used) {
+TEST(Memory, measures_the_used_depth_of_a_painted_stack) {
     const Pages stack{64};
     paint_stack(stack.span());
     EXPECT_EQ(stack_high_water_bytes(stack.span()), 0u);
@@ -128,7 +128,7 @@ TEST(Memory, shows_how_deep_a_painted_stack_was_used) {
     }
 }
 
-TEST(Memory, reports_an_overrun_stack_as_fully_used) {
+TEST(Memory, reports_an_overflowed_stack_as_fully_used) {
     const Pages pages{4};
     const std::span stack = pages.span();
     paint_stack(stack);
@@ -136,7 +136,7 @@ TEST(Memory, reports_an_overrun_stack_as_fully_used) {
     EXPECT_EQ(stack_high_water_bytes(stack), stack.size() - page_bytes());
 }
 
-TEST(Memory, grows_by_what_is_touched) {
+TEST(Memory, usage_grows_by_touched_bytes) {
     if (heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer keeps memory of its own";
     const std::size_t before = rss_bytes();
     EXPECT_GT(before, 100'000u);
@@ -145,13 +145,13 @@ TEST(Memory, grows_by_what_is_touched) {
     EXPECT_GE(rss_bytes(), before + 1900 * page_bytes());
 }
 
-TEST(Memory, is_locked_or_says_what_to_do) {
+TEST(Memory, is_locked_or_reports_a_cure) {
     if (heap::sanitizer_owns_malloc) GTEST_SKIP() << "a sanitizer makes mlockall do nothing";
     EXPECT_FALSE(memory_is_locked());
     const auto locked = lock_memory();
     if (locked) {
         EXPECT_TRUE(memory_is_locked());
-        const Pages pages{50}; // locked at once: no fault when it is used
+        const Pages pages{50}; // locked at once: no page fault on use
         const PageFaults before = page_faults_of_this_thread();
         touch(pages.span());
         EXPECT_LT((page_faults_of_this_thread() - before).minor, 5u);

@@ -1,4 +1,4 @@
-// A file is replaced at once, and stays replaced when the power fails after it.
+// A file is replaced atomically, and stays replaced after a power failure.
 #include "kernel/os/terminal.hpp"
 
 #include "tests/kernel/os/folder.hpp"
@@ -22,7 +22,7 @@ bool disk_fails = false;
 
 } // namespace
 
-/// This program's own: remembers what was brought to the disk, or refuses it.
+/// Replaces the library's function: records what was flushed to the disk, or fails.
 extern "C" int fsync(int file) {
     std::error_code none;
     synced.push_back(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(file), none));
@@ -54,14 +54,14 @@ struct ReplaceFile : testing::Test {
     }
 };
 
-TEST_F(ReplaceFile, brings_the_file_and_then_its_directory_to_the_disk) {
+TEST_F(ReplaceFile, flushes_the_file_and_then_its_directory_to_the_disk) {
     EXPECT_TRUE(replace_file(path.c_str(), "new"));
     EXPECT_EQ(contents(), "new");
     EXPECT_EQ(files(), 1);
     EXPECT_EQ(synced, (std::vector<std::string>{path + ".new", directory}));
 }
 
-TEST_F(ReplaceFile, finds_the_directory_of_a_name_alone) {
+TEST_F(ReplaceFile, finds_the_directory_of_a_bare_name) {
     const auto before = std::filesystem::current_path();
     std::filesystem::current_path(directory);
     EXPECT_TRUE(replace_file("summary.json", "new"));
@@ -71,21 +71,21 @@ TEST_F(ReplaceFile, finds_the_directory_of_a_name_alone) {
     EXPECT_EQ(synced[1], directory);
 }
 
-TEST_F(ReplaceFile, leaves_the_old_file_and_nothing_else_when_writing_fails) {
+TEST_F(ReplaceFile, keeps_the_old_file_and_nothing_else_when_writing_fails) {
     disk_fails = true;
     EXPECT_FALSE(replace_file(path.c_str(), "new"));
     EXPECT_EQ(contents(), "old");
     EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReplaceFile, leaves_nothing_behind_when_the_name_cannot_be_taken) {
+TEST_F(ReplaceFile, leaves_no_file_behind_when_the_rename_fails) {
     std::filesystem::remove(path);
     std::filesystem::create_directory(path);
     EXPECT_FALSE(replace_file(path.c_str(), "new"));
     EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReplaceFile, refuses_a_directory_that_is_not_there) {
+TEST_F(ReplaceFile, refuses_a_missing_directory) {
     EXPECT_FALSE(replace_file((directory + "/no/where").c_str(), "new"));
 }
 

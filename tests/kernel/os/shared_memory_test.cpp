@@ -1,4 +1,4 @@
-// Sharing a machine's memory (thesis 4.8, task browsing): others see every change, and can change nothing.
+// Sharing a machine's memory (thesis 4.8, task browsing): readers see every change and can change nothing.
 #include "kernel/os/shared_memory.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct SharedBlock : testing::Test {
     void SetUp() override { ASSERT_TRUE(shared.lay_under(block, "tappet-test")) << "no memfd"; }
 };
 
-TEST_F(SharedBlock, what_is_written_to_the_block_is_read_through_the_descriptor) {
+TEST_F(SharedBlock, shows_its_content_through_the_descriptor) {
     const auto seen = map_to_read(shared.descriptor());
     ASSERT_EQ(seen.size(), block.size());
     block[0] = std::byte{7};
@@ -28,14 +28,14 @@ TEST_F(SharedBlock, what_is_written_to_the_block_is_read_through_the_descriptor)
     unmap(seen);
 }
 
-TEST(SharedMemory, is_zero_when_it_is_laid_under_whatever_stood_there) {
+TEST(SharedMemory, is_zero_when_created_over_old_content) {
     block[5000] = std::byte{1};
     SharedMemory shared;
     ASSERT_TRUE(shared.lay_under(block, "tappet-test"));
     for (const std::byte each : block) ASSERT_EQ(each, std::byte{0});
 }
 
-TEST_F(SharedBlock, cannot_be_mapped_for_writing_written_or_resized_through_the_descriptor) {
+TEST_F(SharedBlock, is_read_only_through_the_descriptor) {
     const int file = shared.descriptor();
     EXPECT_EQ(mmap(nullptr, block.size(), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0), MAP_FAILED);
     EXPECT_LT(pwrite(file, "x", 1, 0), 0);
@@ -48,7 +48,7 @@ TEST_F(SharedBlock, cannot_be_mapped_for_writing_written_or_resized_through_the_
     EXPECT_EQ(block[1], std::byte{3}) << "the machine itself still writes";
 }
 
-TEST(SharedMemory, outlives_the_one_who_laid_it_as_long_as_it_is_mapped) {
+TEST(SharedMemory, outlives_its_creator_while_it_is_mapped) {
     std::span<const std::byte> seen;
     {
         SharedMemory shared;
@@ -60,7 +60,7 @@ TEST(SharedMemory, outlives_the_one_who_laid_it_as_long_as_it_is_mapped) {
     unmap(seen);
 }
 
-TEST(SharedMemory, a_descriptor_that_is_none_maps_to_nothing) { EXPECT_TRUE(map_to_read(-1).empty()); }
+TEST(SharedMemory, maps_an_invalid_descriptor_to_nothing) { EXPECT_TRUE(map_to_read(-1).empty()); }
 
 } // namespace
 } // namespace tappet::os

@@ -1,5 +1,4 @@
-// Stamps from the processor's counter are those of the clock: none is before the one taken last, none is
-// ahead.
+// Stamps from the processor's counter agree with the clock: none is before the previous one, none is ahead.
 #include "kernel/os/stamps.hpp"
 
 #include "tests/kernel/os/folder.hpp"
@@ -13,7 +12,7 @@
 namespace tappet::os {
 namespace {
 
-/// A made-up kernel that takes its time from another source.
+/// A simulated kernel that uses another clock source.
 bool prove_with_source(std::string_view name) {
     const test::Folder root;
     const std::string folder = root.path + "/sys/devices/system/clocksource/clocksource0";
@@ -38,18 +37,18 @@ void expect_stamps_of_the_clock(int count, Duration late_at_most) {
     }
 }
 
-TEST(Stamps, are_never_before_one_another_nor_ahead_of_the_clock_nor_far_behind) {
+TEST(Stamps, increase_and_stay_close_behind_the_clock) {
     static_cast<void>(prove_processor_counter());
     expect_stamps_of_the_clock(300'000, Stamps::most_behind);
 }
 
-TEST(Stamps, are_readings_of_the_clock_where_the_counter_is_not_proven) {
+TEST(Stamps, are_clock_readings_where_the_counter_is_unproven) {
     EXPECT_FALSE(prove_with_source("hpet")) << "the kernel found the counter wanting";
     EXPECT_FALSE(prove_processor_counter("/nowhere")) << "nobody says what the kernel takes";
     expect_stamps_of_the_clock(1000, Duration::zero());
 }
 
-TEST(Stamps, say_that_a_time_has_come_once_they_are_renewed) {
+TEST(Stamps, reach_the_current_time_once_renewed) {
     static_cast<void>(prove_processor_counter());
     const Clock clock{Clock::Kind::real};
     Stamps stamps;
@@ -62,7 +61,7 @@ TEST(Stamps, say_that_a_time_has_come_once_they_are_renewed) {
     }
 }
 
-TEST(Stamps, stand_still_with_virtual_time) {
+TEST(Stamps, stand_still_in_virtual_time) {
     static_cast<void>(prove_processor_counter());
     Clock clock{Clock::Kind::virtual_time};
     Stamps stamps;

@@ -1,4 +1,4 @@
-// A small program that may be started without its standard files: it prints, opens a file, and exits with
+// A small program that can be started without its standard files: it prints, opens a file, and exits with
 // that file's number.
 #include "kernel/os/terminal.hpp"
 

@@ -1,4 +1,4 @@
-// A program that is started without standard files, as a service may be, prints into nothing that it opens.
+// A program started without standard files, like a service, never prints into a file that it opens.
 #include "tests/toolchain/program.hpp"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,7 @@
 namespace tappet::os {
 namespace {
 
-/// Without the standard files in `closed`, a bit for each. Its exit code is the number of the file that it
-/// opened.
+/// Runs without the standard files in `closed`, one bit each. The exit code is the number of the opened file.
 Ended run_without(unsigned closed) {
     std::string command = "exec " TAPPET_STANDARD_FILES_PROBE;
     for (unsigned file = 0; file < 3; ++file)
@@ -17,7 +16,7 @@ Ended run_without(unsigned closed) {
 
 constexpr unsigned out = 1u << 1;
 
-TEST(StandardFiles, that_were_not_given_are_nothing_that_a_program_opens) {
+TEST(StandardFiles, are_reserved_when_they_were_not_given) {
     for (unsigned closed = 0; closed < 8; ++closed) {
         const int opened = run_without(closed).exit_code;
         EXPECT_GE(opened, 3) << closed;
@@ -25,7 +24,7 @@ TEST(StandardFiles, that_were_not_given_are_nothing_that_a_program_opens) {
     }
 }
 
-TEST(StandardFiles, that_were_given_stay_what_they_are) {
+TEST(StandardFiles, are_unchanged_when_they_were_given) {
     for (unsigned closed = 0; closed < 8; ++closed)
         EXPECT_EQ(run_without(closed).text, (closed & out) != 0 ? "" : "printed\n") << closed;
 }

@@ -1,4 +1,4 @@
-// What a machine writes reaches its reader whole or not at all, and never holds up who writes it.
+// Output of a machine reaches its reader whole or not at all, and never blocks its writer.
 #include "kernel/os/terminal.hpp"
 
 #include "kernel/os/signals.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 void ignore(int) noexcept {}
 
-/// Standard output is one end of something, as long as this lives.
+/// Redirects standard output to one end of something during its lifetime.
 class StandardOutput {
 public:
     explicit StandardOutput(int end) : kept_{::dup(STDOUT_FILENO)} {
@@ -49,7 +49,7 @@ private:
 
 std::string line(int number) { return "line " + std::to_string(number) + std::string(90, '.') + "\n"; }
 
-/// What is there now.
+/// The text available now.
 std::string take(int from) {
     ::fcntl(from, F_SETFL, ::fcntl(from, F_GETFL) | O_NONBLOCK);
     std::string all(1 << 20, '\0');
@@ -60,7 +60,7 @@ std::string take(int from) {
     return all;
 }
 
-/// Every line of it is one of ours, in order, or says how many are missing.
+/// Every line is one of ours, in order, or states how many are missing.
 void expect_whole_lines(const std::string& read) {
     int next = 0;
     for (std::size_t at = 0; at < read.size();) {
@@ -84,11 +84,11 @@ void write_more_than_fits() {
     for (int n = 0; n < more_than_fits; ++n) print(line(n));
 }
 
-TEST(Terminal, drops_and_counts_whole_texts_while_the_reader_of_a_pipe_stands_still) {
+TEST(Terminal, drops_and_counts_whole_texts_while_the_pipe_reader_is_stopped) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const StandardOutput output{ends[1]};
-    write_more_than_fits(); // it came back: that is the promise
+    write_more_than_fits(); // it returned, as promised
     EXPECT_GT(output.dropped(), 1000u);
     const auto dropped = output.dropped();
     std::string all = take(ends[0]);
@@ -101,7 +101,7 @@ TEST(Terminal, drops_and_counts_whole_texts_while_the_reader_of_a_pipe_stands_st
     ::close(ends[0]);
 }
 
-TEST(Terminal, does_not_change_the_pipe_for_others_who_share_it) {
+TEST(Terminal, leaves_a_shared_pipe_unchanged_for_other_users) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const int shared = ::dup(ends[1]);
@@ -112,17 +112,17 @@ TEST(Terminal, does_not_change_the_pipe_for_others_who_share_it) {
     ::close(ends[0]);
 }
 
-TEST(Terminal, outlives_a_reader_that_went_away) {
+TEST(Terminal, survives_the_exit_of_a_reader) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const StandardOutput output{ends[1]};
     print("before\n");
     ::close(ends[0]);
-    print("after\n"); // neither a signal ends us, nor does anybody wait
+    print("after\n"); // no signal ends the process, and nothing waits
     EXPECT_EQ(output.dropped(), 1u);
 }
 
-TEST(Terminal, starts_when_the_reader_is_gone_already) {
+TEST(Terminal, starts_without_a_reader) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     ::close(ends[0]);
@@ -131,14 +131,14 @@ TEST(Terminal, starts_when_the_reader_is_gone_already) {
     EXPECT_EQ(output.dropped(), 1u);
 }
 
-TEST(Terminal, does_not_wait_for_a_terminal_that_was_stopped_nor_for_one_that_hung_up) {
+TEST(Terminal, does_not_wait_for_a_stopped_or_closed_terminal) {
     const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(master >= 0 && ::grantpt(master) == 0 && ::unlockpt(master) == 0);
     const int terminal = ::open(::ptsname(master), O_RDWR | O_NOCTTY);
     ASSERT_GE(terminal, 0);
     const int kept = ::dup(terminal);
     const StandardOutput output{terminal};
-    ASSERT_EQ(::tcflow(kept, TCOOFF), 0); // what Ctrl-S does
+    ASSERT_EQ(::tcflow(kept, TCOOFF), 0); // the effect of Ctrl-S
     write_more_than_fits();
     EXPECT_GT(output.dropped(), 1000u);
     ASSERT_EQ(::tcflow(kept, TCOON), 0);
@@ -153,7 +153,7 @@ TEST(Terminal, does_not_wait_for_a_terminal_that_was_stopped_nor_for_one_that_hu
     EXPECT_EQ(output.dropped(), before + 1);
 }
 
-TEST(Terminal, does_not_wait_for_what_it_may_not_open_anew) {
+TEST(Terminal, does_not_wait_for_a_file_that_it_may_not_reopen) {
     if (::geteuid() != 0) GTEST_SKIP() << "only root can become somebody who may not";
     for (const bool at_terminal : {false, true}) {
         int ends[2];
@@ -194,7 +194,7 @@ TEST(Terminal, does_not_wait_for_a_socket) {
     EXPECT_EQ(output.dropped(), before + 1);
 }
 
-TEST(Terminal, writes_after_what_stands_in_a_file) {
+TEST(Terminal, appends_to_the_content_of_a_file) {
     const std::string path = testing::TempDir() + "terminal_test." + std::to_string(::getpid());
     const int file = ::open(path.c_str(), O_CREAT | O_RDWR | O_TRUNC | O_CLOEXEC, 0600);
     ASSERT_GE(file, 0);
@@ -210,7 +210,7 @@ TEST(Terminal, writes_after_what_stands_in_a_file) {
     ::close(reader);
 }
 
-TEST(Signals, that_would_end_or_freeze_the_process_are_handed_over_and_a_closed_pipe_is_not_one) {
+TEST(Signals, are_handed_over_when_they_would_end_or_freeze_the_process) {
     static int got = 0;
     on_termination([](int number) noexcept { got = number; });
     for (const int number :
@@ -224,7 +224,7 @@ TEST(Signals, that_would_end_or_freeze_the_process_are_handed_over_and_a_closed_
     on_termination(nullptr);
 }
 
-TEST(Signals, are_taken_by_the_starter_of_a_thread_and_never_by_the_thread) {
+TEST(Signals, are_handled_by_the_starter_of_a_thread_only) {
     static std::atomic<int> got{0};
     got = 0;
     on_termination([](int number) noexcept { got = number; });
@@ -244,9 +244,9 @@ TEST(Signals, are_taken_by_the_starter_of_a_thread_and_never_by_the_thread) {
     sigemptyset(&term);
     sigaddset(&term, SIGTERM);
     ASSERT_EQ(::pthread_sigmask(SIG_BLOCK, &term, nullptr), 0);
-    ::kill(::getpid(), SIGTERM); // to whichever thread would take it
+    ::kill(::getpid(), SIGTERM); // to any thread that accepts it
     looked = false;
-    while (!looked) { // it went on, by then with the signal, were it its
+    while (!looked) { // it continued, and by then had the signal if it accepted it
     }
     EXPECT_EQ(got, 0);
     ends = true;

@@ -1,4 +1,4 @@
-// Waiting for a thread's end: as long as told, whatever the wall clock says.
+// Waiting for a thread's end: for the given time, whatever the wall clock shows.
 #include "kernel/os/thread.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ std::atomic<long> wall_clock_ahead_s{0};
 
 } // namespace
 
-/// This program's own: the wall clock may be set.
+/// Replaces the library's function, so that the test can set the wall clock.
 extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
     const auto result = static_cast<int>(syscall(SYS_clock_gettime, clock, time));
     if (clock == CLOCK_REALTIME) time->tv_sec += wall_clock_ahead_s.load();
@@ -45,20 +45,20 @@ struct ThreadTest : testing::Test {
     }
 };
 
-TEST_F(ThreadTest, is_waited_for_until_it_ends) {
+TEST_F(ThreadTest, waits_until_a_thread_ends) {
     may_end = true;
     EXPECT_TRUE(thread.join_within(60'000));
     EXPECT_FALSE(thread.running());
 }
 
-TEST_F(ThreadTest, is_not_waited_for_longer_than_told) {
+TEST_F(ThreadTest, waits_no_longer_than_the_given_time) {
     EXPECT_FALSE(thread.join_within(20));
     EXPECT_TRUE(thread.running());
     may_end = true;
     EXPECT_TRUE(thread.join_within(60'000));
 }
 
-TEST_F(ThreadTest, is_waited_for_as_long_as_told_though_the_wall_clock_was_set_back) {
+TEST_F(ThreadTest, waits_the_given_time_although_the_wall_clock_was_set_back) {
     wall_clock_ahead_s = -3600;
     std::thread later{[this] {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));

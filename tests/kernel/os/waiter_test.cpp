@@ -1,4 +1,4 @@
-// The wait of an activity: what ends it, and what does not.
+// The wait of an activity: events that end it, and events that do not.
 #include "kernel/os/waiter.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -18,7 +18,7 @@
 namespace tappet::os {
 namespace {
 
-/// A device that has something to say until it is asked.
+/// A device that is ready until it is read.
 struct ReadyDevice {
     int ends[2] = {-1, -1};
     ReadyDevice() {
@@ -52,7 +52,7 @@ TEST(Waiter, returns_for_a_device_that_is_ready) {
     EXPECT_TRUE(waiter.wait(never));
 }
 
-TEST(Waiter, does_not_return_for_a_ready_device_that_it_does_not_heed) {
+TEST(Waiter, ignores_a_ready_device_that_it_does_not_watch) {
     const ReadyDevice device, other;
     Waiter waiter;
     ASSERT_TRUE(waiter.watch(device.ends[0]));
@@ -66,7 +66,7 @@ TEST(Waiter, does_not_return_for_a_ready_device_that_it_does_not_heed) {
     EXPECT_TRUE(waiter.wait(never));
 }
 
-TEST(Waiter, does_not_return_for_what_a_driver_watches_that_is_not_served) {
+TEST(Waiter, ignores_a_device_whose_driver_is_not_served) {
     const ReadyDevice first, second;
     Waiter waiter;
     waiter.watch_for(0);
@@ -82,7 +82,7 @@ TEST(Waiter, does_not_return_for_what_a_driver_watches_that_is_not_served) {
     EXPECT_TRUE(waiter.wait(never));
 }
 
-TEST(Waiter, does_not_return_for_a_ready_device_while_it_waits_for_a_wake_alone) {
+TEST(Waiter, ignores_a_ready_device_while_it_waits_for_a_wake_only) {
     const ReadyDevice device;
     Waiter waiter;
     ASSERT_TRUE(waiter.watch(device.ends[0]));
@@ -90,7 +90,7 @@ TEST(Waiter, does_not_return_for_a_ready_device_while_it_waits_for_a_wake_alone)
     EXPECT_TRUE(waiter.wait(never)) << "the device has not been forgotten";
 }
 
-TEST(Waiter, returns_once_for_a_device_that_hangs_up_and_does_not_spin_on_it) {
+TEST(Waiter, returns_once_without_spinning_when_a_device_hangs_up) {
     ReadyDevice gone;
     char taken = 0;
     ASSERT_EQ(::read(gone.ends[0], &taken, 1), 1);
@@ -107,7 +107,7 @@ TEST(Waiter, returns_once_for_a_device_that_hangs_up_and_does_not_spin_on_it) {
     EXPECT_TRUE(waiter.wait(never));
 }
 
-/// A socket of the loopback, alone or connected to another's port.
+/// A loopback socket, alone or connected to another's port.
 struct Datagrams {
     int descriptor = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     Datagrams() {
@@ -136,13 +136,13 @@ struct Datagrams {
     }
 };
 
-TEST(Waiter, watches_a_device_again_once_its_driver_took_the_error) {
-    const Datagrams device; // as a CAN socket whose interface goes down and comes back
+TEST(Waiter, watches_a_device_again_after_its_driver_read_the_error) {
+    const Datagrams device; // like a CAN socket whose interface goes down and up again
     {
         const Datagrams nobody;
         device.connect_to(nobody.port());
     }
-    ASSERT_EQ(::send(device.descriptor, "x", 1, 0), 1); // refused: the socket remembers it as an error
+    ASSERT_EQ(::send(device.descriptor, "x", 1, 0), 1); // refused: the socket keeps it as an error
     Waiter waiter;
     ASSERT_TRUE(waiter.watch(device.descriptor));
     EXPECT_TRUE(waiter.wait(never));
@@ -165,7 +165,7 @@ TEST(Waiter, watches_a_device_again_once_its_driver_took_the_error) {
     EXPECT_TRUE(waiter.wait(Clock::monotonic() + 10s)) << "a new error is told anew";
 }
 
-TEST(Waiter, takes_a_wake_that_came_before_the_wait) {
+TEST(Waiter, accepts_a_wake_that_came_before_the_wait) {
     for (const bool with_device : {false, true}) {
         const ReadyDevice device;
         Waiter waiter;
@@ -176,7 +176,7 @@ TEST(Waiter, takes_a_wake_that_came_before_the_wait) {
     }
 }
 
-TEST(Waiter, keeps_a_wake_after_a_post_until_it_is_taken_and_then_takes_the_next) {
+TEST(Waiter, keeps_a_posted_wake_until_accepted_and_then_accepts_the_next) {
     Waiter waiter;
     for (int round = 0; round < 3; ++round) {
         EXPECT_FALSE(waiter.is_woken());
@@ -188,7 +188,7 @@ TEST(Waiter, keeps_a_wake_after_a_post_until_it_is_taken_and_then_takes_the_next
     }
 }
 
-TEST(Waiter, is_woken_out_of_its_sleep_after_each_post) {
+TEST(Waiter, wakes_up_after_each_post) {
     Waiter waiter;
     std::atomic<std::uint64_t> posted{0};
     std::atomic<std::uint64_t> seen{0};
@@ -205,11 +205,11 @@ TEST(Waiter, is_woken_out_of_its_sleep_after_each_post) {
         if (i % 64 == 0) // it sleeps now and then
             while (seen.load() <= i) std::this_thread::yield();
     }
-    sleeper.join(); // it would hang if the last wake were lost
+    sleeper.join(); // it would hang after losing the last wake
     EXPECT_EQ(seen.load(), posts);
 }
 
-TEST(Waiter, without_devices_sleeps_until_a_wake) {
+TEST(Waiter, sleeps_until_a_wake_without_devices) {
     Waiter waiter;
     expect_sleeps_until_it_is_woken(waiter);
 }

@@ -1,4 +1,4 @@
-// Answers the calls of Linux's watchdog interface, and no others.
+// Handles the calls of Linux's watchdog interface, and no others.
 #include "tests/kernel/os/watchdog_device.hpp"
 
 #include <cerrno>
@@ -19,7 +19,7 @@ struct {
 
 } // namespace
 
-/// This program's own.
+/// Replaces the library's function.
 extern "C" int ioctl(int, unsigned long request, ...) noexcept {
     std::va_list more;
     va_start(more, request);

@@ -1,11 +1,11 @@
-// A watchdog device for tests: a file, and this program's own ioctl, which counts what a Watchdog asks of it.
+// A watchdog device for tests: a file, and a replaced ioctl that counts the requests of a Watchdog.
 #pragma once
 
 #include <string>
 
 namespace tappet::os {
 
-/// One at a time; it begins with the test that makes it.
+/// Only one at a time; it starts with the test that creates it.
 class WatchdogDevice {
 public:
     explicit WatchdogDevice(int seconds = 8);
@@ -16,7 +16,7 @@ public:
     [[nodiscard]] const char* path() const { return path_.c_str(); }
     [[nodiscard]] int openings() const;
     [[nodiscard]] int kicks() const;
-    /// It was told that nothing is to be reset.
+    /// It was told to disarm: no reset follows.
     [[nodiscard]] bool is_stood_down() const;
 
 private:

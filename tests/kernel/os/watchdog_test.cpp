@@ -1,4 +1,4 @@
-// What the latch of the outputs lets through to the watchdog, at each of its states.
+// The requests that the output latch passes to the watchdog in each of its states.
 #include "kernel/os/watchdog.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -18,7 +18,7 @@ struct AWatchdog : testing::Test {
     Time now = Clock::monotonic();
 
     void open() { ASSERT_TRUE(watchdog.open(device.path(), 10s)); }
-    /// Kicks that come through in so long.
+    /// The kicks that pass through during the time.
     int kicks_in(Duration time) {
         const int before = device.kicks();
         for (const Time end = now + time; now < end; now += 100ms) watchdog.kick(now);
@@ -26,14 +26,14 @@ struct AWatchdog : testing::Test {
     }
 };
 
-TEST_F(AWatchdog, is_kicked_as_long_as_the_outputs_are_safe) {
+TEST_F(AWatchdog, is_kicked_while_the_outputs_are_safe) {
     open();
     EXPECT_EQ(device.kicks(), 1) << "opening is one";
     now += 1s;
     EXPECT_EQ(kicks_in(80s), 80) << "eight times as often as it must";
 }
 
-TEST_F(AWatchdog, is_kicked_while_a_machine_was_seen_to_live_a_moment_ago) {
+TEST_F(AWatchdog, is_kicked_while_the_machine_was_recently_alive) {
     open();
     now += 1s;
     ASSERT_TRUE(outputs.drive(now + 2s));
@@ -42,7 +42,7 @@ TEST_F(AWatchdog, is_kicked_while_a_machine_was_seen_to_live_a_moment_ago) {
     EXPECT_EQ(kicks_in(60s), 2);
 }
 
-TEST_F(AWatchdog, is_kicked_no_longer_than_its_bound_once_the_outputs_are_lost) {
+TEST_F(AWatchdog, is_not_kicked_beyond_its_bound_after_the_outputs_are_lost) {
     open();
     now += 1s;
     const Time bound = now + 3s;
@@ -55,7 +55,7 @@ TEST_F(AWatchdog, is_kicked_no_longer_than_its_bound_once_the_outputs_are_lost) 
     EXPECT_EQ(kicks_in(60s), 0);
 }
 
-TEST_F(AWatchdog, is_neither_opened_nor_stood_down_nor_handed_over_with_a_kick_while_they_are_unsafe) {
+TEST_F(AWatchdog, stays_armed_without_a_kick_while_the_outputs_are_unsafe) {
     open();
     outputs.lose(Time::min());
     watchdog.hand_over();
@@ -66,7 +66,7 @@ TEST_F(AWatchdog, is_neither_opened_nor_stood_down_nor_handed_over_with_a_kick_w
     EXPECT_EQ(device.openings(), 1);
 }
 
-TEST_F(AWatchdog, ticks_on_when_it_is_let_go_of_while_they_are_unsafe) {
+TEST_F(AWatchdog, keeps_running_when_released_while_the_outputs_are_unsafe) {
     open();
     outputs.lose(Time::min());
     watchdog.stand_down();
@@ -77,7 +77,7 @@ TEST_F(AWatchdog, ticks_on_when_it_is_let_go_of_while_they_are_unsafe) {
     EXPECT_TRUE(device.is_stood_down());
 }
 
-TEST(AnOutputLatch, goes_from_unsafe_to_safe_by_a_guardians_word_only) {
+TEST(AnOutputLatch, becomes_safe_again_only_by_the_guardian) {
     OutputLatch outputs;
     EXPECT_EQ(outputs.state(), State::safe) << "nothing has driven them";
     ASSERT_TRUE(outputs.drive(Time::min()));

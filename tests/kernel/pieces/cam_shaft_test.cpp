@@ -1,4 +1,4 @@
-// A cam table as a component of a machine, under virtual time: what fires where, and what does not.
+// A cam table as a component of a machine, in virtual time: which cams fire where, and which do not.
 #include "kernel/pieces/cam_shaft.hpp"
 
 #include "tests/kernel/base/hostile.hpp"
@@ -13,15 +13,15 @@ namespace {
 constexpr auto cams =
     cam_table(300_rpm, cam("mark", at(40_deg)), cam("eject", window(80_deg, 120_deg), dead_time(5ms)));
 
-/// Turns at its speed; its code is a place in the turn, or a counter of 16 bits that runs on. Every 1 ms.
+/// Turns at its speed; its code is a position in the turn, or a free-running 16-bit counter. Every 1 ms.
 struct Encoder {
     Output<std::int64_t> code, counter;
     Output<bool> runs;
     bool enabled = true, silent = false, fights = false;
     double deg_s = 360.0, deg = 0.0;
     std::int64_t offset = 0;
-    Duration ahead{};               ///< of its stamps
-    test::Hostile* noise = nullptr; ///< what it writes then, and when that is to have been true
+    Duration ahead{};               ///< offset of its stamps
+    test::Hostile* noise = nullptr; ///< source of random codes and stamps
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
         deg += deg_s * 1e-3;
         runs.write(enabled);
@@ -33,7 +33,7 @@ struct Encoder {
             return counter.write(any, at);
         }
         const auto codes = static_cast<std::int64_t>(std::floor(deg / 360.0 * 4000.0)) + offset;
-        // A second encoder, that stands elsewhere, sends under the same identifier.
+        // A second encoder at another position sends with the same identifier.
         is_other_ = fights && !is_other_;
         code.write(is_other_ ? 3000 : (codes % 4000 + 4000) % 4000, cycle.now + ahead);
         counter.write(codes & 0xFFFF, cycle.now + ahead);
@@ -49,7 +49,7 @@ private:
 };
 
 struct Ejector {
-    const Encoder* encoder = nullptr; ///< to look where it is
+    const Encoder* encoder = nullptr; ///< gives the true position
     std::vector<double> marks, hits, rests;
     int lost = 0;
     void mark() noexcept TAPPET_REALTIME { note(marks); }
@@ -63,7 +63,7 @@ struct Ejector {
                       operation<&Ejector::rest>("rest", "it is not there"),
                       operation<&Ejector::lose>("lose", "nobody knows"));
     }
-    [[nodiscard]] bool is_driven() const { return hits.size() > rests.size() - 1; } // one rest is the start's
+    [[nodiscard]] bool is_driven() const { return hits.size() > rests.size() - 1; } // the start adds one rest
 
 private:
     void note(std::vector<double>& where) const noexcept TAPPET_REALTIME {
@@ -92,7 +92,7 @@ struct Turning : test::Hostile, VirtualRig {
         ejector.encoder = &encoder;
     }
 
-    /// Numbers meanwhile, and half a second later it is followed as if nothing had been.
+    /// Outputs are numbers meanwhile; half a second later the shaft follows as if nothing had happened.
     void expect_forgets_noise() {
         run(250ms);
         encoder.noise = this;
@@ -123,7 +123,7 @@ void expect_near(const std::vector<double>& where, double at, double within) {
 }
 
 TEST_F(Turning, points_fire_at_their_angle_and_windows_their_dead_time_earlier) {
-    ejector.rests.clear(); // the start's
+    ejector.rests.clear(); // from the start
     run(3s);
     EXPECT_EQ(ejector.marks.size(), 3u);
     EXPECT_EQ(ejector.hits.size(), 3u);
@@ -137,7 +137,7 @@ TEST_F(Turning, points_fire_at_their_angle_and_windows_their_dead_time_earlier) 
     EXPECT_TRUE(shaft.valid.last());
 }
 
-TEST_F(Turning, nothing_fires_while_it_is_not_enabled_and_what_is_driven_rests_at_once) {
+TEST_F(Turning, nothing_fires_while_disabled_and_actuators_rest_at_once) {
     run(250ms); // 90 degrees
     EXPECT_TRUE(ejector.is_driven());
     encoder.enabled = false;
@@ -150,7 +150,7 @@ TEST_F(Turning, nothing_fires_while_it_is_not_enabled_and_what_is_driven_rests_a
     EXPECT_EQ(ejector.hits.size(), 2u) << "the angle was followed meanwhile";
 }
 
-TEST_F(Turning, a_silence_loses_the_angle_once_and_what_is_driven_rests) {
+TEST_F(Turning, a_silent_encoder_loses_the_angle_once_and_actuators_rest) {
     run(250ms);
     EXPECT_TRUE(ejector.is_driven());
     encoder.silent = true;
@@ -167,7 +167,7 @@ TEST_F(Turning, a_silence_loses_the_angle_once_and_what_is_driven_rests) {
     EXPECT_EQ(ejector.hits.size(), 1u);
 }
 
-TEST_F(Turning, what_was_passed_unseen_does_not_fire_afterwards) {
+TEST_F(Turning, cams_passed_unseen_do_not_fire_later) {
     run(90ms); // 32 degrees
     encoder.silent = true;
     run(20ms);
@@ -177,10 +177,10 @@ TEST_F(Turning, what_was_passed_unseen_does_not_fire_afterwards) {
     EXPECT_TRUE(ejector.marks.empty());
 }
 
-TEST_F(Turning, an_encoder_that_jumps_is_not_believed_and_what_is_driven_rests) {
+TEST_F(Turning, an_encoder_jump_is_rejected_and_actuators_rest) {
     run(250ms);
     EXPECT_TRUE(ejector.is_driven());
-    encoder.offset = -1000; // a quarter of a turn, for good
+    encoder.offset = -1000; // a permanent quarter of a turn
     run(10ms);
     EXPECT_EQ(ejector.lost, 1);
     EXPECT_FALSE(ejector.is_driven());
@@ -189,7 +189,7 @@ TEST_F(Turning, an_encoder_that_jumps_is_not_believed_and_what_is_driven_rests) 
     EXPECT_TRUE(shaft.valid.last());
 }
 
-TEST_F(Turning, two_encoders_that_send_by_turns_are_none) {
+TEST_F(Turning, two_alternating_encoders_are_rejected) {
     encoder.deg_s = 0.0;
     run(100ms);
     EXPECT_TRUE(shaft.valid.last());
@@ -202,10 +202,10 @@ TEST_F(Turning, two_encoders_that_send_by_turns_are_none) {
 }
 
 TEST_F(Turning, an_angle_that_was_seen_too_late_is_counted) {
-    encoder.deg_s = 12'000.0; // far beyond what the table is for
+    encoder.deg_s = 12'000.0; // far beyond the purpose of the table
     encoder.deg = 345.0 - 720.0;
     run(60ms);
-    encoder.silent = true; // 14 ms are 168 degrees, and no loss yet
+    encoder.silent = true; // 14 ms are 168 degrees, not yet a loss
     run(13ms);
     encoder.silent = false;
     const std::size_t marks = ejector.marks.size();
@@ -215,9 +215,9 @@ TEST_F(Turning, an_angle_that_was_seen_too_late_is_counted) {
     EXPECT_EQ(ejector.lost, 0);
 }
 
-TEST_F(Turning, codes_and_stamps_that_cannot_be_are_forgotten) { expect_forgets_noise(); }
+TEST_F(Turning, impossible_codes_and_stamps_are_ignored) { expect_forgets_noise(); }
 
-TEST_F(Turning, the_encoder_is_described_at_a_start_only) {
+TEST_F(Turning, the_encoder_is_configured_only_at_a_start) {
     const auto asks = [](CamShaft<cams>& of) {
         const std::array<std::byte, sizeof(std::int64_t)> finer{std::byte{8}};
         const ProposedValue value{reinterpret_cast<std::byte*>(&of.codes_per_turn), finer.data()};
@@ -228,7 +228,7 @@ TEST_F(Turning, the_encoder_is_described_at_a_start_only) {
     EXPECT_TRUE(asks(early).empty());
 }
 
-TEST_F(Turning, windows_are_told_to_be_left_at_start_and_stop) {
+TEST_F(Turning, windows_are_left_at_start_and_stop) {
     EXPECT_EQ(ejector.rests.size(), 1u);
     EXPECT_TRUE(ejector.hits.empty());
     world.stop();
@@ -239,15 +239,15 @@ struct Counting : Turning {
     Counting() : Turning{AtRunTime<counting, test_board>::machine()} {}
 };
 
-TEST_F(Counting, a_turn_begins_where_a_counter_was_seen_first_and_wraps_do_not_matter) {
+TEST_F(Counting, a_turn_starts_at_the_first_count_despite_wraps) {
     encoder.offset = 65'000;
     run(20s); // 80'000 codes
     EXPECT_EQ(ejector.hits.size(), 20u);
-    expect_near(ejector.hits, 80.0 - 1.8 + 0.36, 0.5); // the first code came after a millisecond
+    expect_near(ejector.hits, 80.0 - 1.8 + 0.36, 0.5); // the first code arrived after a millisecond
     EXPECT_EQ(ejector.lost, 0);
 }
 
-TEST_F(Counting, a_turn_begins_anew_after_a_loss) {
+TEST_F(Counting, a_turn_starts_anew_after_a_loss) {
     run(250ms);
     encoder.silent = true;
     run(100ms);
@@ -259,9 +259,9 @@ TEST_F(Counting, a_turn_begins_anew_after_a_loss) {
     expect_near(ejector.hits, 80.0 - 1.8, 0.8);
 }
 
-TEST_F(Counting, codes_and_stamps_that_cannot_be_are_forgotten) { expect_forgets_noise(); }
+TEST_F(Counting, impossible_codes_and_stamps_are_ignored) { expect_forgets_noise(); }
 
-TEST_F(Counting, a_stamp_far_ahead_does_not_hold_a_shaft_that_stands) {
+TEST_F(Counting, a_far_future_stamp_does_not_block_a_standing_shaft) {
     encoder.deg_s = 0.0;
     run(300ms);
     encoder.ahead = 1h;
@@ -273,7 +273,7 @@ TEST_F(Counting, a_stamp_far_ahead_does_not_hold_a_shaft_that_stands) {
     EXPECT_GE(ejector.hits.size(), 1u);
 }
 
-TEST_F(Counting, backwards_nothing_fires) {
+TEST_F(Counting, nothing_fires_backwards) {
     encoder.deg_s = -360.0;
     run(3s);
     EXPECT_EQ(shaft.fired.last(), 0);
@@ -281,7 +281,7 @@ TEST_F(Counting, backwards_nothing_fires) {
     EXPECT_NEAR(shaft.speed_rpm.last(), -60.0, 0.5);
 }
 
-TEST_F(Turning, a_code_that_was_forced_where_nobody_wrote_one_is_believed_no_longer_than_the_force) {
+TEST_F(Turning, a_forced_code_without_a_writer_ends_with_the_force) {
     encoder.silent = true;
     run(5ms);
     End end;
@@ -302,7 +302,7 @@ TEST_F(Turning, a_code_that_was_forced_where_nobody_wrote_one_is_believed_no_lon
     EXPECT_EQ(shaft.speed_rpm.last(), 0);
 }
 
-TEST_F(Turning, codes_whose_times_lie_ahead_are_those_of_when_they_were_seen) {
+TEST_F(Turning, codes_with_future_stamps_count_from_their_reception) {
     for (const Duration ahead : {Duration{10ms}, Duration{100ms}, Duration{900ms}}) {
         encoder.ahead = 0ms;
         run(2s);

@@ -1,4 +1,4 @@
-// Edges, counters of them, and outputs that are written on change.
+// Edges, their counters, and outputs that are written on change.
 #include "kernel/component/facet.hpp"
 #include "kernel/pieces/changed.hpp"
 #include "kernel/pieces/edges.hpp"
@@ -8,7 +8,7 @@
 namespace tappet {
 namespace {
 
-/// What an edge answers, value by value: '#' true, '.' false.
+/// The results of an edge, value by value: '#' true, '.' false.
 template <class Edge>
 std::string told(Edge& edge, std::string_view input) {
     std::string answers;
@@ -16,19 +16,19 @@ std::string told(Edge& edge, std::string_view input) {
     return answers;
 }
 
-TEST(RisingEdge, is_told_once_for_each_change_to_true) {
+TEST(RisingEdge, is_true_once_for_each_change_to_true) {
     RisingEdge rises;
     EXPECT_EQ(told(rises, ".##.#"), ".#..#");
 }
 
-TEST(RisingEdge, of_a_button_that_is_held_at_the_start_is_none) {
+TEST(RisingEdge, ignores_a_button_held_at_the_start) {
     RisingEdge rises;
     EXPECT_EQ(told(rises, "#.#"), "..#");
     rises.reset();
     EXPECT_EQ(told(rises, "#"), ".");
 }
 
-TEST(FallingEdge, is_told_once_for_each_change_to_false_and_not_of_the_first_value) {
+TEST(FallingEdge, is_true_once_for_each_change_to_false_after_the_first_value) {
     FallingEdge falls;
     EXPECT_EQ(told(falls, ".#.."), "..#.");
     falls.reset();
@@ -44,7 +44,7 @@ void press(Counter& counter, int times) {
     }
 }
 
-TEST(UpCounter, counts_edges_and_says_when_its_preset_is_reached) {
+TEST(UpCounter, counts_edges_and_reports_its_preset) {
     UpCounter counter{3};
     press(counter, 2);
     EXPECT_EQ(counter.value(), 2);
@@ -57,7 +57,7 @@ TEST(UpCounter, counts_edges_and_says_when_its_preset_is_reached) {
     EXPECT_EQ(counter.value(), 0);
 }
 
-TEST(DownCounter, ends_at_nought) {
+TEST(DownCounter, stops_at_zero) {
     DownCounter counter{2};
     press(counter, 1);
     EXPECT_FALSE(counter.used_up());
@@ -68,7 +68,7 @@ TEST(DownCounter, ends_at_nought) {
     EXPECT_EQ(counter.value(), 2);
 }
 
-TEST(UpDownCounter, leaves_its_value_when_both_come_at_once) {
+TEST(UpDownCounter, keeps_its_value_when_both_inputs_count_at_once) {
     UpDownCounter counter{1};
     counter(false, false);
     counter(true, true);
@@ -85,7 +85,7 @@ TEST(UpDownCounter, leaves_its_value_when_both_come_at_once) {
     EXPECT_EQ(counter.value(), std::numeric_limits<std::int64_t>::min()) << "it does not wrap round";
 }
 
-TEST(Changed, writes_the_first_value_and_then_news_only) {
+TEST(Changed, writes_the_first_value_and_then_only_changes) {
     Output<int> output;
     Changed<int> changed;
     EXPECT_EQ(output.last(), 0);

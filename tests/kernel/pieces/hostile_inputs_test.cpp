@@ -1,5 +1,5 @@
-// Whatever comes in whichever order, and whenever: pieces let no value out that is no number, keep their
-// limits, and are what they were some samples later.
+// For any inputs in any order, at any time, pieces return only numbers, respect their limits, and recover
+// after some samples.
 #include "kernel/pieces/integrator.hpp"
 #include "kernel/pieces/lead.hpp"
 #include "kernel/pieces/ramp.hpp"
@@ -16,7 +16,7 @@ struct Pieces : test::Hostile {
     bool flip() { return random.one_in(2); }
 };
 
-TEST_F(Pieces, of_a_ramp_move_no_faster_than_they_may_and_reach_their_target) {
+TEST_F(Pieces, of_a_ramp_respect_their_rate_and_reach_their_target) {
     for (int n = 0; n < sequences; ++n) {
         const double up = flip() ? value() : 10.0, down = flip() ? value() : 10.0;
         Ramp ramp{up, down, value()};
@@ -45,7 +45,7 @@ TEST_F(Pieces, of_a_ramp_move_no_faster_than_they_may_and_reach_their_target) {
     }
 }
 
-TEST_F(Pieces, of_an_integral_stay_between_its_limits_and_add_up_again) {
+TEST_F(Pieces, of_an_integral_stay_in_limits_and_integrate_again) {
     for (int n = 0; n < sequences; ++n) {
         const double low = flip() ? -std::numeric_limits<double>::infinity() : 10.0 * random.unit() - 5.0;
         const double high = flip() ? std::numeric_limits<double>::infinity() : std::max(low, -10.0) + 100.0;
@@ -69,7 +69,7 @@ TEST_F(Pieces, of_an_integral_stay_between_its_limits_and_add_up_again) {
     }
 }
 
-TEST_F(Pieces, of_dead_time_compensation_say_numbers_and_are_right_after_so_many_samples) {
+TEST_F(Pieces, of_dead_time_compensation_stay_finite_and_recover) {
     for (int n = 0; n < sequences; ++n) {
         const Duration farthest = flip() ? Duration{100ms} : std::max(step(), Duration{0});
         Lead lead{farthest};
@@ -91,7 +91,8 @@ TEST_F(Pieces, of_dead_time_compensation_say_numbers_and_are_right_after_so_many
         }
         at = Time{random.between(0, 1000) * 1s};
         double place = 10.0;
-        // Samples that come closer are believed when their distance has been doubled to that before: 64 bits.
+        // Closely spaced samples are accepted after their distance has doubled to that before: at most 64
+        // times.
         for (int k = 0; k < 66; ++k) lead.sample(place += 0.05, at += usual);
         ASSERT_TRUE(lead.good(at));
         EXPECT_NEAR(lead.per_s(), 50.0, 1e-6);
@@ -102,7 +103,7 @@ TEST_F(Pieces, of_dead_time_compensation_say_numbers_and_are_right_after_so_many
     }
 }
 
-/// In a constant expression, which has no undefined behaviour.
+/// In a constant expression, to exclude undefined behaviour.
 constexpr Lead after_all_time(Time first) {
     Lead lead{Duration::max()};
     lead.sample(0.0, first);
@@ -113,8 +114,8 @@ constexpr Lead after_all_time(Time first) {
 static_assert(after_all_time(Time::min()).per_s() > 0.0);
 static_assert(after_all_time(Time{}).drive_at(1.0 + to_seconds(Duration::max()), 0ns) == never);
 
-/// Time goes on or stands, and jumps far ahead: it never decreases. Delays are any.
-TEST_F(Pieces, that_delay_need_as_long_as_they_are_told_however_time_goes_on) {
+/// Time advances, stands still or jumps far ahead; it never decreases. Delays are arbitrary.
+TEST_F(Pieces, that_delay_use_the_configured_time_in_any_time_course) {
     for (int n = 0; n < sequences; ++n) {
         OnDelay on;
         OffDelay off;
@@ -147,7 +148,7 @@ TEST_F(Pieces, that_delay_need_as_long_as_they_are_told_however_time_goes_on) {
     }
 }
 
-TEST_F(Pieces, that_count_stay_at_the_ends_of_their_range) {
+TEST_F(Pieces, that_count_saturate_at_the_ends_of_their_range) {
     using Whole = std::numeric_limits<std::int64_t>;
     for (int n = 0; n < sequences; ++n) {
         const auto preset = flip() ? static_cast<std::int64_t>(random.next()) : random.between(-3, 3);

@@ -1,4 +1,4 @@
-// Totals that survive the main switch, with files below them, over two lives of a machine.
+// Totals that survive the main switch, stored in files, over two lives of a machine.
 #include "kernel/pieces/kept.hpp"
 #include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/configuration/property_keeper.hpp"
@@ -40,7 +40,7 @@ inline constexpr auto table = machine("press",
 
 constexpr std::size_t aside = 1; ///< the activity
 
-/// One life of the machine, which ends without a word, as by the main switch.
+/// One life of the machine, which ends without notice, as by the main switch.
 struct Life : VirtualRig {
     PropertyFiles files;
 
@@ -56,7 +56,7 @@ struct Kept : test::Hostile {
     std::string directory = folder.path;
 };
 
-TEST_F(Kept, hours_and_totals_go_on_where_the_keeper_last_saved_them) {
+TEST_F(Kept, hours_and_totals_resume_at_the_last_saved_values) {
     {
         Life life{directory};
         life.the<Press>("press").turns = true;
@@ -82,7 +82,7 @@ TEST_F(Kept, hours_and_totals_go_on_where_the_keeper_last_saved_them) {
     EXPECT_EQ(life.the<Total>("strokes").sum.last(), 10) << "a smaller count began anew";
 }
 
-TEST_F(Kept, a_total_that_is_restarted_counts_nothing_twice) {
+TEST_F(Kept, a_restarted_total_counts_nothing_twice) {
     Life life{directory};
     life.the<Press>("press").count = 10'000;
     life.run(1s);
@@ -96,7 +96,7 @@ TEST_F(Kept, a_total_that_is_restarted_counts_nothing_twice) {
     EXPECT_EQ(life.the<Total>("strokes").sum.last(), 10'015);
 }
 
-TEST_F(Kept, an_activity_that_is_stopped_keeps_no_other_from_being_saved) {
+TEST_F(Kept, values_are_saved_although_another_activity_is_stopped) {
     Life life{directory};
     life.the<Press>("press").count = 7;
     life.run(1s);
@@ -112,7 +112,7 @@ TEST_F(Kept, an_activity_that_is_stopped_keeps_no_other_from_being_saved) {
     EXPECT_EQ(next.the<Total>("strokes").total.get(), 8);
 }
 
-TEST_F(Kept, totals_and_hours_stop_at_the_ends_of_their_range_whatever_is_counted) {
+TEST_F(Kept, totals_and_hours_saturate_at_the_ends_of_their_range) {
     using Whole = std::numeric_limits<std::int64_t>;
     Life life{directory};
     auto& total = life.the<Total>("strokes").total;
@@ -135,7 +135,7 @@ TEST_F(Kept, totals_and_hours_stop_at_the_ends_of_their_range_whatever_is_counte
     EXPECT_EQ(hours.get(), 9'000'000'000s) << "or no file of it is read again";
 }
 
-TEST_F(Kept, time_is_counted_only_while_it_runs) {
+TEST_F(Kept, hours_count_only_while_running) {
     Life life{directory};
     Press& press = life.the<Press>("press");
     const auto seconds = [&] { return life.the<HourMeter>("hours").hours.last() * 3600; };
@@ -148,9 +148,9 @@ TEST_F(Kept, time_is_counted_only_while_it_runs) {
     EXPECT_NEAR(seconds(), 5.0, 0.05);
 }
 
-TEST_F(Kept, a_keeper_that_cannot_write_says_so_and_goes_on) {
+TEST_F(Kept, a_keeper_that_cannot_write_reports_it_and_continues) {
     Life life{directory};
-    std::filesystem::create_directory(directory + "/hours.cpf.new"); // where the new one would be written
+    std::filesystem::create_directory(directory + "/hours.cpf.new"); // the path of the new file
     testing::internal::CaptureStdout();
     life.run(125s);
     const std::string said = testing::internal::GetCapturedStdout();

@@ -1,4 +1,4 @@
-// Pieces of what moves: ramps, integrals, dead time compensated.
+// Motion pieces: ramps, integrals, dead-time compensation.
 #include "kernel/pieces/hand_over.hpp"
 #include "kernel/pieces/integrator.hpp"
 #include "kernel/pieces/lead.hpp"
@@ -14,7 +14,7 @@ namespace {
 using test::no_number, test::infinite;
 constexpr Time at(Duration time) { return Time{time}; }
 
-TEST(Ramp, follows_no_faster_than_it_may_and_does_not_pass_its_target) {
+TEST(Ramp, respects_its_rate_and_does_not_overshoot) {
     Ramp ramp{10.0, 20.0};
     EXPECT_DOUBLE_EQ(ramp(3.0, 100ms), 1.0);
     EXPECT_DOUBLE_EQ(ramp(3.0, 150ms), 2.5);
@@ -25,7 +25,7 @@ TEST(Ramp, follows_no_faster_than_it_may_and_does_not_pass_its_target) {
     EXPECT_DOUBLE_EQ(ramp(5.0, 1s), 5.0);
 }
 
-TEST(Ramp, is_not_moved_by_what_is_no_number_or_by_a_rate_that_is_not_positive) {
+TEST(Ramp, ignores_invalid_numbers_and_non_positive_rates) {
     Ramp ramp{10.0};
     EXPECT_EQ(ramp(no_number, 1s), 0.0);
     EXPECT_EQ(ramp(1.0, 0ms), 0.0);
@@ -35,7 +35,7 @@ TEST(Ramp, is_not_moved_by_what_is_no_number_or_by_a_rate_that_is_not_positive) 
     EXPECT_EQ(stands(-5.0, 1s), 0.0);
 }
 
-TEST(HandOver, goes_without_a_bump_from_what_there_was_to_what_is_wanted) {
+TEST(HandOver, moves_bumplessly_from_the_old_value_to_the_wanted_one) {
     for (const double is : {0.0, 0.2, -0.5})
         for (const double wanted : {0.0, 0.1, -0.3, 0.5}) {
             HandOver from;
@@ -51,7 +51,7 @@ TEST(HandOver, goes_without_a_bump_from_what_there_was_to_what_is_wanted) {
         }
 }
 
-TEST(HandOver, leaves_nothing_of_what_was_wanted_at_first_and_is_not_any_more) {
+TEST(HandOver, forgets_an_earlier_wanted_value) {
     for (const double far : {1.0, -1e300, 1.7e308, no_number, -infinite})
         for (const double is : {0.0, 0.2, 1e300, no_number}) {
             HandOver from;
@@ -69,7 +69,7 @@ TEST(HandOver, leaves_nothing_of_what_was_wanted_at_first_and_is_not_any_more) {
         }
 }
 
-TEST(Integrator, adds_up_by_trapezia_from_the_first_sample_on) {
+TEST(Integrator, integrates_by_trapezoids_from_the_first_sample_on) {
     Integrator litres;
     EXPECT_EQ(litres(2.0, at(1s)), 0.0);
     EXPECT_DOUBLE_EQ(litres(4.0, at(2s)), 3.0);
@@ -81,7 +81,7 @@ TEST(Integrator, adds_up_by_trapezia_from_the_first_sample_on) {
     EXPECT_DOUBLE_EQ(litres.value(), 1.0);
 }
 
-TEST(Integrator, leaves_out_what_is_no_number_or_older_and_stays_within_its_limits) {
+TEST(Integrator, ignores_invalid_or_old_samples_and_stays_within_its_limits) {
     Integrator bounded{-1.0, 2.0};
     static_cast<void>(bounded(1.0, at(1s)));
     EXPECT_DOUBLE_EQ(bounded(1.0, at(2s)), 1.0);
@@ -93,7 +93,7 @@ TEST(Integrator, leaves_out_what_is_no_number_or_older_and_stays_within_its_limi
     EXPECT_DOUBLE_EQ(bounded(-100.0, at(7s)), -1.0) << "at once: nothing was wound up";
 }
 
-TEST(Lead, says_where_something_will_be_and_when_to_drive_an_actuator) {
+TEST(Lead, predicts_a_position_and_the_time_to_drive_an_actuator) {
     Lead belt{100ms};
     belt.sample(10.0, at(0ms));
     EXPECT_FALSE(belt.good(at(0ms)));
@@ -109,11 +109,11 @@ TEST(Lead, says_where_something_will_be_and_when_to_drive_an_actuator) {
     EXPECT_FALSE(belt.good(at(111ms)));
 }
 
-TEST(Lead, takes_no_speed_from_two_samples_at_almost_one_time) {
+TEST(Lead, derives_no_speed_from_nearly_simultaneous_samples) {
     Lead belt{100ms};
     for (int i = 0; i < 5; ++i) {
         belt.sample(i, at(i * 10ms));
-        belt.sample(i + 0.01, at(i * 10ms + 1us)); // measured twice, with some noise
+        belt.sample(i + 0.01, at(i * 10ms + 1us)); // two noisy measurements
         if (i > 0) {
             EXPECT_NEAR(belt.at(at(i * 10ms + 20ms)), i + 2.0, 0.05) << i;
         }
@@ -122,7 +122,7 @@ TEST(Lead, takes_no_speed_from_two_samples_at_almost_one_time) {
     EXPECT_NEAR(belt.per_s(), 500.0, 1e-6) << "samples that come faster from now on are believed soon";
 }
 
-TEST(Lead, forgets_one_sample_by_the_next_two) {
+TEST(Lead, forgets_a_sample_after_the_next_two) {
     for (const double one : {no_number, infinite, -infinite, 1.7e308, -1.7e308, 1e306, 1e-310}) {
         Lead belt{100ms};
         Time now{};
@@ -134,7 +134,7 @@ TEST(Lead, forgets_one_sample_by_the_next_two) {
     }
 }
 
-TEST(Lead, begins_anew_after_what_is_no_number_or_older) {
+TEST(Lead, restarts_after_an_invalid_or_old_sample) {
     Lead belt{100ms};
     belt.sample(0.0, at(0ms));
     belt.sample(1.0, at(10ms));

@@ -9,7 +9,7 @@
 namespace tappet {
 namespace {
 
-/// What a piece answers in cycles of 1 ms: '#' true, '.' false.
+/// The results of a piece in cycles of 1 ms: '#' true, '.' false.
 template <class Piece>
 std::string heard(Piece& piece, Duration time, std::string_view input) {
     static Time now{};
@@ -18,13 +18,13 @@ std::string heard(Piece& piece, Duration time, std::string_view input) {
     return answers;
 }
 
-TEST(OnDelay, is_true_when_its_input_was_true_for_so_long) {
+TEST(OnDelay, is_true_after_its_input_was_true_for_its_time) {
     OnDelay delay;
     EXPECT_EQ(heard(delay, 3ms, "..##..######.."), ".........###..");
     EXPECT_EQ(heard(delay, 0ms, ".#."), ".#.") << "without a delay it is its input";
 }
 
-TEST(OnDelay, tells_how_long_and_begins_anew_after_a_reset) {
+TEST(OnDelay, reports_elapsed_time_and_restarts_after_a_reset) {
     OnDelay delay;
     const Time begin{5ms};
     EXPECT_EQ(delay.elapsed(begin), 0ms);
@@ -35,25 +35,25 @@ TEST(OnDelay, tells_how_long_and_begins_anew_after_a_reset) {
     EXPECT_TRUE(delay(true, 3ms, begin + 7ms));
 }
 
-TEST(OffDelay, stays_true_for_so_long_after_its_input) {
+TEST(OffDelay, stays_true_for_its_time_after_its_input) {
     OffDelay delay;
     EXPECT_EQ(heard(delay, 3ms, "..#......##.##...."), "..####...########.");
     delay.reset();
     EXPECT_EQ(heard(delay, 3ms, "..."), "...");
 }
 
-TEST(Pulse, has_its_length_whatever_the_input_does_meanwhile) {
+TEST(Pulse, has_its_length_whatever_the_input_does) {
     Pulse pulse;
     EXPECT_EQ(heard(pulse, 3ms, "..#...#.#.#..#######.."), "..###.###.######......");
 }
 
-TEST(Pulse, of_an_input_that_is_true_at_the_start_or_of_no_length_is_none) {
+TEST(Pulse, does_not_start_for_an_initially_true_input_or_zero_length) {
     Pulse pulse;
     EXPECT_EQ(heard(pulse, 3ms, "###.#..."), "....###.");
     EXPECT_EQ(heard(pulse, 0ms, ".#.#"), "....");
 }
 
-TEST(Debounced, believes_what_stays_and_the_first_value_at_once) {
+TEST(Debounced, accepts_the_first_value_at_once_and_later_values_when_stable) {
     Debounced contact;
     EXPECT_EQ(heard(contact, 3ms, "##.#.#..."), "#########");
     EXPECT_EQ(heard(contact, 3ms, ".#.##.####"), ".........#");

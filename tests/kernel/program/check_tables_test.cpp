@@ -1,4 +1,4 @@
-// Tables of programs that lead nowhere are refused before they are executed (thesis 5.1.1): each number of a
+// Program tables with numbers out of bounds are refused before execution (thesis 5.1.1): each number of a
 // good table is made wrong in turn.
 #include "kernel/program/check_tables.hpp"
 #include "tests/kernel/program/fixture.hpp"
@@ -7,7 +7,7 @@
 
 namespace program_test {
 
-/// A good table whose rows may be spoilt.
+/// A good table whose rows a test can corrupt.
 struct Spoilt {
     Instruction instructions[2] = {increment(16, 0), increment(32, 16)};
     ConditionRow conditions[1] = {{1, 1, 32}};
@@ -27,9 +27,9 @@ struct Spoilt {
     [[nodiscard]] bool refused() const { return !check_tables(tables).empty(); }
 };
 
-TEST(A_good_table, passes) { EXPECT_EQ(check_tables(Spoilt{}.tables).view(), ""); }
+TEST(A_good_table, is_accepted) { EXPECT_EQ(check_tables(Spoilt{}.tables).view(), ""); }
 
-TEST(A_table, is_refused_when_a_number_in_it_leads_out_of_it) {
+TEST(A_table, is_refused_when_a_number_in_it_is_out_of_bounds) {
     using Spoil = void (*)(Spoilt&);
     const Spoil spoils[] = {
         [](Spoilt& t) { t.instructions[0].to = 0; }, // a constant

@@ -1,19 +1,19 @@
-// Programs as graphs (thesis 5.1.1 to 5.1.3): nodes act once, arcs are asked in order, a program without an
-// open arc waits; its status and its policies.
+// Programs as graphs (thesis 5.1.1 to 5.1.3): nodes act once, arcs are evaluated in order, a program without
+// an open arc waits; its status and its policies.
 #include "tests/kernel/program/fixture.hpp"
 
 #include <gtest/gtest.h>
 
 namespace program_test {
 
-/// One that counts something.
+/// A table with a counter.
 struct Counting : TableBuilder {
     DataOffset one = value(ScriptInt{1});
     DataOffset count = value(ScriptInt{0});
     Instruction counts() { return increment(count, one); }
 };
 
-/// Counts how often each of its nodes acted: the first always leads on, the second waits for a bool.
+/// Counts how often each of its nodes acted: the first always continues, the second waits for a bool.
 struct WaitingProgram {
     TableBuilder table{};
     DataOffset one = table.value(ScriptInt{1});
@@ -29,7 +29,7 @@ struct WaitingProgram {
     }
 };
 
-TEST(A_program, waits_where_no_arc_is_open_and_acts_there_once) {
+TEST(A_program, waits_without_an_open_arc_and_acts_there_once) {
     WaitingProgram p;
     Running running{p.table};
     EXPECT_EQ(running.execution.status(), ProgramStatus::ready);
@@ -46,7 +46,7 @@ TEST(A_program, waits_where_no_arc_is_open_and_acts_there_once) {
     EXPECT_EQ(running.get<ScriptInt>(p.third), 1);
 }
 
-TEST(A_program, that_yields_goes_on_in_the_next_step) {
+TEST(A_program, continues_in_the_next_step_after_a_yield) {
     Counting table;
     table.node({table.counts()}).arc(0);
     table.last().yields = true;
@@ -58,7 +58,7 @@ TEST(A_program, that_yields_goes_on_in_the_next_step) {
     }
 }
 
-TEST(A_time_out, opens_its_arc_when_its_time_has_passed_since_the_node_was_entered) {
+TEST(A_time_out, opens_its_arc_after_its_time_since_the_node_was_entered) {
     TableBuilder table;
     const DataOffset after = table.value(Duration{20ms});
     const DataOffset go = table.value(false);
@@ -73,7 +73,7 @@ TEST(A_time_out, opens_its_arc_when_its_time_has_passed_since_the_node_was_enter
     EXPECT_EQ(running.execution.wakes(), never);
 }
 
-TEST(A_time_out, that_leads_nowhere_puts_the_program_in_error_at_its_node) {
+TEST(A_time_out, puts_the_program_in_error_when_it_leads_nowhere) {
     TableBuilder table;
     const DataOffset limit = table.value(Duration{20ms});
     const DataOffset go = table.value(false);
@@ -89,7 +89,7 @@ ActionResult not_yet(ProgramContext&, const Instruction&, std::byte*, const std:
     return ActionResult::again;
 }
 
-TEST(A_time_out, opens_its_arc_also_while_the_action_cannot_act_yet_and_a_condition_does_not) {
+TEST(A_time_out, opens_its_arc_during_a_waiting_action_but_a_condition_does_not) {
     TableBuilder table;
     const DataOffset limit = table.value(Duration{20ms});
     const DataOffset done = table.value(true);
@@ -118,7 +118,7 @@ TEST(An_action_that_fails, puts_the_program_in_error_at_its_node) {
     EXPECT_EQ(running.execution.status(), ProgramStatus::stopped);
 }
 
-TEST(A_condition_that_fails, is_a_failure_of_its_node) {
+TEST(A_condition_that_fails, fails_its_node) {
     TableBuilder table;
     const DataOffset one = table.value(ScriptInt{1});
     const DataOffset zero = table.value(ScriptInt{0});
@@ -133,7 +133,7 @@ TEST(A_condition_that_fails, is_a_failure_of_its_node) {
     EXPECT_EQ(running.execution.line(), 1);
 }
 
-TEST(A_program_that_continues_on_error, passes_over_what_fails) {
+TEST(A_program_that_continues_on_error, skips_failures) {
     Counting table;
     table.node({fail_instruction()}).arc(1);
     table.node({table.counts()}).arc(0);
@@ -144,7 +144,7 @@ TEST(A_program_that_continues_on_error, passes_over_what_fails) {
     EXPECT_EQ(running.execution.failures(), 5u);
 }
 
-TEST(A_step, executes_at_most_so_many_statements_and_says_what_it_left) {
+TEST(A_step, executes_a_bounded_number_of_statements_and_reports_the_rest) {
     for (const std::uint32_t bound : {1u, 2u, 7u, 100u}) {
         Counting table;
         table.node({table.counts()}).arc(0); // for ever
@@ -193,7 +193,7 @@ TEST(A_stopped_program, starts_from_its_first_node_and_keeps_its_data_until_it_i
     EXPECT_EQ(running.get<ScriptInt>(p.first), 0);
 }
 
-TEST(An_instruction_that_skips, leaves_out_what_follows_it) {
+TEST(An_instruction_that_skips, omits_the_instructions_that_follow_it) {
     for (const bool is : {false, true}) {
         TableBuilder table;
         const DataOffset one = table.value(ScriptInt{1});

@@ -1,5 +1,5 @@
 // Programs act on components through their facets (thesis 5.1.4, 5.1.5): ports, buffers, events, properties.
-// Operations, methods and commands are called by the scripts of tests/kernel/script/programs_test.cpp.
+// The scripts of tests/kernel/script/programs_test.cpp call operations, methods and commands.
 #include "tests/kernel/program/fixture.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 namespace program_test {
 
-/// A facet of each kind, and what was done with it.
+/// A facet of each kind, and a record of its use.
 struct Arm {
     Input<double> measured;
     Output<double> wanted;
@@ -69,7 +69,7 @@ struct ArmProgram {
     std::unique_ptr<Running> bind() { return std::make_unique<Running>(table, ProgramPolicy{}, &arm, links); }
 };
 
-TEST(Ports, are_read_and_written_and_tell_their_age) {
+TEST(Ports, are_read_and_written_and_report_their_age) {
     ArmProgram p;
     const DataOffset value = p.table.value(2.5);
     const DataOffset read = p.table.value(0.0);
@@ -93,7 +93,7 @@ TEST(Ports, are_read_and_written_and_tell_their_age) {
     const Time now = at_ms(30);
     port.set_clock(&p.arm.wanted, false, &now);
     port.set_clock(&p.arm.measured, true, &now);
-    port.link_local(&p.arm.measured, &p.arm.wanted, nullptr); // what it writes it reads
+    port.link_local(&p.arm.measured, &p.arm.wanted, nullptr); // it reads its own writes
     const auto running = p.bind();
     EXPECT_EQ(running->run(at_ms(50)), ProgramStatus::stopped);
     EXPECT_EQ(p.arm.wanted.last(), 2.5);
@@ -106,7 +106,7 @@ TEST(Ports, are_read_and_written_and_tell_their_age) {
     EXPECT_EQ(running->get<Duration>(age), 20ms);
 }
 
-TEST(Buffers, are_pushed_popped_and_waited_for) {
+TEST(Buffers, are_pushed_popped_and_awaited) {
     ArmProgram p;
     const DataOffset in = p.table.value(41);
     const DataOffset out = p.table.value(0);
@@ -166,7 +166,7 @@ TEST(Events, are_emitted_with_packed_arguments) {
     EXPECT_EQ(heard.value, 4.5);
 }
 
-TEST(A_property, is_read_and_written_where_its_range_and_its_component_allow) {
+TEST(A_property, is_read_and_written_within_its_range_and_component_rules) {
     struct Case {
         double value;
         bool good;
@@ -188,7 +188,7 @@ TEST(A_property, is_read_and_written_where_its_range_and_its_component_allow) {
     }
 }
 
-TEST(Actions, are_found_for_facets_of_their_kind_only) {
+TEST(Actions, are_found_only_for_facets_of_their_kind) {
     EXPECT_FALSE(find_read(facet("move_to")));
     EXPECT_FALSE(find_write(facet("measured"))) << "an input is not written";
     EXPECT_FALSE(emit_event(facet("tell")));

@@ -1,5 +1,4 @@
-// What tests of programs stand on: a component with one facet of every kind, and a table that is filled row
-// by row.
+// Fixture of program tests: a component with one facet of every kind, and a table that is filled row by row.
 #pragma once
 
 #include "kernel/program/execution.hpp"
@@ -16,7 +15,7 @@ using namespace tappet;
 
 constexpr Time at_ms(std::int64_t ms) { return at_ns(ms * 1'000'000); }
 
-/// A program written down as it is built; offsets are multiples of 16.
+/// A program built row by row; offsets are multiples of 16.
 class TableBuilder {
 public:
     explicit TableBuilder(std::size_t constants = 0) : constants_{constants} {}
@@ -47,7 +46,7 @@ public:
         conditions_.push_back({instructions(list), static_cast<std::uint16_t>(list.size()), result});
         return static_cast<ConditionIndex>(conditions_.size() - 1);
     }
-    /// Its arcs are those of the following arc() calls.
+    /// Its arcs are added by the following arc() calls.
     TableBuilder& node(std::initializer_list<Instruction> list, NodeIndex on_error = no_node) {
         NodeRow row;
         row.first = instructions(list);
@@ -65,7 +64,7 @@ public:
     }
     NodeRow& last() { return nodes_.back(); }
 
-    /// A view of this builder, which stays where it is.
+    /// A view of this builder, which must not move.
     const ProgramTables& tables() {
         program_ = {"test", 0, static_cast<NodeIndex>(nodes_.size()), true};
         tables_ = {instructions_, conditions_, nodes_, arcs_, {&program_, 1}, {}, {}, image_, {}};
@@ -89,7 +88,7 @@ private:
     ProgramTables tables_;
 };
 
-/// A program of such a table that is executed.
+/// An executing program of such a table.
 struct Running {
     alignas(data_alignment) std::array<std::byte, 4096> data{};
     std::vector<ProgramLink> links{};

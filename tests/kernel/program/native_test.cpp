@@ -1,5 +1,5 @@
-// The compiled form does what the loaded form does, step for step (thesis 5.1.1 - 5.1.3): the same table, as
-// native code and read in memory, from the same data, leaves the same data, position and trace.
+// The compiled form equals the loaded form step by step (thesis 5.1.1 - 5.1.3): the same table, as native
+// code and interpreted from the same data, leaves the same data, position and trace.
 #include "kernel/program/interpreter.hpp"
 #include "kernel/program/native.hpp"
 #include "tests/kernel/program/random_tables.hpp"
@@ -40,7 +40,7 @@ struct Instance {
         statements = allowed;
         said = code.run(*code.tables, context, statements);
     }
-    /// What outlives the step: everything but scratch.
+    /// The data that outlive the step: everything but scratch.
     [[nodiscard]] std::vector<std::byte> kept_data() const {
         return {data.begin(), data.begin() + scratch(0)};
     }
@@ -92,7 +92,7 @@ void expect_same(const ProgramCode& compiled, const ProgramCode& loaded, std::ui
 template <std::uint64_t seed> inline constexpr Rows rows = random_rows(seed);
 template <std::uint64_t seed> inline constexpr ProgramTables tables = rows<seed>.view();
 
-TEST(Native, ATableAsNativeCodeDoesStepForStepWhatTheInterpreterDoesWithIt) {
+TEST(Native, code_equals_the_interpreter_step_by_step) {
     Coverage coverage;
     const auto both_ways = [&coverage]<std::uint64_t seed>() {
         for (std::uint64_t run = 0; run < 200; ++run)

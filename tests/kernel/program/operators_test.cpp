@@ -1,5 +1,5 @@
-// Expressions of scripts (thesis 5.1.4): which instruction computes an operator, a function or a conversion,
-// and what it answers, also while the C++ compiler runs.
+// Expressions of scripts (thesis 5.1.4): the instruction that computes an operator, a function or a
+// conversion, and its result, also in constant expressions.
 #include "kernel/program/operators.hpp"
 
 #include <Eigen/Core>
@@ -61,7 +61,7 @@ struct Data {
     }
 };
 
-/// Nothing: the action failed.
+/// Returns nullopt when the action failed.
 template <class R, class A, class B>
 std::optional<R> compute(const OperatorMatch& match, const A& a, const B& b) {
     if (!match) return std::nullopt;
@@ -107,7 +107,7 @@ TEST(Whole_numbers, are_added_subtracted_multiplied_and_divided_towards_zero) {
     EXPECT_EQ((binary<ScriptInt>(Operator::remainder, ScriptInt{-7}, ScriptInt{2})), -1);
 }
 
-TEST(Whole_numbers, that_overflow_or_are_divided_by_zero_fail_the_action) {
+TEST(Whole_numbers, fail_the_action_on_overflow_and_division_by_zero) {
     EXPECT_FALSE((binary<ScriptInt>(Operator::add, most, ScriptInt{1})));
     EXPECT_FALSE((binary<ScriptInt>(Operator::subtract, least, ScriptInt{1})));
     EXPECT_FALSE((binary<ScriptInt>(Operator::multiply, most, ScriptInt{2})));
@@ -117,7 +117,7 @@ TEST(Whole_numbers, that_overflow_or_are_divided_by_zero_fail_the_action) {
     EXPECT_FALSE((binary<ScriptInt>(Operator::remainder, least, ScriptInt{-1})));
 }
 
-TEST(A_mixed_expression, asks_for_its_whole_operand_as_a_real) {
+TEST(A_mixed_expression, converts_its_integer_operand_to_a_real) {
     const OperatorMatch sum = find_binary(Operator::add, script_int, script_double);
     EXPECT_EQ(sum.a, script_double);
     EXPECT_EQ(sum.b, script_double);
@@ -139,7 +139,7 @@ TEST(Operators, of_a_registered_type_are_found_from_either_side) {
     EXPECT_FALSE(find_function("invert", one));
 }
 
-TEST(Integers_of_every_width, widen_when_read_and_are_checked_when_written) {
+TEST(Integers_of_every_width, are_widened_when_read_and_checked_when_written) {
     EXPECT_EQ((convert<ScriptInt>(std::int8_t{-5})), -5);
     EXPECT_EQ((convert<ScriptInt>(std::uint32_t{4'000'000'000})), 4'000'000'000);
     EXPECT_FALSE((convert<ScriptInt>(std::numeric_limits<std::uint64_t>::max())));
@@ -160,7 +160,7 @@ TEST(Reals, follow_IEEE_754) {
     EXPECT_EQ((binary<bool>(Operator::at_most, nan, nan)), false);
 }
 
-TEST(Times, are_reckoned_with_as_times) {
+TEST(Times, support_arithmetic_with_times) {
     EXPECT_EQ((binary<Duration>(Operator::add, Duration{20ms}, Duration{5s})), Duration{5020ms});
     EXPECT_EQ((binary<Duration>(Operator::multiply, Duration{20ms}, ScriptInt{3})), Duration{60ms});
     EXPECT_EQ((binary<Duration>(Operator::multiply, 0.5, Duration{20ms})), Duration{10ms});
@@ -191,7 +191,7 @@ TEST(Numbers_and_times, are_compared) {
     order_is_that_of_the_language<Duration>(Duration{-1ns}, Duration{1s});
 }
 
-TEST(Truths, are_combined_and_inverted) {
+TEST(Truths, support_and_or_and_not) {
     for (const bool a : {false, true}) {
         for (const bool b : {false, true}) {
             EXPECT_EQ((binary<bool>(Operator::both, a, b)), a && b);
@@ -206,7 +206,7 @@ TEST(Truths, are_combined_and_inverted) {
     EXPECT_FALSE(find_unary(Operator::negate, script_bool));
 }
 
-TEST(A_negation, that_overflows_fails) {
+TEST(A_negation, fails_when_it_overflows) {
     EXPECT_EQ(compute<ScriptInt>(find_unary(Operator::negate, script_int), ScriptInt{5}, 0), -5);
     EXPECT_FALSE(compute<ScriptInt>(find_unary(Operator::negate, script_int), least, 0));
     EXPECT_EQ(compute<double>(find_unary(Operator::negate, script_double), 0.5, 0), -0.5);
@@ -224,7 +224,7 @@ TEST(Enumerations, are_compared_with_their_own_kind_only) {
     EXPECT_FALSE(find_conversion(script_int, type_id<Colour>));
 }
 
-TEST(Texts, of_any_lengths_are_compared_and_copied_where_they_fit) {
+TEST(Texts, of_any_lengths_are_compared_and_copied_when_they_fit) {
     EXPECT_EQ((binary<bool>(Operator::equal, Text<5>{"tape"}, ScriptText{"tape"})), true);
     EXPECT_EQ((binary<bool>(Operator::unequal, Text<5>{"tape"}, ScriptText{"tap"})), true);
     EXPECT_EQ((convert<Text<5>>(ScriptText{"tape"})), Text<5>{"tape"});
@@ -257,7 +257,7 @@ TEST(Functions, are_found_by_name_and_operands) {
         EXPECT_EQ((compute<double>(find_function(name, real), 0.5, 0)), expected) << name;
 }
 
-TEST(Every_name_of_a_function, is_one_that_some_operands_find) {
+TEST(Every_name_of_a_function, is_found_by_some_operands) {
     const TypeId types[] = {script_int,
                             script_double,
                             script_duration,
@@ -317,7 +317,7 @@ void product_is_that_of_eigen() {
     ASSERT_FALSE(match.result->row_major);
     EXPECT_EQ((compute<R>(match, a, b)), R(a * b));
 }
-TEST(Products, of_matrices_of_fitting_shapes_are_those_of_eigen) {
+TEST(Products, of_fitting_matrices_equal_those_of_eigen) {
     using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
     product_is_that_of_eigen<Eigen::Matrix3d, Eigen::Vector3d, Eigen::Vector3d>();
     product_is_that_of_eigen<Eigen::Matrix3d, Eigen::Matrix3d, Eigen::Matrix3d>();
@@ -358,7 +358,7 @@ TEST(Vectors, have_norm_dot_and_cross_product_and_a_transpose) {
     EXPECT_FALSE(find_function("cross", matrix));
 }
 
-TEST(Matrices_of_one_shape, become_each_other_in_whatever_order_their_elements_lie) {
+TEST(Matrices_of_one_shape, convert_to_each_other_in_any_storage_order) {
     using ByColumn = Eigen::Matrix<double, 2, 3>;
     using ByRow = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
     const auto m = filled<ByColumn>(6);
@@ -369,7 +369,7 @@ TEST(Matrices_of_one_shape, become_each_other_in_whatever_order_their_elements_l
     EXPECT_FALSE(find_conversion(type_id<Eigen::Vector3d>, type_id<Eigen::RowVector3d>));
 }
 
-TEST(Elements, are_read_and_written_where_the_index_is_in_range) {
+TEST(Elements, are_read_and_written_when_the_index_is_in_range) {
     for (const ScriptInt index : {-1, 0, 2, 3}) {
         const bool good = index >= 0 && index < 3;
         Data data;
@@ -393,7 +393,7 @@ TEST(Elements, are_read_and_written_where_the_index_is_in_range) {
     EXPECT_EQ(element_read(script_double).run, nullptr) << "a number has no elements";
 }
 
-TEST(Rows_and_columns, find_the_element_in_either_order) {
+TEST(Rows_and_columns, find_the_element_in_either_storage_order) {
     using ByRow = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
     for (const auto& [type, expected] :
          {std::pair{type_id<Eigen::Matrix<double, 2, 3>>, 5}, std::pair{type_id<ByRow>, 5}}) {
@@ -412,7 +412,7 @@ TEST(Rows_and_columns, find_the_element_in_either_order) {
     }
 }
 
-TEST(Fields_of_a_record, are_read_and_written_alone) {
+TEST(Fields_of_a_record, are_read_and_written_separately) {
     const std::span fields = type_id<Pose>->fields;
     ASSERT_EQ(fields.size(), 2u);
     Data data;
@@ -425,7 +425,7 @@ TEST(Fields_of_a_record, are_read_and_written_alone) {
     EXPECT_EQ(data.get<Pose>(0).turn, 1) << "the first of `a` went there";
 }
 
-TEST(A_sequence, tells_how_many_it_holds) {
+TEST(A_sequence, reports_its_number_of_elements) {
     using List = Bounded<int, 4>;
     List list;
     ASSERT_TRUE(list.push(7));
@@ -434,7 +434,7 @@ TEST(A_sequence, tells_how_many_it_holds) {
     EXPECT_EQ((compute<ScriptInt>(find_function("size", one), list, 0)), 2);
 }
 
-TEST(Elements_of_a_sequence, are_those_that_it_holds) {
+TEST(Elements_of_a_sequence, exist_only_up_to_its_length) {
     using List = Bounded<std::int16_t, 5>;
     List list;
     ASSERT_TRUE(list.push(7));

@@ -1,5 +1,5 @@
-// Programs without sense: any node may lead to any other, wait, repeat, yield, say again or fail. The same
-// seed gives the same table, in a constant expression.
+// Random programs: any node may lead to any other, wait, repeat, yield, return again or fail. The same seed
+// gives the same table, in a constant expression.
 #pragma once
 
 #include "kernel/program/primitives_scalar.hpp"
@@ -10,7 +10,7 @@
 
 namespace tappet::random_tables {
 
-/// The component: what was done to it, as a sum that keeps the order.
+/// The component: an order-dependent sum of its calls.
 struct Witness {
     std::uint64_t done = 0;
     std::uint32_t calls = 0;
@@ -23,7 +23,7 @@ inline ActionResult witness(ProgramContext& context, const Instruction& in, std:
     seen.done = seen.done * 1'000'003 + in.size + static_cast<std::uint64_t>(load_value<ScriptInt>(a));
     return ActionResult::done;
 }
-/// Says again in two of three calls.
+/// Returns `again` in two of three calls.
 inline ActionResult hesitate(ProgramContext& context, const Instruction& in, std::byte*, const std::byte*,
                              const std::byte*) noexcept TAPPET_REALTIME {
     auto& seen = *static_cast<Witness*>(context.component);
@@ -45,7 +45,7 @@ inline constexpr Primitive less = &primitive::binary<ScriptInt, ScriptInt, bool,
 inline constexpr std::size_t node_count = 24;
 inline constexpr std::size_t arcs_each = 3;
 inline constexpr std::size_t condition_count = 6;
-inline constexpr std::size_t places = 4; ///< constants, and so many variables
+inline constexpr std::size_t places = 4; ///< number of constants, and of variables
 
 constexpr DataOffset constant(std::size_t i) { return static_cast<DataOffset>(i * data_alignment); }
 constexpr DataOffset variable(std::size_t i) { return constant(places + i); }
@@ -84,7 +84,7 @@ constexpr DataOffset operand(Random& random) {
     return random(2) == 0 ? constant(random(places)) : variable(random(places));
 }
 
-// One instruction into `to`; the last of a node is often one that speaks of itself.
+// One instruction into `to`; the last of a node often controls the execution itself.
 constexpr Instruction computes(Random& random, DataOffset to) {
     constexpr std::array<Primitive, 3> all{add, multiply, remainder};
     return {.run = all[random(all.size())], .to = to, .a = operand(random), .b = operand(random)};

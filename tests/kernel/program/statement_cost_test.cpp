@@ -1,4 +1,4 @@
-// What a statement of a loaded program costs, in calls through a pointer to a function that does nothing,
+// The cost of a statement of a loaded program, in calls through a pointer to a function that does nothing,
 // measured in the same run (thesis 5.1.7: reasonable speed under real-time conditions).
 #include "tests/kernel/program/fixture.hpp"
 
@@ -19,7 +19,7 @@ using Call = void (*)(const void*, const void*, const void*, const void*, const 
     asm volatile("");
 }
 
-/// The shortest of many, since whatever disturbs makes it longer.
+/// The minimum of many runs, since any disturbance makes a run longer.
 template <class F>
 double shortest_ns(const F& run) {
     double best = std::numeric_limits<double>::infinity();
@@ -36,7 +36,7 @@ double call_ns() {
     return shortest_ns([] {
         Call call = &nothing;
         for (std::uint32_t i = 0; i < statements; ++i) {
-            asm volatile("" : "+r"(call)); // which function it is stays unknown
+            asm volatile("" : "+r"(call)); // the compiler cannot know which function it is
             call(nullptr, nullptr, nullptr, nullptr, nullptr);
         }
     });
@@ -67,7 +67,7 @@ TEST(A_statement_of_a_loaded_program, costs_less_than_five_calls_through_a_point
         .arc(end_node);
     loop.node({increment(i, step)}).arc(0);
 
-    // A busy neighbour of the processor slows statements down, and calls not: the best of several moments
+    // A busy neighbour of the processor slows down statements but not calls: the best of several attempts
     // counts.
     double call = 0, assignment = 0, looping = 0;
     for (int moment = 0; moment < 20; ++moment) {

@@ -13,7 +13,7 @@ using namespace script_test;
 inline constexpr auto peers_of_own =
     script_reach(reachable<Cell>("own"), reachable<Cell>("robot"), reachable<Cell>("far", false));
 
-// "number" stands after the states that use it.
+// "number" is declared after the states that use it.
 inline constexpr ScriptSource cycle{"cycle.osd", R"(
 StateMachine Axis {
     param double limit = 2.5
@@ -46,7 +46,7 @@ void expect_same(std::span<const Row> a, std::span<const Row> b, const Same& sam
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(same(a[i], b[i])) << "row " << i;
 }
 
-TEST(A_compiled_script, has_the_rows_of_the_loaded_one) {
+TEST(A_compiled_script, has_the_same_rows_as_the_loaded_one) {
     const ScriptUnit& constant = compiled_script<good, peers_of_own>;
     const auto buffer = std::make_unique<ScriptBuffer<buffer_sizes>>();
     Reach reach;
@@ -80,7 +80,7 @@ TEST(A_compiled_script, has_the_rows_of_the_loaded_one) {
     EXPECT_EQ(constant.command_slots, 2);
 }
 
-TEST(A_constant_script, with_a_fault_says_what_the_loaded_one_says) {
+TEST(A_constant_script, reports_the_same_fault_as_the_loaded_one) {
     const auto buffer = std::make_unique<ScriptBuffer<buffer_sizes>>();
     Reach reach;
     reach.components = components();

@@ -1,5 +1,5 @@
-// What is wrong with a script is said with its line, its column, what was found, what was expected and the
-// nearest name (thesis 5.1.4, 5.2.4).
+// A script fault is reported with its line, its column, the text found, the text expected and the nearest
+// name (thesis 5.1.4, 5.2.4).
 #include "tests/kernel/script/fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -45,7 +45,7 @@ const Wrong faults_of_programs[] = {
      "1:16",
      {"can run without waiting"}},
     {"for (var int i = 0; i < 2000; i = i + 1) do note(i);", "1:1", {"more than 1000 statements"}},
-    {"for (var int i = 0; i < 5; i = i + 1) set i = 0;", "1:43", {"not to be assigned", "counter"}},
+    {"for (var int i = 0; i < 5; i = i + 1) set i = 0;", "1:43", {"cannot be assigned", "counter"}},
     {"set speed = \"fast\";", "1:13", {"text", "expected double"}},
     {"set robot.speed = 1;", "1:11", {"an output of \"robot\"", "alone writes it"}},
     {"set far.gain = 1;", "1:9", {"another activity"}},
@@ -82,7 +82,7 @@ const Wrong faults_of_programs[] = {
     {"program q { yield; } program p { do q.stp(); }", "1:39", {"did you mean \"stop\"?"}},
     {"program q { yield; } program p { wait (q.isRuning()); }", "1:42", {"did you mean \"isRunning\"?"}},
     {"program p(int a) { do p(1); }", "1:23", {"\"p\"", "not known"}},
-    {"program int p { return 3; }", "1:13", {"nobody asks \"p\"", "parameters"}},
+    {"program int p { return 3; }", "1:13", {"nothing asks \"p\"", "parameters"}},
     {"program inti p() { return 3; }", "1:9", {"found \"inti\", expected a type"}},
     {"program int 5() { return 3; }", "1:13", {"found \"5\""}},
     {"program int p() { return true; }", "1:26", {"bool", "int as the program returns"}},
@@ -95,12 +95,12 @@ const Wrong faults_of_programs[] = {
     {"try ; catch do note(1);", "1:13", {"nothing in this try"}},
 };
 
-TEST(A_fault_in_a_program, is_reported_where_it_stands_and_with_a_cure) {
+TEST(A_fault_in_a_program, is_reported_with_its_place_and_a_cure) {
     for (const Wrong& wrong : faults_of_programs)
         expect_fault(wrong, std::string{wrong.text}, std::string{wrong.where});
 }
 
-TEST(A_fault_in_a_state_machine, is_reported_where_it_stands_and_with_a_cure) {
+TEST(A_fault_in_a_state_machine, is_reported_with_its_place_and_a_cure) {
     const Wrong cases[] = {
         {"initial state A { transitions { select B } }", "3:40", {"state \"B\"", "not known"}},
         {"initial state Alpha { transitions { select Z } }\n state Beta { transitions { select Alhpa } }",
@@ -127,7 +127,7 @@ TEST(A_fault_in_a_state_machine, is_reported_where_it_stands_and_with_a_cure) {
         text += wrong.text;
         text += machine_tail;
         const auto colon = wrong.where.find(':');
-        // The text stands one blank further right in its first line.
+        // The text starts one space further right in its first line.
         const int line = std::stoi(std::string{wrong.where.substr(0, colon)});
         const int column = std::stoi(std::string{wrong.where.substr(colon + 1)}) + (line == 3 ? 1 : 0);
         expect_fault(wrong, text, std::to_string(line) + ":" + std::to_string(column));
@@ -139,7 +139,7 @@ TEST(A_fault_in_a_state_machine, is_reported_where_it_stands_and_with_a_cure) {
                 StartsWith("test.osd:1:18: found state machine type \"M\""));
 }
 
-TEST(A_fault, of_nesting_is_found_before_it_costs_anything) {
+TEST(A_fault, of_nesting_is_found_at_once) {
     const std::string deep = "var int x = " + std::string(100'000, '(') + "1";
     EXPECT_THAT(fault_of(deep), HasSubstr("nested deeper"));
     std::string blocks;
@@ -153,7 +153,7 @@ TEST(A_fault, of_nesting_is_found_before_it_costs_anything) {
     EXPECT_FALSE(fault_of(functions + "program p { do f39(); }").empty());
 }
 
-TEST(A_room_that_is_too_small, is_said_and_nothing_is_written_after_it) {
+TEST(A_room_that_is_too_small, is_reported_and_not_overrun) {
     const auto buffer = std::make_unique<ScriptBuffer<script_sizes_for(4, 256, 3)>>();
     Reach reach;
     reach.components = components();

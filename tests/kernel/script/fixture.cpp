@@ -1,4 +1,4 @@
-// Binds the instances of a compiled script by hand, as a machine's start-up does.
+// Binds the instances of a compiled script by hand, as start-up does for a machine.
 #include "tests/kernel/script/fixture.hpp"
 
 #include "kernel/program/interpreter.hpp"

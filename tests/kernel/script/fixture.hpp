@@ -1,5 +1,5 @@
-// What tests of scripts stand on: a component with a facet of every kind, two peers of its type, and a script
-// that is compiled at run time and executed in its loaded form.
+// Fixture of script tests: a component with a facet of every kind, two peers of its type, and a script that
+// is compiled at run time and executed in its loaded form.
 #pragma once
 
 #include "kernel/activity/command_processor.hpp"
@@ -42,7 +42,7 @@ namespace script_test {
 
 using Name = Text<12>;
 
-/// Keeps a trace of what was called, so that a test reads like the script that ran.
+/// Keeps a trace of its calls, so that a test reads like the executed script.
 struct Cell {
     Property<double> gain{1.0};
     Property<Mode> mode{Mode::idle};
@@ -61,7 +61,7 @@ struct Cell {
     int calibrations = 0;
     bool located = true;
 
-    // Tests alone call these, and they may allocate.
+    // Only tests call these, and they may allocate.
     void say(const auto&... parts) noexcept TAPPET_REALTIME {
         TAPPET_ESCAPE("a trace of the test", trace += trace.empty() ? "" : " "; (add(parts), ...));
     }
@@ -159,20 +159,20 @@ struct Cell {
     }
 };
 
-/// Large enough for every script of these tests; of a slot in the firmware.
+/// Large enough for every script of these tests; in the firmware a slot has its own sizes.
 inline constexpr ScriptSizes buffer_sizes = script_sizes_for(512, 16384, 8);
 
-/// compile_into(), in one translation unit.
+/// Calls compile_into() in a single translation unit.
 ScriptOutcome compile(std::string_view text, std::string_view name, const Reach& reach,
                       const ScriptRoom& room);
 
 /// "own" drives; "robot" runs in its activity; "far" runs in another one.
 std::span<const Reachable> components();
 
-/// The sentence that a script is refused with; empty: it is accepted.
+/// The fault of a refused script; empty: it is accepted.
 std::string fault_of(std::string_view text, std::uint32_t statements_per_step = 0);
 
-/// A script with its components, its links bound, and every command slot served by an engine of its own.
+/// A script with its components, its links bound, and an engine of its own for every command slot.
 class Played {
 public:
     explicit Played(std::string_view text, std::uint32_t statements_per_step = 0);
@@ -183,19 +183,19 @@ public:
     Cell own, robot, far;
     ScriptOutcome outcome;
 
-    /// One step of all of it: programs, then machines that were started; time goes on by 10 ms.
+    /// One step of everything: programs, then started machines; time advances by 10 ms.
     void step();
     void steps(int n) {
         for (int i = 0; i < n; ++i) step();
     }
-    /// As if somebody had stopped that component.
+    /// Simulates a stop of that component.
     void stop_far();
     /// The first program.
     ProgramExecution& program();
     /// A machine by its instance's name.
     StateMachineExecution& machine(std::string_view name);
     std::string state(std::string_view name);
-    /// An event by the name that its transitions have, with its arguments packed.
+    /// An event by the name used in transitions, with its arguments packed.
     template <class... A>
     StateOutcome event(std::string_view machine_name, std::string_view event_name, const A&... arguments) {
         std::vector<std::byte> packed;
@@ -203,7 +203,7 @@ public:
         packed.resize(packed.size() + 1);
         return dispatch(machine_name, event_name, packed.data());
     }
-    /// A variable as it stands in the data of an instance.
+    /// A variable in the data of an instance.
     template <class T>
     T get(std::string_view instance, std::string_view variable) {
         T value{};
@@ -230,7 +230,7 @@ private:
     Time now_ = at_ns(0);
 };
 
-/// One of whose machines was started.
+/// The same, with one machine started.
 class Started : public Played {
 public:
     explicit Started(std::string_view text, std::string_view name = "M") : Played{text} {

@@ -1,5 +1,5 @@
-// The written grammar is the one that the compiler reads: each rule has an example, and each example compiles
-// (thesis 5.1.4, 5.2.4).
+// The written grammar equals the compiler's: each rule has an example, and each example compiles (thesis
+// 5.1.4, 5.2.4).
 #include "tests/kernel/script/fixture.hpp"
 
 #include "kernel/script/token.hpp"
@@ -58,7 +58,7 @@ TEST(The_grammar, has_an_example_for_each_rule) {
     }
 }
 
-TEST(The_grammar, has_examples_that_compile) {
+TEST(The_grammar, has_only_examples_that_compile) {
     for (const Grammar::Example& each : read_grammar().examples)
         EXPECT_EQ(fault_of(each.text), "") << each.rules;
 }
@@ -69,8 +69,8 @@ TEST(The_grammar, names_every_word_of_the_language) {
         EXPECT_THAT(grammar.written, testing::HasSubstr("\"" + std::string{each.spelled} + "\""));
 }
 
-TEST(The_grammar, has_no_rule_that_is_named_and_not_written) {
-    // Words of a rule that are neither in quotes nor in comments are names of rules, or letters and digits.
+TEST(The_grammar, defines_every_rule_that_it_names) {
+    // Words of a rule outside quotes and comments are names of rules, or letters and digits.
     const Grammar grammar = read_grammar();
     std::string plain;
     char quote = 0;

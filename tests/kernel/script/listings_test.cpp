@@ -1,4 +1,4 @@
-// The constructs of the thesis' listings run as they are printed there (thesis 5.1.5, 5.2.4, 5.4).
+// The constructs of the thesis' listings run as printed there (thesis 5.1.5, 5.2.4, 5.4).
 #include "tests/kernel/script/fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ do robot.setParameter("Force", newforce);
         << "its variables are properties of the program (thesis 5.1.6)";
 }
 
-TEST(Listing_5_2, a_command_is_sent_and_its_end_is_waited_for) {
+TEST(Listing_5_2, a_command_is_sent_and_awaited) {
     Played p{R"(
 var double velocity = 12.5;
 var double position = 1.250;
@@ -131,7 +131,7 @@ TEST(Listing_5_4, states_have_their_programs_and_transitions_their_branches) {
     EXPECT_EQ(p.get<std::int64_t>("machineName", "entered"), 2);
 }
 
-TEST(Listing_5_4, a_precondition_is_asked_with_every_transition_into_its_state) {
+TEST(Listing_5_4, a_precondition_is_evaluated_with_every_transition_into_its_state) {
     Played p{listing_5_4};
     p.set("machineName", "limit", 0.5);
     static_cast<void>(p.machine("machineName").start(p.now()));

@@ -1,5 +1,5 @@
-// State machines of the script language: states in states, regions, history, time, children, functions
-// (thesis 5.2.1, 5.2.4, and what it leaves as future work).
+// State machines of the script language: nested states, regions, history, time, children, functions (thesis
+// 5.2.1, 5.2.4, and its future work).
 #include "tests/kernel/script/fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@ namespace {
 
 using namespace script_test;
 
-TEST(A_state_machine, enters_the_states_inside_a_state_and_remembers_them) {
+TEST(A_state_machine, enters_nested_states_and_remembers_them) {
     Started p{R"(
 StateMachine M {
     initial state Idle {
@@ -42,7 +42,7 @@ RootStateMachine M m)",
     EXPECT_EQ(p.state("m"), "Middle");
 }
 
-TEST(A_state_machine, has_regions_that_are_active_at_the_same_time) {
+TEST(A_state_machine, has_parallel_regions) {
     Started p{R"(
 StateMachine M {
     initial state Both {
@@ -67,7 +67,7 @@ RootStateMachine M m)",
     EXPECT_EQ(p.state("m"), "Safe");
 }
 
-TEST(A_state_machine, may_name_the_state_around_a_state_with_in) {
+TEST(A_state_machine, can_name_the_parent_of_a_state_with_in) {
     Started p{R"(
 StateMachine M {
     initial state Outer { transition halt select Safe }
@@ -81,7 +81,7 @@ StateMachine M {
     EXPECT_TRUE(p.machine("M").is_in(3));
 }
 
-TEST(A_script, names_what_a_device_has_as_tables_do) {
+TEST(A_script, names_device_facets_as_tables_do) {
     Started p{R"(
 StateMachine M {
     initial state Low { transition robot.line.rises select High }
@@ -96,7 +96,7 @@ StateMachine M {
                 testing::HasSubstr("did you mean \"line.rises\"?"));
 }
 
-TEST(A_transition, says_why_its_condition_refuses) {
+TEST(A_transition, reports_why_its_condition_refuses) {
     Played p{R"(
 StateMachine M {
     var bool warm = false
@@ -115,14 +115,14 @@ StateMachine M {
     EXPECT_EQ(machine.look(0, p.now()).answer, StateMachineExecution::Look::Answer::guard);
 }
 
-TEST(A_transition, with_an_empty_reason_is_refused) {
+TEST(A_transition, is_refused_with_an_empty_reason) {
     EXPECT_THAT(
         fault_of("StateMachine M { initial state A { transition halt if true because \"\" then select B } "
                  "state B { transition halt select A } final state S { } }"),
         testing::HasSubstr("the reason is empty; say what is missing"));
 }
 
-TEST(A_timed_transition, is_taken_when_its_state_was_active_so_long) {
+TEST(A_timed_transition, fires_after_its_state_was_active_for_its_time) {
     Started p{R"(
 StateMachine M {
     initial state Wait {
@@ -137,7 +137,7 @@ StateMachine M {
     EXPECT_EQ(p.machine("M").reason(), "nothing came");
 }
 
-TEST(A_state_machine, commands_and_asks_its_children_and_reaches_their_variables) {
+TEST(A_state_machine, commands_and_queries_its_children_and_their_variables) {
     Played p{R"(
 StateMachine Axis {
     param int number
@@ -175,7 +175,7 @@ RootStateMachine Pair pair)"};
     EXPECT_FALSE(p.machine("pair.left").is_active());
 }
 
-TEST(A_run_program, waits_over_steps_while_events_go_on) {
+TEST(A_run_program, waits_across_steps_while_events_continue) {
     Started p{R"(
 StateMachine M {
     const duration pause = 20ms
@@ -202,7 +202,7 @@ StateMachine M {
     EXPECT_EQ(p.state("M"), "B");
 }
 
-TEST(A_function, sees_the_machines_variables_in_a_guard_that_stands_before_any_program) {
+TEST(A_function, sees_machine_variables_in_a_guard_before_any_program) {
     Started p{R"(
 StateMachine M {
     var int b = 2
@@ -214,14 +214,14 @@ StateMachine M {
     EXPECT_EQ(p.state("M"), "Z");
 }
 
-// Otherwise one of them would take the end of another's command for that of its own.
-TEST(A_command_of_a_peer, has_a_slot_for_every_run_program_that_may_be_at_work_with_others) {
+// Otherwise one of them would mistake the end of another's command for its own.
+TEST(A_command_of_a_peer, has_a_slot_for_every_concurrent_run_program) {
     Played p{R"(
 StateMachine M {
     initial state Both {
         run { do robot.go(); }
         exit { do robot.go(); }
-        region lane109 { // the names have the same value in 16 bits of their hashes
+        region lane109 { // the names have equal 16-bit hashes
             initial state A { run { do robot.go(); } transition halt select B }
             state B { run { do robot.go(); } exit { do robot.go(); } transition halt select Late }
         }
@@ -240,7 +240,7 @@ StateMachine M {
     EXPECT_EQ(slots, in_hand + outermost + regions + inside + apart);
 }
 
-TEST(A_failing_program, puts_the_machine_in_error_where_its_line_says) {
+TEST(A_failing_program, puts_the_machine_in_error_with_its_line) {
     Started p{
         "StateMachine M {\n initial state A {\n  entry {\n   do refuse();\n  }\n transition halt select "
         "Z }\n final state Z { } }"};
@@ -249,7 +249,7 @@ TEST(A_failing_program, puts_the_machine_in_error_where_its_line_says) {
     EXPECT_EQ(p.outcome.unit.types[0].tables.nodes[node].line, 4);
 }
 
-TEST(Every_condition_of_a_chain, has_an_else_that_is_the_last_one) {
+TEST(Every_condition_of_a_chain, shares_the_final_else_of_the_chain) {
     Started p{R"(
 StateMachine M {
     var int n = 0

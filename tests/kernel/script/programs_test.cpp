@@ -1,4 +1,4 @@
-// Programs of the script language: each statement and expression does what it says (thesis 5.1.4, 5.1.5).
+// Programs of the script language: the effect of each statement and expression (thesis 5.1.4, 5.1.5).
 #include "tests/kernel/script/fixture.hpp"
 
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@ namespace {
 
 using namespace script_test;
 
-/// What the notes of a program say that runs to its end in one step.
+/// The notes of a program that ends in one step.
 std::string notes(std::string_view text) {
     Played p{text};
     p.step();
@@ -20,7 +20,7 @@ ProgramStatus status_after_a_step(std::string_view text) {
     return p.program().status();
 }
 
-TEST(An_expression, binds_as_in_c_and_reckons_with_the_types_of_its_operands) {
+TEST(An_expression, uses_the_precedence_of_c_and_the_types_of_its_operands) {
     struct Case {
         std::string_view expression;
         std::string_view value;
@@ -54,14 +54,14 @@ TEST(An_expression, binds_as_in_c_and_reckons_with_the_types_of_its_operands) {
         EXPECT_EQ(notes("do note(" + std::string{each.expression} + ");"), each.value) << each.expression;
 }
 
-TEST(An_expression, asks_the_right_side_of_and_and_or_only_when_the_left_one_does_not_decide) {
+TEST(An_expression, evaluates_and_and_or_with_short_circuit) {
     EXPECT_EQ(notes("if isTrue(false) && isTrue(true) then do note(1);"), "no");
     EXPECT_EQ(notes("if isTrue(true) || isTrue(false) then do note(1);"), "yes 1");
     EXPECT_EQ(notes("if isTrue(true) && isTrue(true) then do note(1);"), "yes yes 1");
     EXPECT_EQ(notes("var int n = 0; if n != 0 && 10 / n > 1 then do note(1); else do note(2);"), "2");
 }
 
-TEST(An_action, fails_where_the_value_is_none) {
+TEST(An_action, fails_without_a_valid_value) {
     for (const std::string_view text :
          {"var int n = 0; do note(1 / n);", "var int n = 9223372036854775807; set n = n + 1;",
           "var int n = 300; set small = n;", "var vector3 v; var int i = 3; do note(int(v[i]));",
@@ -69,7 +69,7 @@ TEST(An_action, fails_where_the_value_is_none) {
         EXPECT_EQ(status_after_a_step(text), ProgramStatus::error) << text;
 }
 
-TEST(A_variable, keeps_what_it_was_given_part_by_part) {
+TEST(A_variable, keeps_each_assigned_part) {
     EXPECT_EQ(notes(R"(
         var Position p; var Position q = Position(4, 5, 6);
         set p.x = 2; set p.turns = 7; do note(int(p.x) + p.turns);
@@ -87,7 +87,7 @@ TEST(A_variable, keeps_what_it_was_given_part_by_part) {
               "6 11 122");
 }
 
-TEST(A_variable, of_an_enumeration_or_a_text_takes_the_names_of_its_values) {
+TEST(A_variable, of_an_enumeration_or_text_accepts_the_names_of_its_values) {
     Played p{R"(
         set mode = fast; if mode == fast then do note(1); if mode != Mode.slow then do note(2);
         var text t = "weft"; if t == "weft" then do note(3); do setParameter(t, 4);)"};
@@ -96,13 +96,13 @@ TEST(A_variable, of_an_enumeration_or_a_text_takes_the_names_of_its_values) {
     EXPECT_EQ(p.own.trace, "1 2 3 weft=4");
 }
 
-TEST(A_branch, takes_the_side_that_holds) {
+TEST(A_branch, executes_the_side_whose_condition_holds) {
     EXPECT_EQ(notes(R"(for (var int i = 0; i < 4; i = i + 1) {
         if (i == 0) then do note(10); else if i == 1 do note(11); else { do note(12); } } )"),
               "10 11 12 12");
 }
 
-TEST(A_loop, is_left_by_break_and_shortened_by_continue) {
+TEST(A_loop, obeys_break_and_continue) {
     EXPECT_EQ(notes(R"(for (var int i = 0; i < 10; i = i + 1) {
         if i == 2 then continue; if i == 5 then break; do note(i); } do note(99);)"),
               "0 1 3 4 99");
@@ -112,7 +112,7 @@ TEST(A_loop, is_left_by_break_and_shortened_by_continue) {
     EXPECT_EQ(notes("for (var int i = 3; i < 3; i = i + 1) do note(1); do note(2);"), "2");
 }
 
-TEST(A_loop, may_run_as_long_as_it_waits) {
+TEST(A_loop, may_run_for_ever_while_it_waits) {
     Played p{"var int n = 0; while (n < 3) { do note(n); set n = n + 1; yield; }"};
     p.step();
     EXPECT_EQ(p.own.trace, "0");
@@ -123,7 +123,7 @@ TEST(A_loop, may_run_as_long_as_it_waits) {
     EXPECT_EQ(p.program().status(), ProgramStatus::stopped);
 }
 
-TEST(A_wait, ends_when_its_condition_holds_or_its_time_is_over) {
+TEST(A_wait, ends_when_its_condition_holds_or_its_time_elapses) {
     Played p{
         "wait(gain > 5.0); do note(1); wait(25 ms); do note(2); wait (gain > 9.0) timeout 20ms; do note(3);"};
     p.steps(3);
@@ -139,7 +139,7 @@ TEST(A_wait, ends_when_its_condition_holds_or_its_time_is_over) {
     EXPECT_EQ(p.program().status(), ProgramStatus::error) << "the time-out makes the statement fail";
 }
 
-TEST(A_failure, is_caught_where_the_script_says_so) {
+TEST(A_failure, is_caught_by_the_script) {
     EXPECT_EQ(notes("try do refuse(); catch { do note(1); } do note(2);"), "1 2");
     EXPECT_EQ(notes("try { do note(1); do refuse(); do note(3); } catch do note(2);"), "1 2");
     EXPECT_EQ(notes("try { try do refuse(); catch { do note(1); do refuse(); } } catch do note(2);"), "1 2");
@@ -162,7 +162,7 @@ TEST(A_failure, is_caught_where_the_script_says_so) {
     EXPECT_EQ(failed.program().status(), ProgramStatus::error);
 }
 
-TEST(An_own_command, begins_and_is_followed_in_the_program_itself) {
+TEST(An_own_command, starts_and_is_monitored_in_the_program_itself) {
     Played p{"do go(); do note(1);"};
     p.own.steps_to_go = 2;
     p.step();
@@ -171,7 +171,7 @@ TEST(An_own_command, begins_and_is_followed_in_the_program_itself) {
     EXPECT_EQ(p.own.trace, "begin end 1");
 }
 
-TEST(A_command, that_is_rejected_or_fails_puts_the_program_in_error) {
+TEST(A_command, puts_the_program_in_error_when_it_fails_or_is_rejected) {
     for (const std::string_view whose : {"", "robot.", "far."})
         for (bool Cell::* const does : {&Cell::rejects, &Cell::fails}) {
             Played p{"do " + std::string{whose} + "go();"};
@@ -181,14 +181,14 @@ TEST(A_command, that_is_rejected_or_fails_puts_the_program_in_error) {
         }
 }
 
-TEST(A_command_of_a_peer, fails_the_program_when_its_component_does_not_run) {
+TEST(A_command_of_a_peer, fails_the_program_when_its_component_is_not_running) {
     Played p{"do far.go();"};
     p.stop_far();
     p.step();
     EXPECT_EQ(p.program().status(), ProgramStatus::error);
 }
 
-TEST(A_command_of_a_peer, waits_for_an_earlier_sending_that_is_still_on_its_way) {
+TEST(A_command_of_a_peer, waits_for_an_earlier_pending_call) {
     Played p{"do far.go();"};
     p.far.steps_to_go = 2;
     p.steps(2);
@@ -201,7 +201,7 @@ TEST(A_command_of_a_peer, waits_for_an_earlier_sending_that_is_still_on_its_way)
     EXPECT_EQ(p.far.trace, "begin end begin end");
 }
 
-TEST(A_command, hands_its_results_to_variables) {
+TEST(A_command, assigns_its_results_to_variables) {
     for (const std::string_view whose : {"", "robot.", "far."}) {
         Played p{"var int taken = 0; var double mean = 0; do " + std::string{whose} +
                  "measure(12, taken, mean); do note(taken);"};
@@ -211,7 +211,7 @@ TEST(A_command, hands_its_results_to_variables) {
     }
 }
 
-TEST(A_command, hands_its_results_to_properties_and_outputs) {
+TEST(A_command, assigns_its_results_to_properties_and_outputs) {
     for (const std::string_view whose : {"", "robot.", "far."}) {
         Played p{"var int taken = 0; do " + std::string{whose} + "measure(12, taken, gain); do " +
                  std::string{whose} + "measure(4, taken, speed); do note(taken);"};
@@ -222,13 +222,13 @@ TEST(A_command, hands_its_results_to_properties_and_outputs) {
     }
 }
 
-TEST(A_command, whose_result_a_property_does_not_take_fails_its_statement) {
+TEST(A_command, fails_its_statement_when_a_property_rejects_the_result) {
     Played p{"var double mean; try do measure(40000, narrow, mean); catch do note(narrow);"};
     p.steps(4);
     EXPECT_EQ(p.own.trace, "7");
 }
 
-TEST(A_function, is_expanded_where_it_is_called) {
+TEST(A_function, is_expanded_at_each_call) {
     EXPECT_EQ(notes(R"(
         function int twice(int a) { return a * 2; }
         function int longest(int a, int b) { if a > b then return a; return b; }
@@ -254,7 +254,7 @@ TEST(An_output_and_a_property, are_written_and_read) {
     EXPECT_EQ(p.own.trace, "beep200");
 }
 
-TEST(Comments_and_semicolons, are_free) {
+TEST(Comments_and_semicolons, are_allowed_anywhere) {
     EXPECT_EQ(notes("// one\ndo note(1) # two\n/* three\n lines */ do note(2) ;;; { }"), "1 2");
 }
 

@@ -1,5 +1,5 @@
-// How much stack a compilation takes, whatever the text (thesis 5.1.4): as much as is stated, since the
-// activity that compiles a loaded script has no more.
+// The stack use of a compilation for any text (thesis 5.1.4): at most the stated size, since the activity
+// that compiles a loaded script has no more.
 #include "kernel/script/compile.hpp"
 #include "tests/kernel/script/fixture.hpp"
 
@@ -99,14 +99,14 @@ std::size_t stack_taken(std::string_view text) {
     return static_cast<std::size_t>(std::end(stack) - first_used);
 }
 
-TEST(ScriptStack, NoTextTakesMoreThanIsStated) {
+TEST(ScriptStack, stays_within_the_stated_size_for_any_text) {
     std::size_t most = 0;
     std::string_view worst;
     for (const std::string& text : texts()) {
         const std::size_t taken = stack_taken(text);
         if (taken > most) most = taken, worst = text;
     }
-    // The thread's own descriptor lies on its stack too, as it does in an activity.
+    // The stack also holds the thread's own descriptor, as in an activity.
     std::printf("most stack: %zu bytes of %zu, by: %.80s\n", most, script_stack_bytes, worst.data());
     EXPECT_LE(most, script_stack_bytes);
     EXPECT_GE(2 * most, script_stack_bytes) << "so much is not needed: state less";

@@ -73,12 +73,12 @@ Machine regions() {
              transition("flies", "waits", on("arrived")), transition("work", "idle", on("stop"))}};
 }
 
-TEST(StateMachineCheck, finds_no_fault_in_a_good_machine) {
+TEST(StateMachineCheck, accepts_a_good_machine) {
     EXPECT_EQ(plain().fault(), "");
     EXPECT_EQ(regions().fault(), "");
 }
 
-/// Changed so, a machine is refused, or is as good as before where nothing is said.
+/// A change after which a machine is refused, or still valid where `said` is empty.
 struct Fault {
     void (*change)(Machine&);
     std::string_view said; ///< after the machine's name
@@ -92,7 +92,7 @@ void expect_each(Machine (*good)(), std::initializer_list<Fault> faults) {
     }
 }
 
-TEST(StateMachineCheck, refuses_states_that_do_not_fit_together) {
+TEST(StateMachineCheck, refuses_inconsistent_states) {
     expect_each(
         plain,
         {
@@ -138,7 +138,7 @@ TEST(StateMachineCheck, refuses_states_that_do_not_fit_together) {
         });
 }
 
-TEST(StateMachineCheck, refuses_transitions_that_lead_nowhere_or_never) {
+TEST(StateMachineCheck, refuses_transitions_without_a_target_or_a_chance_to_fire) {
     expect_each(
         plain,
         {
@@ -167,14 +167,14 @@ TEST(StateMachineCheck, refuses_transitions_that_lead_nowhere_or_never) {
             {[](Machine& m) {
                  m.add(transition("weave", "run_up"));
                  m.transitions[1].guard = {};
-                 m.transitions.erase(m.transitions.begin() + 3); // its time-out would never come
+                 m.transitions.erase(m.transitions.begin() + 3); // its time-out would never occur
              },
              "state \"run_up\" comes back to itself without waiting, by transition 5 (\"weave\" to "
              "\"run_up\"); give one transition of the ring on(...), after(...) or guard<>"},
         });
 }
 
-TEST(StateMachineCheck, refuses_parts_of_a_row_that_contradict_each_other) {
+TEST(StateMachineCheck, refuses_contradictory_parts_of_a_row) {
     expect_each(
         plain,
         {
@@ -199,9 +199,9 @@ TEST(StateMachineCheck, refuses_parts_of_a_row_that_contradict_each_other) {
              "transition 6 (\"weave\") is internal and has no event, so it would fire in every step; use "
              "run<> of the state"},
             {[](Machine& m) { m.states[0] = state("idle", initial, entry<&Loom::go>, entry<&Loom::go>); },
-             "state \"idle\" is given entry twice; keep one"},
+             "state \"idle\" has more than one entry; keep one"},
             {[](Machine& m) { m.transitions[4] = transition("weave", "idle", on("x"), on("y")); },
-             "transition 5 (\"weave\" to \"idle\" on \"y\") is given on twice; keep one"},
+             "transition 5 (\"weave\" to \"idle\" on \"y\") has more than one on(...); keep one"},
             {[](Machine& m) { m.states[0] = state("idle", initial, entry<&Loom::go>, exit<&Other::go>); },
              "state \"idle\" has programs of two component types; use those of one"},
             {[](Machine& m) {
@@ -213,8 +213,7 @@ TEST(StateMachineCheck, refuses_parts_of_a_row_that_contradict_each_other) {
                  m.transitions[4] = transition("weave", "idle", on("x"),
                                                guard<&Loom::ready>.because("it is cold").because("old"));
              },
-             "transition 5 (\"weave\" to \"idle\" on \"x\") is given the reason of its guard twice; keep "
-             "one"},
+             "transition 5 (\"weave\" to \"idle\" on \"x\") has more than one reason of its guard; keep one"},
             {[](Machine& m) {
                  m.transitions[4] = transition("weave", "idle", on("x"),
                                                guard<&Loom::ready>.because<&Other::words>("it is cold"));
@@ -231,7 +230,7 @@ TEST(StateMachineCheck, refuses_programs_of_another_component) {
     EXPECT_NE(m.fault().find("Other, and the machine is one of "), std::string::npos) << m.fault();
 }
 
-TEST(StateMachineCheck, refuses_regions_and_history_that_do_not_fit) {
+TEST(StateMachineCheck, refuses_inconsistent_regions_and_history) {
     expect_each(
         regions,
         {
@@ -250,7 +249,7 @@ TEST(StateMachineCheck, refuses_regions_and_history_that_do_not_fit) {
              "transition 5 (\"flies\" to \"turns\" on \"arrived\") leads from one region into another of "
              "the same state, and both stay active; lead it out of that state, or to that state itself"},
             {[](Machine& m) { m.transitions[4].to = "work"; }, ""},
-            {[](Machine& m) { // "work" itself leads nowhere, "turns" is left by the else branch of "waits"
+            {[](Machine& m) { // "work" has no transition, the else branch of "waits" leaves "turns"
                  m.transitions.pop_back();
              },
              ""},
@@ -273,7 +272,7 @@ TEST(StateMachineCheck, refuses_regions_and_history_that_do_not_fit) {
         });
 }
 
-TEST(StateMachineCheck, refuses_else_branches_and_preconditions_that_take_others_away_or_never_come) {
+TEST(StateMachineCheck, refuses_unreachable_else_branches_and_preconditions) {
     expect_each(
         regions,
         {
@@ -297,7 +296,7 @@ TEST(StateMachineCheck, refuses_else_branches_and_preconditions_that_take_others
              "transition 5 (\"waits\" to \"flies\" on \"release\") can never be taken, transition 4 "
              "(\"waits\" to \"flies\" on \"release\") always comes first; give that one a guard<>, put this "
              "one before it, or drop it"},
-            {[](Machine& m) { m.add(transition("idle", "safe", on("start"))); }, ""}, // "work" may say no
+            {[](Machine& m) { m.add(transition("idle", "safe", on("start"))); }, ""}, // "work" may refuse
             {[](Machine& m) {
                  m.add(transition("idle", "safe", on("start")));
                  m.states[1].precondition = {};
@@ -347,7 +346,7 @@ TEST(StateMachineCheck, refuses_more_events_than_the_limit) {
     EXPECT_EQ(m.fault(), "");
 }
 
-TEST(StateMachineCheck, refuses_more_active_states_than_there_is_room_for) {
+TEST(StateMachineCheck, refuses_more_active_states_than_it_has_room_for) {
     Machine m = regions();
     const auto more = names("s", 14);
     for (const std::string& name : more) m.add(state(name, in("work"), region(name), initial));
@@ -413,7 +412,7 @@ TEST(StateMachineCheck, finds_every_dropped_and_doubled_row_that_matters) {
     for (std::size_t t = 0; t < plain().transitions.size(); ++t) {
         Machine doubled = plain();
         doubled.transitions.push_back(doubled.transitions[t]);
-        // After a row with a guard its double may still be taken.
+        // After a row with a guard its duplicate can still be taken.
         EXPECT_EQ(doubled.fault().empty(), !doubled.transitions[t].guard.empty()) << "transition " << t + 1;
     }
 }

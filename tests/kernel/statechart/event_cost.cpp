@@ -1,4 +1,4 @@
-// Counts what one event costs beside the programs it calls: run under callgrind with
+// Counts the instructions of one event without the programs it calls: run under callgrind with
 // --toggle-collect='measured_*'. Each event leaves two states, runs a transition program, enters two states,
 // and refuses one guard on the way.
 #include "kernel/statechart/execution.hpp"

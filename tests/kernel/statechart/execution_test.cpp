@@ -1,5 +1,5 @@
-// Requests to a state machine from outside: start and deactivation, its final state, where it is and why
-// (thesis 5.2.1, 5.2.2). Its programs are C++ functions; their order has tests in order_test.cpp.
+// External requests to a state machine: start, deactivation, its final state, its current state and the
+// reason (thesis 5.2.1, 5.2.2). Its programs are C++ functions; order_test.cpp tests their order.
 #include "tests/kernel/statechart/recorder.hpp"
 
 #include "kernel/statechart/check.hpp"
@@ -52,7 +52,7 @@ TEST(StateMachine, does_nothing_before_start_and_after_deactivation) {
     EXPECT_EQ(m.component.heard(), "+idle");
 }
 
-TEST(StateMachine, without_a_machine_does_not_start) {
+TEST(StateMachine, does_not_start_without_a_table) {
     StateMachineExecution unbound;
     EXPECT_EQ(unbound.start(at_ns(0)), Outcome::ignored);
     EXPECT_EQ(unbound.dispatch(0, at_ns(0)), Outcome::ignored);
@@ -60,7 +60,7 @@ TEST(StateMachine, without_a_machine_does_not_start) {
     EXPECT_TRUE(unbound.path().empty());
 }
 
-TEST(StateMachine, forgets_an_event_that_no_transition_takes) {
+TEST(StateMachine, drops_an_event_that_no_transition_handles) {
     Running<tree> m;
     EXPECT_EQ(m.dispatch("far"), Outcome::ignored);
     EXPECT_EQ(m.execution.dispatch(99, m.now), Outcome::ignored);
@@ -68,7 +68,7 @@ TEST(StateMachine, forgets_an_event_that_no_transition_takes) {
     EXPECT_EQ(m.path(), "a/a1/a11");
 }
 
-TEST(StateMachine, goes_to_its_final_state_from_anywhere_and_says_why) {
+TEST(StateMachine, goes_to_its_final_state_from_anywhere_and_reports_why) {
     for (const char* event : {"", "go", "far"}) {
         Running<tree> m;
         if (*event != 0) m.send("go");
@@ -94,7 +94,7 @@ TEST(StateMachine, is_reset_from_the_final_state_only) {
     EXPECT_EQ(m.component.heard(), "-safe +idle");
 }
 
-TEST(StateMachine, tells_where_it_is_and_counts_its_transitions) {
+TEST(StateMachine, reports_its_state_and_counts_its_transitions) {
     Running<tree> m;
     m.now += 3ms;
     m.send("go");
@@ -102,10 +102,10 @@ TEST(StateMachine, tells_where_it_is_and_counts_its_transitions) {
     EXPECT_TRUE(m.execution.is_in(find_state(tree.view(), "a11")));
     EXPECT_TRUE(m.execution.is_in(find_state(tree.view(), "a")));
     EXPECT_FALSE(m.execution.is_in(find_state(tree.view(), "b")));
-    EXPECT_EQ(m.execution.status().transitions, 2u); // the start is one
+    EXPECT_EQ(m.execution.status().transitions, 2u); // the start counts as one
 }
 
-TEST(StateMachine, keeps_the_last_reason_until_another_is_given) {
+TEST(StateMachine, keeps_the_last_reason_until_a_new_one) {
     Running<tree> m;
     EXPECT_EQ(m.execution.reason(), "");
     m.send("go");
@@ -119,7 +119,7 @@ TEST(StateMachine, keeps_the_last_reason_until_another_is_given) {
     EXPECT_EQ(m.execution.status().reason_at, given);
 }
 
-TEST(StateMachine, numbers_its_reasons_so_that_an_observer_tells_one_from_the_next) {
+TEST(StateMachine, numbers_its_reasons_so_that_observers_can_distinguish_them) {
     Running<tree> m;
     EXPECT_EQ(m.execution.news().number, 0u);
     std::uint64_t seen = 0;

@@ -1,5 +1,5 @@
-// The compiled form of a state machine does what its table in memory does (thesis 5.2.1 - 5.2.3): random
-// machines whose programs wait, fail and raise events are driven both ways by the same calls.
+// The compiled form of a state machine equals its interpreted table (thesis 5.2.1 - 5.2.3): the same calls
+// drive random machines whose programs wait, fail and raise events in both forms.
 #include "kernel/program/interpreter.hpp"
 #include "tests/kernel/statechart/random_constant_machine.hpp"
 
@@ -115,7 +115,7 @@ template <std::uint64_t seed, bool folded> void both_ways(Coverage& coverage) {
     constexpr const ProgramTables& rows = tables<seed, folded>;
     for (std::uint64_t run = 0; run < 60; ++run) {
         Random random{seed * 1000 + run};
-        const std::uint64_t most = random(2) == 0 ? 12 : 60; // with very few it stands in memory
+        const std::uint64_t most = random(2) == 0 ? 12 : 60; // with very few it stays in memory
         const auto statements =
             static_cast<std::uint32_t>(folded || random(2) == 0 ? 1000 : 1 + random(most));
         Instance one{room.view(), rows, native_code<machine<seed, folded>>,
@@ -140,12 +140,12 @@ template <std::uint64_t seed, bool folded> void both_ways(Coverage& coverage) {
     }
 }
 
-TEST(NativeMachine, AMachineAsNativeCodeDoesCallForCallWhatItsTableInMemoryDoes) {
+TEST(NativeMachine, equals_the_interpreted_table_call_by_call) {
     Coverage coverage;
     const auto all = [&coverage]<bool folded, std::uint64_t... seed>() {
         (both_ways<seed, folded>(coverage), ...);
     };
-    all.template operator()<false, 1, 2, 5>(); // of which check() finds no fault
+    all.template operator()<false, 1, 2, 5>(); // check() finds no fault in it
     all.template operator()<true, 101>();
     EXPECT_EQ(coverage.statuses.size(), 6u) << "inactive to error";
     EXPECT_GT(coverage.faults.size(), 5u) << "entries, exits, runs, transition programs, guards failed";

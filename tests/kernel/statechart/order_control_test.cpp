@@ -1,11 +1,11 @@
-// The order of everything, thesis 5.2, second half: modes, waiting, errors and pause. A test for each line of
-// the table in kernel/statechart/README.md.
+// The execution order, thesis 5.2, second half: modes, waiting, errors and pause. A test for each line of the
+// table in kernel/statechart/README.md.
 #include "tests/kernel/statechart/play.hpp"
 
 namespace tappet {
 namespace {
 
-TEST(StateMachineOrder, line_30_runs_and_asks_nothing_in_reactive_mode) {
+TEST(StateMachineOrder, line_30_executes_and_evaluates_nothing_in_reactive_mode) {
     Play m{R"(
         state a initial run !a handle ~a
         state b entry +b..
@@ -24,7 +24,7 @@ TEST(StateMachineOrder, line_30_runs_and_asks_nothing_in_reactive_mode) {
     EXPECT_EQ(m.execution.machine_status(), MachineStatus::running);
 }
 
-TEST(StateMachineOrder, line_31_takes_a_requested_state_by_a_condition_transition_whose_guard_holds) {
+TEST(StateMachineOrder, line_31_enters_a_requested_state_when_its_guard_holds) {
     Play m{R"(
         state a initial exit -a
         state b entry +b
@@ -65,7 +65,7 @@ TEST(StateMachineOrder, line_32_runs_the_run_programs_once_after_a_request) {
     EXPECT_EQ(m.request("b", true), "!b:");
 }
 
-TEST(StateMachineOrder, line_33_asks_no_condition_while_a_program_is_in_hand_in_either_mode) {
+TEST(StateMachineOrder, line_33_evaluates_no_condition_while_a_program_is_in_hand) {
     const char* table = R"(
         state a initial
         state b entry +b..
@@ -123,7 +123,7 @@ TEST(StateMachineOrder, line_40_counts_events_that_find_no_room) {
     EXPECT_FALSE(m.execution.left_over()) << "a program hinders them";
 }
 
-TEST(StateMachineOrder, line_41_aborts_a_waiting_run_program_by_a_transition_and_keeps_it_by_a_refused_one) {
+TEST(StateMachineOrder, line_41_aborts_a_waiting_run_program_only_for_an_accepted_transition) {
     Started m{R"(
         state a initial run !a... exit -a handle ~a
         state b
@@ -143,7 +143,7 @@ TEST(StateMachineOrder, line_41_aborts_a_waiting_run_program_by_a_transition_and
     EXPECT_EQ(m.step(), "!a:") << "from its beginning";
 }
 
-TEST(StateMachineOrder, line_42_serves_requests_of_programs_after_the_call_and_the_final_state_first) {
+TEST(StateMachineOrder, line_42_serves_program_requests_after_the_call_and_final_state_first) {
     Started m{R"(
         state a initial exit -a
         state b entry +b exit -b
@@ -176,7 +176,7 @@ TEST(StateMachineOrder, line_42_serves_requests_of_programs_after_the_call_and_t
     EXPECT_EQ(m.execution.reason(), "gave up");
 }
 
-TEST(StateMachineOrder, line_43_gives_up_what_waits_for_the_final_state) {
+TEST(StateMachineOrder, line_43_aborts_waiting_programs_for_the_final_state) {
     const std::string text = R"(
         state a initial exit -a
         state b entry +b.... exit -b run !b....
@@ -195,7 +195,7 @@ TEST(StateMachineOrder, line_43_gives_up_what_waits_for_the_final_state) {
     EXPECT_FALSE(acting.execution.under_way());
 }
 
-TEST(StateMachineOrder, line_43_brings_an_exit_program_in_hand_to_its_end_first) {
+TEST(StateMachineOrder, line_43_completes_an_exit_program_in_hand_first) {
     Started m{R"(
         state o initial exit -o
         state a in o initial exit -a..
@@ -210,7 +210,7 @@ TEST(StateMachineOrder, line_43_brings_an_exit_program_in_hand_to_its_end_first)
     EXPECT_EQ(m.execution.reason(), "stopped");
 }
 
-TEST(StateMachineOrder, line_44_drops_what_waits_when_it_is_deactivated) {
+TEST(StateMachineOrder, line_44_drops_pending_work_when_deactivated) {
     Started m{R"(
         state a initial exit -a.
         state b entry +b...
@@ -244,7 +244,7 @@ TEST(StateMachineOrder, line_45_executes_a_bounded_number_of_statements_in_a_cal
     EXPECT_FALSE(m.execution.left_over());
 }
 
-TEST(StateMachineOrder, line_50_stands_where_a_program_failed) {
+TEST(StateMachineOrder, line_50_stops_where_a_program_failed) {
     Started m{R"(
         state a initial run !a!
         state b entry +b!
@@ -270,7 +270,7 @@ TEST(StateMachineOrder, line_50_stands_where_a_program_failed) {
     EXPECT_EQ(m.execution.fault().part, StatePart::run);
 }
 
-TEST(StateMachineOrder, line_50_takes_a_condition_that_fails_for_an_error) {
+TEST(StateMachineOrder, line_50_treats_a_failing_condition_as_an_error) {
     Started m{R"(
         state a initial
         state b pre p
@@ -289,7 +289,7 @@ TEST(StateMachineOrder, line_50_takes_a_condition_that_fails_for_an_error) {
     EXPECT_TRUE(m.execution.in_error());
 }
 
-TEST(StateMachineOrder, line_51_serves_only_the_final_state_and_a_deactivation_in_error) {
+TEST(StateMachineOrder, line_51_serves_only_the_final_state_and_deactivation_in_error) {
     Started m{R"(
         state o initial exit -o
         state a in o initial exit -a run !a!
@@ -312,7 +312,7 @@ TEST(StateMachineOrder, line_51_serves_only_the_final_state_and_a_deactivation_i
     EXPECT_FALSE(m.execution.is_active());
 }
 
-TEST(StateMachineOrder, line_52_goes_on_without_the_failing_program_in_a_second_deactivation) {
+TEST(StateMachineOrder, line_52_skips_the_failing_program_in_a_second_deactivation) {
     Started m{R"(
         state o initial exit -o!
         state p in o initial exit -p
@@ -328,7 +328,7 @@ TEST(StateMachineOrder, line_52_goes_on_without_the_failing_program_in_a_second_
     EXPECT_FALSE(m.execution.in_error());
 }
 
-TEST(StateMachineOrder, line_52_leaves_what_is_around_a_failing_exit_that_was_under_way) {
+TEST(StateMachineOrder, line_52_exits_the_parents_of_a_failing_exit) {
     Started m{R"(
         state o initial exit -o
         state a in o initial exit -a!.
@@ -345,7 +345,7 @@ TEST(StateMachineOrder, line_52_leaves_what_is_around_a_failing_exit_that_was_un
     EXPECT_TRUE(m.execution.states().empty());
 }
 
-TEST(StateMachineOrder, line_53_brings_a_parent_into_error_where_the_policy_says_so) {
+TEST(StateMachineOrder, line_53_puts_a_parent_in_error_where_the_policy_says_so) {
     const std::string text = "state a initial run !a!\nstate safe final\nfrom a to safe on go";
     for (const bool escalates : {false, true}) {
         Play parent{"state p initial\nstate safe final\nfrom p to safe on go"};
@@ -406,7 +406,7 @@ TEST(StateMachineOrder, line_61_steps_one_statement_or_one_condition_at_a_time) 
     EXPECT_FALSE(m.execution.step_once(m.now)) << "nothing to do";
 }
 
-TEST(StateMachineOrder, line_61_takes_a_waiting_event_in_a_single_step_when_nothing_is_in_hand) {
+TEST(StateMachineOrder, line_61_handles_a_pending_event_in_a_single_step_when_idle) {
     Started m{R"(
         state a initial exit -a
         state b entry +b
@@ -420,7 +420,7 @@ TEST(StateMachineOrder, line_61_takes_a_waiting_event_in_a_single_step_when_noth
     EXPECT_EQ(m.once(), "+b");
 }
 
-TEST(StateMachineOrder, line_62_goes_on_where_it_was_paused) {
+TEST(StateMachineOrder, line_62_resumes_where_it_was_paused) {
     Started m{R"(
         state a initial run !a handle ~a
         from a to safe if g)"};

@@ -1,5 +1,5 @@
-// The order of everything, thesis 5.2: regions, history, and what an observer sees of them. A test for each
-// line of the table in kernel/statechart/README.md.
+// The execution order, thesis 5.2: regions, history, and the view of an observer. A test for each line of the
+// table in kernel/statechart/README.md.
 #include "tests/kernel/statechart/play.hpp"
 
 namespace tappet {
@@ -30,7 +30,7 @@ TEST(StateMachineOrder, line_03_leaves_the_last_region_first_and_enters_the_firs
     EXPECT_EQ(m.active(), "idle");
 }
 
-TEST(StateMachineOrder, line_04_enters_the_other_regions_of_a_state_on_the_way_by_their_initial_states) {
+TEST(StateMachineOrder, line_04_enters_other_regions_on_the_way_by_their_initial_states) {
     Started m{regions + R"(
         from idle to b on left
         from idle to d on right
@@ -61,7 +61,7 @@ const std::string nested = R"(
     from ba to bb on swap
 )";
 
-TEST(StateMachineOrder, line_05_remembers_by_history_what_was_active_when_it_was_last_left) {
+TEST(StateMachineOrder, line_05_restores_the_last_active_states_by_history) {
     Started m{nested};
     EXPECT_EQ(m.send("deep"), "+x +a +c") << "nothing to remember";
     m.send("move");
@@ -77,7 +77,7 @@ TEST(StateMachineOrder, line_05_remembers_by_history_what_was_active_when_it_was
     EXPECT_EQ(m.send("deep"), "+x +a +c");
 }
 
-TEST(StateMachineOrder, line_05_remembers_nothing_of_before_it_was_bound) {
+TEST(StateMachineOrder, line_05_clears_history_when_bound_again) {
     Started m{nested};
     m.send("plain");
     m.send("move");
@@ -87,7 +87,7 @@ TEST(StateMachineOrder, line_05_remembers_nothing_of_before_it_was_bound) {
     EXPECT_EQ(m.send("deep"), "+x +a +c");
 }
 
-TEST(StateMachineOrder, line_13_gives_an_event_to_every_region_and_asks_all_before_anything_runs) {
+TEST(StateMachineOrder, line_13_offers_an_event_to_every_region_before_anything_runs) {
     Started m{regions + R"(
         from idle to x on go
         from a to b on swap if ga then *ab
@@ -100,7 +100,7 @@ TEST(StateMachineOrder, line_13_gives_an_event_to_every_region_and_asks_all_befo
     EXPECT_EQ(m.send("swap"), "?gx -d -b -x") << "no region took it";
 }
 
-TEST(StateMachineOrder, line_13_asks_the_state_around_regions_once_and_only_when_none_took_it) {
+TEST(StateMachineOrder, line_13_asks_the_parent_of_regions_once_when_none_handled_it) {
     Started m{regions + R"(
         from idle to x on go
         from a to b on swap if ga
@@ -112,7 +112,7 @@ TEST(StateMachineOrder, line_13_asks_the_state_around_regions_once_and_only_when
     EXPECT_EQ(m.send("swap"), "?ga ?gc -c +d");
 }
 
-TEST(StateMachineOrder, line_13_drops_the_transition_of_a_region_that_an_earlier_one_left) {
+TEST(StateMachineOrder, line_13_drops_the_transition_of_a_region_that_was_left) {
     Started m{regions + R"(
         from idle to x on go
         from a to idle on out then *out
@@ -124,7 +124,7 @@ TEST(StateMachineOrder, line_13_drops_the_transition_of_a_region_that_an_earlier
     EXPECT_EQ(m.active(), "idle");
 }
 
-TEST(StateMachineOrder, line_13_takes_the_second_regions_transition_when_that_of_the_first_has_waited) {
+TEST(StateMachineOrder, line_13_executes_the_second_regions_transition_after_the_first_waited) {
     Started m{regions + R"(
         from idle to x on go
         from a to b on swap then *ab.
@@ -136,7 +136,7 @@ TEST(StateMachineOrder, line_13_takes_the_second_regions_transition_when_that_of
     EXPECT_EQ(m.step(), ":*cd -c +d !x !b !d ~x");
 }
 
-TEST(StateMachineOrder, line_23_asks_a_region_again_that_had_said_no_before_another_was_changed) {
+TEST(StateMachineOrder, line_23_evaluates_a_refusing_region_again_after_another_changed) {
     Started m{regions + R"(
         from idle to x on go
         from a to b if ga
@@ -148,7 +148,7 @@ TEST(StateMachineOrder, line_23_asks_a_region_again_that_had_said_no_before_anot
     EXPECT_EQ(m.step(), "!x !a !c ?ga ?gc -c +d !d ?ga ~x");
 }
 
-TEST(StateMachineOrder, hides_nothing_from_a_trace) {
+TEST(StateMachineOrder, shows_every_change_in_a_trace) {
     Play m{regions + R"(
         from idle to x on go
         from c to d on swap
@@ -188,7 +188,7 @@ TEST(StateMachineOrder, hides_nothing_from_a_trace) {
                                                  {"idle", "none", leaving_transition, m.now}}));
 }
 
-TEST(StateMachineOrder, is_not_bound_without_the_memory_that_history_and_arguments_take) {
+TEST(StateMachineOrder, is_not_bound_without_memory_for_history_and_arguments) {
     Play m{nested};
     StateMachineBinding binding;
     binding.machine = m.execution.machine();

@@ -1,5 +1,5 @@
-// The order of everything, thesis 5.2: a test for each line of the table in kernel/statechart/README.md,
-// whose number stands in the test's name. Programs and conditions are written as in play.hpp.
+// The execution order, thesis 5.2: a test for each line of the table in kernel/statechart/README.md, with the
+// line number in the test's name. Programs and conditions are written as in play.hpp.
 #include "tests/kernel/statechart/play.hpp"
 
 namespace tappet {
@@ -35,7 +35,7 @@ TEST(StateMachineOrder, line_01_keeps_that_order_when_each_program_waits) {
     EXPECT_EQ(m.execution.status().transitions, 2u);
 }
 
-TEST(StateMachineOrder, line_02_leaves_all_below_the_innermost_state_around_source_and_target) {
+TEST(StateMachineOrder, line_02_leaves_all_states_below_the_common_parent) {
     Started m{R"(
         state o initial entry +o exit -o
         state p in o initial entry +p exit -p
@@ -69,7 +69,7 @@ TEST(StateMachineOrder, line_06_keeps_a_waiting_run_program_through_an_internal_
     EXPECT_EQ(m.step(), ":!a");
 }
 
-TEST(StateMachineOrder, line_07_asks_the_preconditions_of_all_that_would_be_entered_after_the_guard) {
+TEST(StateMachineOrder, line_07_checks_preconditions_of_all_entered_states_after_the_guard) {
     Started m{R"(
         state idle initial exit -idle
         state x pre px
@@ -105,7 +105,7 @@ TEST(StateMachineOrder, line_08_counts_a_states_time_from_before_its_entry_progr
     EXPECT_EQ(m.active(), "a");
 }
 
-TEST(StateMachineOrder, line_10_asks_the_innermost_first_with_the_arguments_in_their_place) {
+TEST(StateMachineOrder, line_10_asks_the_innermost_state_first_with_the_arguments) {
     Started m{R"(
         state o initial
         state a in o initial
@@ -129,7 +129,7 @@ TEST(StateMachineOrder, line_10_asks_the_innermost_first_with_the_arguments_in_t
     EXPECT_EQ(m.active(), "o(b)") << "the outer one";
 }
 
-TEST(StateMachineOrder, line_10_ignores_an_event_without_the_arguments_that_are_taken) {
+TEST(StateMachineOrder, line_10_ignores_an_event_without_the_required_arguments) {
     Started m{R"(
         state a initial
         from a to safe on go takes)"};
@@ -137,7 +137,7 @@ TEST(StateMachineOrder, line_10_ignores_an_event_without_the_arguments_that_are_
     EXPECT_EQ(m.active(), "a");
 }
 
-TEST(StateMachineOrder, line_11_takes_the_else_branch_of_the_transition_that_was_refused) {
+TEST(StateMachineOrder, line_11_executes_the_else_branch_of_a_refused_transition) {
     Started m{R"(
         state a initial exit -a handle ~a
         state b entry +b
@@ -155,7 +155,7 @@ TEST(StateMachineOrder, line_11_takes_the_else_branch_of_the_transition_that_was
     EXPECT_EQ(m.send("one"), "?g *one -a +b");
 }
 
-TEST(StateMachineOrder, line_12_runs_the_handle_program_of_the_innermost_state_that_refused) {
+TEST(StateMachineOrder, line_12_runs_the_handle_program_of_the_innermost_refusing_state) {
     Started m{R"(
         state o initial handle ~o
         state a in o initial handle ~a
@@ -194,7 +194,7 @@ TEST(StateMachineOrder, line_14_counts_a_time_out_from_the_entry_of_its_source) 
     EXPECT_EQ(m.execution.next_timeout(), never);
 }
 
-TEST(StateMachineOrder, line_14_asks_the_guard_of_a_due_time_out_in_every_step) {
+TEST(StateMachineOrder, line_14_evaluates_the_guard_of_a_due_time_out_in_every_step) {
     Started m{R"(
         state a initial
         from a to safe after 2 if g)"};
@@ -206,7 +206,7 @@ TEST(StateMachineOrder, line_14_asks_the_guard_of_a_due_time_out_in_every_step) 
     EXPECT_EQ(m.active(), "safe");
 }
 
-TEST(StateMachineOrder, line_20_goes_on_with_what_is_in_hand_and_then_begins_a_round_in_the_same_step) {
+TEST(StateMachineOrder, line_20_continues_pending_work_and_then_starts_a_round) {
     Started m{R"(
         state a initial
         state b entry +b. run !b
@@ -218,7 +218,7 @@ TEST(StateMachineOrder, line_20_goes_on_with_what_is_in_hand_and_then_begins_a_r
     EXPECT_EQ(m.step(), ":+b !b");
 }
 
-TEST(StateMachineOrder, line_21_runs_from_the_outside_and_no_waiting_run_program_holds_up_another) {
+TEST(StateMachineOrder, line_21_runs_outer_states_first_and_waiting_programs_delay_no_other) {
     Started m{R"(
         state o initial run !o..
         state a in o initial run !a
@@ -229,7 +229,7 @@ TEST(StateMachineOrder, line_21_runs_from_the_outside_and_no_waiting_run_program
     EXPECT_EQ(m.step(), "!o: !a");
 }
 
-TEST(StateMachineOrder, line_22_asks_conditions_of_a_state_only_when_its_run_program_has_ended) {
+TEST(StateMachineOrder, line_22_evaluates_conditions_only_after_the_run_program_ended) {
     Started m{R"(
         state o initial run !o handle ~o
         state a in o initial run !a. handle ~a
@@ -242,7 +242,7 @@ TEST(StateMachineOrder, line_22_asks_conditions_of_a_state_only_when_its_run_pro
     EXPECT_EQ(m.step(), "!o :!a ?inner ?outer ~o ~a");
 }
 
-TEST(StateMachineOrder, line_22_aborts_a_run_program_that_waits_when_a_time_out_is_due) {
+TEST(StateMachineOrder, line_22_aborts_a_waiting_run_program_when_a_time_out_is_due) {
     Started m{R"(
         state a initial run !a......... exit -a
         state b entry +b
@@ -254,7 +254,7 @@ TEST(StateMachineOrder, line_22_aborts_a_run_program_that_waits_when_a_time_out_
     EXPECT_EQ(m.execution.reason(), "slow");
 }
 
-TEST(StateMachineOrder, line_23_runs_what_was_entered_and_asks_all_conditions_again) {
+TEST(StateMachineOrder, line_23_runs_entered_states_and_evaluates_all_conditions_again) {
     Started m{R"(
         state o initial run !o handle ~o
         state a in o initial run !a
@@ -282,7 +282,7 @@ TEST(StateMachineOrder, line_23_bounds_the_transitions_of_a_step) {
     EXPECT_FALSE(m.execution.left_over());
 }
 
-TEST(StateMachineOrder, line_24_goes_on_in_a_later_step_with_a_handle_program_that_waits) {
+TEST(StateMachineOrder, line_24_continues_a_waiting_handle_program_in_a_later_step) {
     Started m{R"(
         state o initial run !o handle ~o.
         state a in o initial handle ~a
@@ -292,7 +292,7 @@ TEST(StateMachineOrder, line_24_goes_on_in_a_later_step_with_a_handle_program_th
     EXPECT_EQ(m.step(), "!o ~o:");
 }
 
-TEST(StateMachineOrder, line_25_begins_no_run_program_twice_in_a_step) {
+TEST(StateMachineOrder, line_25_starts_each_run_program_at_most_once_per_step) {
     Started m{R"(
         state a initial entry +a run !a handle ~a
         state b run !b
@@ -304,7 +304,7 @@ TEST(StateMachineOrder, line_25_begins_no_run_program_twice_in_a_step) {
     EXPECT_EQ(m.step(), "!a ?g !b ?g +a");
 }
 
-TEST(StateMachineOrder, line_26_handles_events_that_waited_after_the_round) {
+TEST(StateMachineOrder, line_26_handles_pending_events_after_the_round) {
     Started m{R"(
         state a initial run !a handle ~a exit -a
         state b entry +b
@@ -317,7 +317,7 @@ TEST(StateMachineOrder, line_26_handles_events_that_waited_after_the_round) {
     EXPECT_EQ(m.outcome, StateOutcome::queued);
 }
 
-TEST(StateMachineOrder, line_26_bounds_a_ring_of_raised_events_and_goes_on_in_the_next_call) {
+TEST(StateMachineOrder, line_26_bounds_a_cycle_of_raised_events_in_one_call) {
     Started m{R"(
         state ping initial entry +ping
         state pong entry +pong

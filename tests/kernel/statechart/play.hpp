@@ -61,7 +61,7 @@ public:
     [[nodiscard]] StateMachineTable table() const {
         return {"play", states_, transitions_, nullptr, &tables_, captures_};
     }
-    /// What was written down since the last call.
+    /// The notes since the last call.
     std::string heard() { return std::exchange(log_, {}); }
     std::string start() {
         execution.start(now);

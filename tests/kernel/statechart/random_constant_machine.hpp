@@ -1,5 +1,5 @@
-// State machines without sense, as constants: their programs wait, fail, raise events and ask for the final
-// state. The same seed gives the same machine, in a constant expression.
+// Random state machines as constants: their programs wait, fail, raise events and request the final state.
+// The same seed gives the same machine, in a constant expression.
 #pragma once
 
 #include "kernel/statechart/native.hpp"
@@ -11,7 +11,7 @@ namespace tappet::random_machines {
 
 inline constexpr std::array<std::string_view, 3> events{"go", "stop", "mark"};
 
-/// The component: what was done to it, as a sum that keeps the order, and the way back to its machine.
+/// The component: an order-dependent sum of its calls, and the way back to its machine.
 struct Witness {
     std::uint64_t sum = 0;
     std::uint32_t calls = 0;
@@ -67,7 +67,7 @@ inline constexpr std::size_t transition_count = extra_transitions + 8;
 
 constexpr DataOffset place(std::size_t i) { return static_cast<DataOffset>(i * data_alignment); }
 inline constexpr std::size_t constants = 3, variables = 4;
-inline constexpr DataOffset limit = place(constants + variables); ///< a Duration that a wait needs
+inline constexpr DataOffset limit = place(constants + variables); ///< the Duration of a wait
 inline constexpr DataOffset scratch = place(constants + variables + 1);
 inline constexpr std::size_t data_bytes = place(constants + variables + 3);
 
@@ -226,7 +226,7 @@ constexpr Rows random_rows(std::uint64_t seed, bool folded) {
     return rows;
 }
 
-/// What native code is made of.
+/// The source of native code.
 struct Source {
     StateMachineTable table{};
     const ProgramTables* tables = nullptr;

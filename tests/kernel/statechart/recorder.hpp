@@ -1,5 +1,5 @@
-// A component whose state programs write down that they ran: "+a"
-// entry, "-a" exit, "!a" run, "*a" transition program; and a machine of it that is executed.
+// A component whose state programs record their runs: "+a" entry, "-a" exit, "!a" run, "*a" transition
+// program; and an executing machine of it.
 #pragma once
 
 #include "kernel/base/bounded.hpp"
@@ -26,7 +26,7 @@ struct Recorder {
     }
     bool if_yes() const noexcept TAPPET_REALTIME { return yes; }
 
-    /// What was written since the last call.
+    /// The notes since the last call.
     std::string heard() {
         const std::string text{characters.begin(), characters.end()};
         characters.clear();
@@ -34,13 +34,13 @@ struct Recorder {
     }
 };
 
-/// A machine that does not run yet.
+/// A machine that is not started yet.
 template <const auto& machine> struct Bound {
     Recorder component;
     StateMachineExecution execution;
     std::array<StateIndex, 8> history{};
     Time now = at_ns(1000);
-    StateOutcome outcome = StateOutcome::ignored; ///< of the last send
+    StateOutcome outcome = StateOutcome::ignored; ///< outcome of the last send
 
     Bound() {
         StateMachineBinding binding;
@@ -76,7 +76,7 @@ template <const auto& machine> struct Bound {
     }
 };
 
-/// One that was started, and sent the events.
+/// A machine that was started and received the events.
 template <const auto& machine> struct Running : Bound<machine> {
     explicit Running(std::initializer_list<std::string_view> events = {}) {
         this->execution.start(this->now);

@@ -1,5 +1,4 @@
-// State machines whose rows name programs that do not exist are refused before they are executed
-// (thesis 5.2.1).
+// State machines with rows that name missing programs are refused before execution (thesis 5.2.1).
 #include "kernel/statechart/check_references.hpp"
 
 #include <gtest/gtest.h>
@@ -30,9 +29,11 @@ struct Spoilt {
     StateMachineTable table{"m", {&state, 1}, {&transition, 1}, nullptr, &programs, {&capture, 1}};
 };
 
-TEST(A_state_machine, whose_programs_exist_passes) { EXPECT_EQ(check_references(Spoilt{}.table).view(), ""); }
+TEST(A_state_machine, passes_when_its_programs_exist) {
+    EXPECT_EQ(check_references(Spoilt{}.table).view(), "");
+}
 
-TEST(A_state_machine, is_refused_when_a_row_names_what_does_not_exist) {
+TEST(A_state_machine, is_refused_when_a_row_names_a_missing_item) {
     using Spoil = void (*)(Spoilt&);
     const Spoil spoils[] = {
         [](Spoilt& s) { s.state.precondition.condition = 1; },

@@ -1,4 +1,4 @@
-// The resolved form: what it holds, that it is exactly as large as it must be, and loading into bounded room.
+// The resolved form: its content, its exact size, and loading into bounded room.
 #include "tests/kernel/statechart/recorder.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(StateMachineResolver, lists_each_event_once_in_the_order_of_the_transitions
     EXPECT_EQ(view.triggers[1], "panel.start");
 }
 
-TEST(StateMachineResolver, orders_the_transitions_of_a_leaf_from_the_inside_and_then_by_row) {
+TEST(StateMachineResolver, orders_transitions_of_a_leaf_from_inside_and_then_by_row) {
     EXPECT_EQ(transitions_of(cell("weave", 0)), (Numbers{2, 0}));
     EXPECT_EQ(transitions_of(cell("run_up", 0)), (Numbers{0}));
     EXPECT_EQ(transitions_of(cell("idle", 0)), (Numbers{}));
@@ -94,7 +94,7 @@ TEST(StateMachineResolver, lists_the_steps_of_a_transition_in_their_order) {
     EXPECT_EQ(steps_of(view.arcs[leaving_arc].steps), "leave depart");
 }
 
-TEST(StateMachineResolver, takes_exactly_the_room_it_measured) {
+TEST(StateMachineResolver, uses_exactly_the_room_it_measured) {
     constexpr ResolvedSizes sizes = measure(loom.view());
     ResolvedMachine<sizes> exact;
     EXPECT_EQ(exact.load(loom.view()).view(), "");
@@ -120,7 +120,7 @@ TEST(StateMachineResolver, takes_exactly_the_room_it_measured) {
     refused(without.template operator()<sizes, &ResolvedSizes::regions>());
 }
 
-TEST(StateMachineResolver, makes_the_same_of_a_table_at_run_time_as_the_compiler_did) {
+TEST(StateMachineResolver, gives_the_same_result_at_run_time_and_compile_time) {
     const std::vector<StateRow> states{loom.states.begin(), loom.states.end()};
     const std::vector<TransitionRow> transitions{loom.transitions.begin(), loom.transitions.end()};
     ResolvedMachine<ResolvedSizes{40, 10, 40, 500, 900, 8}> room;
@@ -161,7 +161,7 @@ TEST(StateMachineResolver, loads_one_machine_after_another_into_the_same_room) {
     EXPECT_EQ(execution.dispatch(0, at_ns(4)), StateOutcome::taken);
 }
 
-TEST(StateMachineResolver, keeps_no_machine_when_a_faulty_one_was_loaded) {
+TEST(StateMachineResolver, discards_the_machine_when_a_faulty_one_was_loaded) {
     ResolvedMachine<ResolvedSizes{40, 10, 40, 500, 900, 8}> room{loom.view()};
     const std::vector<StateRow> faulty{state("a", initial), state("safe", final)};
     EXPECT_EQ(room.load({"faulty", faulty, {}, type_id<R>}).view(),

@@ -1,6 +1,6 @@
-// One transition, compiled and loaded: says whether both do their steps in the order that is given, as
+// One transition, compiled and loaded: prints whether both execute their steps in the given order, as
 // "program exit entry". It is built a second time with two steps of kernel/statechart/resolve.hpp exchanged:
-// the order stands in that one place, so both forms then do the other one (and order_test would tell).
+// the order is defined only there, so both forms then use the other order (and order_test would detect it).
 #include "kernel/statechart/native.hpp"
 
 #include <iostream>

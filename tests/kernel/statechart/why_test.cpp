@@ -1,5 +1,5 @@
-// Why a state machine is not in a state: what a look at a transition answers, which refusals are told, and
-// the ways that lead to a state.
+// Why a state machine is not in a state: the predicted answer of a transition, the reported refusals, and the
+// ways that lead to a state.
 #include "kernel/statechart/native.hpp"
 #include "kernel/statechart/ways.hpp"
 
@@ -24,7 +24,7 @@ constexpr auto oven = state_machine<Oven>(
                 transition("cold", "safe", after(10s)), transition("runs", "cold", guard<&Oven::warm>)));
 static_assert(check(oven.view()).empty());
 
-TEST(Look, says_what_a_transition_would_be_answered_and_takes_nothing) {
+TEST(Look, predicts_the_answer_to_a_transition_without_executing_it) {
     using Look = StateMachineExecution::Look;
     for (const bool compiled : {false, true}) {
         Oven component;
@@ -71,7 +71,7 @@ constexpr auto hall = state_machine<Oven>(
                 transition("cellar", "hall", deep_history, on("climb"))));
 static_assert(check(hall.view()).empty());
 
-TEST(Ways, lead_from_leaf_to_leaf_also_out_of_and_into_composites) {
+TEST(Ways, connect_leaves_also_across_composite_states) {
     constexpr ResolvedView machine = resolved<hall>.view();
     const auto number = [&](std::string_view name) { return find_state(machine.table, name); };
     const Ways ways{machine, number("stage")};

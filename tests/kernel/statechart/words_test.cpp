@@ -35,7 +35,7 @@ constexpr auto parallel = state_machine<R>(
                 transition("l1", "l2", on("swap")), transition("r1", "r2", on("swap"))));
 static_assert(check(parallel.view()).empty());
 
-TEST(StateMachineWords, handles_runs_when_nothing_was_taken) {
+TEST(StateMachineWords, handles_runs_when_no_transition_fired) {
     Running<plain> m;
     EXPECT_EQ(m.step(), "!a ~a");
     EXPECT_EQ(m.send("go"), "~a") << "its guard refused";
@@ -43,7 +43,7 @@ TEST(StateMachineWords, handles_runs_when_nothing_was_taken) {
     EXPECT_EQ(m.send("go"), "-a +b");
 }
 
-TEST(StateMachineWords, precondition_refuses_and_otherwise_leads_elsewhere) {
+TEST(StateMachineWords, precondition_refuses_an_entry_or_redirects_it) {
     Running<refusing> m;
     EXPECT_EQ(m.send("go"), "*no +c");
     m.send("back");
@@ -51,7 +51,7 @@ TEST(StateMachineWords, precondition_refuses_and_otherwise_leads_elsewhere) {
     EXPECT_EQ(m.send("go"), "+b");
 }
 
-TEST(StateMachineWords, region_and_history_keep_what_was_active) {
+TEST(StateMachineWords, region_and_history_restore_the_active_states) {
     Running<parallel> m;
     m.send("go");
     EXPECT_EQ(m.send("swap"), "+l2 +r2");
@@ -61,7 +61,7 @@ TEST(StateMachineWords, region_and_history_keep_what_was_active) {
     EXPECT_TRUE(m.execution.is_in(find_state(parallel.view(), "r2")));
 }
 
-TEST(StateMachineWords, single_steps_go_through_functions_one_by_one) {
+TEST(StateMachineWords, single_steps_enter_functions_one_by_one) {
     Running<plain> m;
     m.execution.pause();
     EXPECT_EQ(m.once(), "!a");

@@ -1,5 +1,6 @@
-// What a protected payload finds: the standard's examples, every error of one and two bits, and all that a
-// way may do to an order of payloads. What each rule of the check is for, a twin without it shows.
+// Detection by a protected payload: the standard's examples, every error of one and two bits, and all that a
+// faulty channel may do to a sequence of payloads. A twin without one rule of the check shows the purpose of
+// that rule.
 #include "kernel/base/random.hpp"
 #include "kernel/system/protection.hpp"
 
@@ -50,7 +51,7 @@ static_assert(protection_fault({.form = Form::id_both, .most_steps = 15}, 8).vie
               "most_steps is 15: write one from 1 to 14");
 static_assert(!protection_fault({.most_steps = 0}, 8).empty());
 
-/// Of which the first byte is not the header's, where there is room.
+/// The first byte is not the header's, where there is room.
 constexpr std::array forms{
     Protection{.form = Form::id_both, .id = 0x123}, Protection{.form = Form::id_nibble, .id = 0xABC, .at = 3},
     Protection{.form = Form::id_low, .id = 0x7F}, Protection{.form = Form::wide, .id = 0x1234},
@@ -62,7 +63,7 @@ template <std::size_t bytes> std::array<std::uint8_t, bytes> any_payload(Random&
     return payload;
 }
 
-TEST(Protection, leaves_all_but_its_header_as_it_is) {
+TEST(Protection, changes_only_its_header) {
     Random random{1};
     for (const Protection& by : forms)
         for (int i = 0; i < 100; ++i) {
@@ -76,7 +77,7 @@ TEST(Protection, leaves_all_but_its_header_as_it_is) {
         }
 }
 
-TEST(Protection, refuses_what_it_cannot_write_and_writes_nothing) {
+TEST(Protection, refuses_an_impossible_payload_and_writes_nothing) {
     std::array<std::uint8_t, 8> payload{1, 2, 3, 4, 5, 6, 7, 8};
     const auto before = payload;
     EXPECT_FALSE(protect(payload, {}, 15));
@@ -87,7 +88,7 @@ TEST(Protection, refuses_what_it_cannot_write_and_writes_nothing) {
     EXPECT_TRUE(protect(payload, {.form = Form::wide}, 255));
 }
 
-/// Bits in the order of the wire, the highest of a byte first.
+/// Bits in wire order, the highest of a byte first.
 template <std::size_t N> void flip(std::array<std::uint8_t, N>& payload, std::size_t bit) {
     payload[bit / 8] = static_cast<std::uint8_t>(payload[bit / 8] ^ 0x80U >> bit % 8);
 }
@@ -110,7 +111,7 @@ template <std::size_t N> void expect_every_error_of_two_bits_found(const Protect
     }
 }
 
-TEST(Protection, finds_each_error_of_one_and_of_two_bits) {
+TEST(Protection, detects_each_error_of_one_or_two_bits) {
     Random random{1};
     for (const Protection& by : forms)
         for (int i = 0; i < 20; ++i) expect_every_error_of_two_bits_found<8>(by, random);
@@ -120,7 +121,7 @@ TEST(Protection, finds_each_error_of_one_and_of_two_bits) {
 struct Bursts {
     std::size_t missed = 0, all = 0;
 };
-/// Those of that length which begin and end with a wrong bit, in each place.
+/// The bursts of that length that begin and end with a wrong bit, in each place.
 Bursts bursts(const Protection& by, std::size_t length) {
     std::array<std::uint8_t, 8> payload{};
     EXPECT_TRUE(protect(payload, by, 0));
@@ -138,9 +139,9 @@ Bursts bursts(const Protection& by, std::size_t length) {
     return found;
 }
 
-// The sum stands before what it is of, so that a burst across both is none of the polynomial's: of the longer
-// ones some are missed, about as many as of any other error.
-TEST(Protection, finds_each_short_burst_and_most_of_the_longer_ones) {
+// The checksum precedes its data, so that a burst across both is outside the polynomial's guarantee: some of
+// the longer ones are missed, about as many as of any other error.
+TEST(Protection, detects_each_short_burst_and_most_longer_ones) {
     for (const Protection& by : forms) {
         const std::size_t short_ones = by.is_wide() ? 13 : 7;
         for (std::size_t length = 2; length <= 16; ++length) {
@@ -153,7 +154,7 @@ TEST(Protection, finds_each_short_burst_and_most_of_the_longer_ones) {
     }
 }
 
-TEST(Protection, finds_a_payload_of_each_other_connection) {
+TEST(Protection, detects_a_payload_of_each_other_connection) {
     for (const Form form : {Form::id_both, Form::id_low, Form::id_nibble, Form::wide}) {
         const unsigned most = form == Form::id_low ? 255 : form == Form::id_nibble ? 4095 : 65535;
         const Protection own{.form = form, .id = 0x5A};
@@ -161,14 +162,14 @@ TEST(Protection, finds_a_payload_of_each_other_connection) {
             std::array<std::uint8_t, 8> payload{1, 2, 3, 4, 5, 6, 7, 8};
             ASSERT_TRUE(protect(payload, {.form = form, .id = static_cast<std::uint16_t>(id)}, 3));
             const Kind kind = ProtectionCheck{own}.check(payload).kind;
-            // Eight bits of sum tell 16 bits of id apart as far as they go.
+            // An 8-bit checksum cannot distinguish all 16-bit identifiers.
             if (form == Form::id_both && id > 255 && kind == Kind::initial) continue;
             ASSERT_EQ(kind, id == own.id ? Kind::initial : Kind::wrong_crc) << "id " << id;
         }
     }
 }
 
-/// What a check answers to payloads with these counters.
+/// The verdicts of a check for payloads with these counters.
 std::vector<Kind> kinds(const Protection& by, std::initializer_list<std::uint8_t> counters) {
     ProtectionCheck check{by};
     std::vector<Kind> found;
@@ -180,7 +181,7 @@ std::vector<Kind> kinds(const Protection& by, std::initializer_list<std::uint8_t
     return found;
 }
 
-TEST(ProtectionCheck, tells_what_became_of_the_order) {
+TEST(ProtectionCheck, reports_the_order_of_payloads) {
     using enum Kind;
     const Protection by{.id = 0x123, .most_steps = 3};
     EXPECT_EQ(kinds(by, {3, 4, 6, 9, 9, 10}), (std::vector{initial, ok, some_lost, some_lost, repeated, ok}));
@@ -191,7 +192,7 @@ TEST(ProtectionCheck, tells_what_became_of_the_order) {
     EXPECT_EQ(kinds(wide, {254, 255, 0, 3, 7}), (std::vector{initial, ok, ok, some_lost, wrong_order}));
 }
 
-TEST(ProtectionCheck, tells_how_many_were_lost) {
+TEST(ProtectionCheck, reports_the_number_of_lost_payloads) {
     const Protection by{.id = 0x123, .most_steps = 14};
     for (std::uint8_t steps = 1; steps < 15; ++steps)
         for (std::uint8_t from = 0; from < 15; ++from) {
@@ -207,7 +208,7 @@ TEST(ProtectionCheck, tells_how_many_were_lost) {
         }
 }
 
-TEST(ProtectionCheck, takes_nothing_of_what_is_cut_and_no_counter_that_nobody_sends) {
+TEST(ProtectionCheck, rejects_truncated_payloads_and_invalid_counters) {
     const Protection by{.id = 0x123};
     std::array<std::uint8_t, 8> payload{};
     ASSERT_TRUE(protect(payload, by, 3));
@@ -219,11 +220,11 @@ TEST(ProtectionCheck, takes_nothing_of_what_is_cut_and_no_counter_that_nobody_se
     EXPECT_EQ(ProtectionCheck{by}.check(payload).kind, Kind::wrong_crc);
 }
 
-// -- What a way does to payloads, against what is known of their numbers
+// -- The effects of a channel on payloads, against their known numbers
 
 using Check = std::function<ProtectionVerdict(std::span<const std::uint8_t>, bool begins_anew)>;
 
-/// What a check without one of its rules would answer.
+/// The rule that a check omits.
 enum class Without {
     nothing,
     the_turn_at_fifteen,
@@ -238,7 +239,7 @@ enum class Without {
     counting_what_is_between_only
 };
 
-/// The rules once more, each to be left out.
+/// The rules again, each of which can be omitted.
 struct Twin {
     Protection by{};
     Without without = Without::nothing;
@@ -274,7 +275,7 @@ struct Twin {
     }
 };
 
-/// What the numbers of payloads, which never turn, say.
+/// The expected verdict from payload numbers that never wrap.
 struct Truth {
     Protection by{};
     std::int64_t last = -1;
@@ -291,8 +292,8 @@ struct Truth {
     }
 };
 
-/// A sender and a way that loses, repeats, swaps, keeps back, spoils and mistakes payloads: how many verdicts
-/// are not those of the truth.
+/// A sender and a channel that loses, repeats, swaps, delays, corrupts and misroutes payloads; returns the
+/// number of wrong verdicts.
 int wrong_verdicts(const Protection& by, std::uint64_t seed, const Check& check) {
     Random random{seed};
     Truth truth{by};
@@ -320,7 +321,7 @@ int wrong_verdicts(const Protection& by, std::uint64_t seed, const Check& check)
             receive(now - random.below(std::min<std::size_t>(now + 1, 12)), false);
             receive(now, false);
             break;
-        case 3: { // spoilt
+        case 3: { // corrupted
             auto spoilt = sent.back();
             flip(spoilt, random.below(64));
             refuse(spoilt, Kind::wrong_crc);
@@ -362,7 +363,7 @@ Check product(const Protection& by) {
     };
 }
 
-TEST(ProtectionCheck, tells_the_truth_of_every_payload_that_a_bad_way_brings) {
+TEST(ProtectionCheck, classifies_every_payload_of_a_faulty_channel_correctly) {
     for (const Protection& by : forms)
         for (std::uint64_t seed = 1; seed <= 200; ++seed) {
             ASSERT_EQ(wrong_verdicts(by, seed, product(by)), 0) << "seed " << seed;

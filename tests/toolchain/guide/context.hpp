@@ -1,4 +1,4 @@
-// What the machines of the guide's pages stand on, read once for all of their units.
+// Headers for the machines of the guide's pages, parsed once for all of their units.
 #pragma once
 
 #include "board/bench/board.hpp"

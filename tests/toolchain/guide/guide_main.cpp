@@ -1,7 +1,7 @@
-// Takes the guide's pages apart, writes what they show as cases of tests/diagnostics, and becomes the program
+// Takes the guide's pages apart, writes their code as cases of tests/diagnostics, and becomes the program
 // that compiles them:
 //     guide --pages DIR --templates DIR --to DIR --scripts FILE --front PROGRAM --browser PROGRAM -- JUDGE...
-// A command that a page shows is known to its program's help.
+// The help of its program knows each command that a page shows.
 #include "tests/toolchain/guide/page.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::string output_of(const std::string& command) {
     return text;
 }
 
-/// Of "tappet build" and "tappet-browse list warp": is that word a command of that program?
+/// Returns whether that word is a command of that program, for "tappet build" and "tappet-browse list warp".
 bool is_known(const std::string& command, const std::string& of_front, const std::string& of_browser) {
     static const std::regex used{"\\s*(tappet browse|tappet-browse|tappet)\\s+([a-z]+).*"};
     std::smatch words;

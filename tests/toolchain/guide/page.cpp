@@ -1,4 +1,4 @@
-// Reading pages, and what their blocks make of a project.
+// Reads pages and applies their blocks to a project.
 #include "tests/toolchain/guide/page.hpp"
 
 #include "toolchain/tools/front/project.hpp"
@@ -68,7 +68,7 @@ std::string in_one_line(const std::string& text) {
 struct Reader {
     const fs::path& templates;
     Page page{};
-    Project first{}, before{}, now{}; ///< as it was begun, before the last block, after it
+    Project first{}, before{}, now{}; ///< at its start, before the last block, after it
     std::string changed{};
     bool may_be_refused = false;
 
@@ -140,7 +140,7 @@ std::string include(const std::string& name, const std::string& file) {
 
 std::expected<std::vector<Block>, std::string> blocks(std::string_view page) {
     std::vector<Block> found;
-    std::string_view end; // of the block that is open
+    std::string_view end; // of the open block
     std::size_t number = 0;
     for (const std::string& line : lines_of(page)) {
         ++number;
@@ -180,7 +180,7 @@ void write_unit(const Unit& unit, const fs::path& to, const std::string& name, c
         std::ofstream{place, std::ios::binary} << text;
     }
     if (!unit.compiles) return;
-    // The plant and its test belong to the whole; a refusal of the table needs them no more than its reader.
+    // The plant and its test belong to the whole project; a refusal of the table needs neither.
     const bool whole = unit.refusal.empty() || is_one_of(unit.changed, {"plant.hpp", "test.cpp"});
     std::ofstream out{to / (name + ".cpp"), std::ios::binary};
     out << "// " << page << ":" << unit.line << "\n// "
@@ -192,7 +192,8 @@ void write_unit(const Unit& unit, const fs::path& to, const std::string& name, c
         << " {\n"
         << project.code << "} // namespace\n";
     for (const std::string board : {"bench", "my_box"})
-        if (!unit.refusal.empty() || board == "my_box") // what fits one fits the other, unless a page says so
+        if (!unit.refusal.empty() || board == "my_box") // each project fits all boards, unless a page says
+                                                        // otherwise
             out << "template struct tappet::Firmware<" << project.name << "::table, tappet::board::" << board
                 << ", " << project.name << "::bindings::" << board << ">;\n";
 }

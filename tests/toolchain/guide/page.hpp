@@ -1,5 +1,5 @@
-// A page of the guide as what it shows: a machine's project that is begun, edited and spoiled step by step.
-// Of its blocks, fenced or in a comment that no reader sees (<!-- cpp ... -->):
+// A page of the guide as its machine's project, which the page begins, edits and spoils step by step. Its
+// blocks are fenced, or in a comment that no reader sees (<!-- cpp ... -->):
 //     sh              commands; `tappet new NAME ..` begins the project from the front door's templates
 //     cpp FILE, osd FILE, cmake FILE      a whole file of the project
 //     diff FILE       lines of a file, in place of others
@@ -24,10 +24,10 @@ struct Block {
     std::size_t line = 0;
 };
 
-/// In the page's order. An error says the line and the cure.
+/// In the page's order. An error names the line and the cure.
 std::expected<std::vector<Block>, std::string> blocks(std::string_view page);
 
-/// A machine's folder at one point of a page, and what the compiler says of it there.
+/// A machine's folder at one point of a page, and the compiler's expected answer there.
 struct Project {
     std::string name;                         ///< of the machine, and of its namespace
     std::map<std::string, std::string> files; ///< by their paths from the folder
@@ -39,15 +39,15 @@ struct Unit {
     std::string refusal;  ///< empty: it compiles
     std::string changed;  ///< the file of the block that is refused; empty: code
     bool compiles = true; ///< false: only CMake reads what the page changed
-    std::size_t line = 0; ///< of the page
+    std::size_t line = 0; ///< line in the page
 };
 struct Page {
-    std::vector<Unit> units; ///< those that are refused, then the whole, unless it is as it was begun
+    std::vector<Unit> units; ///< the refused ones, then the whole, unless it is unchanged
     std::vector<std::string> commands;
 };
 std::expected<Page, std::string> read_page(std::string_view text, const std::filesystem::path& templates);
 
-/// A unit as a case of tests/diagnostics, <to>/<name>.cpp, with its project in <to>/<name>/.
+/// Writes a unit as a case of tests/diagnostics, <to>/<name>.cpp, with its project in <to>/<name>/.
 void write_unit(const Unit& unit, const std::filesystem::path& to, const std::string& name,
                 const std::string& page);
 

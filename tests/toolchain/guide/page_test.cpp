@@ -1,4 +1,4 @@
-// Pages of the guide, taken apart: what is shown is tried as it stands, and what could not be tried is
+// Pages of the guide, taken apart: shown code is tried exactly as shown, and code that cannot be tried is
 // refused.
 #include "tests/toolchain/guide/page.hpp"
 
@@ -25,12 +25,12 @@ std::string fault(const std::string& text) {
     return read ? "" : read.error();
 }
 
-TEST(Page, that_changes_nothing_has_nothing_to_compile) {
+TEST(Page, has_nothing_to_compile_when_it_changes_nothing) {
     EXPECT_THAT(page("Words.\n\n" + begin).units, IsEmpty());
     EXPECT_THAT(page(begin).commands, ElementsAre("tappet new press --can   # CAN"));
 }
 
-TEST(Page, makes_one_unit_of_all_that_it_keeps) {
+TEST(Page, puts_all_kept_blocks_into_one_unit) {
     const Page read = page(begin + "```cpp own.hpp\n#pragma once\n```\n<!-- cpp\nint hidden;\n-->\n"
                                    "```diff machine.hpp\n-    reactions(),\n+    reactions( ),\n```\n");
     ASSERT_THAT(read.units, SizeIs(1));
@@ -41,7 +41,7 @@ TEST(Page, makes_one_unit_of_all_that_it_keeps) {
     EXPECT_EQ(read.units[0].refusal, "");
 }
 
-TEST(Page, undoes_what_is_refused) {
+TEST(Page, undoes_a_refused_change) {
     const std::string diff = "```diff machine.hpp\n-    reactions(),\n+    none(),\n```\n";
     const Page read = page(begin + diff + "```text refused\npress: a sentence\nover two lines\n```\n");
     ASSERT_THAT(read.units, SizeIs(1)) << "the whole is as it was begun";
@@ -51,7 +51,7 @@ TEST(Page, undoes_what_is_refused) {
     EXPECT_THAT(page(begin + diff + "```text incomplete\npress: x\n```\n").units, SizeIs(2)) << "kept";
 }
 
-TEST(Page, edits_lines_that_stand_there_once_only) {
+TEST(Page, edits_only_lines_that_occur_once) {
     const std::string end = "\n+    gone,\n```\n";
     EXPECT_EQ(fault(begin + "```diff machine.hpp\n     reactions(),\n" + "+    more(),\n```\n"), "");
     EXPECT_THAT(fault(begin + "```diff machine.hpp\n-    raections()," + end),
@@ -61,7 +61,7 @@ TEST(Page, edits_lines_that_stand_there_once_only) {
     EXPECT_THAT(fault(begin + "```diff machine.hpp\n+    gone,\n```\n"), HasSubstr("not once")) << "no place";
 }
 
-TEST(Page, shows_nothing_that_is_not_tried) {
+TEST(Page, shows_only_blocks_that_are_tried) {
     EXPECT_THAT(fault("```\nint a;\n```\n"), HasSubstr("1: \"\" is no block that is tried"));
     EXPECT_THAT(fault(begin + "```text\nan error\n```\n"), HasSubstr("no block that is tried"));
     EXPECT_THAT(fault(begin + "```diff\n-a\n+b\n```\n"), HasSubstr("no block that is tried"));

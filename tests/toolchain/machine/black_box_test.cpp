@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which black boxes are kept: the last ones, whatever the clock says.
+// The box keeps the newest black boxes, whatever the clock says.
 #include "toolchain/machine/black_box.hpp"
 
 #include "tests/toolchain/folder.hpp"
@@ -22,7 +22,7 @@ struct BlackBoxes : testing::Test {
     test::Folder folder;
     map::black_box::Record record{.magic = map::black_box::magic, .machine = {"loom"}};
 
-    /// Written at a time of its clock, in s since 1970.
+    /// Writes a black box at this time of its clock, in s since 1970.
     void keep(std::time_t at) {
         const Sentence path = keep_black_box(folder.string(), record, {});
         ASSERT_FALSE(path.empty());
@@ -40,14 +40,14 @@ struct BlackBoxes : testing::Test {
     }
 };
 
-TEST_F(BlackBoxes, are_the_last_ones_also_of_a_box_whose_clock_begins_anew_with_each_boot) {
+TEST_F(BlackBoxes, are_the_newest_ones_although_the_clock_restarts_with_each_boot) {
     for (std::time_t n = 0; n < 3 * black_boxes_kept; ++n) keep(100 - n);
     std::multiset<std::uint64_t> last;
     for (std::uint64_t n = 0; n < black_boxes_kept; ++n) last.insert(3 * black_boxes_kept - n);
     EXPECT_EQ(numbers(), last);
 }
 
-TEST_F(BlackBoxes, that_are_damaged_make_room_first) {
+TEST_F(BlackBoxes, are_removed_first_when_they_are_damaged) {
     for (int n = 0; n < black_boxes_kept; ++n) keep(0);
     std::ofstream{folder / "loom-5.blackbox"} << "torn";
     keep(0);

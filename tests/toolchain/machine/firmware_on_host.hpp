@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A firmware in its two processes on this host, and the memory in which its test sees it from a third one.
+// A firmware in its two processes on this host, and memory that it shares with the test, a third process.
 #pragma once
 
 #include "drivers/hardware/devices.hpp"
@@ -21,20 +21,20 @@ namespace tappet::test {
 struct WirePage {
     std::atomic<std::int64_t> wire{0}, safe_since{0}, asked{0};
     std::atomic<int> by_guardian{0};
-    std::atomic<bool> is_gone{false}; ///< the device: nothing that anybody writes arrives
+    std::atomic<bool> is_gone{false}; ///< the device is gone: no write reaches it
     void be_safe() {
         if (wire.exchange(0) != 0) safe_since = to_ns(os::Clock::monotonic());
     }
 };
 
-/// Where the processes that are forked later have it, too.
+/// Places the page where processes that are forked later have it, too.
 template <class Page>
 Page* shared_page() {
     return new (::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))
         Page;
 }
 
-/// The guardian's devices of a machine that has none.
+/// The devices of a guardian whose machine has none.
 class NoDevices : public GuardedDevices {
 public:
     std::expected<void, Sentence> open(const AcceptedMachine&) override { return {}; }
@@ -48,7 +48,7 @@ public:
     std::size_t write_safe_registers(Duration, const Meanwhile&) noexcept override { return 0; }
 };
 
-/// The guardian's way to the wire.
+/// The guardian's access to the wire.
 class GuardedWire final : public NoDevices {
 public:
     explicit GuardedWire(WirePage& page) : page_{page} {}
@@ -69,8 +69,8 @@ inline constexpr Board board_of_host{
     .only_warned = {{"realtime-kernel", "clock-source", "rt-throttling", "cpu-governor", "heap-sealed", "cpu-dma-latency", "memory-locked", "memory-lockable", "swap", "fifo-priority", "clock-resolution"}, 11}};
 // clang-format on
 
-/// In a process of its own, which forks its machine and is the guardian then. SHOW_FIRMWARE: what it says is
-/// seen.
+/// Runs in a process of its own, which forks the machine and then becomes the guardian. With SHOW_FIRMWARE
+/// its output is shown.
 [[noreturn]] inline void be_firmware(const AcceptedMachine& machine, WirePage& page,
                                      const FirmwareHooks& hooks) {
     const int nowhere_to_print = ::open("/dev/null", O_WRONLY);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A firmware in its two processes, on this host: a stop that is asked for is complete within the board's
-// bound, by the machine or, where something of it hangs, by its guardian.
+// A firmware in its two processes, on this host: a requested stop is complete within the board's bound, by
+// the machine or, when a part of it hangs, by its guardian.
 #include "kernel/machine/accept.hpp"
 #include "kernel/os/arming.hpp"
 #include "kernel/os/guard.hpp"
@@ -39,10 +39,10 @@ struct Page : test::WirePage {
 };
 Page* page = nullptr;
 MachineInstance* the_instance = nullptr;
-constexpr auto long_time = 1700ms; // of a supervisor that sleeps: its life is missed after 2 s
+constexpr auto long_time = 1700ms; // of a sleeping supervisor: the guardian misses its life after 2 s
 
 void sleep_long() { os::sleep_for(long_time); }
-/// In the main thread, wherever it is.
+/// Interrupts the main thread, wherever it is.
 void put_supervisor_to_sleep() { ::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGRTMIN); }
 
 /// First row: it stops last.
@@ -138,9 +138,9 @@ struct AFirmware : testing::Test {
     void ask() {
         page->is_gone = page->ill == Ill::device_is_gone;
         page->asked = to_ns(os::Clock::monotonic());
-        ::kill(guardian, SIGTERM); // which hands it on
+        ::kill(guardian, SIGTERM); // the guardian hands it on
     }
-    /// From the request on.
+    /// Time from the request until the outputs are safe.
     [[nodiscard]] Duration until_safe() {
         EXPECT_TRUE(becomes([] { return page->wire == 0; }));
         return at_ns(page->safe_since) - at_ns(page->asked);
@@ -150,12 +150,12 @@ struct AFirmware : testing::Test {
         ::waitpid(guardian, &status, 0);
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
-    /// The bound, and the way of a request and of the guardian's looks on a busy host.
+    /// The board's bound, plus the delivery of the request and the guardian's polling on a busy host.
     static constexpr Duration bound = board.stop_within + 200ms;
     static_assert(bound < long_time, "who waits for a supervisor that sleeps is late");
 };
 
-/// Who is asked to stop, and whether its guardian wrote the outputs, too.
+/// A fault before the stop, the exit code, and whether the guardian also writes the outputs.
 struct Asked {
     const char* name;
     Ill ill;
@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
                           Ill::supervisor_sleeps_in_stop, 128 + SIGKILL, true}),
     [](const auto& row) { return std::string{row.param.name}; });
 
-TEST_P(AskedToStop, is_safe_in_time) {
+TEST_P(AskedToStop, outputs_are_safe_in_time) {
     ASSERT_NO_FATAL_FAILURE(run(GetParam().ill));
     ask();
     EXPECT_LT(until_safe(), bound);
@@ -185,7 +185,7 @@ TEST_P(AskedToStop, is_safe_in_time) {
     EXPECT_EQ(page->by_guardian > 0, GetParam().by_guardian);
 }
 
-TEST_F(AFirmware, whose_device_nobody_reaches_does_not_end_as_if_all_were_well) {
+TEST_F(AFirmware, does_not_end_as_good_when_its_device_is_gone) {
     ASSERT_NO_FATAL_FAILURE(run(Ill::device_is_gone));
     ask();
     EXPECT_EQ(exit_code(), static_cast<int>(Ending::stopped_by_fault));
@@ -193,7 +193,7 @@ TEST_F(AFirmware, whose_device_nobody_reaches_does_not_end_as_if_all_were_well) 
     EXPECT_GT(page->by_guardian, 0);
 }
 
-TEST_F(AFirmware, whose_guardian_hangs_while_it_starts_stops_itself) {
+TEST_F(AFirmware, stops_itself_when_its_guardian_hangs_at_start) {
     ASSERT_NO_FATAL_FAILURE(run(Ill::initialises_long));
     page->asked = to_ns(os::Clock::monotonic());
     ::kill(guardian, SIGSTOP);
@@ -202,7 +202,7 @@ TEST_F(AFirmware, whose_guardian_hangs_while_it_starts_stops_itself) {
     EXPECT_EQ(exit_code(), static_cast<int>(Ending::stopped_by_fault));
 }
 
-TEST_F(AFirmware, of_which_an_activity_hangs_is_ended_by_its_guardian_and_stays_safe) {
+TEST_F(AFirmware, is_ended_by_its_guardian_when_an_activity_hangs) {
     ASSERT_NO_FATAL_FAILURE(run(Ill::works_for_ever));
     ASSERT_TRUE(becomes([] { return page->is_ill.load(); }));
     ask();
@@ -212,7 +212,7 @@ TEST_F(AFirmware, of_which_an_activity_hangs_is_ended_by_its_guardian_and_stays_
     EXPECT_EQ(page->wire, 0) << "who would have written it is no more";
 }
 
-TEST_F(AFirmware, whose_supervisor_does_not_begin_a_stop_that_was_asked_for_is_made_safe_by_its_guardian) {
+TEST_F(AFirmware, is_made_safe_by_its_guardian_when_its_supervisor_ignores_a_stop) {
     ASSERT_NO_FATAL_FAILURE(run(Ill::supervisor_sleeps));
     ASSERT_TRUE(becomes([] { return page->is_ill.load(); }));
     page->asked = to_ns(os::Clock::monotonic());

@@ -1,5 +1,5 @@
-// How a guardian ends a machine: the order of its steps, what it says of the outputs then, and that the
-// watchdog is kicked meanwhile and no longer.
+// How a guardian ends a machine: the order of its steps, its report on the outputs, and how long it kicks the
+// watchdog.
 #include "toolchain/machine/safe_ending.hpp"
 
 #include "kernel/os/clock.hpp"
@@ -50,7 +50,7 @@ class Process final : public EndedProcess {
 public:
     std::vector<std::string>& done;
     bool ends = true;
-    int late_looks = 0; ///< so many find it still there
+    int late_looks = 0; ///< that many polls still find it alive
     explicit Process(std::vector<std::string>& to) : done{to} {}
     void kill() noexcept override { done.emplace_back("kill"); }
     bool await_end(Duration time) noexcept override {
@@ -80,8 +80,7 @@ struct ASafeEnding : testing::Test {
     }
 };
 
-TEST_F(ASafeEnding,
-       writes_the_lines_first_and_once_more_at_each_place_where_another_thread_may_have_written) {
+TEST_F(ASafeEnding, writes_the_lines_first_and_again_after_every_possible_racing_write) {
     const SafeEnding ending = end();
     EXPECT_THAT(done, ElementsAre("kill", "lines", "lines", "frames", "registers", "lines"));
     EXPECT_TRUE(ending.outputs_are_safe());
@@ -93,7 +92,7 @@ TEST_F(ASafeEnding,
     EXPECT_TRUE(device.is_stood_down());
 }
 
-TEST_F(ASafeEnding, writes_all_once_more_when_the_process_has_ended_late) {
+TEST_F(ASafeEnding, writes_everything_again_when_the_process_ends_late) {
     process.late_looks = 2;
     EXPECT_TRUE(end().outputs_are_safe());
     EXPECT_THAT(done,
@@ -106,7 +105,7 @@ TEST_F(ASafeEnding, kicks_the_watchdog_while_servers_are_asked) {
     EXPECT_GE(device.kicks(), 10);
 }
 
-TEST_F(ASafeEnding, leaves_the_box_to_its_watchdog_when_a_chip_takes_nothing) {
+TEST_F(ASafeEnding, leaves_the_box_to_its_watchdog_when_a_chip_does_not_answer) {
     wires.dead_chips = 1;
     EXPECT_FALSE(end().outputs_are_safe());
     EXPECT_EQ(outputs.state(), os::OutputLatch::State::unsafe);
@@ -115,7 +114,7 @@ TEST_F(ASafeEnding, leaves_the_box_to_its_watchdog_when_a_chip_takes_nothing) {
     EXPECT_FALSE(device.is_stood_down());
 }
 
-TEST_F(ASafeEnding, is_never_told_as_the_end_of_a_firmware_that_touched_nothing) {
+TEST_F(ASafeEnding, is_never_reported_as_a_wrong_set_up) {
     EXPECT_EQ(code_handed_on(static_cast<int>(Ending::wrong_set_up)),
               static_cast<int>(Ending::stopped_by_fault));
     for (const int code : {0, 3, 4, 137, 139}) EXPECT_EQ(code_handed_on(code), code);

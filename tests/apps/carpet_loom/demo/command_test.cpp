@@ -1,4 +1,4 @@
-// ci/demo says what is wrong with its options before it installs or builds anything.
+// ci/demo reports wrong options before it installs or builds anything.
 #include "tests/toolchain/program.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Where no tool is found nothing is installed or built.
+/// With an empty tool path nothing can be installed or built.
 Ended demo(const std::string& words) {
     const std::string only = testing::TempDir() + "tappet-demo-path";
     const Ended ended = run_line("mkdir -p '" + only + "' && ln -sf /usr/bin/dirname '" + only +

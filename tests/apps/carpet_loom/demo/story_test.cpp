@@ -1,4 +1,4 @@
-// From lines, and what a serial line may turn them into, to what a viewer sees: stops, messages, the picture.
+// Lines, also those damaged on a serial line, become what a viewer sees: stops, messages, the picture.
 #include "apps/carpet_loom/demo/view.hpp"
 
 #include <gmock/gmock.h>
@@ -33,7 +33,7 @@ TEST(Story, sees_a_stop_at_the_stop_angle_with_its_error) {
     EXPECT_THAT(story.stops(), ElementsAre(Pair("stop after pick 9, weft", "at 316.0 deg, error +6.0 deg")));
 }
 
-TEST(Story, sees_an_emergency_stop_where_the_shaft_came_to_stand_without_an_error) {
+TEST(Story, shows_the_angle_of_an_emergency_stop_without_an_error) {
     const Story story = story_of({line(1000, "weave", 600, 8, 1, "none", 60),
                                   line(1250, "emergency", 200, 9, 1, "emergency", 60),
                                   line(1500, "emergency", 0, 9, 1, "emergency", 60, 42)});
@@ -47,14 +47,14 @@ TEST(Story, sees_a_stop_that_was_over_before_the_next_line) {
               1U);
 }
 
-TEST(Story, counts_a_stop_once_although_the_shaft_stood_before_the_machine_said_so) {
+TEST(Story, counts_a_stop_once_although_the_shaft_stood_before_the_report) {
     const Story story =
         story_of({line(1000, "weave", 600, 8, 0, "none"), line(1250, "stopping", 0, 9, 0, "weft", 0, 314),
                   line(1500, "stopped", 0, 9, 1, "weft", 35, 314)});
     EXPECT_EQ(story.stops().size(), 1U);
 }
 
-TEST(Story, takes_a_shaft_that_moved_a_little_when_the_brake_opened_for_no_stop) {
+TEST(Story, counts_no_stop_when_the_shaft_moves_a_little_at_brake_release) {
     EXPECT_THAT(
         story_of({line(1000, "preparing", 3, 9, 1, "none"), line(1250, "ready", 0, 9, 1, "none")}).stops(),
         IsEmpty());
@@ -83,12 +83,12 @@ TEST(Story, knows_how_long_nothing_was_woven) {
     EXPECT_EQ(Story{}.idle_ms(), 0);
 }
 
-TEST(Story, keeps_of_the_timing_the_activity_nearest_to_its_deadline) {
+TEST(Story, keeps_the_activity_nearest_to_its_deadline) {
     EXPECT_EQ(story_of({"timing can=100/500us motion=150/1000us io=90/300us misses=2"}).timing(),
               "io=90/300us misses=2");
 }
 
-TEST(Words, of_a_line_that_is_damaged_are_none) {
+TEST(Words, are_empty_for_a_damaged_line) {
     const std::string whole = line(4784, "stopped", -1, 9, 1, "weft", -60);
     const auto words = [](const std::string& each) { return words_of(each, "loom", "waits_for"); };
     ASSERT_EQ(words(whole).size(), 13u);
@@ -131,7 +131,7 @@ std::vector<std::string> lines_of(std::initializer_list<std::string_view> pieces
     return found;
 }
 
-TEST(Lines, come_whole_however_the_bytes_come_in_pieces) {
+TEST(Lines, are_complete_however_the_bytes_are_split) {
     EXPECT_THAT(lines_of({"one\ntwo\n"}), ElementsAre("one", "two"));
     EXPECT_THAT(lines_of({"o", "n", "e", "\n", "two\nth", "ree"}), ElementsAre("one", "two"));
     EXPECT_THAT(lines_of({"\n\r\n", "one\r\n"}), ElementsAre("", "", "one"));

@@ -1,4 +1,4 @@
-// What the demo shows: a break of each kind, whatever its seed and however many picks it weaves.
+// The demo shows a break of each kind, for any seed and any number of picks.
 #include "apps/carpet_loom/demo/scenario.hpp"
 #include "apps/carpet_loom/plant/options.hpp"
 #include "tests/apps/carpet_loom/loom_run.hpp"
@@ -10,7 +10,7 @@
 namespace tappet::demo {
 namespace {
 
-/// The demo's plant at the host's loom.
+/// The demo's plant, on the host's loom.
 loom::Report report_of(std::uint64_t picks, std::uint64_t seed) {
     const std::vector<std::string> words = troubles(picks);
     loom::Settings settings;
@@ -27,7 +27,7 @@ loom::Report report_of(std::uint64_t picks, std::uint64_t seed) {
     return report;
 }
 
-TEST(TheDemo, shows_a_stop_for_a_weft_a_warp_end_and_an_emergency_whatever_chance_brings) {
+TEST(TheDemo, shows_a_stop_of_each_kind_with_any_seed) {
     for (const std::uint64_t picks : {usual_picks, std::uint64_t{60}})
         for (std::uint64_t seed = usual_seed; seed < usual_seed + 5; ++seed) {
             const loom::Report report = report_of(picks, seed);

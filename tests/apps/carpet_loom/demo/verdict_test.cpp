@@ -1,4 +1,4 @@
-// The verdict over what firmware and plant counted, and the command line.
+// The verdict on the counts of firmware and plant, and the command line.
 #include "apps/carpet_loom/demo/scenario.hpp"
 #include "apps/carpet_loom/demo/verdict.hpp"
 
@@ -99,7 +99,7 @@ TEST(Verdict, names_everything_that_must_be_zero) {
     EXPECT_EQ(faults_of(run).size(), 1U);
 }
 
-TEST(Verdict, of_a_long_run_wants_the_new_weave_and_the_misbehaving_one_taken_back) {
+TEST(Verdict, requires_a_new_weave_and_one_roll_back_of_a_long_run) {
     auto run = good_run();
     run["picks"] = 60;
     const auto faults = [&] { return faults_of(run, 60); };
@@ -114,13 +114,13 @@ TEST(Verdict, of_a_long_run_wants_the_new_weave_and_the_misbehaving_one_taken_ba
     EXPECT_THAT(faults(), ElementsAre(HasSubstr("2 were taken back")));
 }
 
-TEST(Verdict, tells_the_run_in_a_table) {
+TEST(Verdict, shows_the_run_in_a_table) {
     EXPECT_THAT(verdict_of(good_run()).value().table,
                 AllOf(HasSubstr("carpet-loom on board bench"), HasSubstr("6.1-rt"), HasSubstr("30 picks"),
                       HasSubstr("316.00 deg, error  +6.00"), HasSubstr("p99 0.47"), HasSubstr("motion")));
 }
 
-TEST(Summary, keeps_the_machine_as_it_is_and_puts_beside_it_what_the_plant_measured_of_it) {
+TEST(Summary, keeps_the_machines_fields_and_adds_the_plants_measurements) {
     const auto whole = ordered_json::parse(verdict_of(good_run()).value().summary);
     const auto of_machine = machine(), of_plant = plant();
     for (const auto& [key, value] : of_machine.items()) EXPECT_EQ(whole.at(key), value) << key;
@@ -132,7 +132,7 @@ TEST(Summary, keeps_the_machine_as_it_is_and_puts_beside_it_what_the_plant_measu
     EXPECT_FALSE(whole.at("plant").contains("picks")) << "nothing is said twice";
 }
 
-TEST(Summary, is_refused_with_the_name_of_what_is_missing_or_of_another_type) {
+TEST(Summary, is_refused_with_the_name_of_a_missing_or_mistyped_field) {
     for (const char* key :
          {"machine", "realtime", "can_frames_lost", "counters", "slots", "binary_bytes", "activities"}) {
         auto left = machine();
@@ -168,7 +168,7 @@ std::vector<std::string_view> with(std::vector<std::string_view> more) {
     return more;
 }
 
-TEST(DemoOptions, have_defaults_for_what_a_user_gives) {
+TEST(DemoOptions, have_defaults) {
     const auto options = options_of(files);
     ASSERT_TRUE(options) << options.error();
     const bench::Scenario scenario = scenario_of(*options);

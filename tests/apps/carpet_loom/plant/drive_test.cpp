@@ -104,7 +104,7 @@ TEST_F(SilentMachine, does_not_trip_a_drive_that_is_not_switched_on) {
 
 using BadFrames = TestDrive;
 
-TEST_F(BadFrames, of_another_length_are_answered_by_an_emergency_message_and_change_nothing) {
+TEST_F(BadFrames, get_an_emergency_message_for_a_wrong_length_and_change_nothing) {
     give(0x06);
     static_cast<void>(sent());
     can::Frame cut = machine.frame("main_drive_command", {{"controlword", 0x07}});
@@ -115,12 +115,12 @@ TEST_F(BadFrames, of_another_length_are_answered_by_an_emergency_message_and_cha
     ASSERT_EQ(frames.size(), 1U);
     EXPECT_EQ(emergency_of(frames[0]).code, canopen::emergency_code::pdo_too_short);
 }
-TEST_F(BadFrames, are_not_heard_outside_the_operational_state) {
+TEST_F(BadFrames, are_ignored_outside_the_operational_state) {
     hear(canopen::nmt_frame(NmtCommand::enter_pre_operational, 0));
     EXPECT_EQ(give(0x06), DriveState::switch_on_disabled);
 }
 
-TEST_F(BadFrames, of_a_mode_that_it_does_not_have_move_nothing) {
+TEST_F(BadFrames, move_nothing_when_they_select_an_unknown_mode) {
     enable();
     EXPECT_EQ(drive.target(), 6000);
     drive.node().set(0x6060, 8);

@@ -1,5 +1,5 @@
-// The machine's end of the loom's bus, for tests of its nodes: frames made and read by the names of its map,
-// and what the manager of the network sends to them.
+// The machine's end of the loom's bus, for tests of its nodes: it makes and reads frames by the names of its
+// map, and holds the requests of the network manager.
 #pragma once
 
 #include "apps/carpet_loom/network.hpp"
@@ -16,7 +16,7 @@ namespace tappet::loom {
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-/// The requests by which a node is configured; 0: all nodes.
+/// Requests that configure a node; 0: all nodes.
 inline std::vector<can::Frame> configuration(std::uint8_t node) {
     const auto& network = carpet::loom_network;
     std::vector<can::Frame> requests;
@@ -35,7 +35,7 @@ inline std::vector<can::Frame> configuration(std::uint8_t node) {
     }
     return requests;
 }
-/// The same, and it is started.
+/// Requests that configure and start a node.
 inline std::vector<can::Frame> start(std::uint8_t node) {
     std::vector<can::Frame> frames = configuration(node);
     frames.push_back(canopen::nmt_frame(NmtCommand::start, node));
@@ -44,7 +44,7 @@ inline std::vector<can::Frame> start(std::uint8_t node) {
 
 class MachineSide {
 public:
-    /// Of the map's frame, with these signals of it.
+    /// Makes a frame of the map with these signals.
     can::Frame frame(std::string_view name,
                      std::initializer_list<std::pair<std::string_view, std::int64_t>> signals) {
         const std::size_t row = map.frame(name);
@@ -52,12 +52,12 @@ public:
             store_.set_bits(index(name, signal), static_cast<std::uint64_t>(value));
         return store_.encode(row, Time{});
     }
-    /// The frame's name; empty: none of the map's.
+    /// Returns the frame's name; empty: the map has no such frame.
     std::string_view take(const can::Frame& frame) {
         std::size_t row = can::no_such;
         return store_.decode(frame, row) == can::Decoded::yes ? map.frames[row].name : std::string_view{};
     }
-    /// Of the frame of that name that was taken last; before factor and offset.
+    /// A value of the last received frame of that name, before factor and offset.
     [[nodiscard]] std::int64_t integer(std::string_view frame, std::string_view signal) const {
         return store_.integer(index(frame, signal));
     }
@@ -73,7 +73,7 @@ private:
     can::SignalStore<carpet::can_signals.frames.size(), carpet::can_signals.signals.size()> store_{map};
 };
 
-/// What a drive's emergency message says; the machine's map has none of it.
+/// A drive's emergency message; the machine's map does not contain it.
 struct Emergency {
     std::int64_t code = 0, error_register = 0;
     bool operator==(const Emergency&) const = default;

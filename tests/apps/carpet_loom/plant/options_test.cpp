@@ -1,5 +1,5 @@
-// The options of a simulated loom: what is right is taken, what is wrong is not, and other words are not its
-// own.
+// The options of a simulated loom: right ones are accepted, wrong ones are refused, and other words are not
+// its own.
 #include "apps/carpet_loom/plant/options.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(Options, take_faults_by_pick_and_by_time) {
     EXPECT_EQ(settings.edge_burst_at, 20s);
 }
 
-TEST(Options, that_are_wrong_are_told_from_those_that_are_unknown) {
+TEST(Options, distinguish_a_wrong_value_from_an_unknown_option) {
     Settings settings;
     for (const auto& [word, value] :
          std::vector<std::pair<const char*, const char*>>{{"--picks", "x"},
@@ -54,7 +54,7 @@ TEST(Options, that_are_wrong_are_told_from_those_that_are_unknown) {
     EXPECT_EQ(take("--weft-brake-at", "40", settings), Taken::unknown);
 }
 
-TEST(Options, hold_no_more_faults_than_a_script) {
+TEST(Options, accept_no_more_faults_than_a_script_holds) {
     Settings settings;
     for (std::size_t i = 0; i < decltype(Settings::script)::capacity(); ++i)
         ASSERT_EQ(take("--weft-break-at", "5", settings), Taken::right);

@@ -38,7 +38,7 @@ std::int64_t sample_of(const can::Frame& encoder) {
 
 Settings alone() { return {.operator_present = false}; }
 
-TEST(Nodes, boot_beat_and_are_mute_until_they_are_started) {
+TEST(Nodes, boot_and_send_only_heartbeats_until_they_are_started) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Plant plant(alone(), seed);
         Traffic traffic;
@@ -101,7 +101,7 @@ TEST(Nodes, obey_the_network_one_by_one) {
     EXPECT_EQ(traffic.of[0x703].front().data[0], state(NmtState::boot_up));
 }
 
-TEST(Nodes, that_are_lost_fall_silent_and_boot_again_when_repaired) {
+TEST(Nodes, fall_silent_when_lost_and_boot_again_when_repaired) {
     Plant plant(alone(), 3);
     Traffic traffic;
     traffic.run(plant, 200ms);
@@ -121,7 +121,7 @@ TEST(Nodes, that_are_lost_fall_silent_and_boot_again_when_repaired) {
     EXPECT_TRUE(traffic.of[0x183].empty());
 }
 
-TEST(Nodes, lost_for_a_time_come_back_by_themselves) {
+TEST(Nodes, come_back_by_themselves_after_a_timed_loss) {
     Settings settings = alone();
     ASSERT_TRUE(settings.script.push(
         {.fault = Fault::node_lost, .at = at_ns(300'000'000), .lasts = 400ms, .node = 4}));
@@ -147,7 +147,7 @@ TEST(BadInput, changes_nothing) {
         plant.receive(frame, plant.now());
     }
     give(plant, {canopen::nmt_frame(NmtCommand::start, 77), canopen::nmt_frame(NmtCommand{0x55}, 0)});
-    give(plant, configuration(1)); // a heartbeat tells its state
+    give(plant, configuration(1)); // a heartbeat shows its state
     for (const unsigned line : {0U, 3U, 6U, 7U, 14U, 4'000'000'000U}) {
         plant.set_line(line, true, plant.now());
         EXPECT_FALSE(plant.line(line));
@@ -158,7 +158,7 @@ TEST(BadInput, changes_nothing) {
     EXPECT_EQ(plant.report().damage.total(), 0U);
 }
 
-TEST(BadInput, that_lies_in_the_past_is_taken_as_now) {
+TEST(BadInput, is_taken_as_now_when_its_time_has_passed) {
     Plant plant(alone(), 6);
     plant.advance(at_ns(500'000'000));
     plant.advance(at_ns(100));
@@ -166,7 +166,7 @@ TEST(BadInput, that_lies_in_the_past_is_taken_as_now) {
     EXPECT_EQ(plant.now(), at_ns(500'000'000));
 }
 
-TEST(Frames, that_nobody_fetches_are_counted) {
+TEST(Frames, are_counted_when_nobody_fetches_them) {
     Plant plant(alone(), 7);
     plant.advance(at_ns(200'000'000));
     give(plant, start(0));
@@ -174,7 +174,7 @@ TEST(Frames, that_nobody_fetches_are_counted) {
     EXPECT_GT(plant.report().frames_lost, 0U);
 }
 
-TEST(Buttons, make_and_break_bouncing_and_end_where_they_were_put) {
+TEST(Buttons, bounce_and_settle_where_they_were_put) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Plant plant(alone(), seed);
         plant.advance(at_ns(1'000'000));
@@ -214,7 +214,7 @@ TEST(EmergencyStop, stays_pressed_until_it_is_released) {
     EXPECT_FALSE(plant.line(wires::line::emergency_stop));
 }
 
-TEST(Advancing, often_or_rarely_gives_the_same_run) {
+TEST(Advancing, gives_the_same_run_in_small_and_large_steps) {
     Settings settings = alone();
     ASSERT_TRUE(settings.script.push({.fault = Fault::oil_lost, .at = at_ns(700'000'000)}));
     Plant often(settings, 9);
@@ -230,7 +230,7 @@ TEST(Advancing, often_or_rarely_gives_the_same_run) {
     EXPECT_EQ(often.report().digest, rarely.report().digest);
 }
 
-TEST(Climate, builds_oil_pressure_while_the_pump_runs_and_loses_it_when_told) {
+TEST(Climate, builds_oil_pressure_with_the_pump_and_loses_it_by_a_fault) {
     Plant plant(alone(), 10);
     plant.climate().set_pump(true);
     plant.advance(at_ns(2'000'000'000));

@@ -1,4 +1,4 @@
-// A machine just large enough to weave on the plant: it meets it at frames and lines only, on a 1 ms cycle.
+// A machine just large enough to weave on the plant: it uses only frames and lines, on a 1 ms cycle.
 #pragma once
 
 #include "apps/carpet_loom/plant/plant.hpp"

@@ -1,4 +1,4 @@
-// Weaving on the plant with a small machine: its physics can be mastered, and what must not happen is seen.
+// A small machine weaves on the plant: its physics can be controlled, and forbidden events are detected.
 #include "tests/apps/carpet_loom/plant/small_machine.hpp"
 
 #include <gtest/gtest.h>
@@ -10,14 +10,14 @@ constexpr std::uint64_t seeds = 8;
 
 Settings quick_hands() { return {.operator_reaction = 200ms}; }
 
-/// The same, with one trouble of the script.
+/// The settings with one trouble of the script.
 Settings quick_hands(const ScriptedFault& fault) {
     Settings settings = quick_hands();
     EXPECT_TRUE(settings.script.push(fault));
     return settings;
 }
 
-/// At speed for the first time, or again.
+/// Runs until the loom is at speed, for the first time or again.
 bool runs_up(SmallMachine& machine, Duration at_most = 10s) {
     return machine.run_while([&] { return machine.plant.speed_rpm() < 590.0; }, at_most);
 }
@@ -88,7 +88,7 @@ TEST(Weft, arrives_in_its_window) {
     }
 }
 
-TEST(Weft, that_is_missing_and_not_noticed_leaves_an_empty_turn) {
+TEST(Weft, leaves_an_empty_turn_when_its_break_goes_unnoticed) {
     SmallMachine machine(quick_hands({.fault = Fault::weft_break, .at_pick = 10}), 1);
     machine.checks_weft = false;
     machine.run_until(at_ns(8'000'000'000));
@@ -97,7 +97,7 @@ TEST(Weft, that_is_missing_and_not_noticed_leaves_an_empty_turn) {
     EXPECT_EQ(machine.plant.report().stops_total, 0U);
 }
 
-TEST(Weft, missing_is_laid_by_hand_before_the_loom_runs_again) {
+TEST(Weft, is_laid_by_hand_after_a_break_before_the_loom_runs) {
     SmallMachine machine(quick_hands({.fault = Fault::weft_break, .at_pick = 10}), 2);
     machine.run_until(at_ns(8'000'000'000));
     EXPECT_EQ(machine.plant.report().picks_by_hand, 1U);
@@ -140,7 +140,7 @@ TEST(Tension, is_held_in_its_band_by_a_simple_loop) {
     }
 }
 
-TEST(Tension, that_nobody_holds_is_damage) {
+TEST(Tension, causes_damage_when_it_is_not_controlled) {
     SmallMachine machine(quick_hands(), 4);
     ASSERT_TRUE(runs_up(machine));
     machine.holds_tension = false;
@@ -165,7 +165,7 @@ TEST(EmergencyStop, brings_the_shaft_to_rest_and_is_timed) {
     }
 }
 
-TEST(EmergencyStop, sees_a_valve_that_is_driven_after_it) {
+TEST(EmergencyStop, counts_a_valve_that_is_driven_afterwards) {
     SmallMachine machine(quick_hands(), 5);
     machine.releases = false;
     machine.plant.press(Button::emergency_stop, Duration{});
@@ -227,7 +227,7 @@ TEST(SilentMachine, makes_both_drives_stop_the_loom) {
     EXPECT_EQ(machine.plant.report().stops[0].cause, StopCause::fault);
 }
 
-TEST(Dobby, takes_every_pattern_and_tells_when_none_was_offered) {
+TEST(Dobby, takes_every_pattern_and_counts_each_missing_one) {
     SmallMachine machine(quick_hands(), 10);
     machine.run_until(at_ns(6'000'000'000));
     EXPECT_EQ(machine.plant.report().patterns_repeated, 0U);
@@ -264,8 +264,8 @@ TEST(SameSeed, gives_the_same_run_and_another_seed_another) {
     EXPECT_GT(first.plant.report().stops_total, 2U);
 }
 
-// Written down once, so that every compiler and optimisation must give these bits; a change of the physics
-// changes it.
+// Golden values: every compiler and optimisation must give these bits; only a change of the physics changes
+// them.
 TEST(SameSeed, gives_the_same_run_with_every_compiler) {
     SmallMachine machine(all_troubles(), 2026);
     machine.run_until(at_ns(20'000'000'000));

@@ -1,4 +1,4 @@
-// A machine of one component whose newer version has other properties than the older: one of them both know.
+// A machine of one component whose newer version has other properties than the older: one of them is common.
 #pragma once
 
 #include "kernel/component/component.hpp"

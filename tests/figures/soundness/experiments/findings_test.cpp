@@ -1,4 +1,4 @@
-// What is made of the records of experiments, and that each statement can be found true and false.
+// The evaluation of the records of experiments: each statement can be found true and false.
 #include "tests/figures/experiments/findings.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ Samples mixed(double one, double other) {
     return samples;
 }
 
-/// The statement whose text has it.
+/// The statement whose text contains it.
 Statement stated(const Findings& findings, std::string_view text) {
     const auto all = statements_of(findings);
     const auto found =
@@ -48,7 +48,7 @@ TaskResult& task(Findings& findings, std::string_view application, Setting setti
     return made;
 }
 
-TEST(Evaluate, takes_periods_between_beginnings_and_leaves_the_warming_out) {
+TEST(Evaluate, measures_periods_between_starts_without_the_warm_up) {
     const Execution records[] = {{.begin = 1000, .busy = 1},
                                  {.begin = 2000, .busy = 200, .exchange = 20},
                                  {.begin = 3500, .busy = 300, .exchange = 30},
@@ -101,7 +101,7 @@ TEST(Plots, show_both_ways_of_exchange_in_the_figure_of_the_thesis) {
     EXPECT_EQ(plots[0].series.size(), 2u);
 }
 
-TEST(Plots, show_a_peak_and_a_worst_case_far_away_alike) {
+TEST(Plots, show_a_peak_and_a_distant_worst_case_together) {
     Samples samples = always(101);
     samples.add(20'100);
     const auto series = figures::log_histogram("", Standing::ours, samples, 10);
@@ -114,7 +114,7 @@ TEST(Plots, show_a_peak_and_a_worst_case_far_away_alike) {
     EXPECT_TRUE(figures::log_histogram("", Standing::ours, {}).points.empty());
 }
 
-TEST(Plots, show_periods_by_what_they_differ_from_the_row) {
+TEST(Plots, show_periods_as_deviations_from_the_row) {
     Findings findings;
     TaskResult& low = task(findings, "large", Setting::none, "low");
     low.period_us = 10'000;
@@ -150,7 +150,9 @@ TEST(HistogramFiles, say_why_they_were_not_written) {
                 HasSubstr("cannot write /dev/null/nowhere/"));
 }
 
-TEST(Statements, of_what_was_not_run_nothing_is_said) { EXPECT_TRUE(statements_of(Findings{}).empty()); }
+TEST(Statements, say_nothing_about_experiments_that_were_not_run) {
+    EXPECT_TRUE(statements_of(Findings{}).empty());
+}
 
 TEST(Statements, exchange_without_locks_is_faster_or_not) {
     for (const double ours : {100.0, 400.0}) {
@@ -172,7 +174,7 @@ TEST(Statements, twice_as_fast_is_not_three_times) {
     EXPECT_FALSE(stated(findings, "about three times").held);
 }
 
-TEST(Statements, one_application_in_which_it_is_slower_refutes_it_for_all) {
+TEST(Statements, one_slower_application_refutes_the_claim_for_all) {
     Findings findings;
     for (const char* name : {"minimal", "small"}) {
         task(findings, name, Setting::data, "high").exchanges = always(name[0] == 'm' ? 100 : 400);
@@ -203,7 +205,7 @@ TEST(Statements, odds_to_wait_must_grow_with_each_application) {
     }
 }
 
-TEST(Statements, peaks_of_the_latency_are_where_they_are) {
+TEST(Statements, peaks_of_the_latency_must_lie_where_predicted) {
     const auto judge = [](double one, double other) {
         Findings findings;
         task(findings, "small", Setting::none, "high").latencies = always(510);

@@ -1,4 +1,4 @@
-// The four applications are the thesis': periods that drift, loads, priorities, and who talks to whom.
+// The four applications are those of the thesis: drifting periods, loads, priorities, and connections.
 #include "kernel/machine/instance/instance.hpp"
 #include "tests/figures/experiments/applications.hpp"
 #include "tests/figures/experiments/wiring.hpp"
@@ -19,7 +19,7 @@ AcceptedMachine machine_of(std::string_view name) {
     return std::ranges::find(all, name, &Application::name)->machine();
 }
 
-/// Rounded: each occurs once less.
+/// Rounded, since each occurs once less.
 std::vector<long> occurrences_in_a_second(const MachineView& table) {
     std::vector<long> all;
     for (const ActivityRow& row : table.activities)
@@ -76,7 +76,7 @@ TEST(Applications, the_concurrent_one_has_eight_channels_and_two_neighbours_for_
     }
 }
 
-TEST(Wiring, leads_what_one_task_writes_to_the_one_that_its_row_names) {
+TEST(Wiring, connects_each_task_to_the_one_that_its_row_names) {
     const AcceptedMachine machine = machine_of("small");
     const Wiring wiring{machine.table};
     const auto at = [&](std::string_view name) {
@@ -98,7 +98,7 @@ TEST(Wiring, one_writer_with_many_readers_is_one_channel) {
         EXPECT_EQ(wiring.of(find_component(machine.table, reader)).ports.from_higher, channel) << reader;
 }
 
-TEST(Wiring, the_slower_end_of_a_buffer_moves_all_of_it_the_faster_one_one_packet) {
+TEST(Wiring, the_slower_end_moves_a_whole_buffer_and_the_faster_one_a_packet) {
     const AcceptedMachine machine = machine_of("large");
     const Wiring wiring{machine.table};
     const auto at = [&](std::string_view name) { return wiring.of(find_component(machine.table, name)); };
@@ -110,7 +110,7 @@ TEST(Wiring, the_slower_end_of_a_buffer_moves_all_of_it_the_faster_one_one_packe
     EXPECT_EQ(at("very_low").ports.fill, at("low").ports.drain);
 }
 
-TEST(LockedBuffer, gives_back_in_order_what_it_had_room_for) {
+TEST(LockedBuffer, returns_accepted_values_in_order) {
     LockedBuffer<int> buffer{3};
     int got = 0;
     EXPECT_FALSE(buffer.pop(got).done);
@@ -129,7 +129,7 @@ TEST(LockedBuffer, gives_back_in_order_what_it_had_room_for) {
     }
 }
 
-TEST(LockedData, gives_the_last_value_and_says_that_nobody_made_it_wait) {
+TEST(LockedData, returns_the_last_value_and_reports_no_wait) {
     LockedData<int> data;
     EXPECT_FALSE(data.write(1));
     EXPECT_FALSE(data.write(2));

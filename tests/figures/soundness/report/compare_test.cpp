@@ -1,4 +1,4 @@
-// Two commits: what is slower beyond noise is told, what is noise is not.
+// Two commits: changes beyond the noise are reported, noise is not.
 #include "tests/figures/report/compare.hpp"
 #include "tests/figures/soundness/report/runs.hpp"
 
@@ -13,11 +13,11 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
-/// Ours takes `factor` of what it took, give or take `noise` from round to round.
+/// The time of ours after the change is `factor` of the one before, with `noise` from round to round.
 std::vector<Round> rounds(double factor, double noise, std::size_t count = 6) {
     std::vector<Round> all;
     for (std::size_t i = 0; i < count; ++i) {
-        const double drift = 1 + 0.2 * static_cast<double>(i); // of the machine: it meets both
+        const double drift = 1 + 0.2 * static_cast<double>(i); // drift of the machine: it affects both
         const double sign = i % 2 == 0 ? 1 : -1;
         all.push_back({{result("exchange", 10 * drift)},
                        {result("exchange", 10 * drift * factor * (1 + sign * noise))}});
@@ -39,17 +39,17 @@ TEST(Compare, finds_what_got_slower) {
                 AllOf(HasSubstr("1.20 x"), HasSubstr("1 slower, 0 faster")));
 }
 
-TEST(Compare, finds_what_got_faster_and_that_is_no_failure) {
+TEST(Compare, finds_what_got_faster_without_failing) {
     const Comparison comparison = compare(rounds(0.7, 0.02), 0.05);
     EXPECT_EQ(ours(comparison).verdict, Verdict::faster);
     EXPECT_FALSE(comparison.slower());
 }
 
-TEST(Compare, what_varies_more_than_it_changed_is_the_same) {
+TEST(Compare, a_change_below_the_variation_counts_as_none) {
     EXPECT_EQ(ours(compare(rounds(1.1, 0.3), 0.05)).verdict, Verdict::same);
 }
 
-TEST(Compare, what_changed_by_less_than_the_margin_is_the_same_however_sure) {
+TEST(Compare, a_change_below_the_margin_counts_as_none_however_certain) {
     const Comparison comparison = compare(rounds(1.04, 0), 0.05);
     EXPECT_EQ(ours(comparison).verdict, Verdict::same);
     EXPECT_GT(ours(comparison).low, 1);
@@ -70,7 +70,7 @@ TEST(Compare, floors_and_peers_say_how_much_is_noise) {
                       HasSubstr("1.30 x  exchange.write: floor 7")));
 }
 
-TEST(Compare, one_that_is_only_in_one_commit_is_told_and_not_judged) {
+TEST(Compare, a_figure_of_only_one_commit_is_listed_but_not_judged) {
     auto all = rounds(1, 0);
     for (Round& round : all) round.after[0].figures[0].id = "exchange.other";
     const Comparison comparison = compare(all, 0.05);
@@ -79,7 +79,7 @@ TEST(Compare, one_that_is_only_in_one_commit_is_told_and_not_judged) {
                                            Contains("only after: exchange.other, port")));
 }
 
-TEST(Compare, a_median_of_nothing_is_no_ratio) {
+TEST(Compare, a_median_of_zero_gives_no_ratio) {
     auto all = rounds(1, 0);
     for (Round& round : all) round.before[0].figures[0].rows[0].summary.median = 0;
     for (const Change& change : compare(all, 0.05).changes) EXPECT_NE(change.row, "port");
@@ -93,7 +93,7 @@ TEST(Compare, counted_instructions_stand_beside_the_times) {
                 HasSubstr("100 -> 90.0  exchange.write: port"));
 }
 
-TEST(Interval, is_that_of_student) {
+TEST(Interval, is_that_of_students_t) {
     // Logarithms -0.1, 0, 0.1: mean 0, deviation 0.1, and t = 9.925 at 2 degrees of freedom.
     const Interval interval = mean_of_ratios({std::exp(-0.1), 1, std::exp(0.1)});
     EXPECT_NEAR(interval.mean, 1, 1e-12);
@@ -101,7 +101,7 @@ TEST(Interval, is_that_of_student) {
     EXPECT_NEAR(std::log(interval.low), -std::log(interval.high), 1e-9);
 }
 
-TEST(Interval, of_one_value_says_nothing) {
+TEST(Interval, is_unbounded_for_a_single_value) {
     const Interval interval = mean_of_ratios({1.5});
     EXPECT_EQ(interval.low, 0);
     EXPECT_TRUE(std::isinf(interval.high));

@@ -1,4 +1,4 @@
-// The page and the summary say everything that a run found, failures first of all.
+// The page and the summary show everything that a run found, failures first.
 #include "tests/figures/report/page.hpp"
 #include "tests/figures/report/plots.hpp"
 #include "tests/figures/report/text.hpp"
@@ -59,7 +59,7 @@ TEST_F(Page, says_which_program_failed_and_what_it_said_last) {
     EXPECT_THAT(summary_text(run), HasSubstr("FAILED  figures-scale ended with exit code 3"));
 }
 
-TEST_F(Page, no_text_of_a_program_becomes_a_tag) {
+TEST_F(Page, text_of_a_program_is_escaped) {
     const std::string tag = "<script>\"&'";
     Result told = result("exchange", 12);
     told.figures[0].title = told.figures[0].rows[0].name = told.figures[0].how = tag;
@@ -72,7 +72,7 @@ TEST_F(Page, no_text_of_a_program_becomes_a_tag) {
     EXPECT_THAT(text(), AllOf(HasSubstr("&lt;script&gt;&quot;&amp;&#39;"), Not(HasSubstr("<script"))));
 }
 
-TEST_F(Page, needs_nothing_from_elsewhere) {
+TEST_F(Page, needs_no_external_resources) {
     Result told = result("exchange", 12);
     told.plots = {
         {"p", "a plot", "x", "y", true, false, true, {{"ours", Standing::ours, {{1, 3}, {2, 0}, {3, 9}}}}}};
@@ -92,7 +92,7 @@ TEST_F(Page, statements_are_true_or_false_as_measured) {
                                          Not(HasSubstr("the highest never waits"))));
 }
 
-TEST(Plots, a_name_with_quotes_ends_no_string_of_gnuplot) {
+TEST(Plots, quotes_in_a_name_are_escaped_for_gnuplot) {
     Plot plot{"p", "t", "x's", "y", false, false, false, {{"it's", Standing::ours, {{1, 1}}}}};
     EXPECT_THAT(gnuplot_script(plot, "p0", "out.svg"), AllOf(HasSubstr("'it''s'"), HasSubstr("'x''s'")));
 }
@@ -106,7 +106,7 @@ TEST(Plots, points_that_an_axis_cannot_show_are_left_out) {
     EXPECT_EQ(gnuplot_script(plot, "p0", "out.svg"), "") << "nothing is left to draw";
 }
 
-TEST(Text, numbers_have_the_digits_that_mean_something) {
+TEST(Text, numbers_show_only_significant_digits) {
     EXPECT_EQ(number_text(0.357), "0.36");
     EXPECT_EQ(number_text(20.44), "20.4");
     EXPECT_EQ(number_text(999.4), "999");
@@ -118,7 +118,7 @@ TEST(Text, numbers_have_the_digits_that_mean_something) {
     EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "-");
 }
 
-TEST(Text, a_floor_of_one_row_of_ours_stands_beside_that_alone) {
+TEST(Text, a_floor_of_one_row_is_compared_with_that_row_alone) {
     const Figure figure{"f",
                         "t",
                         "us",
@@ -139,20 +139,20 @@ TEST(Text, a_floor_of_one_row_of_ours_stands_beside_that_alone) {
     EXPECT_EQ(ours_beside(figure, figure.rows[4]).name, "high, one") << "the first of ours";
 }
 
-TEST_F(Page, what_was_measured_once_has_no_quantiles) {
+TEST_F(Page, a_single_measurement_has_no_quantiles) {
     Result told = result("firmware", 12);
     for (Row& each : told.figures[0].rows) each.summary.count = 1;
     EXPECT_THAT(text_with(told), AllOf(HasSubstr("<th>value</th>"), Not(HasSubstr("p99.9</th>")),
                                        HasSubstr("<b>1.20 x</b> copy</span>")));
 }
 
-TEST_F(Page, a_goal_leads_to_its_figure) {
+TEST_F(Page, a_goal_links_to_its_figure) {
     Result told = result("exchange", 12);
     told.goals = {{"is short", 1.2, 1.1, "x", "exchange.write: port / copy"}};
     EXPECT_THAT(text_with(told), HasSubstr("<a href=\"#exchange.write\">exchange.write</a>: port / copy"));
 }
 
-TEST_F(Page, many_figures_are_folded_by_what_their_ids_begin_with) {
+TEST_F(Page, many_figures_are_grouped_by_the_prefix_of_their_ids) {
     Result told{"experiments"};
     for (int i = 0; i < 30; ++i) {
         Figure figure = result("x", 12).figures[0];
@@ -166,7 +166,7 @@ TEST_F(Page, many_figures_are_folded_by_what_their_ids_begin_with) {
     for (const Figure& figure : told.figures) EXPECT_THAT(html, HasSubstr("id=\"" + figure.id + "\""));
 }
 
-TEST(ResultFile, comes_back_as_it_was) {
+TEST(ResultFile, is_read_back_unchanged) {
     Result told = result("exchange", 12);
     told.figures[0].rows[0].instructions = 40;
     told.goals = {{"goal", 1.2, std::numeric_limits<double>::quiet_NaN(), "x", "detail"}};

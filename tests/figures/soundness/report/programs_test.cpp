@@ -1,4 +1,4 @@
-// Programs that end well, badly, late or without a result; shell scripts stand for them.
+// Programs that end well, badly, late or without a result; shell scripts take their place.
 #include "tests/figures/report/options.hpp"
 #include "tests/figures/report/programs.hpp"
 #include "tests/figures/report/surroundings.hpp"
@@ -50,7 +50,7 @@ TEST_F(Programs, a_result_is_read_and_the_arguments_are_passed_on) {
     EXPECT_EQ(said, "--json " + folder + "/out.json --only good.local --brief");
 }
 
-TEST_F(Programs, one_that_fails_is_told_with_the_last_it_said) {
+TEST_F(Programs, a_failed_one_is_reported_with_its_last_output) {
     EXPECT_THAT(run(program("bad", "echo first; echo why >&2; exit 3")).failure,
                 AllOf(StartsWith("ended with exit code 3"), HasSubstr("first\nwhy")));
     EXPECT_THAT(run(program("killed", "kill -SEGV $$")).failure,
@@ -73,7 +73,7 @@ TEST_F(Programs, a_broken_result_is_a_failure) {
                 HasSubstr("setting"));
 }
 
-TEST_F(Programs, one_that_hangs_is_ended_with_all_that_it_started) {
+TEST_F(Programs, a_hung_one_is_killed_with_all_its_children) {
     const auto begin = std::chrono::steady_clock::now();
     const std::string mark = folder + "/mark";
     EXPECT_THAT(run(program("late", "(sleep 0.6; touch " + mark + ") & sleep 60"), 0.2).failure,
@@ -83,7 +83,7 @@ TEST_F(Programs, one_that_hangs_is_ended_with_all_that_it_started) {
     EXPECT_FALSE(fs::exists(mark)) << "its child lived on";
 }
 
-TEST_F(Programs, are_found_by_their_names_the_floors_first) {
+TEST_F(Programs, are_found_by_name_with_the_floors_first) {
     program("exchange", "");
     program("floors", "");
     program("dispatch", "");
@@ -95,12 +95,12 @@ TEST_F(Programs, are_found_by_their_names_the_floors_first) {
     EXPECT_THAT(names, testing::ElementsAre("floors", "dispatch", "exchange"));
 }
 
-TEST_F(Programs, none_at_all_is_told) {
+TEST_F(Programs, a_folder_without_any_is_refused) {
     EXPECT_THAT(find_programs(folder).error(), HasSubstr("no program of figures"));
     EXPECT_THAT(find_programs(folder + "/nowhere").error(), HasSubstr("no program of figures"));
 }
 
-TEST_F(Programs, are_chosen_by_name_or_by_the_begin_of_a_figures_id) {
+TEST_F(Programs, are_chosen_by_name_or_by_the_prefix_of_a_figures_id) {
     const std::vector<Program> all{{"floors", "f"}, {"exchange", "e"}};
     EXPECT_EQ(choose(all, {})->size(), 2u);
     const auto chosen = choose(all, {"exchange.local", "floors"});
@@ -111,7 +111,7 @@ TEST_F(Programs, are_chosen_by_name_or_by_the_begin_of_a_figures_id) {
                 AllOf(HasSubstr("'exchnge'"), HasSubstr("floors, exchange")));
 }
 
-TEST(ReportOptions, wrong_words_are_named) {
+TEST(ReportOptions, wrong_words_are_refused_by_name) {
     const auto refused = [](std::vector<std::string> words) {
         words.insert(words.begin(), {"--output", "o", "--programs", "p"});
         return read_report_options(words).error();

@@ -1,4 +1,4 @@
-// Results made by hand, as programs of figures would tell them.
+// Results made by hand, in the form that programs of figures write.
 #pragma once
 
 #include "tests/figures/report/run.hpp"

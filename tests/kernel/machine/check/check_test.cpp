@@ -26,7 +26,7 @@ diagnostics::Tally mutate(const MachineView& table, const Board& board, const Bi
     return tally;
 }
 
-TEST(Check, accepts_the_machines_that_are_mutated) {
+TEST(Check, accepts_the_unmutated_machines) {
     EXPECT_EQ(diagnostics::refusal_of(small_loom.view(), small::good_board, small::good_binding), "");
     EXPECT_EQ(diagnostics::refusal_of(carpet::table.view(), board::bench, carpet::bindings::bench), "");
 }
@@ -43,12 +43,12 @@ TEST(Check, refuses_every_mutation_of_the_carpet_loom_and_names_its_row) {
     for (const auto& each : tally.wrong) ADD_FAILURE() << each;
 }
 
-TEST(Check, lets_no_row_of_the_carpet_loom_be_dropped) {
+TEST(Check, requires_every_row_of_the_carpet_loom) {
     EXPECT_THAT(mutate(carpet::table.view(), board::bench, carpet::bindings::bench).may_be_dropped,
                 testing::IsEmpty());
 }
 
-TEST(Check, lets_only_these_rows_of_the_small_machine_be_dropped) {
+TEST(Check, requires_all_rows_of_the_small_machine_but_these) {
     EXPECT_THAT(mutate(small_loom.view(), small::good_board, small::good_binding).may_be_dropped,
                 UnorderedElementsAreArray<std::string>({
                     R"(connection "weft.reference" -> "shaft.reference")", // the input is optional
@@ -60,16 +60,16 @@ TEST(Check, lets_only_these_rows_of_the_small_machine_be_dropped) {
                 }));
 }
 
-// What no table row can say, since only the sizes of a table decide it.
+// Faults that depend only on the sizes of a table, so that no single row can contain them.
 
-TEST(Check, refuses_memory_that_is_more_than_a_sum_can_say) {
+TEST(Check, refuses_a_memory_size_that_overflows_its_sum) {
     Board board = small::good_board;
     board.heap_bytes = ~std::size_t{0};
     EXPECT_THAT(diagnostics::refusal_of(small_loom.view(), board, small::good_binding),
                 testing::StartsWith("loom: board \"bench\": the machine takes 18446744073709551615 bytes"));
 }
 
-TEST(Check, refuses_more_buffers_on_a_port_than_it_has_room_for) {
+TEST(Check, refuses_more_buffers_than_a_port_has_room_for) {
     std::vector<ComponentRow> components{component<small::Shaft>("shaft")};
     std::vector<std::string> names;
     for (std::size_t i = 0; i <= max_buffer_rows; ++i) names.push_back("encoder_" + std::to_string(i));
@@ -82,12 +82,11 @@ TEST(Check, refuses_more_buffers_on_a_port_than_it_has_room_for) {
     for (const auto& path : paths) connections.push_back(buffer<4>(path, "shaft.samples"));
     const MachineView table{"many", components, activities, connections, {}, {}};
     EXPECT_EQ(diagnostics::refusal_of(table, small::good_board),
-              "many: connection \"encoder_8.samples\" -> \"shaft.samples\" is one more than the 8 buffer "
-              "rows a port "
-              "may have; merge some");
+              "many: connection \"encoder_8.samples\" -> \"shaft.samples\" exceeds the 8 buffer rows that a "
+              "port may have; merge some");
 }
 
-TEST(Check, names_the_whole_way_round_a_data_flow_cycle) {
+TEST(Check, names_the_whole_path_of_a_data_flow_cycle) {
     const std::vector<ComponentRow> components{component<small::Shaft>("a"), component<small::Shaft>("b"),
                                                component<small::Shaft>("c"), component<small::Shaft>("led"),
                                                component<small::Shaft>("leading")};
@@ -101,10 +100,10 @@ TEST(Check, names_the_whole_way_round_a_data_flow_cycle) {
     EXPECT_EQ(
         diagnostics::refusal_of(table, small::good_board),
         "ring: connection \"c.speed\" -> \"a.measured\" closes a data-flow cycle inside activity \"all\" "
-        "(a -> b -> c -> a); add delayed to the row whose reader shall see the last cycle's value");
+        "(a -> b -> c -> a); add delayed to the row whose reader may use the last cycle's value");
 }
 
-TEST(Check, orders_the_components_of_an_activity_by_data_flow_whatever_their_order_in_the_row) {
+TEST(Check, orders_the_components_of_an_activity_by_data_flow) {
     const std::vector<ComponentRow> components{component<small::Tension>("last"),
                                                component<small::Shaft>("middle"),
                                                component<small::Shaft>("first")};

@@ -40,7 +40,7 @@ static_assert(response_time(three, 2) == worst(9));
 constexpr std::array past_its_period{task(26, 70), task(62, 100)};
 static_assert(response_time(past_its_period, 1) == worst(118), "the first job, 114, is not the worst");
 
-TEST(ResponseTime, is_within_a_deadline_up_to_the_nanosecond) {
+TEST(ResponseTime, meets_a_deadline_to_the_nanosecond) {
     const Response response = response_time(rate_monotonic, 2);
     EXPECT_TRUE(response.within(20));
     EXPECT_FALSE(response.within(19));
@@ -54,13 +54,13 @@ TEST(ResponseTime, counts_blocking_once_in_each_busy_period) {
     EXPECT_EQ(response_time(tasks, 1), worst(6)) << "the blocking of others is theirs";
 }
 
-TEST(ResponseTime, counts_own_jitter_from_the_arrival_on) {
+TEST(ResponseTime, includes_its_own_jitter_from_the_arrival_on) {
     std::array tasks = rate_monotonic;
     tasks[1].jitter_ns = 2;
     EXPECT_EQ(response_time(tasks, 1), worst(8));
 }
 
-TEST(ResponseTime, lets_jitter_of_a_higher_priority_bring_one_arrival_more) {
+TEST(ResponseTime, includes_one_more_arrival_for_jitter_of_higher_priority) {
     std::array tasks{task(2, 10), task(5, 30)};
     EXPECT_EQ(response_time(tasks, 1), worst(7));
     tasks[0].jitter_ns = 4;
@@ -80,13 +80,13 @@ TEST(ResponseTime, is_unbounded_at_full_load_with_blocking) {
     EXPECT_FALSE(response_time(tasks, 1).bounded);
 }
 
-TEST(ResponseTime, of_a_task_that_only_waits_includes_what_it_waits_for) {
+TEST(ResponseTime, includes_interference_for_a_task_without_own_work) {
     const std::array tasks{task(6, 10), task(0, 10)};
     EXPECT_EQ(response_time(tasks, 1), worst(6));
     EXPECT_EQ(response_time(std::array{task(0, 10)}, 0), worst(0));
 }
 
-TEST(ResponseTime, refuses_timings_without_sense) {
+TEST(ResponseTime, refuses_impossible_timings) {
     EXPECT_FALSE(response_time({}, 0).bounded);
     EXPECT_FALSE(response_time(rate_monotonic, 3).bounded);
     EXPECT_FALSE(response_time(std::array{task(1, 0)}, 0).bounded);
@@ -136,7 +136,7 @@ std::int64_t simulated_worst(std::span<const TaskTiming> tasks, std::size_t inde
     return longest;
 }
 
-TEST(ResponseTimeOnGrid, is_that_of_one_alone_when_phases_keep_them_apart) {
+TEST(ResponseTimeOnGrid, equals_that_of_a_lone_task_when_phases_separate_tasks) {
     std::array<TaskTiming, 2> tasks{task(400, 1000), task(300, 1000)};
     EXPECT_EQ(response_time(tasks, 1), worst(700));
     tasks[0].phase_ns = 0;
@@ -146,11 +146,11 @@ TEST(ResponseTimeOnGrid, is_that_of_one_alone_when_phases_keep_them_apart) {
     EXPECT_EQ(response_time_on_grid(tasks, 1), worst(300));
     tasks[1].phase_ns = 300;
     EXPECT_EQ(response_time_on_grid(tasks, 1), worst(400));
-    tasks[0].phase_ns = -1; // it comes when it wants
+    tasks[0].phase_ns = -1; // it arrives at any time
     EXPECT_EQ(response_time_on_grid(tasks, 1), worst(700));
 }
 
-TEST(ResponseTimeOnGrid, bounds_a_simulation_and_is_never_worse_than_without_phases) {
+TEST(ResponseTimeOnGrid, bounds_a_simulation_and_never_exceeds_the_bound_without_phases) {
     Random random{11};
     constexpr std::array<std::int64_t, 5> periods{6, 12, 18, 24, 36};
     int shorter = 0, exact = 0, all = 0;

@@ -1,4 +1,4 @@
-// Units of measurement: which two mean the same, whichever way they are spelled, and which do not.
+// Units of measurement: which are equal in any spelling, and which are not.
 #include "kernel/machine/check/units.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ constexpr Are compare(std::string_view a, std::string_view b) {
     return one.same(other) ? Are::same : one.same_kind(other) ? Are::of_another_size : Are::of_another_kind;
 }
 
-TEST(Units, that_mean_the_same_are_the_same_however_they_are_spelled) {
+TEST(Units, are_equal_when_they_mean_the_same_in_any_spelling) {
     EXPECT_EQ(compare("N m", "m.N"), Are::same);
     EXPECT_EQ(compare("rpm", "rev/min"), Are::same);
     EXPECT_EQ(compare("mm/s2", "mm/s/s"), Are::same);
@@ -25,7 +25,7 @@ TEST(Units, that_mean_the_same_are_the_same_however_they_are_spelled) {
     EXPECT_EQ(compare("V.A", "W"), Are::same);
 }
 
-TEST(Units, of_another_size_are_told_from_those_of_another_kind) {
+TEST(Units, distinguish_another_scale_from_another_quantity) {
     EXPECT_EQ(compare("l/min", "ml/s"), Are::of_another_size);
     EXPECT_EQ(compare("deg", "rad"), Are::of_another_size);
     EXPECT_EQ(compare("ms", "s"), Are::of_another_size);
@@ -36,12 +36,12 @@ TEST(Units, of_another_size_are_told_from_those_of_another_kind) {
     EXPECT_EQ(compare("min", "m"), Are::of_another_kind) << "a minute is no metre with a prefix";
 }
 
-TEST(Units, that_cannot_be_taken_apart_are_words) {
+TEST(Units, are_plain_words_when_they_cannot_be_parsed) {
     for (const std::string_view word : {"picks", "m/", "/s", "m//s", "m (s)", "xm", "m0", "2"})
         EXPECT_FALSE(parse_unit(word).known) << word;
 }
 
-TEST(Units, of_one_kind_are_converted_by_a_factor_and_no_others) {
+TEST(Units, are_converted_by_a_factor_within_one_quantity_only) {
     const auto factor = [](std::string_view from, std::string_view to) {
         const Facet source{.unit = from}, target{.unit = to};
         return factor_of(data("a", "b", converted), source, target);

@@ -1,5 +1,5 @@
-// A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script, in the
-// component's activity, after its commands and events. What the table refuses: tests/diagnostics/rows.
+// A behaviour row drives a component (thesis 5.1, 5.2.5, 5.3): a compiled script runs in the component's
+// activity, after its commands and events. Refused tables: tests/diagnostics/rows.
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include <gmock/gmock.h>
@@ -65,18 +65,18 @@ StateMachine Cooking {
 }
 RootStateMachine Cooking cooking
 )"};
-TEST(Behaviour, hears_events_whose_arguments_a_message_has_no_room_for) {
+TEST(Behaviour, receives_event_arguments_too_large_for_a_message) {
     Rig<table<cooking>> rig;
     rig.run(10ms);
     rig.oven().told.clear();
-    for (std::int64_t n = 1; n <= 4; ++n) // they wait together
+    for (std::int64_t n = 1; n <= 4; ++n) // they are queued together
         rig.oven().recipe.emit(1, 2, 3, 4, 5, n == 3 ? 50.0 : 200.0 + static_cast<double>(n), n);
     rig.run(10ms);
     EXPECT_THAT(rig.oven().told, ElementsAre(1, 2, 4)) << "its guard refused the third";
     EXPECT_EQ(rig.oven().target.get(), 204.0);
 }
 
-TEST(Behaviour, a_script_hears_events_with_their_arguments_and_acts_on_components_of_its_activity) {
+TEST(Behaviour, runs_a_script_with_events_and_components_of_its_activity) {
     Bakery rig;
     rig.run(10ms);
     rig.oven().told.clear();
@@ -84,7 +84,7 @@ TEST(Behaviour, a_script_hears_events_with_their_arguments_and_acts_on_component
     EXPECT_EQ(rig.state(unit), "Cold");
     rig.oven().hot.emit(50.0, 3);
     rig.run(5ms);
-    EXPECT_EQ(rig.state(unit), "Cold"); // its guard said no
+    EXPECT_EQ(rig.state(unit), "Cold"); // its guard refused
     rig.oven().hot.emit(180.0, 3);
     rig.run(2ms);
     EXPECT_EQ(rig.state(unit), "Feeding");
@@ -92,19 +92,19 @@ TEST(Behaviour, a_script_hears_events_with_their_arguments_and_acts_on_component
     EXPECT_THAT(rig.oven().told, ElementsAre(3));
     rig.run(60ms);
     EXPECT_EQ(rig.state(unit), "Done");
-    EXPECT_EQ(rig.feeder().fed, 3); // a command of another activity was sent, and waited for
+    EXPECT_EQ(rig.feeder().fed, 3); // a command of another activity was sent and awaited
     EXPECT_TRUE(rig.door().open.get());
     EXPECT_THAT(rig.oven().told, ElementsAre(3, 5));
 }
 
-TEST(Behaviour, a_program_runs_with_its_component_before_the_state_machines) {
+TEST(Behaviour, runs_a_program_with_its_component_before_the_state_machines) {
     Bakery rig;
     rig.run(10ms);
     EXPECT_THAT(rig.oven().told, ElementsAre(1000, 1001, 1002));
     EXPECT_EQ(rig.instance.behaviour_of("oven")->parts()[1].program->status(), ProgramStatus::stopped);
 }
 
-TEST(Behaviour, the_stop_of_its_component_leads_to_the_final_state_and_its_start_out_of_it) {
+TEST(Behaviour, reaches_its_final_state_when_its_component_stops_and_restarts_with_it) {
     Bakery rig;
     rig.run(10ms);
     rig.oven().told.clear();
@@ -126,7 +126,7 @@ StateMachine Cooling {
 }
 RootStateMachine Cooling cooling
 )"};
-TEST(Behaviour, that_takes_its_time_to_end_comes_to_its_end_before_its_component_begins_anew) {
+TEST(Behaviour, ends_completely_before_its_component_restarts) {
     for (const Duration stopped_for : {0ms, 1ms, 50ms}) {
         Rig<table<cooling>> rig;
         rig.run(10ms);
@@ -157,7 +157,7 @@ constexpr auto failed = machine("failed", parts, threads, connections(), reactio
     behaviours(behaviour("oven", compiled_script<failing, reach>, {}, on_error(OnError::report))));
 // clang-format on
 
-TEST(Behaviour, that_fails_on_its_way_to_the_end_does_not_begin_anew_by_itself) {
+TEST(Behaviour, does_not_restart_by_itself_after_a_failure_during_its_end) {
     Rig<failed> rig;
     rig.run(10ms);
     const BehaviourUnit& unit = *rig.instance.behaviour_of("oven");
@@ -166,16 +166,16 @@ TEST(Behaviour, that_fails_on_its_way_to_the_end_does_not_begin_anew_by_itself) 
     rig.run(50ms);
     StateMachineExecution& machine = *unit.parts()[0].machine;
     EXPECT_TRUE(machine.in_error());
-    EXPECT_EQ(machine.request_final(rig.clock.now()), StateOutcome::taken); // and takes seven
+    EXPECT_EQ(machine.request_final(rig.clock.now()), StateOutcome::taken); // and accepts seven
     rig.run(50ms);
     EXPECT_THAT(rig.oven().told, ElementsAre(99));
     EXPECT_EQ(rig.state(unit), "Off");
 }
 
-TEST(Behaviour, an_error_stops_the_machine_and_the_report_names_the_line) {
+TEST(Behaviour, stops_the_machine_on_an_error_and_reports_the_line) {
     Bakery rig;
     rig.run(10ms);
-    rig.oven().hot.emit(180.0, 11); // the feeder rejects so many
+    rig.oven().hot.emit(180.0, 11); // the feeder rejects this number
     rig.run(60ms);
     EXPECT_TRUE(rig.instance.stop_asked());
     const std::string why{rig.instance.describe_stop().view()};

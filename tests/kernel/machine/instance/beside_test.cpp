@@ -1,5 +1,5 @@
-// Programs of a script command those that stand before them (thesis 5.1.6: from activities of the same task,
-// too), and what comes of it is the same in native code, with walked tables and in a slot.
+// Programs of a script command earlier ones (thesis 5.1.6: from activities of the same task, too); the effect
+// is the same in native code, with interpreted tables and in a slot.
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 #include "kernel/machine/table/compiled.hpp"
@@ -92,7 +92,7 @@ constexpr auto bakery(const Trigger&... trigger) { return machine("bakery",
     connections(), reactions(), behaviours(row<Form>())); }
 // clang-format on
 template <class Form> constexpr auto table = bakery<Form>(every(1ms));
-/// Nothing wakes what drives the oven but its events.
+/// Only its events wake the activity that drives the oven.
 template <class Form> constexpr auto woken = bakery<Form>(on_work(), at_most(10, 1ms), deadline(1ms));
 
 template <const auto& Machine> struct Bakery : Rig<Machine> {
@@ -117,7 +117,7 @@ template <class Form> struct A_program_beside : testing::Test {
 using Forms = testing::Types<Native, Walked, Loaded>;
 TYPED_TEST_SUITE(A_program_beside, Forms);
 
-TYPED_TEST(A_program_beside, is_commanded_with_parameters_and_its_result_goes_into_variables_and_outputs) {
+TYPED_TEST(A_program_beside, receives_parameters_and_returns_its_result) {
     this->bakery.run(5ms);
     EXPECT_THAT(this->oven.told, IsEmpty()) << "it does not run by itself";
     this->bakery.tick();
@@ -125,19 +125,19 @@ TYPED_TEST(A_program_beside, is_commanded_with_parameters_and_its_result_goes_in
     EXPECT_EQ(this->oven.shown.last(), 10);
 }
 
-TYPED_TEST(A_program_beside, that_fails_fails_the_statement_and_is_commanded_again) {
+TYPED_TEST(A_program_beside, fails_the_commanding_statement_when_it_fails_and_restarts) {
     this->bakery.tick();
     this->bakery.tick();
     EXPECT_THAT(this->oven.told, ElementsAre(0, 1, 2, -1, 5, 50, 10));
 }
 
-TYPED_TEST(A_program_beside, that_is_at_work_rejects_and_is_paused_and_stopped) {
+TYPED_TEST(A_program_beside, rejects_commands_at_work_and_can_be_paused_and_stopped) {
     this->bakery.door().moved.emit();
     this->bakery.run(20ms);
     EXPECT_THAT(this->oven.told, ElementsAre(2, 3, 4, 6));
 }
 
-TYPED_TEST(A_program_beside, commands_one_itself) {
+TYPED_TEST(A_program_beside, commands_another_program) {
     this->oven.hot.emit(1.0, 2);
     this->bakery.run(19ms);
     EXPECT_THAT(this->oven.told, IsEmpty());
@@ -146,7 +146,7 @@ TYPED_TEST(A_program_beside, commands_one_itself) {
     EXPECT_THAT(std::vector(this->oven.told.begin(), this->oven.told.begin() + 3), ElementsAre(7, 10, 8));
 }
 
-TYPED_TEST(A_program_beside, whose_own_event_stops_it_comes_to_the_end_of_its_step) {
+TYPED_TEST(A_program_beside, completes_its_step_when_its_own_event_stops_it) {
     this->oven.hot.emit(1.0, 2);
     this->bakery.run(2ms);
     this->bakery.door().moved.emit();
@@ -155,13 +155,13 @@ TYPED_TEST(A_program_beside, whose_own_event_stops_it_comes_to_the_end_of_its_st
     EXPECT_THAT(std::vector(this->oven.told.begin(), this->oven.told.begin() + 3), ElementsAre(1, 9, 10));
 }
 
-TYPED_TEST(A_program_beside, is_brought_to_its_end_by_a_final_state) {
+TYPED_TEST(A_program_beside, ends_when_a_final_state_ends_it) {
     this->bakery.run(5ms);
     this->bakery.world.stop();
     EXPECT_THAT(this->oven.told, ElementsAre(90, 77));
 }
 
-TYPED_TEST(A_program_beside, is_followed_in_an_activity_that_nothing_else_wakes) {
+TYPED_TEST(A_program_beside, is_monitored_in_an_activity_that_nothing_else_wakes) {
     Bakery<woken<TypeParam>> other;
     other.load();
     other.oven().hot.emit(1.0, 2);

@@ -1,4 +1,4 @@
-// Methods and commands that may block (thesis 4.5.2): where they run, and for whom.
+// Methods and commands that may block (thesis 4.5.2): the activities that run them and call them.
 #include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace tappet {
 namespace {
 
-/// Waits for a medium that takes its time.
+/// Waits for a slow medium.
 struct Archive {
     std::vector<int> stored{};
     bool store(int what, int& copies) noexcept {
@@ -50,9 +50,9 @@ constexpr auto table = machine("blocking",
     behaviours());
 // clang-format on
 
-struct WhatMayBlock : testing::Test, RunningRig<table> {};
+struct BlockingOperation : testing::Test, RunningRig<table> {};
 
-TEST_F(WhatMayBlock, is_done_in_an_activity_without_deadline_for_senders_that_have_one) {
+TEST_F(BlockingOperation, runs_in_an_activity_without_deadline_for_senders_with_one) {
     auto& store = the<Foreman>("foreman").store;
     EXPECT_TRUE(store.send(21));
     pass(20ms);
@@ -65,7 +65,7 @@ TEST_F(WhatMayBlock, is_done_in_an_activity_without_deadline_for_senders_that_ha
     EXPECT_EQ(store.state(), CommandState::rejected);
 }
 
-TEST_F(WhatMayBlock, is_called_by_a_peer_in_an_activity_without_deadline) {
+TEST_F(BlockingOperation, can_be_called_by_a_peer_in_an_activity_without_deadline) {
     EXPECT_TRUE(the<Foreman>("foreman").store.send(1));
     pass(200ms);
     EXPECT_EQ(the<Clerk>("clerk").counted, 10);

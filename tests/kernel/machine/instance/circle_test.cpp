@@ -1,5 +1,5 @@
-// Parts that need each other's values (a drive's component and its bus) were stopped together, and start
-// again one by one: whichever is the first starts without, as it did with the machine.
+// Parts that need each other's values (a drive's component and its bus) were stopped together and start again
+// one by one: the first one starts without its input, as at machine start.
 #include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ struct Circle : testing::Test, RunningRig<table> {
     LifeOutcome start(std::size_t component) { return change(component, LifeChange::start).outcome; }
 };
 
-TEST_F(Circle, that_stood_starts_in_any_order) {
+TEST_F(Circle, starts_its_stopped_components_in_any_order) {
     std::array<std::size_t, 3> order{bus, drive, guide};
     do {
         for (const std::size_t each : order)
@@ -56,7 +56,7 @@ TEST_F(Circle, that_stood_starts_in_any_order) {
     } while (std::ranges::next_permutation(order).found);
 }
 
-TEST_F(Circle, of_activities_that_stood_starts_in_any_order) {
+TEST_F(Circle, starts_its_stopped_activities_in_any_order) {
     for (const auto& order : {std::array{wires, motion}, std::array{motion, wires}}) {
         for (const std::size_t each : order)
             EXPECT_EQ(world.change_activity(each, LifeChange::stop).view(), "");
@@ -68,7 +68,7 @@ TEST_F(Circle, of_activities_that_stood_starts_in_any_order) {
     }
 }
 
-TEST_F(Circle, whose_other_part_runs_and_is_silent_is_waited_for) {
+TEST_F(Circle, refuses_a_start_while_its_other_part_runs_but_is_silent) {
     EXPECT_EQ(change(drive, LifeChange::stop).outcome, LifeOutcome::done);
     world.hang(wires, clock.now() + 1s);
     pass(50ms);
@@ -80,7 +80,7 @@ TEST_F(Circle, whose_other_part_runs_and_is_silent_is_waited_for) {
         "\"bus.out\", which may wait for this one in turn: if it does not come, restart the machine");
 }
 
-TEST_F(Circle, is_waited_for_by_who_stands_outside_of_it) {
+TEST_F(Circle, delays_the_start_of_a_reader_outside_it) {
     EXPECT_EQ(change(reader, LifeChange::stop).outcome, LifeOutcome::done);
     EXPECT_EQ(change(bus, LifeChange::stop).outcome, LifeOutcome::done);
     EXPECT_EQ(change(reader, LifeChange::start).refusal, LifeRefusal::input_stale);

@@ -1,6 +1,6 @@
 // Events between the components of a machine (thesis 4.6): rows with handles, the order of an emission,
-// several emitting activities, waits, and the observer of everything. What one row does is tested at the
-// event, in tests/kernel/component/event_test.cpp.
+// several emitting activities, waits, and the general observer. The effects of a single row are tested in
+// tests/kernel/component/event_test.cpp.
 #include "kernel/machine/plan/subscription.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
 
@@ -16,7 +16,7 @@ using testing::ElementsAre;
 
 using Profile = std::array<double, 20>;
 using Picture = std::array<double, 80>;
-/// Every number of it follows from the turn.
+/// The turn determines each of its numbers.
 Profile profile_of(std::int64_t turn) noexcept TAPPET_REALTIME {
     Profile made;
     for (std::size_t i = 0; i < made.size(); ++i)
@@ -24,7 +24,7 @@ Profile profile_of(std::int64_t turn) noexcept TAPPET_REALTIME {
     return made;
 }
 
-/// Emits on demand, and in each step what a test left there.
+/// Emits on demand, and in each step the emissions that a test left there.
 struct Shaft {
     Event<double> beat_up;
     Event<> standing;
@@ -64,7 +64,7 @@ struct Console {
     EventHandle profile;
     EventWait<Profile, std::int64_t> next_profile;
     Notes<double> beats;
-    Notes<std::int64_t> profiles; ///< turns of whole ones
+    Notes<std::int64_t> profiles; ///< turns of the complete ones
     void on_beat(double angle) noexcept TAPPET_REALTIME { beats.add(angle); }
     void on_profile(Profile made, std::int64_t turn) noexcept TAPPET_REALTIME {
         profiles.add(made == profile_of(turn) ? turn : -1);
@@ -159,7 +159,7 @@ using AnEvent = AReactionRow;
 using AWait = AReactionRow;
 using TheObserver = AReactionRow;
 
-TEST_F(AReactionRow, that_starts_disconnected_is_run_from_when_its_handle_connects_it) {
+TEST_F(AReactionRow, runs_from_the_connection_by_its_handle_when_it_starts_disconnected) {
     ASSERT_TRUE(console.beat.valid());
     EXPECT_FALSE(console.beat.connected());
     shaft.to_emit = {1.0};
@@ -171,8 +171,8 @@ TEST_F(AReactionRow, that_starts_disconnected_is_run_from_when_its_handle_connec
     EXPECT_EQ(counts("on_beat").posted, 2u);
 }
 
-TEST_F(AReactionRow, carries_arguments_that_a_message_has_no_room_for_in_order_and_whole) {
-    for (std::int64_t turn = 0; turn < 40; turn += 2) { // around the places where they wait
+TEST_F(AReactionRow, carries_large_arguments_in_order_and_complete) {
+    for (std::int64_t turn = 0; turn < 40; turn += 2) { // wraps around the slots in which they wait
         shaft.profiles = {turn, turn + 1};
         pass(20ms);
     }
@@ -182,13 +182,13 @@ TEST_F(AReactionRow, carries_arguments_that_a_message_has_no_room_for_in_order_a
     EXPECT_EQ(counts("on_profile").lost, 0u);
 }
 
-TEST_F(AReactionRow, of_large_arguments_counts_what_its_queue_cannot_hold_and_drops_what_is_outdated) {
+TEST_F(AReactionRow, counts_large_arguments_that_overflow_and_drops_outdated_ones) {
     shaft.profiles = {1, 2, 3, 4, 5};
     pass(20ms);
     EXPECT_THAT(console.profiles, ElementsAre(1, 2, 3));
     EXPECT_EQ(counts("on_profile").lost, 2u);
     shaft.profiles = {6, 7};
-    pass(5ms); // the console's next cycle is later
+    pass(5ms); // the console's next cycle comes later
     console.profile.disconnect();
     console.profile.connect();
     shaft.profiles = {8};
@@ -197,7 +197,7 @@ TEST_F(AReactionRow, of_large_arguments_counts_what_its_queue_cannot_hold_and_dr
     EXPECT_EQ(counts("on_profile").outdated, 2u);
 }
 
-TEST_F(AReactionRow, of_large_arguments_delivers_the_latest_or_lets_it_be_waited_for) {
+TEST_F(AReactionRow, delivers_the_latest_large_argument_or_lets_a_wait_accept_it) {
     shaft.profiles = {1, 2, 3};
     pass(2ms);
     EXPECT_THAT(weft.profiles, ElementsAre(3));
@@ -211,7 +211,7 @@ TEST_F(AReactionRow, of_large_arguments_delivers_the_latest_or_lets_it_be_waited
     EXPECT_FALSE(console.next_profile.take(made, turn)) << "its queue holds two";
 }
 
-TEST(TheDigest, of_a_machine_sees_every_word_of_large_arguments) {
+TEST(TheDigest, includes_every_word_of_large_arguments) {
     const auto digest_after = [](std::int64_t turn) { // the last word of what is emitted
         Rig rig;
         rig.shaft.profile(profile_of(0), turn);
@@ -230,12 +230,12 @@ TEST_F(AnEmission, runs_synchronous_reactions_first_and_then_the_most_urgent_rec
             order.push_back(each.kind == SubscriberKind::observer
                                 ? "watcher"
                                 : facet_at(machine.table, each.target).name);
-    // weft.hold is called, weft.show is told in the most urgent activity, then come those of the console in
-    // the order of their rows.
+    // weft.hold is called, weft.show receives it in the most urgent activity, then the rows of the console
+    // follow in their order.
     EXPECT_THAT(order, ElementsAre("hold", "show", "on_beat", "next_beat", "watcher"));
 }
 
-TEST_F(AnEvent, may_be_emitted_by_each_activity_that_calls_an_operation_of_its_component) {
+TEST_F(AnEvent, can_be_emitted_by_each_activity_that_calls_its_component) {
     panel.press = true; // runs shaft.announce in the panel's activity
     shaft.to_emit = {1.0};
     console.beat.connect();
@@ -254,7 +254,7 @@ TEST_F(AnEvent, gives_each_emitting_activity_the_whole_queue_of_a_row) {
     EXPECT_EQ(counts("on_beat").lost, 0u);
 }
 
-TEST_F(AWait, finds_what_was_emitted_in_order_and_answers_at_once_in_virtual_time) {
+TEST_F(AWait, finds_emissions_in_order_and_returns_at_once_in_virtual_time) {
     double angle = 0;
     EXPECT_FALSE(console.next_beat.wait(10s, angle));
     EXPECT_FALSE(console.next_beat.take(angle));
@@ -267,7 +267,7 @@ TEST_F(AWait, finds_what_was_emitted_in_order_and_answers_at_once_in_virtual_tim
     EXPECT_FALSE(console.next_beat.take(angle));
 }
 
-TEST_F(TheObserver, sees_an_event_from_when_it_is_connected_to_it) {
+TEST_F(TheObserver, sees_an_event_from_its_connection_on) {
     const auto& table_of = instance.machine().table;
     const std::size_t index = find_component(table_of, "shaft");
     const std::size_t beat_up = find_facet(table_of.components[index], "beat_up");
@@ -290,7 +290,7 @@ TEST_F(TheObserver, sees_an_event_from_when_it_is_connected_to_it) {
     EXPECT_EQ(watcher.seen.size(), 1u);
 }
 
-TEST_F(TheObserver, may_lose_emissions_which_are_counted_and_cost_nobody_else_any) {
+TEST_F(TheObserver, counts_its_lost_emissions_and_causes_no_loss_elsewhere) {
     console.beat.connect();
     const End beat_up{find_component(instance.machine().table, "shaft"), 0};
     instance.observation().observe_event(beat_up.component, beat_up.facet).connect();
@@ -302,7 +302,7 @@ TEST_F(TheObserver, may_lose_emissions_which_are_counted_and_cost_nobody_else_an
     EXPECT_EQ(console.beats.size(), 4u) << "its own queue";
 }
 
-TEST_F(TheObserver, cannot_be_connected_to_what_is_too_large_for_it_or_is_no_event) {
+TEST_F(TheObserver, refuses_facets_that_are_too_large_or_not_events) {
     const auto& table_of = instance.machine().table;
     const std::size_t index = find_component(table_of, "shaft");
     for (const std::string_view facet : {"picture", "announce"})

@@ -1,5 +1,5 @@
-// Data flow between the components of a machine (thesis 4.4): whatever the type, inside one activity and
-// across two, from one to many and from many to one, with every policy that a row may state.
+// Data flow between the components of a machine (thesis 4.4): for any type, within one activity and across
+// two, one to many and many to one, with every policy of a row.
 #include "kernel/base/random.hpp"
 #include "kernel/machine/check/flow.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
@@ -14,7 +14,7 @@
 namespace tappet {
 namespace {
 
-/// A struct of a user, with fixed-size Eigen inside.
+/// A user's struct with a fixed-size Eigen member.
 struct Wrench {
     Eigen::Vector3d force{0, 0, 0};
     std::int16_t frame = 0;
@@ -120,7 +120,7 @@ inline constexpr auto table = machine("flow",
 
 template <class T>
 struct Flows : testing::Test, RunningRig<table<T>> {
-    /// One more millisecond.
+    /// Runs one more millisecond.
     void run() { this->pass(1ms); }
     Source<T>& source(std::string_view name) { return this->template the<Source<T>>(name); }
     Sink<T>& sink(std::string_view name) { return this->template the<Sink<T>>(name); }
@@ -131,7 +131,7 @@ using Types = testing::Types<double, std::int8_t, Text<12>, Eigen::Vector3d, Eig
                              Eigen::Matrix<std::int16_t, 5, 1>, Wrench>;
 TYPED_TEST_SUITE(Flows, Types);
 
-TYPED_TEST(Flows, begin_with_what_the_row_gives_before_the_first_value) {
+TYPED_TEST(Flows, begin_with_the_row_value_before_the_first_value) {
     for (int i = 0; i < 10; ++i) this->run();
     for (const char* name : {"near", "holder", "far", "plain", "bare"}) {
         ASSERT_GT(this->sink(name).steps, 0u);
@@ -144,7 +144,7 @@ TYPED_TEST(Flows, begin_with_what_the_row_gives_before_the_first_value) {
         << "a matrix is zero, not whatever lay there";
 }
 
-/// What a reader of a row must be told, kept beside the machine.
+/// The expected view of a row's reader, computed beside the machine.
 template <class T>
 struct Expected {
     Time stamp{};
@@ -160,7 +160,7 @@ struct Expected {
     }
 };
 
-TYPED_TEST(Flows, tell_each_reader_of_one_output_whether_the_value_is_fresh_old_or_stale) {
+TYPED_TEST(Flows, report_fresh_old_or_stale_to_each_reader_of_one_output) {
     using T = TypeParam;
     Expected<T> near{.max_age = 3ms}, far{.max_age = 12ms};
     std::size_t met[4] = {};
@@ -200,7 +200,7 @@ TYPED_TEST(Flows, tell_each_reader_of_one_output_whether_the_value_is_fresh_old_
         EXPECT_GT(met[static_cast<std::size_t>(each)], 20u) << "the run met every answer";
 }
 
-/// What one row's buffer must hold, kept beside the machine.
+/// The expected content of one row's buffer, computed beside the machine.
 template <class T>
 struct Queue {
     std::size_t capacity;
@@ -215,7 +215,7 @@ struct Queue {
     }
 };
 
-TYPED_TEST(Flows, give_every_reader_of_buffers_each_value_of_each_writer_in_order_or_lose_as_the_row_says) {
+TYPED_TEST(Flows, give_every_reader_each_buffered_value_in_order_or_drop_by_row) {
     using T = TypeParam;
     struct Reader {
         std::string_view name;
@@ -263,7 +263,7 @@ TYPED_TEST(Flows, give_every_reader_of_buffers_each_value_of_each_writer_in_orde
     EXPECT_GT(refused, 20u) << "the run met full buffers";
 }
 
-TEST(Flow, through_a_buffer_orders_the_components_of_an_activity_as_data_does) {
+TEST(Flow, through_a_buffer_orders_the_components_of_an_activity) {
     PlacedRig<table<double>> rig;
     const auto place = [&](std::string_view name) {
         return rig.instance.machine().index.position[find_component(rig.instance.machine().table, name)];
@@ -272,7 +272,7 @@ TEST(Flow, through_a_buffer_orders_the_components_of_an_activity_as_data_does) {
     EXPECT_GT(place("near"), place("other")) << "from which it has a buffer only";
 }
 
-/// Two components that feed each other inside one activity: whoever reads by the delayed row is one cycle
+/// Two components that feed each other within one activity: the reader of the delayed row is one cycle
 /// behind.
 struct Echo {
     Input<int> heard;
@@ -305,7 +305,7 @@ inline constexpr auto guarded = machine("guarded",
                        : data("source.value", "near.value", stale_after(20ms), stop_machine)),
     reactions(), behaviours());
 
-/// The same into an activity that nothing but the value's age could wake: what else would, never comes.
+/// The same into an activity that only the value's age can wake: no other wake ever comes.
 inline constexpr auto guarded_asleep = machine("guarded_asleep",
     components(component<Source<double>>("source"), component<Source<double>>("mute"), component<Sink<double>>("far")),
     activities(activity("motion", every(1ms), runs("source", "mute"), budget(10us)),
@@ -339,7 +339,7 @@ inline constexpr auto woken = machine("woken",
     reactions(), behaviours());
 // clang-format on
 
-TEST(Flow, by_a_delayed_row_gives_the_value_of_the_cycle_before) {
+TEST(Flow, by_a_delayed_row_gives_the_value_of_the_previous_cycle) {
     RunningRig<echoes> rig;
     for (int cycle = 0; cycle < 20; ++cycle) {
         EXPECT_TRUE(rig.run(1ms));
@@ -366,13 +366,13 @@ void stops_when_the_value_is_stale(std::string_view reader) {
                   .view());
 }
 
-TEST(Flow, that_went_stale_stops_the_machine_where_its_row_says_so) {
+TEST(Flow, stops_the_machine_when_it_is_stale_and_its_row_says_so) {
     stops_when_the_value_is_stale<guarded<false>>("near");
     stops_when_the_value_is_stale<guarded<true>>("far");
     stops_when_the_value_is_stale<guarded_asleep>("far");
 }
 
-TEST(Flow, that_went_stale_wakes_its_reader_once_where_its_row_wakes) {
+TEST(Flow, wakes_its_reader_once_when_it_is_stale_and_its_row_wakes) {
     RunningRig<told_when_stale> rig;
     const Sink<double>& told = rig.the<Sink<double>>("told");
     for (int outage = 0; outage < 3; ++outage) {
@@ -387,7 +387,7 @@ TEST(Flow, that_went_stale_wakes_its_reader_once_where_its_row_wakes) {
     EXPECT_EQ(rig.the<Sink<double>>("untold").steps, 0u);
 }
 
-TEST(Flow, wakes_the_activities_of_those_readers_whose_rows_say_so) {
+TEST(Flow, wakes_the_activities_of_readers_whose_rows_say_so) {
     RunningRig<woken> rig;
     const Sink<double>& by_data = rig.the<Sink<double>>("by_data");
     const Sink<double>& by_buffer = rig.the<Sink<double>>("by_buffer");
@@ -411,7 +411,7 @@ TEST(Flow, wakes_the_activities_of_those_readers_whose_rows_say_so) {
     EXPECT_LE(rig.the<Sink<double>>("asleep").steps, 1u);
 }
 
-/// What the check says of a number for a port of the type.
+/// The check's fault for a number and a port of the type.
 template <class T>
 std::string fault_of(double number) {
     const Facet port{.name = "value", .type = type_id<T>};
@@ -419,7 +419,7 @@ std::string fault_of(double number) {
     return std::string{checks::check_row_value(row, "substitute", row.substitute, port).view()};
 }
 
-TEST(Flow, takes_only_numbers_in_a_row_that_the_port_can_hold) {
+TEST(Flow, accepts_only_row_numbers_that_the_port_can_hold) {
     for (const double good : {-128.0, 0.0, 127.0}) EXPECT_EQ(fault_of<std::int8_t>(good), "");
     for (const double bad : {-129.0, 128.0, 0.5, -0.5, 1e300, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_NE(fault_of<std::int8_t>(bad), "") << bad;
@@ -437,9 +437,9 @@ TEST(Flow, takes_only_numbers_in_a_row_that_the_port_can_hold) {
         EXPECT_NE(fault_of<float>(bad), "") << bad;
         EXPECT_NE(fault_of<double>(bad), "") << bad;
     }
-    EXPECT_NE(
-        fault_of<Text<12>>(0).find("is no number; write substitute<constant>() with a constant of that type"),
-        std::string::npos);
+    EXPECT_NE(fault_of<Text<12>>(0).find(
+                  "is not a number; write substitute<constant>() with a constant of that type"),
+              std::string::npos);
 }
 
 } // namespace

@@ -1,11 +1,10 @@
-// A forced input of who is woken by what is written lets go when its writer stops: nothing else would wake
-// it.
+// A forced input releases its force when its writer stops; nothing else would wake its sleeping reader.
 #include "tests/kernel/machine/virtual_rig.hpp"
 
 namespace tappet {
 namespace {
 
-/// Takes to the wire what it reads.
+/// Writes its input to the wire.
 struct Valve {
     Input<std::int64_t> wanted;
     std::int64_t at_wire = -1;
@@ -13,7 +12,7 @@ struct Valve {
     void step(const Cycle&) noexcept TAPPET_REALTIME { static_cast<void>(wanted.read(at_wire)); }
     static constexpr auto interface() { return facets(input<&Valve::wanted>("wanted", "", "1: open")); }
 };
-/// Its last value is its safe one already.
+/// Its last value is already its safe one.
 struct Logic {
     Output<std::int64_t> open;
 
@@ -52,10 +51,10 @@ struct Rig : RunningRig<table> {
     Valve& valve() { return this->template the<Valve>("valve"); }
 };
 
-TEST(ForcedInput, lets_go_when_its_writer_stops_though_that_one_writes_nothing_then) {
+TEST(ForcedInput, ends_its_force_when_its_writer_stops_without_writing) {
     Rig<waking> rig;
     EXPECT_TRUE(rig.run(50ms));
-    for (int n = 0; n < 2; ++n) { // also of one that stands already
+    for (int n = 0; n < 2; ++n) { // also of an already stopped one
         rig.force_open();
         EXPECT_TRUE(rig.run(20ms));
         ASSERT_EQ(rig.valve().at_wire, 1);
@@ -66,7 +65,7 @@ TEST(ForcedInput, lets_go_when_its_writer_stops_though_that_one_writes_nothing_t
     }
 }
 
-TEST(ForcedInput, grows_stale_when_its_writer_has_stopped_though_nothing_wakes_its_reader) {
+TEST(ForcedInput, becomes_stale_after_its_writer_stopped_without_waking_its_reader) {
     Rig<growing_stale> rig;
     EXPECT_TRUE(rig.run(10ms));
     rig.force_open();

@@ -1,6 +1,6 @@
 // Parts of a running machine start and stop (thesis 3.1.3: the states and transitions of a deployed
 // component; 4.2.2: those of an activity): a component starts only with valid inputs and leaves safe values,
-// and the rest of the machine goes on.
+// while the rest of the machine continues.
 #include "kernel/machine/instance/instance.hpp"
 
 #include "kernel/base/random.hpp"
@@ -15,13 +15,13 @@
 namespace tappet {
 namespace {
 
-/// What happened on the supervisor's thread, in order.
+/// The supervisor's calls, in order.
 std::vector<std::string>& notes() {
     static std::vector<std::string> list;
     return list;
 }
 
-/// Gives the angle, unless it is told to be silent; 0 is its safe value.
+/// Measures the angle unless the test silences it; 0 is its safe value.
 struct Sensor {
     Output<double> angle;
     bool silent = false;
@@ -49,7 +49,7 @@ struct Axis {
     Timer alarm;
     Event<> turned;
     std::uint64_t starts = 0, steps = 0, stops = 0, kicks = 0, alarms = 0;
-    std::uint64_t steps_outside = 0; ///< before a start or after a stop
+    std::uint64_t steps_outside = 0; ///< steps before a start or after a stop
     bool runs = false;
     Duration alarm_after{};
 
@@ -81,7 +81,7 @@ struct Axis {
     }
 };
 
-/// Cannot do anything sensible before the first angle, so that it waits for it.
+/// Needs a first angle to work, so it waits for it.
 struct Careful {
     Input<double> angle;
     double first_angle = -1;
@@ -91,7 +91,7 @@ struct Careful {
     }
 };
 
-/// Presses when it is told to, and may ask for changes in the machine from its own activity.
+/// Emits a press when the test wants it, and may request changes in the machine from its own activity.
 struct Panel : Onlooker {
     Event<> pressed;
     std::uint64_t presses_left = 0;
@@ -108,7 +108,7 @@ struct Panel : Onlooker {
     }
 };
 
-/// Has a state machine that says where it is.
+/// Has a state machine that shows its state.
 struct Gate {
     int opened = 0, closed = 0;
     void enter_open() noexcept TAPPET_REALTIME { ++opened; }
@@ -143,7 +143,7 @@ constexpr std::size_t field = 0, motion = 1, slow = 2, office = 3;
 
 struct Machine : testing::Test, ConfiguredRig<table> {
     Machine() { notes().clear(); }
-    /// And lets it run so long.
+    /// Also runs it for so long.
     void start(Duration then = {}) {
         ASSERT_EQ(world.start().view(), "");
         pass(then);
@@ -161,7 +161,7 @@ struct Machine : testing::Test, ConfiguredRig<table> {
 using LifeOfAComponent = Machine;
 using LifeOfAnActivity = Machine;
 
-TEST_F(LifeOfAComponent, is_inactive_until_its_activity_starts_and_stopped_when_that_stopped) {
+TEST_F(LifeOfAComponent, is_inactive_before_its_activity_starts_and_stopped_after_it_stops) {
     EXPECT_EQ(state(axis), ComponentState::inactive);
     start();
     EXPECT_EQ(state(axis), ComponentState::running);
@@ -171,7 +171,7 @@ TEST_F(LifeOfAComponent, is_inactive_until_its_activity_starts_and_stopped_when_
     EXPECT_EQ(the<Axis>("axis").stops, 1u);
 }
 
-TEST_F(LifeOfAComponent, stops_alone_leaves_safe_values_and_the_others_go_on) {
+TEST_F(LifeOfAComponent, stops_alone_with_safe_values_while_others_continue) {
     start(10ms);
     EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
     EXPECT_EQ(change(axis, LifeChange::stop).outcome, LifeOutcome::done);
@@ -185,7 +185,7 @@ TEST_F(LifeOfAComponent, stops_alone_leaves_safe_values_and_the_others_go_on) {
     EXPECT_EQ(state(sensor), ComponentState::running);
 }
 
-TEST_F(LifeOfAComponent, is_stopped_once_although_the_machine_stops_later) {
+TEST_F(LifeOfAComponent, includes_one_stop_only_although_the_machine_stops_later) {
     start(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     static_cast<void>(change(axis, LifeChange::stop));
@@ -193,12 +193,12 @@ TEST_F(LifeOfAComponent, is_stopped_once_although_the_machine_stops_later) {
     EXPECT_EQ(the<Axis>("axis").stops, 1u);
 }
 
-TEST_F(LifeOfAComponent, starts_again_where_it_was_stopped) {
+TEST_F(LifeOfAComponent, restarts_after_its_own_stop) {
     start(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
     EXPECT_EQ(the<Axis>("axis").starts, 2u);
-    EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done); // it runs already
+    EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done); // it is already running
     EXPECT_EQ(the<Axis>("axis").starts, 2u);
     EXPECT_EQ(change(axis, LifeChange::restart).outcome, LifeOutcome::done);
     EXPECT_EQ(the<Axis>("axis").starts, 3u);
@@ -206,7 +206,7 @@ TEST_F(LifeOfAComponent, starts_again_where_it_was_stopped) {
     EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
 }
 
-TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_was_written_and_says_which) {
+TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_and_names_it) {
     the<Sensor>("sensor").silent = true;
     start();
     EXPECT_EQ(change(axis, LifeChange::stop).outcome, LifeOutcome::done);
@@ -222,7 +222,7 @@ TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_was_written_an
     EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
 }
 
-TEST_F(LifeOfAComponent, does_not_start_with_a_stale_input_and_a_restart_leaves_it_stopped_and_safe) {
+TEST_F(LifeOfAComponent, is_refused_with_a_stale_input_and_a_restart_then_leaves_it_safe) {
     start(10ms);
     the<Sensor>("sensor").silent = true;
     pass(30ms);
@@ -235,19 +235,19 @@ TEST_F(LifeOfAComponent, does_not_start_with_a_stale_input_and_a_restart_leaves_
     EXPECT_EQ(the<Axis>("axis").drive.last(), 0.0);
 }
 
-TEST_F(LifeOfAComponent, waits_with_the_whole_machine_for_an_input_that_it_needs_from_its_first_moment) {
+TEST_F(LifeOfAComponent, waits_for_an_input_that_is_required_from_the_start) {
     the<Sensor>("sensor").silent = true;
     start(50ms);
     EXPECT_EQ(state(careful), ComponentState::waiting);
     EXPECT_EQ(the<Careful>("careful").first_angle, -1.0);
-    EXPECT_EQ(state(axis), ComponentState::running); // which did not say so
+    EXPECT_EQ(state(axis), ComponentState::running); // it did not require the input
     the<Sensor>("sensor").silent = false;
     pass(20ms);
     EXPECT_EQ(state(careful), ComponentState::running);
     EXPECT_GT(the<Careful>("careful").first_angle, 50.0);
 }
 
-TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_not_run) {
+TEST_F(LifeOfAComponent, drops_and_counts_messages_while_it_is_not_running) {
     start(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     the<Panel>("panel").presses_left = 3;
@@ -262,7 +262,7 @@ TEST_F(LifeOfAComponent, drops_and_counts_the_messages_that_come_while_it_does_n
     EXPECT_EQ(instance.observation().lost_emissions(), 0u);
 }
 
-TEST_F(LifeOfAComponent, is_not_called_synchronously_either_while_it_is_stopped_and_that_is_counted_too) {
+TEST_F(LifeOfAComponent, refuses_and_counts_synchronous_calls_while_it_is_stopped) {
     start(5ms);
     Axis& the_axis = the<Axis>("axis");
     the_axis.turned();
@@ -288,17 +288,17 @@ TEST_F(LifeOfAComponent, forgets_its_timers_when_it_stops) {
     EXPECT_EQ(the<Axis>("axis").alarms, 1u);
 }
 
-TEST_F(LifeOfAComponent, brings_its_state_machine_to_the_final_state_and_back_to_the_initial_one) {
+TEST_F(LifeOfAComponent, leads_its_state_machine_to_the_final_state_and_back) {
     start(5ms);
     EXPECT_EQ(the<Gate>("gate").opened, 1);
     static_cast<void>(change(gate, LifeChange::stop));
     EXPECT_EQ(the<Gate>("gate").closed, 1);
     static_cast<void>(change(gate, LifeChange::start));
     EXPECT_EQ(the<Gate>("gate").opened, 2);
-    EXPECT_EQ(the<Axis>("axis").starts, 1u); // its neighbour noticed nothing
+    EXPECT_EQ(the<Axis>("axis").starts, 1u); // its neighbour was not affected
 }
 
-TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_others) {
+TEST_F(LifeOfAComponent, follows_the_last_of_several_requests_and_marks_others_superseded) {
     start(5ms);
     const LifeTicket first = instance.life().ask_component(axis, LifeChange::restart);
     const LifeTicket second = instance.life().ask_component(axis, LifeChange::stop);
@@ -309,7 +309,7 @@ TEST_F(LifeOfAComponent, obeys_the_last_of_several_wishes_and_says_so_to_the_oth
     EXPECT_EQ(the<Axis>("axis").starts, 1u);
 }
 
-/// One machine under a hundred random wishes; its event log's digest.
+/// Runs one machine under a hundred random requests; returns the digest of its event log.
 std::uint64_t under_random_wishes(std::uint64_t seed) {
     Random random{seed};
     RunningRig<table> rig;
@@ -338,7 +338,7 @@ std::uint64_t under_random_wishes(std::uint64_t seed) {
     return instance.observation().event_log_digest();
 }
 
-TEST(LifeUnderRandomWishes, no_component_is_stepped_or_told_outside_of_its_life_and_every_run_is_the_same) {
+TEST(LifeUnderRandomWishes, steps_and_calls_running_components_only_and_repeats_exactly) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const std::uint64_t first = under_random_wishes(seed);
         EXPECT_EQ(under_random_wishes(seed), first) << "seed " << seed;
@@ -346,7 +346,7 @@ TEST(LifeUnderRandomWishes, no_component_is_stepped_or_told_outside_of_its_life_
     }
 }
 
-TEST_F(LifeOfAnActivity, is_initialised_before_and_finalised_after_by_whoever_starts_and_stops_it) {
+TEST_F(LifeOfAnActivity, initialises_before_a_start_and_finalises_after_a_stop) {
     start();
     EXPECT_THAT(notes(), testing::ElementsAre("sensor initialised"));
     pass(10ms);
@@ -365,7 +365,7 @@ TEST_F(LifeOfAnActivity, is_initialised_before_and_finalised_after_by_whoever_st
                                               "sensor finalised"));
 }
 
-TEST_F(LifeOfAnActivity, a_component_that_cannot_be_initialised_keeps_its_activity_stopped_until_it_can) {
+TEST_F(LifeOfAnActivity, stays_stopped_until_its_components_can_be_initialised) {
     start(10ms);
     the<Sensor>("sensor").refuses = "the probe is not plugged in; plug it in";
     EXPECT_EQ(world.change_activity(field, LifeChange::restart).view(),
@@ -375,14 +375,13 @@ TEST_F(LifeOfAnActivity, a_component_that_cannot_be_initialised_keeps_its_activi
                   .answer_of_component(sensor, instance.life().ask_component(sensor, LifeChange::start))
                   .outcome,
               LifeOutcome::refused);
-    pass(10ms); // the others go on
+    pass(10ms); // the others continue
     the<Sensor>("sensor").refuses = {};
     EXPECT_EQ(world.change_activity(field, LifeChange::start).view(), "");
     EXPECT_EQ(state(sensor), ComponentState::running);
 }
 
-TEST_F(LifeOfAnActivity,
-       the_machine_does_not_start_when_one_cannot_be_initialised_and_what_had_started_stops) {
+TEST_F(LifeOfAnActivity, fails_the_machine_start_and_stops_what_had_started) {
     the<Sensor>("sensor").refuses = "no probe";
     EXPECT_EQ(world.start().view(), "component \"sensor\" could not be initialised: no probe");
     for (const std::size_t component : {axis, gate, careful, panel})
@@ -390,7 +389,7 @@ TEST_F(LifeOfAnActivity,
     EXPECT_EQ(state(sensor), ComponentState::failed);
 }
 
-TEST_F(LifeOfAnActivity, does_not_start_while_another_ones_value_that_it_needs_is_stale) {
+TEST_F(LifeOfAnActivity, does_not_start_while_a_required_value_is_stale) {
     start(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     EXPECT_EQ(world.change_activity(field, LifeChange::stop).view(), "");
@@ -405,7 +404,7 @@ TEST_F(LifeOfAnActivity, does_not_start_while_another_ones_value_that_it_needs_i
     EXPECT_GT(the<Axis>("axis").drive.last(), 0.0);
 }
 
-TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stopped) {
+TEST_F(LifeOfAnActivity, drops_messages_to_its_components_while_it_is_stopped) {
     start(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     the<Panel>("panel").presses_left = 5;
@@ -417,7 +416,7 @@ TEST_F(LifeOfAnActivity, drops_what_its_components_were_told_while_it_was_stoppe
     EXPECT_EQ(instance.observation().lost_emissions(), 0u);
 }
 
-TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stopped) {
+TEST_F(LifeOfAnActivity, refuses_requests_to_its_components_while_it_is_stopped) {
     start(10ms);
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     const LifeAnswer answer = change(axis, LifeChange::start);
@@ -426,14 +425,14 @@ TEST_F(LifeOfAnActivity, refuses_the_wishes_to_its_components_while_it_is_stoppe
               "component \"axis\" is not started: its activity \"motion\" does not run; start that");
 }
 
-TEST_F(LifeOfAnActivity, is_restarted_by_the_supervisor_when_a_component_of_another_one_asks) {
+TEST_F(LifeOfAnActivity, is_restarted_by_the_supervisor_at_a_components_request) {
     start(10ms);
     the<Panel>("panel").restart_activity = motion;
     pass(10ms);
     EXPECT_EQ(instance.life().answer_of_activity(motion, the<Panel>("panel").ticket).outcome,
               LifeOutcome::done);
     EXPECT_EQ(the<Axis>("axis").starts, 2u);
-    the<Panel>("panel").restart_activity = office; // and its own
+    the<Panel>("panel").restart_activity = office; // and its own activity
     pass(10ms);
     EXPECT_EQ(instance.life().answer_of_activity(office, the<Panel>("panel").ticket).outcome,
               LifeOutcome::done);

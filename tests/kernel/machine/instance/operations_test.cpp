@@ -1,6 +1,6 @@
 // Methods and commands through a machine's table (thesis 4.5): methods run in the caller, commands in the
-// receiver's engine; a command goes through its states, brings results back, is rejected, wrapped and handed
-// on.
+// receiver's engine. A command goes through its states, returns results, and can be rejected, wrapped and
+// handed on.
 #include "kernel/machine/plan/operations.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
 
@@ -11,15 +11,15 @@
 namespace tappet {
 namespace {
 
-/// Moves one unit a cycle. Takes one goal at a time; refuses to leave its track.
+/// Moves one unit a cycle. Accepts one goal at a time; refuses goals beyond its track.
 struct Axis {
     double position = 0.0;
     double goal = 0.0;
     bool moving = false;
     bool jams = false;
     int steps = 0;
-    Notes<int> marks;              ///< of mark(), in the order in which they were taken up
-    Notes<std::string_view> order; ///< of one cycle
+    Notes<int> marks;              ///< arguments of mark(), in execution order
+    Notes<std::string_view> order; ///< the calls of one cycle
     std::uint64_t completions_asked = 0;
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
@@ -83,7 +83,7 @@ struct Panel {
     }
 };
 
-/// Does its own move by the axis': what wraps a command is a command.
+/// Implements its own move by the axis' move: the wrapper of a command is a command.
 struct Carriage {
     CommandCall<double, int&> axis;
     bool go(double metres, int& taken) noexcept TAPPET_REALTIME {
@@ -97,7 +97,7 @@ struct Carriage {
     }
 };
 
-/// Gives the axis' move on as it is, under a name of its own.
+/// Forwards the axis' move unchanged under its own name.
 struct Door {
     CommandCall<double, int&> axis;
     static constexpr auto interface() {
@@ -105,7 +105,7 @@ struct Door {
     }
 };
 
-/// Prepares a move and hands it on to a runner, which is another's activity.
+/// Prepares a move and hands it on to a runner in another activity.
 struct Planner {
     CommandCall<double, int&> move;
     Event<CommandRef<double, int&>> planned;
@@ -167,24 +167,24 @@ using CommandsDeathTest = Rig;
 
 // ---- methods
 
-TEST_F(Methods, a_method_runs_in_the_caller_and_returns_its_result) {
+TEST_F(Methods, run_in_the_caller_and_return_their_result) {
     axis.position = 40.0;
-    EXPECT_EQ(panel.distance(30.0, false).value_or(0.0), -10.0); // no time passed: nobody else ran
+    EXPECT_EQ(panel.distance(30.0, false).value_or(0.0), -10.0); // no time passed: no other activity ran
     EXPECT_EQ(panel.distance(30.0, true).value_or(0.0), 10.0);
 }
 
-TEST_F(Methods, inside_an_activity_a_method_needs_no_promise) {
+TEST_F(Methods, need_no_promise_inside_an_activity) {
     axis.position = 40.0;
     EXPECT_TRUE(the<Panel>("near").spare().given());
     EXPECT_EQ(axis.position, 0.0);
 }
 
-TEST_F(Methods, an_optional_call_without_a_row_says_so) {
+TEST_F(Methods, report_an_optional_call_without_a_row) {
     EXPECT_FALSE(panel.spare.connected());
     EXPECT_TRUE(panel.distance.connected());
 }
 
-TEST_F(Methods, one_that_knows_no_types_calls_from_packed_bytes) {
+TEST_F(Methods, accept_packed_bytes_from_an_untyped_caller) {
     axis.position = 40.0;
     const auto& facet = facet_at(instance.machine().table,
                                  {0, find_facet(instance.machine().table.components[0], "distance")});
@@ -199,7 +199,7 @@ TEST_F(Methods, one_that_knows_no_types_calls_from_packed_bytes) {
     EXPECT_EQ(detail::load_packed<double>(result.data()), 15.0);
 }
 
-TEST_F(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_machine) {
+TEST_F(Methods, run_in_their_own_engine_for_a_component_that_sees_the_machine) {
     axis.position = 40.0;
     const MachineView& seen = instance.machine().table;
     const End zero{0, find_facet(seen.components[0], "zero")};
@@ -225,7 +225,7 @@ TEST_F(Methods, of_another_activity_is_run_in_its_engine_for_one_that_sees_the_m
 
 // ---- the life of a command
 
-TEST_F(Commands, goes_through_its_states_and_brings_its_results_back) {
+TEST_F(Commands, go_through_their_states_and_return_results) {
     EXPECT_EQ(urgent.move.state(), CommandState::ready);
     ASSERT_TRUE(urgent.move.send(3.0));
     EXPECT_EQ(urgent.move.state(), CommandState::sent);
@@ -240,17 +240,17 @@ TEST_F(Commands, goes_through_its_states_and_brings_its_results_back) {
     EXPECT_EQ(axis.position, 3.0);
     const std::uint64_t asked = axis.completions_asked;
     pass(10ms);
-    EXPECT_EQ(axis.completions_asked, asked); // what has ended is not asked again
+    EXPECT_EQ(axis.completions_asked, asked); // an ended command is not queried again
 }
 
-TEST_F(Commands, what_the_action_refuses_is_rejected_and_its_completion_never_asked) {
+TEST_F(Commands, are_rejected_when_the_action_refuses) {
     ASSERT_TRUE(urgent.move.send(101.0));
     pass(2ms);
     EXPECT_EQ(urgent.move.state(), CommandState::rejected);
     EXPECT_EQ(axis.completions_asked, 0u);
 }
 
-TEST_F(Commands, what_cannot_be_completed_fails) {
+TEST_F(Commands, fail_when_they_cannot_be_completed) {
     ASSERT_TRUE(urgent.move.send(50.0));
     pass(5ms);
     axis.jams = true;
@@ -258,7 +258,7 @@ TEST_F(Commands, what_cannot_be_completed_fails) {
     EXPECT_EQ(urgent.move.state(), CommandState::failed);
 }
 
-TEST_F(Commands, one_on_its_way_is_neither_sent_again_nor_reset) {
+TEST_F(Commands, cannot_be_sent_again_or_reset_while_pending) {
     ASSERT_TRUE(urgent.move.send(5.0));
     EXPECT_FALSE(urgent.move.send(6.0));
     EXPECT_FALSE(urgent.move.reset());
@@ -274,7 +274,7 @@ TEST_F(Commands, one_on_its_way_is_neither_sent_again_nor_reset) {
     EXPECT_EQ(urgent.move.result(), 1);
 }
 
-TEST_F(Commands, without_a_completion_it_is_done_when_its_action_has_run) {
+TEST_F(Commands, are_done_after_their_action_without_a_completion) {
     ASSERT_TRUE(urgent.mark.send(7));
     pass(1ms);
     EXPECT_EQ(urgent.mark.state(), CommandState::done);
@@ -283,13 +283,13 @@ TEST_F(Commands, without_a_completion_it_is_done_when_its_action_has_run) {
     EXPECT_EQ(instance.engines()[motion].plan().functions[reactions].passes, 1u) << "nothing else is timed";
 }
 
-TEST_F(Commands, an_unconnected_one_is_not_sent) {
+TEST_F(Commands, are_not_sent_when_unconnected) {
     EXPECT_FALSE(urgent.second_mark.connected());
     EXPECT_FALSE(urgent.second_mark.send(1));
     EXPECT_EQ(urgent.second_mark.state(), CommandState::ready);
 }
 
-TEST_F(Commands, under_virtual_time_a_wait_answers_at_once) {
+TEST_F(Commands, return_a_wait_at_once_in_virtual_time) {
     ASSERT_TRUE(urgent.mark.send(7));
     EXPECT_FALSE(urgent.mark.wait(10s));
     pass(1ms);
@@ -298,24 +298,24 @@ TEST_F(Commands, under_virtual_time_a_wait_answers_at_once) {
 
 // ---- the order of serving
 
-TEST_F(Commands, the_urgent_activity_is_served_first_and_each_senders_order_is_kept) {
-    ASSERT_TRUE(panel.second_mark.send(1)); // the other object first: by time of sending, not of the table
+TEST_F(Commands, serve_the_urgent_activity_first_and_keep_sender_order) {
+    ASSERT_TRUE(panel.second_mark.send(1)); // the other object first: by time of sending, not by table order
     ASSERT_TRUE(panel.mark.send(2));
     ASSERT_TRUE(urgent.mark.send(3));
     pass(1ms);
     EXPECT_THAT(axis.marks, testing::ElementsAre(3, 1, 2));
 }
 
-TEST_F(Commands, run_after_the_components_and_before_the_asynchronous_events) {
+TEST_F(Commands, run_after_the_components_and_before_asynchronous_events) {
     urgent.knock();
     ASSERT_TRUE(urgent.move.send(1.0));
     pass(1ms);
     EXPECT_THAT(axis.order, testing::ElementsAre("step", "command", "event"));
 }
 
-// ---- receivers that do not run
+// ---- receivers that are not running
 
-TEST_F(Commands, are_rejected_when_the_receiver_stopped_and_fail_when_it_stops_under_them) {
+TEST_F(Commands, are_rejected_by_a_stopped_receiver_and_fail_when_it_stops) {
     ASSERT_TRUE(urgent.move.send(50.0));
     pass(5ms);
     ASSERT_TRUE(urgent.mark.send(1)); // still in the mailbox
@@ -323,23 +323,23 @@ TEST_F(Commands, are_rejected_when_the_receiver_stopped_and_fail_when_it_stops_u
     EXPECT_EQ(urgent.move.state(), CommandState::failed);
     EXPECT_EQ(urgent.mark.state(), CommandState::rejected);
     ASSERT_TRUE(urgent.mark.send(2));
-    EXPECT_EQ(urgent.mark.state(), CommandState::rejected); // though nobody serves its mailbox
+    EXPECT_EQ(urgent.mark.state(), CommandState::rejected); // although no engine serves its mailbox
     EXPECT_TRUE(axis.marks.empty());
 }
 
 // ---- commands as objects
 
-TEST_F(Commands, one_that_wraps_another_is_done_when_that_one_is) {
+TEST_F(Commands, wrap_another_and_end_with_it) {
     ASSERT_TRUE(panel.move.send(0.4)); // metres
     pass(3ms);
     EXPECT_EQ(panel.move.state(), CommandState::executing);
     pass(5ms);
     EXPECT_EQ(axis.position, 4.0);
-    EXPECT_EQ(panel.move.state(), CommandState::done); // its engine sleeps but for the inner one's end
+    EXPECT_EQ(panel.move.state(), CommandState::done); // only the end of the inner command wakes its engine
     EXPECT_EQ(panel.move.result(), 4);
 }
 
-TEST_F(Commands, one_that_forwards_another_as_it_is_needs_no_code) {
+TEST_F(Commands, forward_another_unchanged_without_code) {
     Panel& near = the<Panel>("near");
     ASSERT_TRUE(near.move.send(3.0));
     pass(3ms);
@@ -352,13 +352,13 @@ TEST_F(Commands, one_that_forwards_another_as_it_is_needs_no_code) {
     EXPECT_EQ(near.move.state(), CommandState::failed);
 }
 
-TEST_F(Commands, one_that_wraps_a_rejected_one_fails) {
+TEST_F(Commands, fail_when_they_wrap_a_rejected_one) {
     ASSERT_TRUE(panel.move.send(-1.0));
     pass(3ms);
     EXPECT_EQ(panel.move.state(), CommandState::failed);
 }
 
-TEST_F(Commands, one_that_is_handed_on_is_sent_by_whoever_got_it_and_seen_by_whoever_planned_it) {
+TEST_F(Commands, can_be_handed_on_and_monitored_by_their_owner) {
     auto& planner = the<Planner>("planner");
     planner.plan(2.0);
     EXPECT_EQ(planner.move.state(), CommandState::ready);
@@ -368,21 +368,21 @@ TEST_F(Commands, one_that_is_handed_on_is_sent_by_whoever_got_it_and_seen_by_who
     EXPECT_EQ(planner.move.result(), 2);
 }
 
-TEST_F(CommandsDeathTest, one_that_is_sent_in_an_activity_that_the_row_does_not_name_breaks_a_contract) {
+TEST_F(CommandsDeathTest, break_a_contract_when_another_activity_sends_them) {
     auto& planner = the<Planner>("planner");
     const RunsActivity in_its_own{2}; // the row says sent_by("runner")
     EXPECT_DEATH(static_cast<void>(planner.move.send(1.0)),
-                 "command-sender: A command that activity 3 sends was sent in activity 2");
+                 "command-sender: A command of sending activity 3 was sent in activity 2");
 }
 
-// ---- what the browser needs
+// ---- operations for the browser
 
 struct AnySlot {
     CommandSlot slot{};
     std::array<std::byte, 64> values{};
 };
 
-TEST_F(Commands, one_that_knows_no_types_sends_from_packed_bytes_and_follows_to_the_end) {
+TEST_F(Commands, accept_packed_bytes_from_an_untyped_sender) {
     const MachineView& seen = instance.machine().table;
     const End move_to{0, find_facet(seen.components[0], "move_to")};
     const CommandOperations& operations = *facet_at(seen, move_to).command;
@@ -392,13 +392,13 @@ TEST_F(Commands, one_that_knows_no_types_sends_from_packed_bytes_and_follows_to_
     ASSERT_TRUE(instance.requests().bind_command(move_to, any.slot, any.values));
     detail::store_packed(any.values.data(), 2.0);
     ASSERT_TRUE(any.slot.send());
-    EXPECT_FALSE(instance.requests().bind_command(move_to, any.slot, any.values)); // it is on its way
+    EXPECT_FALSE(instance.requests().bind_command(move_to, any.slot, any.values)); // it is pending
     pass(3ms);
     ASSERT_EQ(any.slot.state(), CommandState::done);
     EXPECT_EQ(detail::load_packed<int>(any.values.data() + operations.argument_bytes), 2);
 }
 
-TEST_F(Commands, what_is_no_command_or_has_no_room_is_not_bound) {
+TEST_F(Commands, are_bound_only_to_command_facets_with_enough_room) {
     const MachineView& seen = instance.machine().table;
     AnySlot any;
     EXPECT_FALSE(instance.requests().bind_command({0, find_facet(seen.components[0], "distance")}, any.slot,
@@ -407,7 +407,7 @@ TEST_F(Commands, what_is_no_command_or_has_no_room_is_not_bound) {
                                                   std::span{any.values}.first(11)));
 }
 
-TEST_F(Commands, a_flood_of_requested_ones_takes_no_place_from_those_of_the_table) {
+TEST_F(Commands, keep_table_slots_free_from_a_flood_of_requests) {
     const MachineView& seen = instance.machine().table;
     const End mark{0, find_facet(seen.components[0], "mark")};
     std::vector<AnySlot> many(64);

@@ -1,11 +1,11 @@
-// From the edge to what it caused: each row that tells or wakes knows how often and how long, in virtual time
-// to the nanosecond.
+// Reaction times from an edge to its effect: each row that notifies or wakes counts and measures them, in
+// virtual time to the nanosecond.
 #include "tests/kernel/machine/virtual_rig.hpp"
 
 namespace tappet {
 namespace {
 
-/// A driver: takes in one edge when told to.
+/// A driver: accepts one edge when the test wants it.
 struct Lines {
     Event<Time> rises;
     Output<bool> level;
@@ -26,7 +26,7 @@ struct Lines {
     }
 };
 
-/// Takes some time, then tells another.
+/// Uses some time, then notifies another component.
 struct Logic : Clocked {
     Event<> halts;
     Input<bool> level;
@@ -85,8 +85,8 @@ struct Reactions : testing::Test, RunningRig<table> {
     const ReactionTimes& logic_woken() { return *instance.observation().times_of_connection(wakes_logic); }
 };
 
-TEST_F(Reactions, are_timed_from_the_edge_over_all_activities_to_the_end_of_what_it_caused) {
-    lines.edge = clock.now() + 700us; // the lines look 300 us after it
+TEST_F(Reactions, are_timed_from_the_edge_to_the_end_of_its_effect) {
+    lines.edge = clock.now() + 700us; // the lines read it 300 us later
     pass(5ms);
     ASSERT_EQ(brake.set_times, 1);
     EXPECT_EQ(logic_told().count, 1u);
@@ -97,7 +97,7 @@ TEST_F(Reactions, are_timed_from_the_edge_over_all_activities_to_the_end_of_what
     EXPECT_LT(brake_told().longest, 1ms);
 }
 
-TEST_F(Reactions, of_a_row_that_wakes_are_timed_to_the_end_of_the_cycle_it_woke) {
+TEST_F(Reactions, are_timed_to_the_end_of_the_cycle_that_the_row_woke) {
     const Time edge = lines.edge = clock.now();
     pass(5ms);
     EXPECT_EQ(logic.woken, 1);
@@ -106,7 +106,7 @@ TEST_F(Reactions, of_a_row_that_wakes_are_timed_to_the_end_of_the_cycle_it_woke)
     EXPECT_LE(edge + logic_woken().longest, clock.now());
 }
 
-TEST_F(Reactions, are_not_counted_when_no_edge_caused_them) {
+TEST_F(Reactions, are_counted_only_when_an_edge_caused_them) {
     lines.no_edge = true;
     pass(5ms);
     ASSERT_EQ(brake.set_times, 1);
@@ -121,13 +121,13 @@ TEST_F(Reactions, are_not_counted_when_no_edge_caused_them) {
     EXPECT_EQ(logic_woken().count, 1u);
 }
 
-TEST_F(Reactions, are_kept_for_each_row_by_itself) {
+TEST_F(Reactions, are_recorded_for_each_row_separately) {
     EXPECT_NE(instance.observation().times_of_connection(wakes_logic), nullptr);
     EXPECT_NE(instance.observation().times_of_reaction(tells_logic),
               instance.observation().times_of_reaction(tells_brake));
 }
 
-TEST(ReactionTimes, have_bins_of_powers_of_two_of_a_microsecond) {
+TEST(ReactionTimes, use_bins_of_powers_of_two_microseconds) {
     ReactionTimes times;
     for (const Duration took : {Duration{-5}, Duration{999}, Duration{1us}, Duration{1999}, Duration{2us},
                                 Duration{3999}, Duration{8191us}, Duration{16384us}, Duration{10s}})

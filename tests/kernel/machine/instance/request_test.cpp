@@ -1,5 +1,5 @@
-// Requests of a component that sees the machine (thesis 4.2.3): each runs in the engine it is posted to,
-// between two of its steps, and a flood of them takes no place from anybody.
+// Requests of a component that sees the machine (thesis 4.2.3): each runs in its target engine between two
+// steps, and a flood of them blocks no other sender.
 #include "kernel/machine/plan/operations.hpp"
 #include "tests/kernel/machine/virtual_rig.hpp"
 
@@ -8,7 +8,7 @@
 namespace tappet {
 namespace {
 
-/// Counts its steps, and what it is asked to do between them.
+/// Counts its steps and the requests executed between them.
 struct Machinist {
     std::uint64_t steps = 0;
     std::uint64_t asked = 0;
@@ -66,12 +66,12 @@ struct Requests : testing::Test, RunningRig<table> {
     }
 };
 
-TEST_F(Requests, the_machine_is_given_to_the_component_that_says_it_sees_it_and_to_no_other) {
+TEST_F(Requests, reach_only_the_component_that_declares_it_sees_the_machine) {
     EXPECT_EQ(the<Onlooker>("watcher").machine, &instance);
     EXPECT_FALSE(the<Blind>("blind").saw);
 }
 
-TEST_F(Requests, a_request_runs_in_the_engine_it_was_posted_to_between_two_steps) {
+TEST_F(Requests, run_between_two_steps_of_the_addressed_engine) {
     ASSERT_TRUE(ask(0, "left", 5));
     ASSERT_TRUE(ask(0, "left", 7));
     EXPECT_EQ(machinist("left").asked, 0u); // never in the caller
@@ -82,14 +82,14 @@ TEST_F(Requests, a_request_runs_in_the_engine_it_was_posted_to_between_two_steps
     EXPECT_EQ(machinist("right").asked, 0u);
 }
 
-TEST_F(Requests, a_sleeping_activity_is_woken_for_it) {
+TEST_F(Requests, wake_a_sleeping_activity) {
     EXPECT_TRUE(world.run_until(at_ns(0) + 10ms));
     ASSERT_TRUE(ask(1, "right", 1));
     EXPECT_TRUE(world.run_until(at_ns(0) + 10ms));
     EXPECT_EQ(machinist("right").asked, 1u);
 }
 
-TEST_F(Requests, more_than_sixteen_waiting_are_refused_and_said_so) {
+TEST_F(Requests, are_refused_when_more_than_sixteen_are_pending) {
     std::size_t taken = 0;
     for (std::int64_t i = 0; i < 100; ++i) taken += ask(0, "left", i) ? 1u : 0u;
     EXPECT_EQ(taken, std::size_t{requests_waiting});

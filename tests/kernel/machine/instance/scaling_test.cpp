@@ -1,4 +1,4 @@
-// Values that are scaled on their way: one multiplication between two units, inside an activity and across.
+// Values that a row scales: one multiplication between two units, within an activity and across.
 #include "tests/kernel/machine/virtual_rig.hpp"
 
 #include <Eigen/Core>
@@ -60,7 +60,7 @@ struct Scaling : testing::Test, RunningRig<table> {
     Dosing& far = the<Dosing>("far");
 };
 
-TEST_F(Scaling, the_reader_gets_the_value_in_its_own_unit_inside_an_activity_and_across) {
+TEST_F(Scaling, converts_values_to_the_readers_unit_within_and_across_activities) {
     pump.litres = 6;
     run(20ms);
     EXPECT_DOUBLE_EQ(near.seen, 100.0) << "6 l/min are 100 ml/s, in the writer's own cycle";
@@ -75,7 +75,7 @@ TEST_F(Scaling, the_reader_gets_the_value_in_its_own_unit_inside_an_activity_and
     EXPECT_DOUBLE_EQ(far.seen, -200.0);
 }
 
-TEST_F(Scaling, what_the_row_gives_instead_of_a_value_is_in_the_readers_unit_already) {
+TEST_F(Scaling, leaves_row_values_in_the_readers_unit) {
     pump.stands = true;
     run(8ms);
     EXPECT_EQ(far.seen, 7.0) << "before the first value";
@@ -90,7 +90,7 @@ TEST_F(Scaling, what_the_row_gives_instead_of_a_value_is_in_the_readers_unit_alr
     EXPECT_DOUBLE_EQ(near.seen, 100.0) << "the old value is scaled once, however often it is read";
 }
 
-/// Known when the program starts, which no compiler sees.
+/// A value known only at program start, so that the compiler cannot fold it.
 const Eigen::Vector3d parked{0.0, std::numeric_limits<double>::quiet_NaN(), 1.0};
 const Eigen::Vector3d aloft{0.0, 0.0, 1.0};
 
@@ -118,14 +118,12 @@ std::string begin() {
     return configured ? "" : std::string{configured.error().view()};
 }
 
-TEST(ConstantOfARow, that_is_no_number_is_refused_when_the_machine_begins) {
+TEST(ConstantOfARow, is_refused_at_start_when_it_is_not_a_number) {
     EXPECT_EQ((begin<cranes<aloft, aloft>>()), "");
-    EXPECT_EQ((begin<cranes<parked, aloft>>()),
-              "connection \"near.hook\" -> \"far.above\": the value in substitute is no number; write a "
-              "finite one");
-    EXPECT_EQ((begin<cranes<aloft, parked>>()),
-              "connection \"near.hook\" -> \"far.above\": the value in initially is no number; write a "
-              "finite one");
+    EXPECT_EQ((begin<cranes<parked, aloft>>()), "connection \"near.hook\" -> \"far.above\": the value in "
+                                                "substitute is not a finite number; write a finite one");
+    EXPECT_EQ((begin<cranes<aloft, parked>>()), "connection \"near.hook\" -> \"far.above\": the value in "
+                                                "initially is not a finite number; write a finite one");
 }
 
 } // namespace

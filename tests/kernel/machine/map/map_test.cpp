@@ -1,5 +1,5 @@
-// The map of a machine (thesis 4.7.2, names): the compiler draws it from the table, start-up adds the places,
-// and another process reads every name, row and live value by it.
+// The map of a machine (thesis 4.7.2, names): the compiler computes it from the table, start-up adds the
+// addresses, and another process reads every name, row and live value through it.
 #include "kernel/machine/map/view.hpp"
 
 #include "kernel/machine/firmware.hpp"
@@ -90,7 +90,7 @@ constexpr auto blind = machine("blind",
 using Cart = Firmware<table, test_board>;
 using Blind = Firmware<blind, test_board>;
 
-// The map is a constant: what follows is seen by the compiler.
+// The map is a constant: the compiler evaluates the following checks.
 constexpr auto& drawn = Cart::map();
 static_assert(drawn.text(drawn.header.machine) == "cart");
 static_assert(drawn.header.components.count == 4 && drawn.header.facets.count == 18);
@@ -100,7 +100,7 @@ constexpr auto& unseen = Blind::map();
 static_assert(unseen.text(unseen.header.machine) == "blind",
               "any table has one, also when nothing sees the machine");
 
-TEST(Accepted, at_run_time_a_table_has_the_map_and_the_memory_that_the_compiler_gives_it) {
+TEST(Accepted, produces_the_same_map_and_memory_as_the_compiler) {
     for (const auto& [of, compiled] :
          {std::pair{table.view(), Cart::machine()}, {blind.view(), Blind::machine()}}) {
         Accepted accepted{of, test_board};
@@ -175,7 +175,7 @@ TEST_F(Map, names_every_component_with_its_activity_and_its_facets) {
     EXPECT_EQ(view.text(facet("road", "on_turned").kind), "operation");
 }
 
-TEST_F(Map, says_what_flows_where_and_what_happens_upon_what) {
+TEST_F(Map, describes_data_flows_and_reactions) {
     ASSERT_EQ(view.connections().size(), 2u);
     const map::Connection& data = view.connections()[0];
     EXPECT_EQ(&view.facets()[data.from], &facet("left", "angle"));
@@ -195,7 +195,7 @@ TEST_F(Map, says_what_flows_where_and_what_happens_upon_what) {
     EXPECT_EQ(facet("road", "far").flags & map::facet_connected, 0u);
 }
 
-TEST_F(Map, says_how_each_activity_runs) {
+TEST_F(Map, describes_how_each_activity_runs) {
     ASSERT_EQ(view.activities().size(), 3u);
     EXPECT_EQ(view.text(view.activities()[0].name), "wheels");
     EXPECT_EQ(view.activities()[0].period_ns, 1'000'000);
@@ -205,7 +205,7 @@ TEST_F(Map, says_how_each_activity_runs) {
     EXPECT_EQ(view.text(view.activities()[2].trigger), "background");
 }
 
-TEST_F(Map, describes_types_down_to_their_fields_and_names) {
+TEST_F(Map, describes_types_including_fields_and_names) {
     const map::Type& pose = view.types()[facet("left", "pose").type];
     EXPECT_EQ(pose.shape, map::Shape::record);
     ASSERT_EQ(pose.field_count, 2u);
@@ -227,7 +227,7 @@ TEST_F(Map, describes_types_down_to_their_fields_and_names) {
     EXPECT_EQ(label.columns, 12u);
 }
 
-TEST_F(Map, leads_to_every_live_value) {
+TEST_F(Map, locates_every_live_value) {
     static_cast<void>(world.run_until(at_ns(0) + 50ms));
     const double angle = instance.find<Wheel>("left")->angle.last();
     EXPECT_GT(angle, 0);
@@ -245,7 +245,7 @@ TEST_F(Map, leads_to_every_live_value) {
     EXPECT_EQ(facet("left", "turned").value_at, 0u) << "an event has none";
 }
 
-TEST_F(Map, leads_to_the_figures_that_the_framework_keeps) {
+TEST_F(Map, locates_the_statistics_of_the_framework) {
     static_cast<void>(world.run_until(at_ns(0) + 50ms));
     bool cycles = false, state = false;
     for (const map::Figure& each : view.figures()) {
@@ -263,7 +263,7 @@ TEST_F(Map, leads_to_the_figures_that_the_framework_keeps) {
 }
 
 TEST_F(Map, shows_a_forced_port) {
-    static_cast<void>(world.run_until(at_ns(0) + 50ms)); // what nobody wrote is not forced
+    static_cast<void>(world.run_until(at_ns(0) + 50ms)); // an unwritten value is not forced
     const End angle{0, 0};
     const double forced = 90;
     facet_at(instance.machine().table, angle)
@@ -272,7 +272,7 @@ TEST_F(Map, shows_a_forced_port) {
     EXPECT_EQ(value<double>(facet("left", "angle").value_at), 90);
 }
 
-TEST_F(Map, lies_in_memory_that_holds_no_stack) {
+TEST_F(Map, uses_memory_without_any_stack) {
     EXPECT_EQ(view.header().block_bytes, seen.size());
     EXPECT_GT(seen.size(), sizeof(map::Header));
     for (std::size_t a = 0; a < table.activities.size(); ++a) {
@@ -281,14 +281,14 @@ TEST_F(Map, lies_in_memory_that_holds_no_stack) {
     }
 }
 
-TEST_F(Map, is_absent_where_nothing_sees_the_machine) {
+TEST_F(Map, is_absent_when_no_component_sees_the_machine) {
     MachineInstance alone{Blind::machine(), clock};
     ASSERT_TRUE(alone.configure({}));
     EXPECT_TRUE(alone.observation().shared_memory().empty());
     EXPECT_EQ(alone.observation().shared_descriptor(), -1);
 }
 
-TEST_F(Map, is_refused_by_a_reader_when_it_is_damaged_cut_or_of_another_layout) {
+TEST_F(Map, is_refused_by_a_reader_when_damaged_or_of_another_layout) {
     const auto refusal = [](std::span<const std::byte> block) {
         const auto opened = map::View::open(block);
         return opened ? Sentence{} : opened.error();
@@ -318,8 +318,8 @@ TEST_F(Map, is_refused_by_a_reader_when_it_is_damaged_cut_or_of_another_layout) 
     EXPECT_FALSE(refusal(bytes).empty());
 }
 
-TEST_F(Map, lets_values_be_copied_whole_while_the_machine_writes_them) {
-    // The pose is two numbers of one step: a torn copy shows one of another.
+TEST_F(Map, allows_whole_values_to_be_copied_while_the_machine_writes) {
+    // The pose holds two numbers of one step: a torn copy mixes two steps.
     const map::Facet& pose = facet("left", "pose");
     const map::Facet& angle = facet("left", "angle");
     std::atomic<bool> ends{false};
@@ -344,7 +344,7 @@ TEST_F(Map, lets_values_be_copied_whole_while_the_machine_writes_them) {
     EXPECT_GT(whole, 0u);
 }
 
-TEST_F(Map, says_that_an_activity_is_busy_rather_than_showing_a_torn_value) {
+TEST_F(Map, reports_a_busy_activity_instead_of_a_torn_value) {
     int copies = 0;
     EXPECT_FALSE(view.consistent(99, 3, [&] { ++copies; })) << "there is no such activity";
     EXPECT_EQ(copies, 0);

@@ -1,9 +1,9 @@
-// A slot that begins with what was compiled: it is at work from the start, and gives way to what is loaded.
+// A slot that starts with a compiled behaviour: it runs from the start and is replaced by loaded ones.
 #include "kernel/machine/table/compiled.hpp"
 #include "tests/kernel/machine/slots/slot_rig.hpp"
 
-// Not the namespace of the other tests: g++ takes functions made for members of unnamed namespaces' types to
-// be the same in both.
+// A namespace different from the other tests': g++ merges functions generated for members of types in unnamed
+// namespaces.
 namespace tappet::bakery::begun {
 namespace {
 
@@ -46,7 +46,7 @@ template <class Machine> struct Begun : testing::Test, Machine {
 using Kinds = testing::Types<Rig<native>, Rig<interpreted>>;
 TYPED_TEST_SUITE(Begun, Kinds);
 
-TYPED_TEST(Begun, is_at_work_from_the_start) {
+TYPED_TEST(Begun, behaviour_runs_from_the_start) {
     EXPECT_EQ(this->slot.phase(), SlotPhase::steady);
     EXPECT_EQ(this->slot.script(), "first.osd");
     EXPECT_EQ(this->slot.loads(), 0u);
@@ -60,7 +60,7 @@ TYPED_TEST(Begun, is_at_work_from_the_start) {
     EXPECT_EQ(this->door().pushes, 1);
 }
 
-TYPED_TEST(Begun, gives_way_to_what_is_loaded_and_comes_back_when_that_is_taken_back) {
+TYPED_TEST(Begun, behaviour_is_replaced_by_a_load_and_returns_on_roll_back) {
     ASSERT_EQ(this->compile(numbered(2)), "");
     this->change(BehaviourSlot::Change::take_over);
     EXPECT_THAT(this->oven().told, ElementsAre(1, 11, 2)) << "by its final state";
@@ -71,7 +71,7 @@ TYPED_TEST(Begun, gives_way_to_what_is_loaded_and_comes_back_when_that_is_taken_
     EXPECT_THAT(this->oven().told, ElementsAre(1, 11, 2, 21, 1, 10));
 }
 
-TYPED_TEST(Begun, comes_back_when_what_was_loaded_fails_its_trial) {
+TYPED_TEST(Begun, behaviour_returns_when_the_loaded_one_fails_its_trial) {
     ASSERT_EQ(this->compile(numbered(2, "run { do oven.note(-1); }")), "");
     this->change(BehaviourSlot::Change::take_over);
     this->tick();
@@ -81,7 +81,7 @@ TYPED_TEST(Begun, comes_back_when_what_was_loaded_fails_its_trial) {
     EXPECT_FALSE(this->instance.stop_asked());
 }
 
-TYPED_TEST(Begun, is_unloaded_and_loaded_again_as_a_script) {
+TYPED_TEST(Begun, behaviour_can_be_unloaded_and_loaded_again_as_a_script) {
     this->change(BehaviourSlot::Change::unload);
     EXPECT_EQ(this->slot.phase(), SlotPhase::empty);
     EXPECT_EQ(this->instance.behaviour_of("oven"), nullptr);
@@ -93,7 +93,7 @@ TYPED_TEST(Begun, is_unloaded_and_loaded_again_as_a_script) {
     EXPECT_THAT(this->oven().told, ElementsAre(1, 11, 1, 10));
 }
 
-TYPED_TEST(Begun, starts_anew_with_its_component) {
+TYPED_TEST(Begun, behaviour_restarts_with_its_component) {
     this->tick();
     const LifeTicket ticket = this->instance.life().ask_component(0, LifeChange::restart);
     this->run(5ms);
@@ -111,7 +111,7 @@ constexpr auto of_a_table = bakery(behaviour("oven", compiled<shut>, room));
 
 struct BegunTable : Begun<Rig<of_a_table>> {};
 
-TEST_F(BegunTable, is_at_work_until_a_script_takes_over) {
+TEST_F(BegunTable, runs_until_a_script_takes_over) {
     EXPECT_EQ(state_now(), "closed");
     tick();
     EXPECT_EQ(state_now(), "open");

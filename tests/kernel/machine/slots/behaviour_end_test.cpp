@@ -1,4 +1,4 @@
-// The end of a behaviour that takes its time, in an activity that nothing wakes but the behaviour's own wait.
+// A behaviour whose end takes time, in an activity that only the behaviour's own wait wakes.
 #include "tests/kernel/machine/behaviour_machine.hpp"
 
 namespace tappet::bakery {
@@ -29,14 +29,14 @@ struct Gate : testing::Test, Rig<sporadic> {
     }
 };
 
-TEST_F(Gate, is_woken_by_the_wait_of_its_final_state_while_it_ends) {
+TEST_F(Gate, is_woken_by_the_wait_of_its_final_state) {
     const Time begun = clock.now();
     EXPECT_EQ(world.change_activity(0, LifeChange::stop).view(), "");
     EXPECT_TRUE(gate.open.get());
     EXPECT_EQ(clock.now() - begun, 20ms);
 }
 
-TEST_F(Gate, refuses_the_stop_of_a_component_whose_activity_stops_meanwhile) {
+TEST_F(Gate, refuses_a_component_request_when_its_activity_stops) {
     const LifeTicket ticket = instance.life().ask_component(0, LifeChange::restart);
     run(5ms);
     EXPECT_EQ(instance.life().answer_of_component(0, ticket).outcome, LifeOutcome::pending);
@@ -47,7 +47,7 @@ TEST_F(Gate, refuses_the_stop_of_a_component_whose_activity_stops_meanwhile) {
     EXPECT_EQ(state(*slot.active()), "A");
 }
 
-TEST_F(Gate, starts_nothing_while_it_ends) {
+TEST_F(Gate, starts_nothing_during_its_end) {
     struct Asking {
         Gate* gate;
         LifeTicket ticket{};

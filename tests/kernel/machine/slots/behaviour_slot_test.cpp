@@ -1,5 +1,5 @@
 // A behaviour is loaded into a running machine (thesis 5.1.4, 5.2.4: programs and state machines are loaded
-// at run time): the old one ends safely, and what is faulty changes nothing.
+// at run time): the old one ends safely, and a faulty one changes nothing.
 #include "tests/kernel/machine/slots/slot_rig.hpp"
 
 #include <limits>
@@ -7,7 +7,7 @@
 namespace tappet::bakery {
 namespace {
 
-TEST_F(BehaviourSlotTest, a_loaded_script_hears_events_whose_arguments_a_message_has_no_room_for) {
+TEST_F(BehaviourSlotTest, a_loaded_script_receives_arguments_too_large_for_a_message) {
     load_and_settle(R"(StateMachine Cooking {
         var double a = 0.0; var double b = 0.0; var double c = 0.0; var double d = 0.0; var double e = 0.0; var double f = 0.0;
         var int pieces = 0;
@@ -25,7 +25,7 @@ TEST_F(BehaviourSlotTest, a_loaded_script_hears_events_whose_arguments_a_message
     EXPECT_EQ(oven().target.get(), 204.0);
 }
 
-TEST_F(BehaviourSlotTest, a_script_is_loaded_and_acts_and_nothing_was_there_before) {
+TEST_F(BehaviourSlotTest, a_script_is_loaded_into_an_empty_slot_and_runs) {
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
     EXPECT_EQ(load(numbered(1)), "");
     run(2ms);
@@ -38,7 +38,7 @@ TEST_F(BehaviourSlotTest, a_script_is_loaded_and_acts_and_nothing_was_there_befo
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
 }
 
-TEST_F(BehaviourSlotTest, its_events_are_heard_only_while_something_loaded_hears_them) {
+TEST_F(BehaviourSlotTest, events_are_connected_only_while_loaded_behaviours_need_them) {
     tick();
     EXPECT_EQ(posted("tick"), 0u);
     load_and_settle(numbered(1));
@@ -54,7 +54,7 @@ TEST_F(BehaviourSlotTest, its_events_are_heard_only_while_something_loaded_hears
     EXPECT_EQ(posted("tick"), heard + 1);
 }
 
-TEST_F(BehaviourSlotTest, a_faulty_script_is_refused_with_its_line_and_the_old_one_does_not_notice) {
+TEST_F(BehaviourSlotTest, a_faulty_script_is_refused_with_its_line_and_the_old_one_continues) {
     load_and_settle(numbered(1));
     EXPECT_THAT(load("StateMachine Faulty {\n    initial state A {\n        entry { do oven.notes(1); }\n"),
                 HasSubstr("test.osd:3:"));
@@ -66,7 +66,7 @@ TEST_F(BehaviourSlotTest, a_faulty_script_is_refused_with_its_line_and_the_old_o
     EXPECT_EQ(slot.phase(), SlotPhase::steady);
 }
 
-TEST_F(BehaviourSlotTest, the_old_behaviour_comes_to_its_final_state_before_the_new_one_begins) {
+TEST_F(BehaviourSlotTest, the_old_behaviour_reaches_its_final_state_before_the_new_one_starts) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2)), "");
     run(2ms);
@@ -80,7 +80,7 @@ std::string ends_after(std::string_view wait) {
            std::string{wait} + "); do oven.note(2); } } }";
 }
 
-TEST_F(BehaviourSlotTest, an_old_behaviour_that_needs_time_to_end_is_given_it) {
+TEST_F(BehaviourSlotTest, an_old_behaviour_gets_the_time_it_needs_to_end) {
     load_and_settle(ends_after("20ms"));
     EXPECT_EQ(load(numbered(3)), "");
     run(10ms);
@@ -90,7 +90,7 @@ TEST_F(BehaviourSlotTest, an_old_behaviour_that_needs_time_to_end_is_given_it) {
     EXPECT_THAT(oven().told, ElementsAre(2, 3));
 }
 
-TEST_F(BehaviourSlotTest, a_final_state_that_waits_is_finished_before_its_component_stops) {
+TEST_F(BehaviourSlotTest, a_waiting_final_state_ends_before_its_component_stops) {
     load_and_settle(ends_after("20ms"));
     const Time begun = clock.now();
     world.stop();
@@ -106,7 +106,7 @@ constexpr std::string_view slow_to_end =
     "state B { transition oven.tick() select A }\n"
     "final state End { entry { wait(20ms); do oven.note(2); } } }";
 
-TEST_F(BehaviourSlotTest, a_component_alone_stops_when_its_final_state_has_been_finished) {
+TEST_F(BehaviourSlotTest, a_component_alone_stops_after_its_final_state) {
     load_and_settle(slow_to_end);
     const std::size_t c = find_component(instance.machine().table, "oven");
     const LifeTicket ticket = instance.life().ask_component(c, LifeChange::restart);
@@ -120,7 +120,7 @@ TEST_F(BehaviourSlotTest, a_component_alone_stops_when_its_final_state_has_been_
     EXPECT_EQ(state_now(), "A") << "and begins anew";
 }
 
-TEST_F(BehaviourSlotTest, a_final_state_that_waits_too_long_is_left_and_told_and_finished_at_the_next_start) {
+TEST_F(BehaviourSlotTest, a_final_state_that_times_out_ends_at_the_next_start) {
     load_and_settle(ends_after("300ms"));
     const Time begun = clock.now();
     world.stop();
@@ -129,28 +129,27 @@ TEST_F(BehaviourSlotTest, a_final_state_that_waits_too_long_is_left_and_told_and
     std::string told;
     for (std::size_t a = 0; a < instance.engines().size(); ++a)
         told += instance.observation().describe_end(a).view();
-    EXPECT_EQ(told,
-              "the behaviour of \"oven\" was left in \"End\": 100 ms after it was asked to end it had not "
-              "come to its end, which it does first when it is started again; shorten what leads there");
+    EXPECT_EQ(told, "the behaviour of \"oven\" was left in \"End\": 100 ms after the request to end it had "
+                    "not ended; it ends first when it is started again; shorten its way to the end");
     EXPECT_EQ(world.start().view(), "");
     run(310ms);
     EXPECT_THAT(oven().told, ElementsAre(2));
     EXPECT_EQ(state_now(), "A");
 }
 
-TEST_F(BehaviourSlotTest, it_takes_over_at_an_event_of_its_reach) {
+TEST_F(BehaviourSlotTest, a_script_takes_over_at_an_event_in_its_reach) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2), "door.moved"), "");
     run(50ms);
     EXPECT_EQ(slot.phase(), SlotPhase::waiting);
     tick();
-    EXPECT_THAT(oven().told, ElementsAre(10)); // the old one is at work
+    EXPECT_THAT(oven().told, ElementsAre(10)); // the old one is running
     door().moved.emit();
     run(2ms);
     EXPECT_THAT(oven().told, ElementsAre(10, 11, 2));
 }
 
-TEST_F(BehaviourSlotTest, it_takes_over_when_its_angle_is_passed_upwards) {
+TEST_F(BehaviourSlotTest, a_script_takes_over_when_its_angle_is_passed_upwards) {
     for (const double wanted : {0.0, 85.0, 90.0, 355.0}) {
         load_and_settle(numbered(1));
         EXPECT_EQ(load(numbered(2), std::to_string(wanted)), "");
@@ -163,7 +162,7 @@ TEST_F(BehaviourSlotTest, it_takes_over_when_its_angle_is_passed_upwards) {
     }
 }
 
-TEST_F(BehaviourSlotTest, it_does_not_take_over_while_the_angle_trembles_somewhere_else) {
+TEST_F(BehaviourSlotTest, a_script_does_not_take_over_while_the_angle_jitters_elsewhere) {
     oven().trembles = true;
     oven().from_deg = 70.0;
     load_and_settle(numbered(1));
@@ -175,12 +174,12 @@ TEST_F(BehaviourSlotTest, it_does_not_take_over_while_the_angle_trembles_somewhe
     EXPECT_NE(slot.phase(), SlotPhase::waiting);
 }
 
-TEST_F(BehaviourSlotTest, an_angle_of_any_size_takes_no_longer_to_look_at) {
+TEST_F(BehaviourSlotTest, an_angle_of_any_size_is_checked_in_constant_time) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2), "85"), "");
     for (const double astray : {-1e18, 1e18, -1e300, std::numeric_limits<double>::quiet_NaN()}) {
         oven().from_deg = astray;
-        run(2ms); // a turn at a time this would take for ever
+        run(2ms); // one turn at a time, this would never end
     }
     oven().from_deg = -3600.0; // ten turns back is the same angle
     run(80ms);
@@ -189,7 +188,7 @@ TEST_F(BehaviourSlotTest, an_angle_of_any_size_takes_no_longer_to_look_at) {
     EXPECT_THAT(oven().told, testing::Contains(2));
 }
 
-TEST_F(BehaviourSlotTest, a_moment_that_is_none_is_refused_with_the_nearest) {
+TEST_F(BehaviourSlotTest, an_invalid_moment_is_refused_with_the_nearest_name) {
     SlotMoment moment;
     EXPECT_THAT(std::string{slot.parse_moment("door.mved", moment).view()},
                 HasSubstr("did you mean \"door.moved\"?"));
@@ -198,7 +197,7 @@ TEST_F(BehaviourSlotTest, a_moment_that_is_none_is_refused_with_the_nearest) {
     EXPECT_THAT(std::string{slot.parse_moment("nan", moment).view()}, HasSubstr("has no event \"nan\""));
 }
 
-TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for) {
+TEST_F(BehaviourSlotTest, the_previous_behaviour_returns_on_roll_back) {
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));
     EXPECT_EQ(wish(BehaviourSlot::Change::roll_back), "");
@@ -212,12 +211,12 @@ TEST_F(BehaviourSlotTest, the_earlier_behaviour_comes_back_when_it_is_asked_for)
     EXPECT_THAT(wish(BehaviourSlot::Change::unload), HasSubstr("nothing is loaded"));
 }
 
-TEST_F(BehaviourSlotTest, one_that_waits_does_not_take_over_because_another_change_is_on_its_way) {
+TEST_F(BehaviourSlotTest, a_waiting_script_ignores_the_moment_of_another_change) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2), "door.moved"), "");
     run(3ms);
     ASSERT_EQ(slot.phase(), SlotPhase::waiting);
-    ASSERT_TRUE(slot.ask(BehaviourSlot::Change::unload)); // now; its engine has not heard of it yet
+    ASSERT_TRUE(slot.ask(BehaviourSlot::Change::unload)); // now; its engine does not know it yet
     run(5ms);
     EXPECT_EQ(slot.phase(), SlotPhase::waiting);
     EXPECT_THAT(oven().told, IsEmpty()) << "the first is at work";
@@ -227,7 +226,7 @@ TEST_F(BehaviourSlotTest, one_that_waits_does_not_take_over_because_another_chan
     EXPECT_THAT(oven().told, ElementsAre(11)) << "the first came to its end, and the second was never there";
 }
 
-TEST_F(BehaviourSlotTest, one_that_waits_is_let_go_by_a_roll_back_and_what_is_at_work_stays) {
+TEST_F(BehaviourSlotTest, a_roll_back_discards_a_waiting_script_and_keeps_the_running_one) {
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));
     EXPECT_EQ(load(numbered(3), "door.moved"), "");
@@ -245,7 +244,7 @@ TEST_F(BehaviourSlotTest, one_that_waits_is_let_go_by_a_roll_back_and_what_is_at
         << "the third was compiled over the first";
 }
 
-TEST_F(BehaviourSlotTest, there_is_no_way_back_to_a_bank_that_was_written_over) {
+TEST_F(BehaviourSlotTest, a_roll_back_to_an_overwritten_bank_is_refused) {
     EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));
@@ -255,7 +254,7 @@ TEST_F(BehaviourSlotTest, there_is_no_way_back_to_a_bank_that_was_written_over) 
     EXPECT_EQ(state_now(), "Begin");
 }
 
-TEST_F(BehaviourSlotTest, what_the_slot_has_no_room_or_reach_for_is_refused) {
+TEST_F(BehaviourSlotTest, a_script_beyond_the_room_or_reach_of_the_slot_is_refused) {
     std::string many = "StateMachine Many { initial state A { entry {";
     for (int i = 0; i < 60; ++i) many += "do oven.note(1);";
     many += "} transition oven.tick() select A } final state E {} }";
@@ -265,7 +264,7 @@ TEST_F(BehaviourSlotTest, what_the_slot_has_no_room_or_reach_for_is_refused) {
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
 }
 
-TEST_F(BehaviourSlotTest, a_bank_whose_command_is_still_on_its_way_is_not_written_over) {
+TEST_F(BehaviourSlotTest, a_bank_with_a_pending_command_is_not_overwritten) {
     EXPECT_EQ(load("StateMachine Feeding { initial state A { run { do feeder.feed(10); wait(1s); }\n"
                    "transition oven.tick() select B } state B { transition oven.tick() select A }\n"
                    "final state E {} }"),
@@ -279,7 +278,7 @@ TEST_F(BehaviourSlotTest, a_bank_whose_command_is_still_on_its_way_is_not_writte
     EXPECT_EQ(compile(numbered(3)), "");
 }
 
-TEST_F(BehaviourSlotTest, what_is_to_begin_again_does_not_when_another_takes_over_meanwhile) {
+TEST_F(BehaviourSlotTest, a_restarting_behaviour_stays_ended_when_another_takes_over) {
     load_and_settle(slow_to_end);
     static_cast<void>(instance.life().ask_component(0, LifeChange::restart));
     run(10ms);
@@ -288,7 +287,7 @@ TEST_F(BehaviourSlotTest, what_is_to_begin_again_does_not_when_another_takes_ove
     EXPECT_THAT(oven().told, ElementsAre(2, 3));
 }
 
-TEST_F(BehaviourSlotTest, what_another_takes_over_from_does_not_begin_again_with_its_component) {
+TEST_F(BehaviourSlotTest, a_replaced_behaviour_does_not_restart_with_its_component) {
     load_and_settle(slow_to_end);
     EXPECT_EQ(load(numbered(3)), "");
     run(10ms);
@@ -298,7 +297,7 @@ TEST_F(BehaviourSlotTest, what_another_takes_over_from_does_not_begin_again_with
     EXPECT_THAT(oven().told, ElementsAre(2, 3));
 }
 
-TEST_F(BehaviourSlotTest, the_stop_of_its_component_ends_it_safely_and_its_start_begins_again) {
+TEST_F(BehaviourSlotTest, a_component_stop_ends_the_behaviour_safely_and_a_start_restarts_it) {
     load_and_settle(numbered(1));
     static_cast<void>(instance.life().ask_component(0, LifeChange::stop));
     run(3ms);

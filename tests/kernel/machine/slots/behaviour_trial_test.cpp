@@ -1,10 +1,10 @@
-// A behaviour that was loaded is on trial: until it has shown that it works, the one before it comes back.
+// A loaded behaviour is on trial: until it has proved that it works, a failure brings the previous one back.
 #include "tests/kernel/machine/slots/slot_rig.hpp"
 
 namespace tappet::bakery {
 namespace {
 
-TEST_F(BehaviourSlotTest, while_nobody_asks_it_for_anything_its_trial_does_not_pass) {
+TEST_F(BehaviourSlotTest, a_trial_does_not_pass_while_the_script_is_idle) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2, "exit { do oven.note(-1); }")), "");
     run(1s);
@@ -15,7 +15,7 @@ TEST_F(BehaviourSlotTest, while_nobody_asks_it_for_anything_its_trial_does_not_p
     EXPECT_EQ(state_now(), "Begin") << "the first is at work";
 }
 
-TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_is_taken_back_and_its_line_is_told) {
+TEST_F(BehaviourSlotTest, a_script_that_fails_its_trial_is_rolled_back_and_its_line_reported) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load("StateMachine Failing {\n"
                    "    initial state A { entry { do oven.note(5); } transition oven.tick() select B }\n"
@@ -30,13 +30,13 @@ TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_is_taken_back_and_its_line
     EXPECT_EQ(slot.last_roll_back(), RollBack::error);
     EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("failed in line 4"));
     EXPECT_FALSE(instance.stop_asked());
-    // It was brought to its safe state, and the old one begins anew.
+    // It was brought to its safe state, and the old one restarts.
     EXPECT_THAT(oven().told, ElementsAre(11, 5, -1, 6, 1));
     tick();
     EXPECT_EQ(state_now(), "Ticked");
 }
 
-TEST_F(BehaviourSlotTest, one_that_does_not_come_to_an_end_of_a_step_is_taken_back) {
+TEST_F(BehaviourSlotTest, a_script_that_never_completes_a_step_is_rolled_back) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load("var int n = 0; while (true) { set n = n + 1; }"), "");
     run(5ms);
@@ -45,7 +45,7 @@ TEST_F(BehaviourSlotTest, one_that_does_not_come_to_an_end_of_a_step_is_taken_ba
     EXPECT_EQ(state_now(), "Begin");
 }
 
-TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_with_none_before_leaves_the_slot_empty) {
+TEST_F(BehaviourSlotTest, a_first_script_that_fails_its_trial_leaves_the_slot_empty) {
     EXPECT_EQ(load("do oven.note(-1);"), "");
     run(5ms);
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
@@ -53,7 +53,7 @@ TEST_F(BehaviourSlotTest, one_that_fails_in_its_trial_with_none_before_leaves_th
     EXPECT_FALSE(instance.stop_asked());
 }
 
-TEST_F(BehaviourSlotTest, an_error_after_the_trial_does_what_its_row_says) {
+TEST_F(BehaviourSlotTest, an_error_after_the_trial_is_handled_as_its_row_says) {
     load_and_settle(
         "StateMachine Late { var int left = 6; initial state A {\n"
         "entry { do oven.note(left); set left = left - 1; } transition oven.tick() select B }\n"
@@ -67,7 +67,7 @@ TEST_F(BehaviourSlotTest, an_error_after_the_trial_does_what_its_row_says) {
     EXPECT_THAT(std::string{instance.describe_stop().view()}, HasSubstr("failed in line 3"));
 }
 
-TEST_F(BehaviourSlotTest, while_one_is_on_trial_no_other_is_loaded) {
+TEST_F(BehaviourSlotTest, no_other_script_is_loaded_during_a_trial) {
     EXPECT_EQ(load(numbered(1)), "");
     run(3ms);
     EXPECT_THAT(compile(numbered(2)), HasSubstr("is on trial"));
@@ -77,14 +77,14 @@ TEST_F(BehaviourSlotTest, while_one_is_on_trial_no_other_is_loaded) {
     EXPECT_THAT(compile(numbered(3)), HasSubstr("another change of behaviour"));
 }
 
-/// Takes so many microseconds for a tick.
+/// Uses so many microseconds for a tick.
 std::string takes(int us) {
     return "StateMachine Slow { initial state A { transition oven.tick() select B }\n"
            "state B { entry { do oven.bake(" +
            std::to_string(us) + "); } transition oven.tick() select A }\nfinal state End {} }";
 }
 
-TEST_F(BehaviourSlotTest, one_that_makes_its_activity_late_on_trial_is_taken_back) {
+TEST_F(BehaviourSlotTest, a_script_that_delays_its_activity_on_trial_is_rolled_back) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(takes(2000)), "");
     run(3ms);
@@ -96,11 +96,11 @@ TEST_F(BehaviourSlotTest, one_that_makes_its_activity_late_on_trial_is_taken_bac
     EXPECT_EQ(state_now(), "Begin") << "the first is at work";
 }
 
-TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_is_taken_back) {
+TEST_F(BehaviourSlotTest, a_script_that_exceeds_the_claim_on_trial_is_rolled_back) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(takes(200)), "");
     run(3ms);
-    for (int i = 0; i < 3; ++i) { // an engine measures its processor once it was busy beyond its budget
+    for (int i = 0; i < 3; ++i) { // an engine measures its processor time after a busy time above its budget
         tick();
     }
     run(2ms);
@@ -110,7 +110,7 @@ TEST_F(BehaviourSlotTest, one_that_uses_more_than_its_activity_claims_on_trial_i
     EXPECT_EQ(state_now(), "Begin");
 }
 
-TEST_F(BehaviourSlotTest, one_is_not_taken_back_for_what_a_component_of_its_activity_takes) {
+TEST_F(BehaviourSlotTest, a_script_is_not_rolled_back_for_the_load_of_a_component) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2)), "");
     run(3ms);
@@ -122,9 +122,9 @@ TEST_F(BehaviourSlotTest, one_is_not_taken_back_for_what_a_component_of_its_acti
     EXPECT_EQ(slot.last_roll_back(), RollBack::none);
 }
 
-TEST_F(BehaviourSlotTest, one_whose_statements_take_until_the_deadline_is_stopped_between_two_of_them) {
+TEST_F(BehaviourSlotTest, a_script_is_interrupted_between_statements_at_the_deadline) {
     load_and_settle(numbered(1));
-    // Six milliseconds of work, which the number of statements alone would let one cycle do.
+    // Six milliseconds of work, which the limit of statements alone would allow in one cycle.
     EXPECT_EQ(load("StateMachine Slow { var int i = 0; initial state A { transition oven.tick() select B }\n"
                    "state B { entry { while (i < 20) { do oven.bake(300); set i = i + 1; } } "
                    "exit { do oven.note(77); } transition oven.tick() select A }\nfinal state End {} }"),
@@ -139,7 +139,7 @@ TEST_F(BehaviourSlotTest, one_whose_statements_take_until_the_deadline_is_stoppe
     EXPECT_EQ(state_now(), "Begin") << "the first is at work";
 }
 
-TEST_F(BehaviourSlotTest, one_that_stays_within_its_claim_is_kept) {
+TEST_F(BehaviourSlotTest, a_script_within_its_claim_is_kept) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(takes(40)), "");
     settle();

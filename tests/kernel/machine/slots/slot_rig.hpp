@@ -1,4 +1,4 @@
-// A machine with a slot, and what loads behaviours into it.
+// A machine with a slot, and a loader of behaviours.
 #pragma once
 
 #include "tests/kernel/machine/behaviour_machine.hpp"
@@ -27,7 +27,7 @@ inline constexpr auto table = machine("bakery",
                                       angle_of("oven.angle_deg"), trial(5)), at_most(30))));
 // clang-format on
 
-/// Writes down its number when it begins, at each tick, and one more when it ends.
+/// Records its number when it starts and at each tick, and one more than it when it ends.
 inline std::string numbered(int number, std::string_view more = {}) {
     const std::string n = std::to_string(number);
     return "StateMachine Numbered {\n"
@@ -63,7 +63,7 @@ protected:
         const std::string fault = compile(text);
         return fault.empty() ? wish(BehaviourSlot::Change::take_over, moment) : fault;
     }
-    /// Begins, and is asked for something as often as its trial wants.
+    /// Starts, and receives as many requests as its trial requires.
     void settle() {
         run(2ms);
         for (int i = 0; i < 20 && slot.phase() == SlotPhase::trial; ++i) {

@@ -1,4 +1,4 @@
-// Two drivers in one activity: who of them is stopped takes no hearing from the other.
+// Two drivers in one activity: a stopped driver does not disturb the other.
 #include "tests/kernel/machine/real_rig.hpp"
 
 #include <sys/eventfd.h>
@@ -7,7 +7,7 @@
 namespace tappet {
 namespace {
 
-/// Hears what is written to its descriptor.
+/// Receives the data written to its descriptor.
 struct Ear {
     static constexpr DeviceKind device_kind{.name = "test.ear"};
     std::atomic<std::uint64_t> heard{0};
@@ -36,7 +36,7 @@ constexpr Board twin_board = [] {
     return board;
 }();
 
-TEST_F(InRealTime, a_driver_that_is_stopped_keeps_no_other_one_of_its_activity_from_hearing) {
+TEST_F(InRealTime, a_stopped_driver_does_not_disturb_others_of_its_activity) {
     RealRig<table, twin_board> rig;
     ASSERT_TRUE(rig.runs());
     RealWorld& world = rig.world;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who owes a sign of life, and for how long it may.
+// The activities that must show signs of life, and the longest time between them.
 #include "kernel/machine/worlds/life_watch.hpp"
 
 #include "tests/kernel/machine/virtual_rig.hpp"
@@ -9,7 +9,7 @@
 namespace tappet {
 namespace {
 
-/// Its step is where the test looks: in the middle of a cycle.
+/// The test checks in its step: in the middle of a cycle.
 struct Patient {
     Property<std::int64_t> unused{0};
     void (*in_cycle)(void*) = nullptr;
@@ -47,7 +47,7 @@ struct Watched : testing::Test, ConfiguredRig<table> {
         }
     }
     Engine& beat() { return instance.engines()[0]; }
-    /// Looks every 10 ms, from the last look to `until`: when somebody was found; never: nobody.
+    /// Checks every 10 ms from the last check to `until`; returns the time of the first hang found, or never.
     Time found_by(Duration until) {
         while (looked < begin + until)
             if (watch.look(looked = std::min(looked + 10ms, begin + until)) != LifeWatch::all_live)
@@ -59,30 +59,28 @@ struct Watched : testing::Test, ConfiguredRig<table> {
     LifeWatch watch{instance, 100ms};
 };
 
-TEST_F(Watched, an_activity_that_sleeps_and_is_due_for_nothing_owes_nothing_however_long) {
-    EXPECT_EQ(found_by(10s), never);
-}
+TEST_F(Watched, a_sleeping_activity_without_a_due_time_never_times_out) { EXPECT_EQ(found_by(10s), never); }
 
-TEST_F(Watched, one_that_does_not_wake_when_it_wanted_to_is_found) {
+TEST_F(Watched, an_activity_that_misses_its_wake_time_is_found) {
     beat().sleeps_until(begin + 10ms);
     EXPECT_EQ(found_by(1s), begin + 120ms)
         << "owed from 10 ms on; at 110 ms the limit is reached, not exceeded";
 }
 
-TEST_F(Watched, one_that_was_woken_and_does_not_run_is_found) {
+TEST_F(Watched, an_activity_that_was_woken_but_does_not_run_is_found) {
     beat().waiter().wake();
     EXPECT_EQ(found_by(1s), begin + 120ms) << "first seen at 10 ms";
 }
 
-TEST_F(Watched, a_cycle_that_begins_or_ends_is_life) {
+TEST_F(Watched, activity_shows_life_when_a_cycle_begins_or_ends) {
     beat().waiter().wake();
     EXPECT_EQ(found_by(50ms), never);
     beat().run(true);
-    beat().waiter().wake(); // at once again, as under a load that never ends
+    beat().waiter().wake(); // at once again, as under a load without end
     EXPECT_EQ(found_by(1s), begin + 170ms) << "since it was seen alive, at 60 ms";
 }
 
-TEST_F(Watched, one_that_stays_in_its_cycle_is_found) {
+TEST_F(Watched, an_activity_that_stays_in_its_cycle_is_found) {
     auto* patient = &the<Patient>("patient");
     Time found = at_ns(0);
     std::function<void()> hang = [&] { found = found_by(1s); };
@@ -94,7 +92,7 @@ TEST_F(Watched, one_that_stays_in_its_cycle_is_found) {
     EXPECT_EQ(found_by(2s), never) << "it came to its end after all";
 }
 
-TEST_F(Watched, one_may_take_twice_its_deadline_where_that_is_longer) {
+TEST_F(Watched, an_activity_may_use_twice_its_deadline_when_that_is_longer) {
     LifeWatch hasty{instance, 8ms}; // the deadline of its activity is its period, 10 ms
     beat().waiter().wake();
     Time found = never;
@@ -103,23 +101,23 @@ TEST_F(Watched, one_may_take_twice_its_deadline_where_that_is_longer) {
     EXPECT_EQ(found, begin + 21ms);
 }
 
-TEST_F(Watched, a_box_that_was_frozen_is_no_hang) {
+TEST_F(Watched, activities_on_a_frozen_box_do_not_count_as_hung) {
     beat().waiter().wake();
     EXPECT_EQ(found_by(50ms), never);
-    looked = begin + 10s; // nobody ran, who looks neither
+    looked = begin + 10s; // no thread ran, not even the watcher
     EXPECT_EQ(watch.look(looked), LifeWatch::all_live);
     EXPECT_EQ(found_by(11s), begin + 10s + 40ms)
         << "of the frozen time counts a quarter of the limit, and what was owed before";
 }
 
-TEST_F(Watched, one_that_hangs_is_found_also_by_who_always_looks_late) {
+TEST_F(Watched, a_hung_activity_is_found_by_a_watcher_that_is_always_late) {
     beat().waiter().wake();
     for (int looks = 0; looks < 6; ++looks)
         if (watch.look(looked += 60ms) != LifeWatch::all_live) return;
     FAIL() << "it was not found in " << (looked - begin) / 1ms << " ms";
 }
 
-TEST_F(Watched, who_may_block_and_who_is_stopped_owe_nothing) {
+TEST_F(Watched, activities_that_may_block_or_are_stopped_never_time_out) {
     instance.engines()[1].waiter().wake();
     EXPECT_EQ(found_by(1s), never) << "it is not real-time";
     beat().stop(begin);

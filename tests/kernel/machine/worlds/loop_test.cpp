@@ -1,5 +1,5 @@
 // Blocking functionality (thesis 4.2.2: trigger semantics, loop and breakLoop): it keeps its thread, serves
-// its messages where it waits, and comes back when its activity stops; under real and under virtual time.
+// its messages while it waits, and returns when its activity stops; in real and in virtual time.
 #include "kernel/component/loop.hpp"
 
 #include "tests/kernel/machine/real_rig.hpp"
@@ -15,12 +15,12 @@
 namespace tappet {
 namespace {
 
-/// Reads bytes from a pipe that blocks, or waits with the control; writes what it got.
+/// Reads bytes from a blocking pipe, or waits through the control; writes the data it received.
 struct Reader {
     Output<std::int64_t> got;
     std::atomic<int> loops{0}, breaks{0}, starts{0}, stops{0}, told{0}, told_outside{0};
     std::atomic<bool> in_loop{false};
-    std::atomic<int> from{-1}; ///< a pipe; -1: waits with the control
+    std::atomic<int> from{-1}; ///< a pipe; -1: waits through the control
     std::atomic<bool> returns_at_once{false};
     int end_pipe[2] = {-1, -1};
     Duration nap{3ms};
@@ -114,7 +114,7 @@ struct ALoopInVirtualTime : testing::Test, ConfiguredRig<table> {
     Talker& talker = the<Talker>("talker");
 };
 
-TEST_F(ALoopInVirtualTime, waits_by_the_machines_clock_and_its_outputs_are_stamped_with_it) {
+TEST_F(ALoopInVirtualTime, waits_by_the_machine_clock_and_stamps_its_outputs_with_it) {
     ASSERT_EQ(world.start().view(), "");
     pass(10ms);
     EXPECT_THAT(reader.naps_ended, testing::ElementsAre(at_ns(0) + 3ms, at_ns(0) + 6ms, at_ns(0) + 9ms));
@@ -122,7 +122,7 @@ TEST_F(ALoopInVirtualTime, waits_by_the_machines_clock_and_its_outputs_are_stamp
     EXPECT_EQ(reader.loops, 1);
 }
 
-TEST_F(ALoopInVirtualTime, is_woken_in_its_wait_by_a_message_and_served_inside_the_loop) {
+TEST_F(ALoopInVirtualTime, is_woken_by_a_message_and_serves_it_inside_the_loop) {
     reader.nap = 1h;
     ASSERT_EQ(world.start().view(), "");
     talker.to_say = 2;
@@ -132,8 +132,7 @@ TEST_F(ALoopInVirtualTime, is_woken_in_its_wait_by_a_message_and_served_inside_t
     EXPECT_THAT(reader.naps_ended, testing::ElementsAre(at_ns(0) + 1ms, at_ns(0) + 2ms));
 }
 
-TEST_F(ALoopInVirtualTime,
-       returns_when_its_activity_stops_leaves_safe_values_and_begins_again_when_it_starts) {
+TEST_F(ALoopInVirtualTime, returns_with_safe_values_at_a_stop_and_restarts_at_a_start) {
     ASSERT_EQ(world.start().view(), "");
     pass(10ms);
     EXPECT_EQ(world.change_activity(blocks, LifeChange::stop).view(), "");
@@ -149,7 +148,7 @@ TEST_F(ALoopInVirtualTime,
     EXPECT_EQ(reader.starts, 2);
 }
 
-TEST_F(ALoopInVirtualTime, that_returned_by_itself_runs_again_upon_the_next_wake_and_not_before) {
+TEST_F(ALoopInVirtualTime, runs_again_only_upon_the_next_wake_after_it_returned) {
     reader.returns_at_once = true;
     ASSERT_EQ(world.start().view(), "");
     pass(50ms);
@@ -160,7 +159,7 @@ TEST_F(ALoopInVirtualTime, that_returned_by_itself_runs_again_upon_the_next_wake
     EXPECT_EQ(reader.told, 1);
 }
 
-TEST_F(ALoopInVirtualTime, a_wish_to_its_component_is_a_wish_to_its_activity) {
+TEST_F(ALoopInVirtualTime, treats_a_request_to_its_component_as_one_to_its_activity) {
     ASSERT_EQ(world.start().view(), "");
     pass(5ms);
     const LifeTicket ticket = instance.life().ask_component(0, LifeChange::restart);
@@ -170,7 +169,7 @@ TEST_F(ALoopInVirtualTime, a_wish_to_its_component_is_a_wish_to_its_activity) {
     EXPECT_TRUE(reader.in_loop);
 }
 
-TEST_F(ALoopInVirtualTime, is_the_same_in_every_run) {
+TEST_F(ALoopInVirtualTime, repeats_exactly_in_every_run) {
     const auto digest = [](int words) {
         ConfiguredRig<table> again;
         again.the<Reader>("reader").nap = 700us;
@@ -205,7 +204,7 @@ struct ALoopInRealTime : InRealTime, RealRig<table> {
     }
 };
 
-TEST_F(ALoopInRealTime, blocks_where_it_likes_and_gives_what_it_got_to_the_others) {
+TEST_F(ALoopInRealTime, may_block_anywhere_and_passes_its_values_to_others) {
     say(42);
     EXPECT_TRUE(comes_true([&] { return talker->last == 42; }));
     say(7);
@@ -213,8 +212,7 @@ TEST_F(ALoopInRealTime, blocks_where_it_likes_and_gives_what_it_got_to_the_other
     EXPECT_EQ(world.stop(), 0);
 }
 
-TEST_F(ALoopInRealTime,
-       is_broken_off_by_the_stopper_however_long_it_blocks_and_restarted_on_the_same_thread) {
+TEST_F(ALoopInRealTime, is_interrupted_by_the_stopper_and_restarted_on_the_same_thread) {
     EXPECT_TRUE(comes_true([&] { return reader->in_loop.load(); }));
     for (int n = 1; n <= 20; ++n) {
         ASSERT_EQ(world.change_activity(blocks, LifeChange::restart).view(), "");

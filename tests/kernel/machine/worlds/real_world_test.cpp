@@ -1,4 +1,4 @@
-// A machine in threads of its own under real time. What needs SCHED_FIFO is left out, and says so, where it
+// A machine in its own threads in real time. Tests that need SCHED_FIFO are skipped with a message where it
 // is not granted.
 #include "kernel/base/random.hpp"
 #include "kernel/os/heap.hpp"
@@ -21,7 +21,7 @@ struct Rig : RealRig<table> {
     Worker& worker(std::string_view name) { return this->template the<Worker>(name); }
 };
 
-TEST_F(InRealTime, arms_runs_and_stops_the_last_row_first) {
+TEST_F(InRealTime, the_machine_arms_runs_and_stops_the_last_row_first) {
     Rig<watched::table> rig;
     ASSERT_TRUE(rig.runs());
     EXPECT_TRUE(rig.report.can_arm());
@@ -33,7 +33,7 @@ TEST_F(InRealTime, arms_runs_and_stops_the_last_row_first) {
     EXPECT_FALSE(rig.instance.stop_asked());
 }
 
-TEST_F(InRealTime, takes_no_page_fault_in_a_real_time_thread) {
+TEST_F(InRealTime, a_real_time_thread_has_no_page_faults) {
     if constexpr (os::heap::sanitizer_owns_malloc)
         GTEST_SKIP() << "a sanitizer's shadow is mapped as it is used";
     Rig<watched::table> rig;
@@ -43,12 +43,12 @@ TEST_F(InRealTime, takes_no_page_fault_in_a_real_time_thread) {
     EXPECT_EQ(rig.world.page_faults_in_real_time_threads(), 0u);
 }
 
-TEST_F(InRealTime, blames_an_overrun_on_the_component_that_took_the_time) {
+TEST_F(InRealTime, an_overrun_is_blamed_on_the_slow_component) {
     Random random{static_cast<std::uint64_t>(getpid())};
     const std::string_view victim = watched::of_motion[random.below(watched::of_motion.size())];
     Rig<watched::table> rig;
     ASSERT_TRUE(rig.runs());
-    rig.worker(victim).overrun = 50ms; // longer than any other delay of this box, one hopes
+    rig.worker(victim).overrun = 50ms; // longer than any other delay of this box, with luck
     EXPECT_TRUE(rig.world.supervise(100ms));
     rig.worker(victim).order = Order::overrun;
     EXPECT_TRUE(rig.world.supervise(150ms));
@@ -66,7 +66,7 @@ TEST_F(InRealTime, blames_an_overrun_on_the_component_that_took_the_time) {
     EXPECT_GE(engine.statistics().skipped_periods, 49u);
 }
 
-TEST_F(InRealTime, stops_for_a_late_cycle_where_the_row_says_so) {
+TEST_F(InRealTime, a_late_cycle_stops_the_machine_where_the_row_says_so) {
     Rig<watched::strict_table> rig;
     ASSERT_TRUE(rig.runs());
     rig.worker("right").overrun = 50ms;
@@ -80,7 +80,7 @@ TEST_F(InRealTime, stops_for_a_late_cycle_where_the_row_says_so) {
     EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
 }
 
-TEST_F(InRealTime, a_broken_contract_stops_the_machine_with_its_sentence_and_leaves_all_safe) {
+TEST_F(InRealTime, a_broken_contract_stops_the_machine_safely_with_its_message) {
     Rig<watched::parked_table> rig;
     ASSERT_TRUE(rig.runs());
     rig.worker("middle").order = Order::break_contract;
@@ -99,9 +99,8 @@ TEST_F(InRealTime, a_broken_contract_stops_the_machine_with_its_sentence_and_lea
     EXPECT_THAT(watched::stops(), testing::ElementsAre("logic", "left", "middle", "right", "driver"));
 }
 
-TEST_F(InRealTime, a_breach_during_the_stop_is_kept_beside_the_first_one_and_beside_a_request_to_stop) {
-    auto& rig = *new Rig<watched::twice_broken_table>; // a thread that was given up, and nobody joins, may
-                                                       // look at it for ever
+TEST_F(InRealTime, a_breach_during_the_stop_is_recorded_beside_the_first_cause) {
+    auto& rig = *new Rig<watched::twice_broken_table>; // an abandoned thread may read it for ever
     ASSERT_TRUE(rig.runs());
     rig.worker("driver").breaks_at_stop = rig.worker("logic").breaks_at_stop = true;
     raise(SIGTERM);
@@ -116,12 +115,12 @@ TEST_F(InRealTime, a_breach_during_the_stop_is_kept_beside_the_first_one_and_bes
         EXPECT_EQ(rig.worker(name).at_wire.load(), 0) << name;
 }
 
-/// The process ends here when the supervisor's contract was broken: were all safe by then?
+/// Reached when the supervisor broke its contract and the process ends: were all outputs safe by then?
 Rig<watched::supervised_table>* at_the_end = nullptr;
 
 using InRealTimeDeathTest = InRealTime;
 
-TEST_F(InRealTimeDeathTest, a_contract_broken_on_the_supervisors_thread_stops_the_machine_before_it_ends) {
+TEST_F(InRealTimeDeathTest, a_contract_broken_by_the_supervisor_stops_the_machine_first) {
     testing::FLAGS_gtest_death_test_style = "threadsafe";
     EXPECT_EXIT(
         {
@@ -139,7 +138,7 @@ TEST_F(InRealTimeDeathTest, a_contract_broken_on_the_supervisors_thread_stops_th
         testing::ExitedWithCode(0), "A function was called with 9");
 }
 
-TEST_F(InRealTime, what_is_not_real_time_and_blocks_does_not_hold_up_the_stop_of_the_others) {
+TEST_F(InRealTime, a_blocking_activity_does_not_delay_the_stop_of_others) {
     Rig<watched::blocked_table> rig;
     ASSERT_TRUE(rig.runs());
     auto& console = rig.the<watched::Blocking>("console");
@@ -149,8 +148,8 @@ TEST_F(InRealTime, what_is_not_real_time_and_blocks_does_not_hold_up_the_stop_of
     EXPECT_TRUE(console.finalised);
 }
 
-/// Of a machine whose logic did so some times. The first cycle warms caches and counts as no maximum; from
-/// the one that is too long on it is measured.
+/// The statistics of a machine whose logic received the order several times. The first cycle warms caches and
+/// does not count for the maximum; measurement starts with the first overlong cycle.
 EngineStatistics after(Order order) {
     Rig<watched::blocked_table> rig;
     EXPECT_TRUE(rig.runs());
@@ -165,19 +164,19 @@ EngineStatistics after(Order order) {
     return rig.instance.engines()[1].statistics();
 }
 
-TEST_F(InRealTime, asks_the_processor_time_and_not_the_clock_whether_a_budget_is_kept) {
+TEST_F(InRealTime, a_budget_is_checked_against_processor_time) {
     const EngineStatistics waited = after(Order::sleep);
     EXPECT_GE(waited.longest_busy, 20ms);
     EXPECT_EQ(waited.over_claim, 0u) << "others could have run";
     EXPECT_GE(after(Order::overrun).over_claim, 1u);
 }
 
-TEST_F(InRealTime, a_signal_that_would_end_or_freeze_the_process_ends_the_supervision_as_a_request) {
+TEST_F(InRealTime, a_terminating_signal_becomes_a_stop_request) {
     for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP, SIGUSR1}) {
         Rig<watched::table> rig;
         ASSERT_TRUE(rig.runs());
         EXPECT_TRUE(rig.world.supervise(50ms));
-        raise(SIGPIPE); // is none: a reader went away
+        raise(SIGPIPE); // does not count: a reader went away
         EXPECT_TRUE(rig.world.supervise(50ms));
         raise(number);
         EXPECT_FALSE(rig.world.supervise(1s)) << number;
@@ -187,11 +186,10 @@ TEST_F(InRealTime, a_signal_that_would_end_or_freeze_the_process_ends_the_superv
     }
 }
 
-TEST_F(InRealTime, a_thread_that_hangs_is_reported_and_nobody_runs_its_stop) {
-    // A hung thread of high priority would keep the supervisor from its processor: it spins on the other one.
+TEST_F(InRealTime, a_hung_thread_is_reported_and_its_stop_is_not_run) {
+    // A hung thread of high priority would occupy the supervisor's processor, so it spins on the other one.
     if (sysconf(_SC_NPROCESSORS_ONLN) < 2) GTEST_SKIP() << "one processor: the hung thread would have it";
-    auto& rig = *new Rig<watched::hung_table>; // a thread that was given up, and nobody joins, may look at it
-                                               // for ever
+    auto& rig = *new Rig<watched::hung_table>; // an abandoned thread may read it for ever
     ASSERT_TRUE(rig.runs());
     rig.worker("logic").order = Order::hang;
     EXPECT_TRUE(rig.world.supervise(50ms));
@@ -200,7 +198,7 @@ TEST_F(InRealTime, a_thread_that_hangs_is_reported_and_nobody_runs_its_stop) {
     EXPECT_EQ(rig.worker("logic").at_wire.load(), 1) << "its guardian ends it, where there is one";
     EXPECT_EQ(rig.worker("driver").at_wire.load(), 0);
     EXPECT_FALSE(rig.instance.standing());
-    rig.worker("logic").let_go = true; // the thread comes back when all is over, and touches nothing any more
+    rig.worker("logic").let_go = true; // the thread returns at the end and touches nothing any more
     for (int n = 0; n < 1000 && rig.world.activity(watched::logic).state() != Activity::State::stopped; ++n)
         os::sleep_for(1ms);
     EXPECT_EQ(rig.world.activity(watched::logic).state(), Activity::State::stopped);

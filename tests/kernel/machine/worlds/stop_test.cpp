@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a maker's function does for seconds, a stop that is asked for meanwhile leaves the outputs safe
-// within the board's bound: for each cause of a stop, in each such situation.
+// A stop makes the outputs safe within the board's bound while a user function runs for seconds: for each
+// cause of a stop, in each such situation.
 #include "kernel/component/loop.hpp"
 #include "tests/kernel/machine/parts.hpp"
 #include "tests/kernel/machine/real_rig.hpp"
@@ -18,7 +18,7 @@
 namespace tappet {
 namespace {
 
-/// What happened in which order; filled by any thread that is not real-time, or stops.
+/// The events in order; filled by threads without real time, and by stops.
 struct Log {
     std::mutex mutex;
     std::vector<std::string> lines;
@@ -32,7 +32,7 @@ Log& history() {
     return log;
 }
 
-/// Its output stands for a wire: 1 while it runs, 0 is safe.
+/// Its output represents a wire: 1 while it runs, 0 is safe.
 struct Valve : Clocked {
     Input<std::int64_t> beat;
     std::atomic<std::int64_t> at_wire{0}, safe_since{0};
@@ -55,7 +55,7 @@ struct Pulse {
     Output<std::int64_t> beat;
     std::atomic<bool> silent{false}, hangs{false}, hangs_in_stop{false};
     std::atomic<int> stopped{0};
-    /// Others have its processor meanwhile.
+    /// Other threads use its processor meanwhile.
     static void hang(const std::atomic<bool>& while_so) noexcept TAPPET_REALTIME {
         while (while_so) TAPPET_ESCAPE("it shall hang", os::sleep_for(1ms));
     }
@@ -73,7 +73,7 @@ struct Pulse {
 enum class Function : int { none, initialise, finalise, start, work, stop, loop, break_loop };
 constexpr auto for_seconds = 4s;
 
-/// One function of it takes seconds, or until the test lets go of it.
+/// One of its functions takes seconds, or until the test releases it.
 struct Slow {
     std::atomic<Function> slow{Function::none}, at{Function::none};
     std::atomic<bool> let_go{false}, breaks_contract{false};
@@ -137,13 +137,13 @@ enum class Situation {
     initialises, ///< a restart of the camera
     finalises,
     starts,
-    works, ///< it blocks
-    stops, ///< when the machine does
-    loops, ///< and does not come back
+    works, ///< it blocks in work()
+    stops, ///< with the machine
+    loops, ///< and does not return
     breaks_loop,
     machine_starts ///< and initialises the camera
 };
-/// In the order of the situations.
+/// Same order as the situations.
 constexpr struct {
     Situation situation;
     Function slow;
@@ -173,11 +173,11 @@ template <const auto& of_table> struct Rig : RealRig<of_table> {
         armed = this->arm();
         EXPECT_TRUE(armed);
     }
-    /// All is under way: a value that was never good does not grow stale.
+    /// Waits until all run, because a value that was never valid does not become stale.
     bool start() {
         return armed && world.start(*armed) && comes_true([this] { return valve->hears.load(); });
     }
-    /// Supervises until it is true.
+    /// Supervises until the condition is true.
     template <class Condition> [[nodiscard]] bool comes_true(Condition&& condition) {
         for (const Time end = clock.now() + 20s; !condition() && clock.now() < end;)
             static_cast<void>(world.supervise(1ms));
@@ -192,7 +192,7 @@ template <const auto& of_table> struct Rig : RealRig<of_table> {
         case Cause::one_that_asks: instance.ask_stop(StopReason::requested, 0, nullptr); break;
         }
     }
-    /// One function of the camera, or of the receiver, is to take seconds, at once or when it comes to it.
+    /// One function of the camera, or of the receiver, takes seconds, either now or at its next call.
     void prepare(Situation situation) {
         const bool of_receiver = situation == Situation::loops || situation == Situation::breaks_loop;
         (of_receiver ? static_cast<Slow&>(*receiver) : *camera).slow = row_of(situation).slow;
@@ -200,7 +200,7 @@ template <const auto& of_table> struct Rig : RealRig<of_table> {
     void await_slow() const {
         while (camera->at == Function::none && receiver->at == Function::none) os::sleep_for(1ms);
     }
-    /// The camera is restarted, and initialised for seconds.
+    /// Restarts the camera, whose initialisation takes seconds.
     void initialise_camera() {
         prepare(Situation::initialises);
         static_cast<void>(instance.life().ask_activity(look, LifeChange::restart));
@@ -213,8 +213,8 @@ struct AStop : InRealTime, testing::WithParamInterface<std::size_t> {};
 
 std::ptrdiff_t threads() { return std::distance(std::filesystem::directory_iterator{"/proc/self/task"}, {}); }
 
-/// A thread that hung comes back when all is over: what it looks at then stays, and the next machine has its
-/// memory when it has ended. One whose contract broke stays for ever, in memory of its own.
+/// A hung thread returns after the test: its data stay until then, and the next machine reuses its memory
+/// after it has ended. A thread with a broken contract stays for ever, in memory of its own.
 template <const auto& of_table> class LastingRig {
 public:
     ~LastingRig() { end(); }
@@ -238,7 +238,7 @@ private:
 };
 constexpr auto broken_table = table, broken_beside_table = table;
 
-TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_it) {
+TEST_P(AStop, makes_outputs_safe_within_the_bound_of_the_board) {
     static_assert(for_seconds > 2 * real_board.stop_within, "who waited for it would be late");
     for (const Cause by : causes) {
         SCOPED_TRACE(static_cast<int>(by));
@@ -255,9 +255,9 @@ TEST_P(AStop, leaves_the_outputs_safe_within_the_boards_bound_whatever_asks_for_
             static_cast<void>(rig->instance.life().ask_activity(receive, LifeChange::restart));
         else if (!from_the_start && situation != Situation::works && situation != Situation::stops)
             static_cast<void>(rig->instance.life().ask_activity(look, LifeChange::restart));
-        std::thread other{[&] { // whatever keeps the supervisor
+        std::thread other{[&] { // whatever blocks the supervisor
             if (situation != Situation::stops) rig->await_slow();
-            while (!rig->valve->hears) os::sleep_for(1ms); // else nothing grows stale
+            while (!rig->valve->hears) os::sleep_for(1ms); // otherwise nothing becomes stale
             rig->cause(by);
         }};
         if (situation == Situation::machine_starts) {
@@ -282,7 +282,7 @@ INSTANTIATE_TEST_SUITE_P(While, AStop, testing::Range(std::size_t{0}, std::size(
 
 using TheMachine = InRealTime;
 
-TEST_F(TheMachine, stops_all_its_activities_before_it_finalises_one) {
+TEST_F(TheMachine, stops_all_activities_before_it_finalises_any) {
     const LastingRig<table> rig;
     ASSERT_TRUE(rig->start());
     rig->camera->slow = Function::finalise;
@@ -293,7 +293,7 @@ TEST_F(TheMachine, stops_all_its_activities_before_it_finalises_one) {
                                                       "slow finalise"));
 }
 
-TEST_F(TheMachine, stops_one_activity_at_once_while_another_one_is_initialised) {
+TEST_F(TheMachine, stops_one_activity_at_once_while_another_initialises) {
     const LastingRig<table> rig;
     ASSERT_TRUE(rig->start());
     rig->initialise_camera();
@@ -309,7 +309,7 @@ TEST_F(TheMachine, stops_one_activity_at_once_while_another_one_is_initialised) 
     EXPECT_EQ(rig->world.stop(), 0);
 }
 
-TEST_F(TheMachine, stops_the_others_in_time_when_a_real_time_activity_hangs_and_runs_no_stop_of_it) {
+TEST_F(TheMachine, stops_other_activities_in_time_when_a_real_time_one_hangs) {
     const LastingRig<table> rig;
     ASSERT_TRUE(rig->start());
     rig->pulse->hangs = true;
@@ -323,7 +323,7 @@ TEST_F(TheMachine, stops_the_others_in_time_when_a_real_time_activity_hangs_and_
     EXPECT_FALSE(rig->instance.standing());
 }
 
-TEST_F(TheMachine, stops_when_an_activity_that_was_to_be_stopped_alone_hangs) {
+TEST_F(TheMachine, stops_when_an_activity_hangs_during_its_own_stop) {
     const LastingRig<table> rig;
     ASSERT_TRUE(rig->start());
     rig->spare->hangs_in_stop = true;
@@ -339,7 +339,7 @@ TEST_F(TheMachine, stops_when_an_activity_that_was_to_be_stopped_alone_hangs) {
     rig.end();
 }
 
-TEST_F(TheMachine, stops_in_time_for_a_broken_contract_while_another_activity_is_initialised) {
+TEST_F(TheMachine, stops_in_time_for_a_broken_contract_during_an_initialisation) {
     const LastingRig<broken_beside_table> rig;
     ASSERT_TRUE(rig->start());
     rig->initialise_camera();
@@ -352,7 +352,7 @@ TEST_F(TheMachine, stops_in_time_for_a_broken_contract_while_another_activity_is
     EXPECT_EQ(rig->world.lost(), 1);
 }
 
-TEST_F(TheMachine, stops_when_a_contract_breaks_in_what_initialises_it_and_waits_for_that_no_more) {
+TEST_F(TheMachine, stops_at_once_when_an_initialisation_breaks_a_contract) {
     const LastingRig<broken_table> rig;
     rig->camera->breaks_contract = true;
     EXPECT_FALSE(rig->start());
@@ -365,7 +365,7 @@ TEST_F(TheMachine, stops_when_a_contract_breaks_in_what_initialises_it_and_waits
     EXPECT_FALSE(rig->instance.standing());
 }
 
-/// The last of the way: what it read last is on the wire.
+/// The last in the chain: the value read last is on the wire.
 struct Wire {
     Input<std::int64_t> level;
     std::atomic<std::int64_t> at_wire{-1};
@@ -373,7 +373,7 @@ struct Wire {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { at_wire.store(level.get()); }
     static constexpr auto interface() { return facets(input<&Wire::level>("level", "", "0: safe")); }
 };
-/// Blocks, and leaves its safe value when it comes back.
+/// Blocks, and leaves its safe value when it returns.
 struct Oven {
     Output<std::int64_t> heats;
     std::atomic<int> blocks_ms{5};
@@ -391,7 +391,7 @@ constexpr auto oven_table = machine("baking",
     connections(data("oven.heats", "wire.level")), reactions(), behaviours());
 // clang-format on
 
-TEST(StopOfWhatBlocks, reaches_the_wire_or_is_told_as_unsafe) {
+TEST(StopOfABlockingActivity, reaches_the_wire_or_is_reported_as_unsafe) {
     for (const int blocks_ms : {5, 150, 400}) {
         SCOPED_TRACE(blocks_ms);
         RealRig<oven_table> rig;

@@ -1,5 +1,5 @@
-// A machine under virtual time: nothing sleeps, every run of a seed is the same, and an overrun is laid at
-// the door of whoever caused it.
+// A machine in virtual time: nothing sleeps, every run of a seed is the same, and the component that caused
+// an overrun is blamed.
 #include "kernel/machine/check/time.hpp"
 
 #include "kernel/base/random.hpp"
@@ -16,7 +16,7 @@ using watched::Worker;
 
 template <const auto& table>
 struct Rig : ConfiguredRig<table> {
-    /// `seed`: cycles take times.
+    /// `seed`: enables random cycle times.
     explicit Rig(std::optional<std::uint64_t> seed = {}) {
         watched::stops().clear();
         if (seed) this->world.take_times(*seed);
@@ -26,7 +26,7 @@ struct Rig : ConfiguredRig<table> {
     const Engine& engine(std::size_t activity) { return this->instance.engines()[activity]; }
 };
 
-TEST(VirtualWorld, runs_every_activity_at_its_period_and_leaps_over_what_lies_between) {
+TEST(VirtualWorld, runs_every_activity_at_its_period_and_skips_idle_time) {
     Rig<watched::table> rig;
     EXPECT_TRUE(rig.world.run_until(at_ns(0) + 10s));
     EXPECT_EQ(rig.clock.now(), at_ns(0) + 10s);
@@ -36,7 +36,7 @@ TEST(VirtualWorld, runs_every_activity_at_its_period_and_leaps_over_what_lies_be
     EXPECT_EQ(rig.world.steps(), 17'000u);
 }
 
-TEST(VirtualWorld, keeps_an_activity_that_hangs_from_its_cycles_and_no_other) {
+TEST(VirtualWorld, withholds_cycles_only_from_the_activity_that_hangs) {
     Rig<watched::table> rig;
     EXPECT_TRUE(rig.world.run_until(at_ns(0) + 1s));
     const auto middle = rig.worker("middle").cycles, driver = rig.worker("driver").cycles;
@@ -50,8 +50,8 @@ TEST(VirtualWorld, keeps_an_activity_that_hangs_from_its_cycles_and_no_other) {
     EXPECT_NEAR(static_cast<double>(rig.worker("middle").cycles - middle), 500.0, 2.0);
 }
 
-/// Cycles that take time, as long as the analysis says at most.
-TEST(VirtualWorld, lets_cycles_take_up_to_their_budgets_and_none_respond_later_than_analysed) {
+/// Cycles take time, up to the maximum of the analysis.
+TEST(VirtualWorld, uses_cycle_times_up_to_the_budget_within_the_analysed_response) {
     const AcceptedMachine machine = AtRunTime<watched::table, test_board>::machine();
     std::vector<int> processors;
     for (const ActivityPlan& plan : machine.plan.activities) processors.push_back(plan.processor);
@@ -74,14 +74,14 @@ TEST(VirtualWorld, lets_cycles_take_up_to_their_budgets_and_none_respond_later_t
     EXPECT_GT(longest, 0us) << "none was preempted";
 }
 
-/// Whose thread does not come in the middle of its cycle goes on with it as soon as it comes.
-TEST(VirtualWorld, goes_on_with_a_cycle_when_a_hang_in_the_middle_of_it_is_over) {
+/// A thread that is delayed in the middle of its cycle resumes it on return.
+TEST(VirtualWorld, resumes_a_cycle_after_a_hang_in_the_middle_of_it) {
     Rig<watched::table> rig{1};
     const auto a = find_component(rig.instance.machine().table, "driver");
     const std::size_t activity = rig.instance.machine().index.activity[a];
     for (int period = 1; period <= 100; ++period) {
         const Time begin = at_ns(0) + period * 2ms;
-        EXPECT_TRUE(rig.world.run_until(begin)); // one begins
+        EXPECT_TRUE(rig.world.run_until(begin)); // a cycle starts
         rig.world.hang(activity, begin + 300us);
     }
     EXPECT_GT(rig.worker("driver").cycles, 90u);
@@ -96,8 +96,8 @@ TEST(VirtualWorld, stops_the_last_row_first) {
     EXPECT_EQ(rig.worker("driver").level.last(), 0);
 }
 
-/// What a restart runs of the components' functions takes seconds.
-TEST(VirtualWorld, lets_makers_functions_take_time_while_the_others_go_on) {
+/// The component functions that a restart runs take seconds.
+TEST(VirtualWorld, lets_user_functions_take_time_while_others_continue) {
     Rig<watched::table> rig;
     EXPECT_TRUE(rig.world.run_until(at_ns(0) + 1s));
     const auto logic = rig.worker("logic").cycles, middle = rig.worker("middle").cycles;
@@ -116,7 +116,7 @@ TEST(VirtualWorld, lets_makers_functions_take_time_while_the_others_go_on) {
     EXPECT_NEAR(static_cast<double>(rig.worker("logic").cycles - logic), 200.0, 2.0);
 }
 
-TEST(VirtualWorld, stops_within_no_time_while_makers_functions_take_theirs_and_no_change_goes_on) {
+TEST(VirtualWorld, stops_within_its_bound_during_user_functions_and_ends_other_changes) {
     Rig<watched::strict_table> rig;
     EXPECT_TRUE(rig.world.run_until(at_ns(0) + 20ms));
     rig.world.makers_take(7s);
@@ -133,7 +133,7 @@ TEST(VirtualWorld, stops_within_no_time_while_makers_functions_take_theirs_and_n
     EXPECT_TRUE(rig.instance.standing());
 }
 
-TEST(VirtualWorld, does_not_do_later_what_it_refused_before_the_start) {
+TEST(VirtualWorld, never_executes_a_request_that_it_refused_before_the_start) {
     ConfiguredRig<watched::table> rig;
     MachineInstance& instance = rig.instance;
     const std::size_t middle = find_component(instance.machine().table, "middle");
@@ -145,12 +145,12 @@ TEST(VirtualWorld, does_not_do_later_what_it_refused_before_the_start) {
     rig.world.stop();
 }
 
-TEST(VirtualWorldDeathTest, does_nothing_to_an_engine_that_runs_that_is_for_one_that_stands) {
+TEST(VirtualWorldDeathTest, refuses_a_change_of_a_running_engine_that_must_stand) {
     Rig<watched::table> rig;
     Engine& engine = rig.instance.engines()[0];
     EXPECT_FALSE(rig.instance.standing());
     constexpr auto* sentence =
-        "contract 107 engine-runs: What is for an engine that stands was asked of activity 0 while it ran";
+        "contract 107 engine-runs: A function for a stopped engine was called while activity 0 ran";
     EXPECT_DEATH(engine.place(engine.plan(), rig.clock), sentence);
     EXPECT_DEATH(static_cast<void>(engine.initialise()), sentence);
     EXPECT_DEATH(engine.finalise(), sentence);
@@ -178,7 +178,7 @@ TEST(VirtualWorld, runs_processes_before_the_engines_of_the_same_instant) {
     EXPECT_EQ(feeder.seen, 2u); // those at 1 and 2 ms
 }
 
-TEST(VirtualWorld, a_row_that_says_so_stops_the_machine_for_it_with_a_sentence_that_names_both) {
+TEST(VirtualWorld, stops_by_row_and_names_the_activity_and_its_slow_component) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         Random random{seed};
         const std::string_view victim = watched::of_motion[random.below(watched::of_motion.size())];

@@ -1,4 +1,4 @@
-// How a box is: read from a made-up tree of the kernel's, and shown by a machine.
+// The condition of a box: read from a simulated kernel tree and shown by a machine.
 #include "kernel/services/box/box.hpp"
 
 #include "tests/kernel/machine/virtual_rig.hpp"
@@ -27,7 +27,7 @@ struct MadeUpBox : testing::Test {
     }
 };
 
-TEST_F(MadeUpBox, is_as_warm_as_its_hottest_sensor_that_can_be_read) {
+TEST_F(MadeUpBox, reports_the_temperature_of_its_hottest_readable_sensor) {
     EXPECT_FALSE(os::hottest_celsius(root.native())) << "it has none";
     put("sys/class/thermal/thermal_zone0/temp", "41000\n");
     put("sys/class/thermal/thermal_zone3/temp", "57250\n");
@@ -38,7 +38,7 @@ TEST_F(MadeUpBox, is_as_warm_as_its_hottest_sensor_that_can_be_read) {
     EXPECT_EQ(os::hottest_celsius(root.native()), -5.0);
 }
 
-TEST_F(MadeUpBox, is_guarded_while_its_watchdog_counts) {
+TEST_F(MadeUpBox, is_guarded_while_its_watchdog_runs) {
     EXPECT_FALSE(os::watchdog_counts(root.native()));
     put("sys/class/watchdog/watchdog0/state", "inactive\n");
     EXPECT_FALSE(os::watchdog_counts(root.native()));
@@ -46,7 +46,7 @@ TEST_F(MadeUpBox, is_guarded_while_its_watchdog_counts) {
     EXPECT_TRUE(os::watchdog_counts(root.native()));
 }
 
-TEST_F(MadeUpBox, has_a_disk_of_which_something_is_left) {
+TEST_F(MadeUpBox, reports_its_free_disk_space) {
     EXPECT_GT(os::free_megabytes(root.c_str()).value_or(0.0), 0.0);
     EXPECT_FALSE(os::free_megabytes((root / "nothing").c_str()));
 }
@@ -71,7 +71,7 @@ constexpr auto table = machine("boxed",
 // clang-format on
 constexpr Board board{.name = "host", .world = "host", .heap_bytes = 65536, .simulated = true};
 
-TEST(Box, tells_a_machine_how_it_is) {
+TEST(Box, reports_its_condition_to_a_machine) {
     RunningRig<table, board> rig;
     EXPECT_TRUE(rig.run(2s));
     EXPECT_GT(rig.the<Reader>("reader").seen, 0.0);

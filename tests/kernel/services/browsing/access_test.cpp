@@ -1,5 +1,5 @@
-// Who may do what, and what a client can take of the machine (thesis 4.8): roles by the board's list, a share
-// of each cycle for everybody, and nothing that one client does reaches another.
+// Access rights and the limits of a client (thesis 4.8): roles by the board's list, a share of each cycle for
+// every client, and no effect of one client on another.
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include "kernel/services/browsing/access.hpp"
@@ -21,16 +21,16 @@ constexpr BoardBrowsing listed{.directory = "/run/tappet",
                                .roles = roles(user(1001, Role::machine_operator), group(50, Role::engineer),
                                               group(60, Role::machine_operator))};
 
-TEST(Access, root_and_the_machines_own_user_are_engineers) {
+TEST(Access, root_and_the_user_of_the_machine_are_engineers) {
     EXPECT_EQ(browsing::role_of(peer(0, 0), {}), Role::engineer);
     EXPECT_EQ(browsing::role_of(peer(os::own_user(), 77), {}), Role::engineer);
 }
 
-TEST(Access, whoever_is_not_listed_observes) {
+TEST(Access, an_unlisted_user_observes) {
     EXPECT_EQ(browsing::role_of(peer(4242, 4242), listed), Role::observer);
 }
 
-TEST(Access, the_board_lists_users_and_groups_and_the_highest_role_counts) {
+TEST(Access, the_board_lists_users_and_groups_and_the_highest_role_applies) {
     EXPECT_EQ(browsing::role_of(peer(1001, 4242), listed), Role::machine_operator);
     EXPECT_EQ(browsing::role_of(peer(4242, 60), listed), Role::machine_operator);
     EXPECT_EQ(browsing::role_of(peer(4242, 4242, {60, 50}), listed), Role::engineer);
@@ -38,7 +38,7 @@ TEST(Access, the_board_lists_users_and_groups_and_the_highest_role_counts) {
     EXPECT_EQ(browsing::role_of(peer(50, 1001), listed), Role::observer) << "a user is no group";
 }
 
-TEST(Access, an_observer_may_look_an_operator_act_and_an_engineer_change) {
+TEST(Access, observers_read_operators_act_and_engineers_change) {
     for (const browsing::VerbRow& row : browsing::verbs) {
         const bool looks = row.name == "hello" || row.name == "map" || row.name == "get" ||
                            row.name == "forced" || row.name == "subscribe" || row.name == "unsubscribe" ||
@@ -52,7 +52,7 @@ TEST(Access, an_observer_may_look_an_operator_act_and_an_engineer_change) {
     }
 }
 
-TEST_F(Press, observers_leave_subscriptions_for_who_has_a_higher_role) {
+TEST_F(Press, observers_leave_subscriptions_for_higher_roles) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     std::vector<std::unique_ptr<Talker>> observers;
     std::size_t taken = 0, refused = 0;
@@ -70,9 +70,9 @@ TEST_F(Press, observers_leave_subscriptions_for_who_has_a_higher_role) {
     EXPECT_TRUE(has(ask(engineer, "4 subscribe ram.arrived"), R"("ok": true)"));
 }
 
-TEST_F(Press, who_has_not_the_role_is_refused_clearly_and_nothing_happens) {
+TEST_F(Press, a_request_without_the_role_is_refused_and_has_no_effect) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    // Who the peer is, is held fast when it connects.
+    // The identity of the peer is fixed when it connects.
     Talker talker{path(), 65534};
     EXPECT_TRUE(has(ask(talker, "1 hello"), R"("role": "observer")"));
     const std::string answer = ask(talker, "2 set ram.speed 3");
@@ -84,7 +84,7 @@ TEST_F(Press, who_has_not_the_role_is_refused_clearly_and_nothing_happens) {
     EXPECT_TRUE(has(ask(talker, "5 get ram.speed"), R"("ok": true)"));
 }
 
-TEST_F(Press, an_operator_asks_for_what_the_interface_has_for_people_and_for_nothing_else) {
+TEST_F(Press, an_operator_may_call_only_operator_facets) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker talker{path(), 1001};
     EXPECT_TRUE(has(ask(talker, "1 hello"), R"("role": "operator")"));
@@ -103,7 +103,7 @@ TEST_F(Press, an_operator_asks_for_what_the_interface_has_for_people_and_for_not
     EXPECT_EQ(ram().let_goes, 1);
 }
 
-TEST_F(Press, a_client_that_floods_is_served_its_share_and_no_more) {
+TEST_F(Press, a_flooding_client_gets_only_its_share) {
     Talker flood{path()};
     Talker quiet{path()};
     run(40ms);
@@ -118,7 +118,7 @@ TEST_F(Press, a_client_that_floods_is_served_its_share_and_no_more) {
     EXPECT_TRUE(has(ask(quiet, "2 hello", 40ms), R"("ok": true)")) << "the other one does not wait for it";
 }
 
-TEST_F(Press, a_client_that_does_not_read_loses_its_own_packets_and_is_told) {
+TEST_F(Press, a_client_that_does_not_read_loses_its_own_packets_with_notice) {
     Talker deaf{path()};
     for (int i = 0; i < 3000; ++i) {
         static_cast<void>(deaf.send("1 get ram.place ram.limit ram.speed table.height"));
@@ -131,7 +131,7 @@ TEST_F(Press, a_client_that_does_not_read_loses_its_own_packets_and_is_told) {
     EXPECT_FALSE(has(ask(deaf, "3 hello"), R"("dropped")")) << "told once";
 }
 
-TEST_F(Press, one_client_too_many_is_told_so_and_those_that_are_in_stay) {
+TEST_F(Press, an_excess_client_is_refused_and_the_others_stay) {
     std::vector<std::unique_ptr<Talker>> talkers;
     for (std::size_t i = 0; i < browsing::max_clients; ++i)
         talkers.push_back(std::make_unique<Talker>(path()));
@@ -147,10 +147,10 @@ TEST_F(Press, one_client_too_many_is_told_so_and_those_that_are_in_stay) {
     EXPECT_TRUE(has(ask(next, "1 hello"), R"("ok": true)")) << "a place that was left is given again";
 }
 
-/// Connected as somebody whom the board does not list.
+/// Connected as a user that the board does not list.
 std::unique_ptr<Talker> observer(const std::string& path) { return std::make_unique<Talker>(path, 65534); }
 
-TEST_F(Press, who_has_a_higher_role_gets_the_place_of_the_longest_idle_of_a_lower_one) {
+TEST_F(Press, a_higher_role_replaces_the_longest_idle_client_of_a_lower_one) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     std::vector<std::unique_ptr<Talker>> observers;
     for (std::size_t i = 0; i < browsing::max_clients; ++i) observers.push_back(observer(path()));
@@ -168,19 +168,19 @@ TEST_F(Press, who_has_a_higher_role_gets_the_place_of_the_longest_idle_of_a_lowe
     EXPECT_TRUE(has(ask(engineer, "2 set ram.speed 3"), R"("ok": true)"));
 }
 
-TEST_F(Press, idle_observers_at_the_door_lock_nobody_out) {
+TEST_F(Press, idle_unaccepted_observers_do_not_block_other_clients) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     std::vector<std::unique_ptr<Talker>> crowd;
     for (int round = 0; round < 3; ++round) {
         for (std::size_t i = 0; i < browsing::max_clients; ++i) crowd.push_back(observer(path()));
-        run(20ms); // one cycle sees to all that wait
+        run(20ms); // one cycle handles all that wait
     }
     EXPECT_TRUE(has(crowd.back()->receive(), "places are taken"));
     Talker engineer{path()};
     EXPECT_TRUE(has(ask(engineer, "1 hello"), R"("role": "engineer")"));
 }
 
-TEST_F(Press, a_client_that_dies_in_the_middle_leaves_nothing_behind) {
+TEST_F(Press, a_client_that_dies_leaves_nothing_behind) {
     for (int i = 0; i < 40; ++i) {
         Talker talker{path()};
         for (const char* request : {"1 send ram.move_to 40", "2 set ram.speed 1", "3 call ram.distance 1"})
@@ -196,7 +196,7 @@ TEST_F(Press, a_client_that_dies_in_the_middle_leaves_nothing_behind) {
     EXPECT_TRUE(has(ask(other, "2 set ram.speed 2"), R"("set": 1)"));
 }
 
-TEST(Access, without_a_directory_the_machine_runs_and_has_no_door) {
+TEST(Access, a_machine_without_a_directory_runs_without_a_socket) {
     PlacedRig<table, board> rig;
     MachineInstance& instance = rig.instance;
     ASSERT_TRUE(instance.browsing_directory().empty()) << "the board names none";

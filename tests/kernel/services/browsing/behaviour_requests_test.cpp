@@ -1,5 +1,5 @@
 // A browser sees behaviours, commands them, and loads scripts into a slot of the running machine (thesis 4.8,
-// 5.1.6, 5.2.5): what it may not do, or did not spell well, is said with its cure.
+// 5.1.6, 5.2.5): a forbidden or misspelt request is refused with its cure.
 #include "kernel/machine/plan/operations.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
@@ -64,7 +64,7 @@ protected:
     }
 };
 
-TEST_F(Behaviours, the_list_shows_each_with_its_status_and_state) {
+TEST_F(Behaviours, list_shows_each_with_its_status_and_state) {
     const std::string list = ask("behaviours");
     EXPECT_THAT(list,
                 HasSubstr(R"({"name": "ram.cycle", "kind": "machine", "status": "running", "state": "up"})"));
@@ -75,7 +75,7 @@ TEST_F(Behaviours, the_list_shows_each_with_its_status_and_state) {
     EXPECT_THAT(ask("behaviours ram.cicle"), HasSubstr("did you mean \\\"ram.cycle\\\"?"));
 }
 
-TEST_F(Behaviours, one_is_paused_and_stepped_and_sent_to_a_state) {
+TEST_F(Behaviours, can_be_paused_stepped_and_sent_to_a_state) {
     EXPECT_THAT(ask("behave pause ram.cycle"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr("paused"));
     ram().arrived.emit(1.0);
@@ -93,7 +93,7 @@ TEST_F(Behaviours, one_is_paused_and_stepped_and_sent_to_a_state) {
     EXPECT_THAT(ask("behave step ram.cycle"), HasSubstr("not_now")); // it is not paused
 }
 
-TEST_F(Behaviours, one_says_why_it_is_not_in_a_state) {
+TEST_F(Behaviours, report_why_they_are_not_in_a_state) {
     EXPECT_THAT(ask("why ram.held"),
                 HasSubstr(R"("name": "ram.cycle", "status": "running", "state": "up", "wanted": "held", )"
                           R"("is_final": false, "path": ["up", "down", "held"], )"
@@ -108,7 +108,7 @@ TEST_F(Behaviours, one_says_why_it_is_not_in_a_state) {
     EXPECT_THAT(ask("behaviours ram.cycle"), HasSubstr(R"("state": "down")")) << "asking takes nothing";
 }
 
-TEST_F(Behaviours, why_of_a_script_that_is_replaced_meanwhile_is_not_answered_from_the_new_one) {
+TEST_F(Behaviours, cancel_a_why_request_when_their_script_is_replaced) {
     const std::string large{"StateMachine Pressing {\n"
                             "    initial state Waiting { transition ram.arrived() select A }\n"
                             "    state A { transition ram.arrived() select B }\n"
@@ -117,13 +117,14 @@ TEST_F(Behaviours, why_of_a_script_that_is_replaced_meanwhile_is_not_answered_fr
                             "    state Far { transition ram.arrived() select Waiting }\n"
                             "    final state Safe { }\n"
                             "}\n"};
-    // Asked of the one in one cycle of the service, and answered when another stands in its memory.
+    // Requested for one script in one cycle of the service, and answered when another script occupies its
+    // memory.
     for (int round = 0; round < 8; ++round) {
         EXPECT_THAT(load(large), HasSubstr("\"ok\": true"));
         run(50ms);
         ASSERT_TRUE(talker().send("2 why ram.Far"));
         ASSERT_TRUE(talker().send("3 unload ram"));
-        for (int again = 0; again < 2; ++again) { // the first one comes while the unloading is under way
+        for (int again = 0; again < 2; ++again) { // the first one arrives during the unloading
             ASSERT_TRUE(talker().send("4 script ram 0 " + in_quotes(script)));
             ASSERT_TRUE(talker().send("5 load ram pressing.tappet"));
         }
@@ -137,7 +138,7 @@ TEST_F(Behaviours, why_of_a_script_that_is_replaced_meanwhile_is_not_answered_fr
     }
 }
 
-TEST_F(Behaviours, observers_who_ask_without_end_keep_nobody_of_a_higher_role_waiting) {
+TEST_F(Behaviours, serve_higher_roles_despite_endless_observer_requests) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     hang(0);
     std::vector<std::unique_ptr<Talker>> observers;
@@ -152,14 +153,14 @@ TEST_F(Behaviours, observers_who_ask_without_end_keep_nobody_of_a_higher_role_wa
     EXPECT_THAT(answers, HasSubstr("too many requests are under way"));
 }
 
-TEST_F(Behaviours, observers_who_ask_for_what_nobody_comes_to_leave_room_in_its_mailbox) {
+TEST_F(Behaviours, keep_mailbox_room_despite_observer_requests_to_a_hung_engine) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Engine& engine = hang(0);
     Talker observer{path(), 65534};
     std::string answers;
     for (std::size_t n = 0; n < 2 * requests_waiting; ++n) {
         ASSERT_TRUE(observer.send("1 why ram.held"));
-        run(n % 4 == 3 ? BrowserService::patience + 100ms : 30ms); // what is taken back lies there still
+        run(n % 4 == 3 ? BrowserService::patience + 100ms : 30ms); // a withdrawn request still occupies it
         answers += observer.receive_all();
     }
     EXPECT_THAT(answers, HasSubstr("that engine has too many requests to serve"));
@@ -171,14 +172,14 @@ TEST_F(Behaviours, observers_who_ask_for_what_nobody_comes_to_leave_room_in_its_
     EXPECT_THAT(talker().receive(), HasSubstr("\"id\": 2, \"ok\": true"));
 }
 
-TEST_F(Behaviours, why_of_a_misspelt_name_is_told_the_nearest) {
+TEST_F(Behaviours, suggest_the_nearest_name_in_a_why_request) {
     EXPECT_THAT(ask("why ram.hold"), HasSubstr(R"(has a state \"hold\"; did you mean \"held\"?)"));
     EXPECT_THAT(ask("why rum.held"), HasSubstr(R"(no state machine of \"rum\"; did you mean \"ram\"?)"));
     EXPECT_THAT(ask("why held"), HasSubstr("spell it COMPONENT.STATE"));
     EXPECT_THAT(ask("why ram.cycle."), HasSubstr("no state machine"));
 }
 
-TEST_F(Behaviours, a_script_is_loaded_in_pieces_and_its_variables_are_seen) {
+TEST_F(Behaviours, accept_a_script_in_pieces_and_show_its_variables) {
     EXPECT_THAT(load(script), HasSubstr("\"ok\": true"));
     run(5ms);
     ram().arrived.emit(1.0);
@@ -193,7 +194,7 @@ TEST_F(Behaviours, a_script_is_loaded_in_pieces_and_its_variables_are_seen) {
     EXPECT_THAT(ask("behaviours"), HasSubstr(R"("phase": "empty")"));
 }
 
-TEST_F(Behaviours, a_faulty_script_is_refused_with_file_line_and_column) {
+TEST_F(Behaviours, refuse_a_faulty_script_with_file_line_and_column) {
     std::string faulty{script};
     faulty.replace(faulty.find("strokes + 1"), 7, "stroke");
     const std::string answer = load(faulty);
@@ -203,7 +204,7 @@ TEST_F(Behaviours, a_faulty_script_is_refused_with_file_line_and_column) {
     EXPECT_THAT(ask("behaviours"), HasSubstr(R"("phase": "empty")"));
 }
 
-TEST_F(Behaviours, pieces_out_of_order_and_loads_without_a_script_are_refused) {
+TEST_F(Behaviours, refuse_pieces_out_of_order_and_loads_without_a_script) {
     EXPECT_THAT(ask("load ram x.osd"), HasSubstr("no script was sent"));
     EXPECT_THAT(ask("script ram 5 \"x\""), HasSubstr("begin again"));
     EXPECT_THAT(ask("script rum 0 \"x\""), HasSubstr("did you mean \\\"ram\\\"?"));
@@ -215,7 +216,7 @@ TEST_F(Behaviours, pieces_out_of_order_and_loads_without_a_script_are_refused) {
     EXPECT_THAT(ask("roll_back ram"), HasSubstr("no earlier behaviour"));
 }
 
-TEST_F(Behaviours, one_that_fails_its_trial_is_taken_back_and_the_slot_says_why) {
+TEST_F(Behaviours, are_rolled_back_after_a_failed_trial_and_the_slot_says_why) {
     EXPECT_THAT(load("var int n = 0;\nset n = 1 / n;\n"), HasSubstr("\"ok\": true"));
     run(10ms);
     const std::string seen = ask("behaviours");

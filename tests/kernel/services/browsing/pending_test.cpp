@@ -1,5 +1,5 @@
-// What a request does inside the machine: not over a component that has stopped, and not after its client was
-// told that nothing was done.
+// The effect of a request inside the machine: none on a stopped component, and none after its client was told
+// that nothing was done.
 #include "kernel/services/browsing/pending.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t motion = 0;
 constexpr std::string_view left_safe = R"(does not run; start it first)";
 
-TEST_F(Press, nothing_is_forced_over_what_a_stopped_component_left_behind_while_its_activity_goes_on) {
+TEST_F(Press, the_safe_value_of_a_stopped_component_cannot_be_forced) {
     EXPECT_TRUE(has(ask("1 stop table"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("2 force table.height 7"), left_safe));
     EXPECT_TRUE(has(ask("3 get table.height"), R"("value": 50, "flow": "fresh", "forced": false)"));
@@ -19,24 +19,24 @@ TEST_F(Press, nothing_is_forced_over_what_a_stopped_component_left_behind_while_
     EXPECT_TRUE(has(ask("6 force table.height 7"), R"("ok": true)"));
 }
 
-TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_whatever_commands_wait) {
+TEST_F(Press, a_force_at_the_reader_ends_at_a_stop_despite_pending_commands) {
     ask("1 force ram.limit 40");
     ask("2 set ram.speed 0.1");
     for (std::size_t i = 0; i < BrowserService::max_pending; ++i)
         ASSERT_TRUE(talker().send(std::to_string(10 + i) + " send ram.move_to " + std::to_string(22 + i)));
     run(100ms);
-    ram().target = 1; // none of them comes to its end
+    ram().target = 1; // none of them ends
     run(100ms);
     instance.life().ask_component(find_component(instance.machine().table, "table"), LifeChange::stop);
     run(1s);
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u) << "who reads it lets go";
 }
 
-TEST_F(Press, commands_without_end_leave_places_for_what_ends_them) {
+TEST_F(Press, endless_commands_leave_slots_for_the_requests_that_end_them) {
     {
         Talker talker{path()};
         ask(talker, "1 set ram.speed 0.1");
-        for (std::size_t i = 0; i < 2 * BrowserService::max_pending; ++i) // to where it comes to no stand
+        for (std::size_t i = 0; i < 2 * BrowserService::max_pending; ++i) // to targets that it never reaches
             ASSERT_TRUE(
                 talker.send(std::to_string(10 + i) + " send ram.move_to " + std::to_string(i) + ".037"));
         run(200ms);
@@ -50,7 +50,7 @@ TEST_F(Press, commands_without_end_leave_places_for_what_ends_them) {
     EXPECT_THAT(ask(other, "5 send ram.move_to 5"), testing::HasSubstr(R"("state": "sent")"));
 }
 
-TEST_F(Press, commands_of_operators_leave_engineers_some) {
+TEST_F(Press, operator_commands_leave_slots_for_engineers) {
     Talker engineer{path()};
     ask(engineer, "1 set ram.speed 0.1");
     {
@@ -63,7 +63,7 @@ TEST_F(Press, commands_of_operators_leave_engineers_some) {
     EXPECT_THAT(ask(engineer, "2 send ram.move_to 5"), testing::HasSubstr(R"("state": "sent")"));
 }
 
-TEST_F(Press, nothing_is_forced_that_was_asked_for_in_the_moment_of_the_stop) {
+TEST_F(Press, a_force_requested_during_the_stop_has_no_effect) {
     for (const char* request : {"1 stop ram", "2 force ram.place 33", "3 force ram.limit 5"})
         ASSERT_TRUE(talker().send(request));
     run(50ms);
@@ -78,9 +78,9 @@ TEST_F(Press, nothing_is_forced_that_was_asked_for_in_the_moment_of_the_stop) {
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
-TEST_F(Press, a_request_that_its_client_was_told_is_not_done_is_not_done_later_either) {
+TEST_F(Press, a_request_reported_as_not_done_is_never_done_later) {
     Engine& engine = hang(motion);
-    EXPECT_TRUE(has(ask("1 call ram.let_go", 3s), "its engine did not come to it; nothing was done"));
+    EXPECT_TRUE(has(ask("1 call ram.let_go", 3s), "its engine did not execute it in time; nothing was done"));
     engine.start(clock.now());
     run(100ms);
     EXPECT_EQ(ram().let_goes, 0);
@@ -88,7 +88,7 @@ TEST_F(Press, a_request_that_its_client_was_told_is_not_done_is_not_done_later_e
     EXPECT_EQ(ram().let_goes, 1);
 }
 
-TEST_F(Press, requests_that_nobody_comes_to_lock_nobody_out_of_the_rest) {
+TEST_F(Press, requests_to_a_hung_engine_do_not_block_other_requests) {
     Engine& engine = hang(motion);
     Talker talker{path()}, other{path()};
     for (std::size_t i = 0; i < 3 * BrowserService::max_pending; ++i) {
@@ -98,7 +98,7 @@ TEST_F(Press, requests_that_nobody_comes_to_lock_nobody_out_of_the_rest) {
     }
     std::size_t answers = 0;
     for (std::string each = talker.receive(); !each.empty(); each = talker.receive(), ++answers)
-        EXPECT_TRUE(has(each, "did not come to it; nothing was done") ||
+        EXPECT_TRUE(has(each, "did not execute it in time; nothing was done") ||
                     has(each, "too many requests to serve"));
     EXPECT_EQ(answers, 12 * BrowserService::max_pending) << "each is told";
     engine.start(clock.now());
@@ -108,14 +108,14 @@ TEST_F(Press, requests_that_nobody_comes_to_lock_nobody_out_of_the_rest) {
     EXPECT_EQ(ram().let_goes, 1);
 }
 
-TEST_F(Press, of_an_activity_that_stopped_with_a_component_that_failed_is_told_at_once) {
+TEST_F(Press, a_request_to_a_stopped_activity_is_refused_at_once) {
     Engine& engine = instance.engines()[motion];
     engine.stop(clock.now());
     engine.plan().parts[0].state.store(ComponentState::failed);
     EXPECT_TRUE(has(ask("1 set ram.speed 3"), "is stopped, and nothing of it can be changed"));
 }
 
-/// Counts how often it ran; may try to take itself back meanwhile.
+/// Counts its runs; may try to withdraw itself meanwhile.
 struct AnEngineCall : Press {
     EngineCall call{};
     int runs = 0;
@@ -134,7 +134,7 @@ struct AnEngineCall : Press {
     }
 };
 
-TEST_F(AnEngineCall, that_was_withdrawn_in_time_does_nothing_and_may_be_posted_anew) {
+TEST_F(AnEngineCall, does_nothing_when_withdrawn_in_time_and_can_be_posted_again) {
     for (int i = 0; i < 3; ++i) {
         post(false);
         EXPECT_FALSE(call.is_over());
@@ -148,7 +148,7 @@ TEST_F(AnEngineCall, that_was_withdrawn_in_time_does_nothing_and_may_be_posted_a
     EXPECT_TRUE(call.is_over());
 }
 
-TEST_F(AnEngineCall, that_was_withdrawn_too_late_was_done_and_stays_over) {
+TEST_F(AnEngineCall, stays_complete_when_withdrawn_too_late) {
     post(false);
     run(10ms);
     EXPECT_EQ(runs, 1);
@@ -156,7 +156,7 @@ TEST_F(AnEngineCall, that_was_withdrawn_too_late_was_done_and_stays_over) {
     EXPECT_TRUE(call.is_over());
 }
 
-TEST_F(AnEngineCall, that_is_withdrawn_while_it_runs_is_done_and_over) {
+TEST_F(AnEngineCall, completes_when_withdrawn_while_it_runs) {
     post(true);
     run(10ms);
     EXPECT_EQ(runs, 1);

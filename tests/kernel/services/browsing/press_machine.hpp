@@ -1,4 +1,4 @@
-// A small machine with a browser service: a ram that goes where it is told, and the table that limits it.
+// A small machine with a browser service: a ram that moves to its target, and the table that limits it.
 #pragma once
 
 #include "kernel/machine/accept.hpp"
@@ -9,7 +9,7 @@
 
 namespace tappet::press {
 
-/// Moves to where it is told; what it may do, it says.
+/// Moves to its target; its interface states the role for each facet.
 struct Ram {
     Output<double> place;
     Input<double> limit;
@@ -19,7 +19,7 @@ struct Ram {
     double target = 0;
     std::int64_t strokes = 0;
     int let_goes = 0;
-    double limit_at_stop = -1; ///< what it read when it left its safe value
+    double limit_at_stop = -1; ///< the limit it read in its stop
 
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         const double now = place.last();
@@ -86,7 +86,7 @@ struct Table {
     }
 };
 
-/// What it is asked for blocks.
+/// Its operations block.
 struct Archive {
     int stored = 0;
     bool store(double) noexcept { return ::usleep(1), ++stored < 2; }

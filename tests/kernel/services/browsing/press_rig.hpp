@@ -1,4 +1,4 @@
-// Machines under virtual time that are browsed, the press above all, and a client that talks to them.
+// Machines in virtual time that are browsed, above all the press, and a client that talks to them.
 #pragma once
 
 #include "kernel/services/configuration/property_files.hpp"
@@ -21,7 +21,7 @@ public:
     explicit Talker(const std::string& path) : connection_{os::LocalConnection::connect(path.c_str())} {
         EXPECT_TRUE(connection_) << "cannot connect";
     }
-    /// As somebody else, which only root can.
+    /// As another user, which only root can do.
     Talker(const std::string& path, uid_t user) : connection_{connect_as(user, path)} {
         EXPECT_TRUE(connection_) << "cannot connect";
     }
@@ -38,7 +38,7 @@ public:
         room.resize(received.bytes);
         return room;
     }
-    /// All that wait.
+    /// All waiting packets.
     std::string receive_all() {
         std::string all;
         for (std::string each = receive(); !each.empty(); each = receive()) all += each;
@@ -62,7 +62,7 @@ private:
     Connected connection_;
 };
 
-/// A machine that is browsed.
+/// A machine with a browser.
 template <const auto& of_table> class Browsed : public testing::Test, protected PlacedRig<of_table, board> {
 protected:
     std::string directory = testing::TempDir() + "tappet-browsed-" + std::to_string(getpid());
@@ -81,12 +81,12 @@ protected:
         std::filesystem::remove_all(directory);
     }
     std::string path() const { return directory + "/" + std::string{of_table.view().name} + ".socket"; }
-    /// Who asks where the test names nobody; connected when it is wanted.
+    /// The client of requests for which a test names none; connected on first use.
     Talker& talker() {
         if (!talker_) talker_.emplace(path());
         return *talker_;
     }
-    /// What comes first within the time.
+    /// The first packet within the time.
     std::string next(Talker& to, Duration time = 200ms) {
         std::string answer;
         for (const Time end = this->clock.now() + time; answer.empty() && this->clock.now() < end;) {
@@ -100,7 +100,7 @@ protected:
         return next(who, time);
     }
     std::string ask(std::string_view request, Duration time = 100ms) { return ask(talker(), request, time); }
-    /// As of a thread that does not come; it starts again by start().
+    /// Simulates a thread that never returns; start() starts it again.
     Engine& hang(std::size_t activity) {
         Engine& engine = this->instance.engines()[activity];
         engine.stop(this->clock.now());

@@ -1,5 +1,5 @@
-// The requests of a browser (thesis 4.8): whatever a component's interface offers can be reached from
-// outside, is done by the component's own engine, and what is wrong is refused with the cure.
+// The requests of a browser (thesis 4.8): every facet of a component's interface is accessible from outside,
+// the component's own engine executes the request, and a faulty one is refused with the cure.
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include "kernel/machine/map/view.hpp"
@@ -7,14 +7,14 @@
 namespace tappet::press {
 namespace {
 
-TEST_F(Press, hello_tells_the_machine_and_who_the_client_is_to_it) {
+TEST_F(Press, hello_reports_the_machine_and_the_role_of_the_client) {
     const std::string answer = ask("7 hello");
     for (const char* part : {R"("id": 7)", R"("ok": true)", R"("machine": "press")", R"("role": "engineer")",
                              R"("protocol": 1)", R"("board": "test")"})
         EXPECT_TRUE(has(answer, part));
 }
 
-TEST_F(Press, map_hands_out_the_memory_read_only) {
+TEST_F(Press, map_provides_the_memory_read_only) {
     ASSERT_TRUE(talker().send("1 map"));
     run(40ms);
     int descriptor = -1;
@@ -28,7 +28,7 @@ TEST_F(Press, map_hands_out_the_memory_read_only) {
     os::unmap(block);
 }
 
-TEST_F(Press, get_reads_ports_and_properties_with_what_is_known_of_them) {
+TEST_F(Press, get_reads_ports_and_properties_with_their_state) {
     EXPECT_EQ(ask("1 get ram.speed"),
               "{\"id\": 1, \"ok\": true, \"values\": [{\"name\": \"ram.speed\", \"value\": 1}]}\n");
     const std::string answer = ask("2 get ram.limit table.height");
@@ -37,7 +37,7 @@ TEST_F(Press, get_reads_ports_and_properties_with_what_is_known_of_them) {
     EXPECT_TRUE(has(ask("3 get browser.clients"), R"("value": 1)"));
 }
 
-TEST_F(Press, set_changes_several_properties_as_one) {
+TEST_F(Press, set_changes_several_properties_in_one_transaction) {
     EXPECT_TRUE(has(ask("1 set ram.speed 2.5 ram.force 40"), R"("set": 2)"));
     EXPECT_EQ(ram().speed.get(), 2.5);
     EXPECT_EQ(ram().force.get(), 40);
@@ -55,7 +55,7 @@ TEST_F(Press, set_changes_nothing_when_one_value_is_wrong) {
         << "the component's own words";
 }
 
-TEST_F(Press, a_forced_output_shows_everywhere_and_is_released_again) {
+TEST_F(Press, a_forced_output_is_visible_everywhere_and_can_be_released) {
     EXPECT_TRUE(has(ask("1 force table.height 30"), R"("ok": true)"));
     run(50ms);
     EXPECT_EQ(ram().limit.get(), 30.0);
@@ -71,7 +71,7 @@ TEST_F(Press, a_forced_output_shows_everywhere_and_is_released_again) {
     EXPECT_TRUE(has(ask("6 forced"), R"("forced": [])"));
 }
 
-TEST_F(Press, a_forced_input_is_what_its_component_reads) {
+TEST_F(Press, a_component_reads_its_forced_input) {
     EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
     EXPECT_EQ(ram().limit.get(), 5.0);
     EXPECT_EQ(the<Table>("table").height.last(), 50.0);
@@ -80,7 +80,7 @@ TEST_F(Press, a_forced_input_is_what_its_component_reads) {
     EXPECT_EQ(ram().limit.get(), 50.0);
 }
 
-TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_it_and_its_safe_value_flows) {
+TEST_F(Press, a_component_stop_ends_forces_on_it_and_publishes_its_safe_value) {
     EXPECT_TRUE(has(ask("1 force ram.place 33"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("2 force ram.limit 5"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("3 stop ram"), R"("ok": true)"));
@@ -90,7 +90,7 @@ TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_it_and_its_safe_valu
     EXPECT_TRUE(has(ask("5 forced"), R"("forced": [])"));
 }
 
-TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_those_that_read_it) {
+TEST_F(Press, a_component_stop_ends_forces_at_its_readers) {
     EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("2 stop table"), R"("ok": true)"));
     run(20ms);
@@ -102,7 +102,7 @@ TEST_F(Press, a_component_that_stops_ends_what_is_forced_of_those_that_read_it) 
     EXPECT_EQ(ram().limit.get(), 50.0);
 }
 
-TEST_F(Press, a_stop_that_no_browser_asked_for_ends_what_is_forced_of_those_that_read_it) {
+TEST_F(Press, an_unrequested_stop_ends_forces_at_its_readers) {
     const std::size_t table = find_component(instance.machine().table, "table");
     for (const LifeChange change : {LifeChange::stop, LifeChange::restart}) {
         EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
@@ -115,7 +115,7 @@ TEST_F(Press, a_stop_that_no_browser_asked_for_ends_what_is_forced_of_those_that
     }
 }
 
-TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_although_the_browsers_activity_stands) {
+TEST_F(Press, a_force_at_the_reader_ends_at_a_stop_without_the_browser) {
     EXPECT_TRUE(has(ask("1 force ram.limit 5"), R"("ok": true)"));
     static_cast<void>(world.change_activity(
         instance.machine().index.activity[find_component(instance.machine().table, "browser")],
@@ -127,7 +127,7 @@ TEST_F(Press, who_reads_a_forced_value_lets_go_at_a_stop_although_the_browsers_a
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
-TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had_stopped_before) {
+TEST_F(Press, a_machine_stop_ends_forces_of_already_stopped_components_too) {
     EXPECT_TRUE(has(ask("1 force ram.place 33"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("2 force ram.limit 5"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("3 force table.height 7"), R"("ok": true)"));
@@ -142,14 +142,14 @@ TEST_F(Press, the_machines_stop_ends_what_is_forced_also_of_a_component_that_had
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
-TEST_F(Press, what_cannot_be_forced_is_refused_with_the_reason) {
+TEST_F(Press, an_impossible_force_is_refused_with_the_reason) {
     EXPECT_TRUE(has(ask("1 force table.parts 3"), "is a buffered port"));
     EXPECT_TRUE(has(ask("2 force ram.speed 3"), "is a property, not an input or an output"));
     EXPECT_TRUE(has(ask("3 force ram.limit far"), R"("code": "bad_value")"));
     EXPECT_EQ(instance.observation().forced_ports().load(), 0u);
 }
 
-TEST_F(Press, a_method_is_called_in_its_components_engine_and_gives_its_result) {
+TEST_F(Press, a_method_runs_in_its_components_engine_and_returns_its_result) {
     EXPECT_TRUE(has(ask("1 call ram.distance 8"), R"("result": 8)"));
     EXPECT_TRUE(has(ask("2 call ram.halt"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("3 call ram.distance"), "takes 1 arguments"));
@@ -157,7 +157,7 @@ TEST_F(Press, a_method_is_called_in_its_components_engine_and_gives_its_result) 
     EXPECT_TRUE(has(ask("5 call ram.move_to 3"), "is a command"));
 }
 
-TEST_F(Press, a_command_is_followed_to_its_end) {
+TEST_F(Press, a_command_is_monitored_until_it_ends) {
     EXPECT_TRUE(has(ask("1 send ram.move_to 40"), R"("ok": true, "state": "sent")"));
     std::vector<std::string> packets;
     for (int i = 0; i < 20; ++i) {
@@ -172,7 +172,7 @@ TEST_F(Press, a_command_is_followed_to_its_end) {
     EXPECT_EQ(ram().place.last(), 40.0);
 }
 
-TEST_F(Press, a_command_that_is_rejected_says_so) {
+TEST_F(Press, a_rejected_command_is_reported) {
     EXPECT_TRUE(has(ask("1 send ram.move_to 51"), R"("state": "sent")"));
     run(50ms);
     const std::string packet = talker().receive();
@@ -180,7 +180,7 @@ TEST_F(Press, a_command_that_is_rejected_says_so) {
     EXPECT_TRUE(has(packet, R"("final": true)"));
 }
 
-TEST_F(Press, a_component_is_stopped_and_started_while_the_rest_runs) {
+TEST_F(Press, a_component_can_be_restarted_while_others_run) {
     EXPECT_TRUE(has(ask("1 stop ram"), R"("ok": true)"));
     EXPECT_EQ(instance.life().state_of(0), ComponentState::stopped);
     EXPECT_EQ(instance.life().state_of(1), ComponentState::running);
@@ -190,7 +190,7 @@ TEST_F(Press, a_component_is_stopped_and_started_while_the_rest_runs) {
     EXPECT_TRUE(has(ask("4 restart ram"), R"("ok": true)"));
 }
 
-TEST_F(Press, an_event_is_told_to_whoever_subscribed_until_it_unsubscribes) {
+TEST_F(Press, an_event_is_reported_to_its_subscribers) {
     Talker other{path()};
     EXPECT_TRUE(has(ask("5 subscribe ram.arrived"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("6 subscribe ram.arrived"), "subscribed to already"));
@@ -207,7 +207,7 @@ TEST_F(Press, an_event_is_told_to_whoever_subscribed_until_it_unsubscribes) {
     EXPECT_EQ(talker().receive(), "");
 }
 
-TEST_F(Press, an_event_of_large_arguments_is_told_too_and_of_too_large_ones_refused) {
+TEST_F(Press, an_event_with_large_arguments_is_reported_unless_too_large) {
     EXPECT_TRUE(has(ask("1 subscribe table.pictured"), "more than the 512 that browsers are told"));
     EXPECT_TRUE(has(ask("2 subscribe table.scanned"), R"("ok": true)"));
     the<Table>("table").scanned.emit({1, 2, 3, 4, 5, 6, 7});
@@ -217,11 +217,11 @@ TEST_F(Press, an_event_of_large_arguments_is_told_too_and_of_too_large_ones_refu
     EXPECT_TRUE(has(talker().receive(), R"("arguments": [[7, 6, 5, 4, 3, 2, 1]])"));
 }
 
-TEST_F(Press, a_refusal_is_utf_8_whatever_was_asked) {
+TEST_F(Press, a_refusal_is_valid_utf_8_for_any_request) {
     EXPECT_TRUE(has(ask("1 get caf\xc3\xa9\xff.x"), "caf\xc3\xa9?\\\""));
 }
 
-TEST_F(Press, the_log_tells_of_what_was_accepted_and_is_not_done) {
+TEST_F(Press, the_log_shows_accepted_requests_that_failed_later) {
     the<BrowserService>("browser").log.set(true);
     testing::internal::CaptureStdout();
     ask("1 stop table");
@@ -234,20 +234,20 @@ TEST_F(Press, the_log_tells_of_what_was_accepted_and_is_not_done) {
     EXPECT_TRUE(has(log, "browser: not done (rejected) at "));
 }
 
-TEST_F(Press, what_may_block_is_called_and_sent_where_no_deadline_is) {
+TEST_F(Press, a_blocking_operation_runs_only_in_an_activity_without_deadline) {
     EXPECT_TRUE(talker().send("1 send archive.store 1"));
     run(100ms);
     const std::string told = talker().receive_all();
     EXPECT_TRUE(has(told, R"("state": "done")"));
     EXPECT_TRUE(has(ask("2 call archive.count"), R"("result": 1)"));
-    for (const char* call : {"3 call ram.weigh 30", "4 call ram.survey"}) { // also one that is any_thread
+    for (const char* call : {"3 call ram.weigh 30", "4 call ram.survey"}) { // also an any_thread one
         const std::string refused = ask(call);
         EXPECT_TRUE(has(refused, R"("code": "unsupported")"));
         EXPECT_TRUE(has(refused, "may block, and activity \\\"motion\\\" of its component is real-time"));
     }
 }
 
-TEST_F(Press, a_force_and_its_end_are_heeded_by_who_rests) {
+TEST_F(Press, a_force_and_its_end_wake_a_sleeping_reader) {
     const Lamp& lamp = the<Lamp>("lamp");
     EXPECT_TRUE(has(ask("1 force lamp.wanted true"), R"("ok": true)"));
     EXPECT_TRUE(lamp.lit);
@@ -255,7 +255,7 @@ TEST_F(Press, a_force_and_its_end_are_heeded_by_who_rests) {
     EXPECT_FALSE(lamp.lit);
 }
 
-TEST_F(Press, whoever_subscribed_is_told_what_came_while_the_browser_stood) {
+TEST_F(Press, a_subscriber_receives_events_emitted_while_the_browser_was_stopped) {
     EXPECT_TRUE(has(ask("1 subscribe ram.arrived"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("2 send ram.move_to 20"), R"("state": "sent")"));
     const std::size_t browser = find_component(instance.machine().table, "browser");
@@ -272,7 +272,7 @@ TEST_F(Press, whoever_subscribed_is_told_what_came_while_the_browser_stood) {
     EXPECT_FALSE(has(told, R"("arguments": [20])")) << told;
 }
 
-TEST_F(Press, an_event_stays_subscribed_while_anybody_wants_it) {
+TEST_F(Press, an_event_stays_subscribed_until_the_last_client_leaves) {
     Talker stays{path()};
     Talker leaves{path()};
     EXPECT_TRUE(has(ask(stays, "1 subscribe ram.arrived"), R"("ok": true)"));
@@ -293,14 +293,14 @@ TEST_F(Press, the_browser_does_not_stop_itself) {
     EXPECT_TRUE(has(ask("2 stop activity:browser"), R"("code": "unsupported")"));
 }
 
-TEST_F(Press, an_activity_is_stopped_and_started_and_meanwhile_nothing_of_it_is_changed) {
+TEST_F(Press, an_activity_can_be_restarted_and_is_unchangeable_while_stopped) {
     EXPECT_TRUE(has(ask("1 stop slow"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("2 force table.height 3"), "is stopped"));
     EXPECT_TRUE(has(ask("3 start activity:slow"), R"("ok": true)"));
     EXPECT_TRUE(has(ask("4 force table.height 3"), R"("ok": true)"));
 }
 
-TEST_F(Press, names_that_are_wrong_lead_to_the_right_ones) {
+TEST_F(Press, wrong_names_are_refused_with_the_right_ones) {
     EXPECT_TRUE(has(ask("1 get ram.sped"), R"(did you mean \"speed\"?)"));
     EXPECT_TRUE(has(ask("2 get rum.speed"), R"(did you mean \"ram\"?)"));
     EXPECT_TRUE(has(ask("3 get speed"), R"(write \"component.facet\")"));
@@ -308,7 +308,7 @@ TEST_F(Press, names_that_are_wrong_lead_to_the_right_ones) {
     EXPECT_TRUE(has(ask("5 stop motoin"), R"(did you mean \"motion\"?)"));
 }
 
-TEST_F(Press, what_is_no_request_is_refused_and_the_next_is_served) {
+TEST_F(Press, an_invalid_request_is_refused_and_the_next_is_served) {
     for (const std::string& packet :
          {std::string{"hello"}, std::string{"1"}, std::string{"-1 hello"}, std::string{"99999999999 hello"},
           std::string{"1 get \"ram"}, std::string{"1 get [1, 2"}, std::string{"1 hello\x01"},

@@ -1,4 +1,4 @@
-// Events that are told to browsers: what one client asks for costs no other of a higher role its own.
+// Events sent to browsers: the subscriptions of one client cost no client of a higher role its events.
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@ namespace {
 
 using press::Talker;
 
-/// Much that happens all the time, and something that is rare.
+/// Frequent events, and a rare one.
 struct Ticker {
     Event<> a, b, c, d, e, f, g, h, i, j;
     Event<std::int64_t> alarm;
@@ -37,9 +37,9 @@ constexpr auto table = machine("ticking",
 
 using Subscriptions = press::Browsed<table>;
 
-TEST_F(Subscriptions, of_observers_cost_nobody_of_a_higher_role_an_event_and_count_in_nobodys_losses) {
+TEST_F(Subscriptions, of_observers_cost_higher_roles_no_events_and_no_counted_losses) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
-    /// How many it is told in two seconds, in which twenty come.
+    /// The number it receives in two seconds, in which twenty are emitted.
     const auto alarms_of = [&](Talker& who) {
         int told = 0;
         for (int i = 0; i < 100; ++i) {

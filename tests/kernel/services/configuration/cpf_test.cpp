@@ -1,5 +1,5 @@
-// Properties as CPF text (thesis 4.7.1): what is written is read to the same values, Orocos' own spelling is
-// understood, and nothing that is wrong passes.
+// Properties as CPF text (thesis 4.7.1): written values are read back unchanged, Orocos' own spelling is
+// understood, and every fault is refused.
 #include "kernel/services/configuration/cpf.hpp"
 
 #include "kernel/base/random.hpp"
@@ -51,7 +51,7 @@ struct Cpf : testing::Test {
     }
 };
 
-TEST_F(Cpf, file_as_orocos_writes_it_is_read) {
+TEST_F(Cpf, file_of_orocos_is_read) {
     ASSERT_EQ(read(R"(<?xml version="1.0" encoding="UTF-8"?>
 <!DOCTYPE properties SYSTEM "cpf.dtd">
 <properties>
@@ -90,7 +90,7 @@ TEST_F(Cpf, file_as_orocos_writes_it_is_read) {
     EXPECT_EQ(arm.offsets.get()[1], -0.5);
 }
 
-TEST_F(Cpf, times_and_enumerations_are_strings) {
+TEST_F(Cpf, times_and_enumerations_are_stored_as_strings) {
     take(R"(<simple name="filter" type="string"><value>5ms</value></simple>
             <simple name="side" type="string"><value>both</value></simple>
             <simple name="code" type="short"><value>-3</value></simple>)");
@@ -99,7 +99,7 @@ TEST_F(Cpf, times_and_enumerations_are_strings) {
     EXPECT_EQ(static_cast<int>(arm.code.get()), -3);
 }
 
-TEST_F(Cpf, vector_and_matrix_are_sequences_of_just_their_size) {
+TEST_F(Cpf, vector_and_matrix_are_sequences_of_their_exact_size) {
     take(R"(<sequence name="axis" type="double"><simple type="double"><value>1</value></simple>
               <simple type="double"><value>0</value></simple><simple type="double"><value>-1</value></simple>
             </sequence>
@@ -110,7 +110,7 @@ TEST_F(Cpf, vector_and_matrix_are_sequences_of_just_their_size) {
     EXPECT_EQ(arm.marks.get()[1].view(), "b c");
 }
 
-TEST_F(Cpf, text_keeps_its_blanks_and_numbers_lose_theirs) {
+TEST_F(Cpf, text_keeps_its_spaces_and_numbers_lose_theirs) {
     take("<simple name=\"label\" type=\"string\"><value> a <!-- not this -->b<![CDATA[<&>]]></value></simple>"
          "<simple name=\"steps\" type=\"long\"><value>\n  7  </value></simple>");
     EXPECT_EQ(arm.label.get().view(), " a b<&>");
@@ -121,12 +121,12 @@ TEST_F(Cpf, text_keeps_its_blanks_and_numbers_lose_theirs) {
     EXPECT_EQ(arm.label.get().view(), "");
 }
 
-TEST_F(Cpf, what_is_written_is_read_to_the_same_values) {
+TEST_F(Cpf, values_survive_writing_and_reading) {
     Random random{20261121};
     for (int round = 0; round < 200; ++round) {
         Arm from;
         const auto real = [&] {
-            // Any double there is, but the ones that are no number.
+            // Any finite double.
             double value = std::bit_cast<double>(random.next());
             return std::isnan(value) ? 1.0 : value;
         };
@@ -168,14 +168,14 @@ TEST_F(Cpf, what_is_written_is_read_to_the_same_values) {
     }
 }
 
-TEST_F(Cpf, what_does_not_fit_its_buffer_is_not_written_in_part) {
+TEST_F(Cpf, output_that_exceeds_its_buffer_is_not_written_in_part) {
     std::array<char, 1000> small{};
     Sentence fault;
     EXPECT_EQ(write(arm, small, fault), 0u);
     EXPECT_THAT(std::string{fault.view()}, HasSubstr("more than 1000 bytes"));
 }
 
-TEST_F(Cpf, text_that_no_file_keeps_is_not_written) {
+TEST_F(Cpf, text_that_cannot_be_stored_is_not_written) {
     Text<12> zero{"ab"};
     zero.characters[1] = '\0';
     arm.label.set(zero);
@@ -187,7 +187,7 @@ TEST_F(Cpf, text_that_no_file_keeps_is_not_written) {
 
 struct Wrong {
     const char* what;
-    std::string members; ///< in <properties>, which is line 1
+    std::string members; ///< content of <properties>, whose tag is line 1
     const char* said;
     int line = 2;
 };
@@ -210,9 +210,9 @@ const Wrong wrongs[]{
     {"unknown in a bag",
      "<struct name=\"gains\" type=\"\">\n<struct name=\"roll\" type=\"\">\n<simple name=\"k\" "
      "type=\"double\"><value>1</value></simple></struct></struct>",
-     "property \"gains.roll.k\", which the component has not", 4},
+     "property \"gains.roll.k\", which the component does not have", 4},
     {"unknown bag", "\n<struct name=\"gain\" type=\"PropertyBag\"/>", "did you mean \"gains\"?", 3},
-    {"a port", simple("angle", "double", "1"), "which the component has not"},
+    {"a port", simple("angle", "double", "1"), "which the component does not have"},
     {"dotted", simple("gains.all", "double", "1"), "a <struct> for each bag"},
     {"type", simple("scale", "string", "1"), "write type=\"float\""},
     {"no type", R"(<simple name="scale"><value>1</value></simple>)", "write type=\"float\""},
@@ -255,12 +255,12 @@ const Wrong wrongs[]{
     {"two values", R"(<simple name="steps" type="long"><value>1</value><value>2</value></simple>)",
      "one <value>"},
     {"element in a value", R"(<simple name="steps" type="long"><value>1<b/></value></simple>)",
-     "no plain text"},
+     "not plain text"},
     {"foreign element", "<tuple/>", "has <tuple>"},
     {"loose text", "\nsteps = 1", "text where a property belongs", 3},
     {"text in a simple", R"(<simple name="steps" type="long">1<value>1</value></simple>)", "remove it"},
     {"in a sequence", R"(<sequence name="offsets" type="double"><struct name="x" type=""/></sequence>)",
-     "that is no <simple>"},
+     "that is not a <simple>"},
     {"entity", simple("label", "string", "&me;"), "write &amp;"},
     {"loose ampersand", simple("label", "string", "a & b"), "write &amp;"},
     {"number of no character", simple("label", "string", "&#0;"), "write &amp;"},
@@ -280,16 +280,16 @@ TEST_F(Cpf, malformed_file_is_an_error_with_its_line) {
     EXPECT_THAT(read(""), HasSubstr("has no <properties> element"));
     EXPECT_THAT(read("  \n"), HasSubstr("has no <properties> element"));
     EXPECT_THAT(read("<properties/>\n<properties/>"),
-                AllOf(StartsWith("arm.cpf:2: "), HasSubstr("stands beside")));
-    EXPECT_THAT(read("stray <properties/>"), HasSubstr("stands beside <properties>"));
-    EXPECT_THAT(read("<Properties/>"), HasSubstr("stands beside <properties>"));
+                AllOf(StartsWith("arm.cpf:2: "), HasSubstr("is outside of")));
+    EXPECT_THAT(read("stray <properties/>"), HasSubstr("is outside of <properties>"));
+    EXPECT_THAT(read("<Properties/>"), HasSubstr("is outside of <properties>"));
     EXPECT_THAT(read(std::string_view{"<properties/>\n\0 more", 20}),
                 AllOf(StartsWith("arm.cpf:2: "), HasSubstr("zero byte")));
     EXPECT_THAT(read("<properties version=\"2\"/>"), HasSubstr("attribute"));
     EXPECT_EQ(read("<properties/>"), "");
 }
 
-TEST_F(Cpf, malformed_file_may_be_cut_anywhere_and_is_refused) {
+TEST_F(Cpf, malformed_file_is_refused_wherever_it_is_cut) {
     const std::string whole = write(arm);
     const std::size_t end = whole.rfind('>');
     for (std::size_t length = 0; length < end; ++length)
@@ -297,11 +297,11 @@ TEST_F(Cpf, malformed_file_may_be_cut_anywhere_and_is_refused) {
     EXPECT_EQ(read(whole.substr(0, end + 1)), "");
 }
 
-TEST_F(Cpf, file_larger_than_any_of_ours_is_refused_unread) {
+TEST_F(Cpf, file_above_the_size_limit_is_refused_unread) {
     EXPECT_THAT(read(std::string(max_cpf_bytes + 1, ' ')), HasSubstr("more than 65536 bytes"));
 }
 
-TEST_F(Cpf, nesting_without_end_is_refused_without_harm) {
+TEST_F(Cpf, nesting_without_end_is_refused_safely) {
     std::string deep = "<properties>";
     for (int i = 0; i < 4000; ++i) deep += "<struct name=\"gains\" type=\"\">";
     EXPECT_NE(read(deep), "");

@@ -1,5 +1,5 @@
-// A machine whose components have their properties in files (thesis 4.7.1): read while it is configured, so
-// that a wrong one keeps it from arming; changed while it runs; saved while it runs and when it has stopped.
+// A machine with property files (thesis 4.7.1): read while it is configured, so that a wrong file prevents
+// arming; changed while it runs; saved while it runs and after it has stopped.
 #include "kernel/services/configuration/property_files.hpp"
 
 #include "kernel/services/configuration/property_saving.hpp"
@@ -31,7 +31,7 @@ struct Band {
     }
 };
 
-/// Its band must stay in order; it counts how often it saw one that was not.
+/// Its band must stay in order; it counts how often it was not.
 struct Tension {
     Band band;
     Property<double> gain{1.0}, offset{0.0};
@@ -129,7 +129,7 @@ struct PropertyFilesOfAMachine : testing::Test, PlacedRig<table> {
     }
 };
 
-TEST_F(PropertyFilesOfAMachine, are_read_before_configure_and_go_before_the_row) {
+TEST_F(PropertyFilesOfAMachine, are_read_before_configure_and_override_the_row) {
     put("warp.cpf", cpf(real("gain", "3.5") + band(real("low", "100") + real("high", "200"))));
     ASSERT_EQ(configure(), "");
     EXPECT_EQ(tension("warp").gain_when_configured, 3.5);
@@ -139,19 +139,19 @@ TEST_F(PropertyFilesOfAMachine, are_read_before_configure_and_go_before_the_row)
     EXPECT_EQ(tension("edge").band.low.get(), 15.0);
 }
 
-TEST_F(PropertyFilesOfAMachine, leave_to_the_row_what_they_do_not_say) {
+TEST_F(PropertyFilesOfAMachine, leave_unmentioned_properties_to_the_row) {
     put("warp.cpf", cpf(""));
     ASSERT_EQ(configure(), "");
     EXPECT_EQ(tension("warp").gain.get(), 2.0);
 }
 
-TEST_F(PropertyFilesOfAMachine, may_be_missing_only_where_the_row_says_so) {
+TEST_F(PropertyFilesOfAMachine, may_be_missing_only_where_the_row_allows_it) {
     const std::string said = configure();
     EXPECT_THAT(said, AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\""),
                             HasSubstr("is missing"), HasSubstr("--properties")));
 }
 
-TEST_F(PropertyFilesOfAMachine, keep_it_from_arming_when_they_are_wrong) {
+TEST_F(PropertyFilesOfAMachine, prevent_arming_when_they_are_invalid) {
     put("warp.cpf", cpf("\n" + real("gian", "3.5")));
     EXPECT_THAT(configure(), AllOf(StartsWith(directory_name + "/warp.cpf:3: component \"warp\": "),
                                    HasSubstr("did you mean \"gain\"?")));
@@ -165,13 +165,13 @@ TEST_F(PropertyFilesOfAMachine, keep_it_from_arming_when_they_are_wrong) {
         << "one that may be missing may not be wrong";
 }
 
-TEST_F(PropertyFilesOfAMachine, that_the_component_refuses_keep_it_from_arming) {
+TEST_F(PropertyFilesOfAMachine, prevent_arming_when_the_component_rejects_them) {
     put("warp.cpf", cpf(band(real("low", "30"))));
     EXPECT_THAT(configure(), AllOf(StartsWith("component \"warp\" refuses its properties"),
                                    HasSubstr("warp.cpf"), HasSubstr("band.low is not under band.high")));
 }
 
-TEST_F(PropertyFilesOfAMachine, are_not_forgotten_by_a_start_up_that_reads_none) {
+TEST_F(PropertyFilesOfAMachine, are_required_even_in_a_start_up_that_reads_none) {
     instance.read_properties_from({});
     EXPECT_THAT(configure(), HasSubstr("this start-up reads none"));
 }
@@ -190,14 +190,14 @@ TEST_F(PropertyFilesOfAMachine, need_a_directory_unless_all_are_optional) {
                 HasSubstr("there is no directory"));
 }
 
-TEST(PropertiesOfARow, are_validated_by_their_component_too) {
+TEST(PropertiesOfARow, are_validated_by_their_component) {
     const auto configured = PlacedRig<refused_table>{}.instance.configure({});
     ASSERT_FALSE(configured);
     EXPECT_THAT(std::string{configured.error().view()},
                 HasSubstr("component \"edge\" refuses its properties: band.low"));
 }
 
-TEST_F(PropertyFilesOfAMachine, are_replaced_when_the_machine_stands_still_again) {
+TEST_F(PropertyFilesOfAMachine, are_replaced_after_the_machine_has_stopped) {
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
     tension("warp").gain.set(4.5);
@@ -209,37 +209,37 @@ TEST_F(PropertyFilesOfAMachine, are_replaced_when_the_machine_stands_still_again
     EXPECT_EQ(tension("warp").gain_when_configured, 4.5);
 }
 
-TEST_F(PropertyFilesOfAMachine, stand_as_they_were_when_they_cannot_be_replaced) {
+TEST_F(PropertyFilesOfAMachine, stay_unchanged_when_they_cannot_be_replaced) {
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
-    std::filesystem::create_directory(directory / "warp.cpf.new"); // where the new one would be written
+    std::filesystem::create_directory(directory / "warp.cpf.new"); // the path of the new file
     const std::string said{instance.save_properties(instance.standing()).view()};
     EXPECT_THAT(said, AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\""),
-                            HasSubstr("the old file stands")));
+                            HasSubstr("the old file remains")));
     EXPECT_THAT(get("warp.cpf"), HasSubstr("3.5"));
     EXPECT_TRUE(there("weft.cpf")) << "the others are saved all the same";
 }
 
-TEST_F(PropertyFilesOfAMachine, keep_what_they_had_when_a_component_set_what_reading_would_refuse) {
+TEST_F(PropertyFilesOfAMachine, keep_their_content_when_a_value_could_not_be_read_back) {
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
     const auto saved = [this] { return std::string{instance.save_properties(instance.standing()).view()}; };
-    tension("warp").gain.set(10.5); // nobody looks at what a component gives itself
+    tension("warp").gain.set(10.5); // a component's own changes are not validated
     EXPECT_THAT(saved(),
                 AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\": property \"gain\""),
-                      HasSubstr("over its greatest value 10"), HasSubstr("the old file stands")));
+                      HasSubstr("over its greatest value 10"), HasSubstr("the old file remains")));
     EXPECT_TRUE(there("weft.cpf")) << "the others are saved all the same";
     tension("warp").gain.set(std::numeric_limits<double>::quiet_NaN());
-    EXPECT_THAT(saved(), HasSubstr("is no number"));
+    EXPECT_THAT(saved(), HasSubstr("is not a finite number"));
     tension("warp").gain.set(4.0);
     tension("warp").offset.set(std::numeric_limits<double>::infinity());
-    EXPECT_THAT(saved(), AllOf(HasSubstr("property \"offset\": is no number; propose a finite one"),
-                               HasSubstr("the old file stands")))
+    EXPECT_THAT(saved(), AllOf(HasSubstr("property \"offset\": is not a finite number; propose a finite one"),
+                               HasSubstr("the old file remains")))
         << "the next start would refuse it, also where no range is declared";
     tension("warp").offset.set(0.0);
     tension("warp").band.low.set(30.0);
     EXPECT_THAT(saved(),
-                AllOf(HasSubstr("band.low is not under band.high"), HasSubstr("the old file stands")))
+                AllOf(HasSubstr("band.low is not under band.high"), HasSubstr("the old file remains")))
         << "what the component itself would refuse";
     EXPECT_THAT(get("warp.cpf"), HasSubstr("3.5"));
     EXPECT_EQ(configure(), "") << "the next start reads it";
@@ -257,7 +257,7 @@ struct PropertyFilesOfAnotherVersion : PropertyFilesOfAMachine {
     }
 };
 
-TEST_F(PropertyFilesOfAnotherVersion, go_before_its_own_as_far_as_they_fit) {
+TEST_F(PropertyFilesOfAnotherVersion, override_its_own_as_far_as_they_fit) {
     put("warp.cpf", cpf(real("gain", "3.5") + band(real("low", "100") + real("high", "200"))));
     put("older/warp.cpf", cpf(real("gain", "4.5") + "\n" + real("speed", "7") + "\n" +
                               band(real("low", "-3") + "\n" + real("high", "300"))));
@@ -271,14 +271,14 @@ TEST_F(PropertyFilesOfAnotherVersion, go_before_its_own_as_far_as_they_fit) {
     EXPECT_THAT(left_out[1], AllOf(HasSubstr("older/warp.cpf:4"), HasSubstr("under its least value 0")));
 }
 
-TEST_F(PropertyFilesOfAnotherVersion, leave_to_the_row_what_does_not_fit) {
+TEST_F(PropertyFilesOfAnotherVersion, leave_to_the_row_properties_that_do_not_fit) {
     put("older/warp.cpf", cpf("<simple name=\"gain\" type=\"string\"><value>much</value></simple>"));
     ASSERT_EQ(configure(), "");
     EXPECT_EQ(tension("warp").gain.get(), 2.0);
     EXPECT_EQ(left_out.size(), 1u);
 }
 
-TEST_F(PropertyFilesOfAnotherVersion, are_saved_beside_and_stay_as_they_are) {
+TEST_F(PropertyFilesOfAnotherVersion, stay_unchanged_and_are_saved_to_new_files) {
     const std::string text = cpf(real("gain", "4.5") + real("speed", "7"));
     put("older/warp.cpf", text);
     ASSERT_EQ(configure(), "");
@@ -287,8 +287,7 @@ TEST_F(PropertyFilesOfAnotherVersion, are_saved_beside_and_stay_as_they_are) {
     EXPECT_EQ(get("older/warp.cpf"), text);
 }
 
-TEST_F(PropertyFilesOfAnotherVersion,
-       are_wrong_when_they_are_no_properties_and_missing_when_neither_is_there) {
+TEST_F(PropertyFilesOfAnotherVersion, are_faulty_when_malformed_and_missing_when_neither_exists) {
     put("older/warp.cpf", "<properties>");
     EXPECT_THAT(configure(), HasSubstr("malformed"));
     std::filesystem::remove(older + "/warp.cpf");
@@ -297,7 +296,7 @@ TEST_F(PropertyFilesOfAnotherVersion,
 
 using PropertyFilesOfAMachineDeathTest = PropertyFilesOfAMachine;
 
-TEST_F(PropertyFilesOfAMachineDeathTest, are_not_given_to_a_machine_that_is_configured) {
+TEST_F(PropertyFilesOfAMachineDeathTest, cannot_be_set_after_configuration) {
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
     EXPECT_DEATH(instance.read_properties_from(files->store()), "contract 108 wrong-phase");
@@ -318,7 +317,7 @@ struct PropertiesOfARunningMachine : PropertyFilesOfAMachine {
     }
 };
 
-TEST_F(PropertiesOfARunningMachine, are_not_saved_as_those_of_one_that_stands) {
+TEST_F(PropertiesOfARunningMachine, cannot_be_saved_like_those_of_a_stopped_one) {
     EXPECT_FALSE(instance.standing());
     EXPECT_THAT(std::string{instance.save_properties(instance.standing()).view()}, HasSubstr("not saved"));
     world.stop();
@@ -341,7 +340,7 @@ TEST_F(PropertiesOfARunningMachine, change_together_between_two_steps) {
     EXPECT_FALSE(tension("warp").changed_in_a_step);
 }
 
-TEST_F(PropertiesOfARunningMachine, are_not_saved_while_one_is_out_of_its_range) {
+TEST_F(PropertiesOfARunningMachine, are_not_saved_while_one_is_out_of_range) {
     tension("warp").gain.set(-1.0);
     PropertySaving& saving = saved();
     EXPECT_EQ(saving.saved(), 1u);
@@ -350,7 +349,7 @@ TEST_F(PropertiesOfARunningMachine, are_not_saved_while_one_is_out_of_its_range)
     EXPECT_EQ(get("warp.cpf"), cpf(""));
 }
 
-TEST_F(PropertiesOfARunningMachine, are_saved_while_it_runs) {
+TEST_F(PropertiesOfARunningMachine, can_be_saved_while_it_runs) {
     tension("warp").gain.set(6.25);
     PropertySaving& saving = saved();
     EXPECT_FALSE(saving.busy());

@@ -1,4 +1,4 @@
-// The press with an interpreter: a gauge that has whatever a line may meet, and a panel that sends lines.
+// The press with an interpreter: a gauge with every kind of facet for a line, and a panel that sends lines.
 #pragma once
 
 #include "kernel/services/interpreter/command_interpreter.hpp"
@@ -6,7 +6,7 @@
 
 namespace tappet::press {
 
-/// Everything that a line may meet.
+/// Every kind of facet that a line may use.
 struct Gauge {
     Input<double> height;
     Output<double> force;

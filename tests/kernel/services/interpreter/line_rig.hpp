@@ -1,4 +1,4 @@
-// The press with an interpreter under virtual time, and somebody who types lines.
+// The press with an interpreter in virtual time, and a client that types lines.
 #pragma once
 
 #include "tests/kernel/services/browsing/press_rig.hpp"
@@ -10,7 +10,7 @@ namespace tappet::press {
 
 class Lines : public Browsed<line_table> {
 protected:
-    /// How a line ended; the refusal of one that was not begun.
+    /// The end of a line, or its refusal.
     std::string execute(std::string_view line) {
         std::string first = ask(request(line));
         return first.find(R"("state": "sent")") == std::string::npos ? first : next(talker());
@@ -24,12 +24,12 @@ protected:
     }
     Ram& ram() { return the<Ram>("ram"); }
     void look(Talker& who) { static_cast<void>(who.send(request("1 + 1"))); }
-    /// Beside one who looks at values all the time, and answers each answer with the next question.
+    /// Runs beside an observer that answers each reply with its next request.
     void run_beside(Talker& observer, Duration time) {
         run(time);
         while (!observer.receive().empty()) look(observer);
     }
-    /// A peer has the gauge zeroed; its line is broken off when it waits, which is told.
+    /// A peer lets the gauge be zeroed; its line is aborted if it waits. Returns whether it was aborted.
     template <class Then> bool breaks_off(Panel& peer, Talker& observer, const Then& then) {
         const std::int64_t zeroed = gauge().zeroed;
         peer.wanted = peer.line.assign("do gauge.zero()");

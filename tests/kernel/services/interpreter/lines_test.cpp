@@ -1,5 +1,5 @@
-// A line of the script language in a running machine (thesis 3.3, 3.4.6): an expression is answered and
-// changes nothing, statements do what their asker's role allows, commands are followed to their ends.
+// A line of the script language in a running machine (thesis 3.3, 3.4.6): an expression is evaluated and
+// changes nothing, statements do what their client's role allows, commands are monitored to their ends.
 #include "tests/kernel/services/interpreter/line_rig.hpp"
 
 namespace tappet::press {
@@ -18,7 +18,7 @@ testing::Matcher<std::string> has_failed(std::string_view why) {
     return AllOf(HasSubstr(R"("line": "failed")"), HasSubstr(why));
 }
 
-TEST_F(Lines, an_expression_is_answered_with_its_value) {
+TEST_F(Lines, evaluate_an_expression) {
     EXPECT_THAT(execute("1 + 2"), is_value("3"));
     EXPECT_THAT(execute("gauge.force * 2 + 1"), is_value("26"));
     EXPECT_THAT(execute("gauge.height;"), is_value("50"));
@@ -28,10 +28,10 @@ TEST_F(Lines, an_expression_is_answered_with_its_value) {
     EXPECT_THAT(execute("\"a \\\"text\\\"\""), is_value(R"("a \"text\"")"));
     EXPECT_THAT(execute("vector3(1, 2, 3) * 2.0"), is_value("[2, 4, 6]"));
     EXPECT_THAT(execute("table.height"), is_value("50")) << "of another activity than the last line";
-    EXPECT_THAT(execute("1 / (gauge.steps - 7)"), has_failed("line:1:1: its value could not be reckoned"));
+    EXPECT_THAT(execute("1 / (gauge.steps - 7)"), has_failed("line:1:1: its value could not be computed"));
 }
 
-TEST_F(Lines, what_a_line_reads_stays_fresh_for_its_component) {
+TEST_F(Lines, leave_the_values_they_read_fresh_for_the_component) {
     EXPECT_THAT(ask("1 stop gauge"), HasSubstr("\"ok\": true"));
     run(20ms);
     EXPECT_THAT(ask("2 stop table"), HasSubstr("\"ok\": true")) << "no fresher value comes";
@@ -41,7 +41,7 @@ TEST_F(Lines, what_a_line_reads_stays_fresh_for_its_component) {
     EXPECT_THAT(execute("gauge.height.fresh"), is_value("true"));
 }
 
-TEST_F(Lines, an_expression_changes_nothing) {
+TEST_F(Lines, change_nothing_with_an_expression) {
     EXPECT_THAT(
         execute("gauge.zero()"),
         HasSubstr(
@@ -51,7 +51,7 @@ TEST_F(Lines, an_expression_changes_nothing) {
     EXPECT_THAT(execute("var int n = gauge.zero()"), HasSubstr(R"("variables": {"n": 2})"));
 }
 
-TEST_F(Lines, a_command_is_followed_to_its_end_and_its_result_told) {
+TEST_F(Lines, monitor_a_command_to_its_end_and_report_its_result) {
     EXPECT_THAT(ask(request("var int stroke; do ram.move_to(20, stroke)")),
                 HasSubstr(R"("ok": true, "state": "sent")"));
     EXPECT_EQ(talker().receive(), "") << "it is on its way";
@@ -64,7 +64,7 @@ TEST_F(Lines, a_command_is_followed_to_its_end_and_its_result_told) {
                 has_failed(R"(line:1:12: \"ram.move_to\" had not ended in time)"));
 }
 
-TEST_F(Lines, a_command_goes_to_another_activity_than_the_values_that_it_is_given) {
+TEST_F(Lines, send_a_command_to_another_activity_than_its_arguments) {
     EXPECT_THAT(execute("var int n; do ram.move_to(table.height / 2, n)"), is_done());
     EXPECT_EQ(ram().place.last(), 25);
     EXPECT_THAT(execute("var int n; if table.height > 49 then do ram.move_to(gauge.force, n)"),
@@ -72,7 +72,7 @@ TEST_F(Lines, a_command_goes_to_another_activity_than_the_values_that_it_is_give
         << "values of two activities are not of one moment";
 }
 
-TEST_F(Lines, statements_wait_and_are_stepped_until_they_end) {
+TEST_F(Lines, execute_waiting_statements_step_by_step) {
     EXPECT_THAT(execute("var int n = 0; while n < 3 { set n = n + 1; yield; }"),
                 HasSubstr(R"("variables": {"n": 3})"));
     EXPECT_THAT(execute("var int sum = 0; for (var int i = 0; i < 100; i = i + 1) set sum = sum + i;"),
@@ -86,7 +86,7 @@ TEST_F(Lines, statements_wait_and_are_stepped_until_they_end) {
     EXPECT_THAT(execute("do gauge.lock(false)"), has_failed(R"(\"gauge.lock\" says no)"));
 }
 
-TEST_F(Lines, a_property_is_set_as_its_component_consents) {
+TEST_F(Lines, set_a_property_when_its_component_consents) {
     EXPECT_THAT(execute("set gauge.target = 35.0"), is_done());
     EXPECT_EQ(gauge().target.get(), 35);
     EXPECT_THAT(execute("set gauge.target = 99"), has_failed("is over its greatest value 50"));
@@ -95,16 +95,16 @@ TEST_F(Lines, a_property_is_set_as_its_component_consents) {
     EXPECT_EQ(gauge().target.get(), 35);
 }
 
-TEST_F(Lines, a_property_without_a_range_is_set_to_numbers_only) {
+TEST_F(Lines, set_an_unlimited_property_to_numbers_only) {
     EXPECT_THAT(execute("set gauge.offset = 2.5"), is_done());
     for (const std::string value : {"1e308 * 10", "0.0 - 1e308 * 10", "0.0 / 0.0", "sqrt(0.0 - 1.0)"})
         EXPECT_THAT(execute("set gauge.offset = " + value),
-                    has_failed(R"(property \"offset\": is no number; propose a finite one)"))
+                    has_failed(R"(property \"offset\": is not a finite number; propose a finite one)"))
             << value;
     EXPECT_EQ(gauge().offset.get(), 2.5);
 }
 
-TEST_F(Lines, one_is_at_work_at_a_time_and_is_broken_off_by_whoever_asks) {
+TEST_F(Lines, run_one_at_a_time_and_can_be_aborted_by_anyone) {
     EXPECT_THAT(ask("1 break_off"), HasSubstr("no line is at work; there is nothing to break off"));
     EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
     Talker other{path()};
@@ -115,7 +115,7 @@ TEST_F(Lines, one_is_at_work_at_a_time_and_is_broken_off_by_whoever_asks) {
     EXPECT_THAT(execute("1"), is_value("1"));
 }
 
-TEST_F(Lines, an_expression_gives_way_to_a_higher_role_which_is_served_next) {
+TEST_F(Lines, let_a_higher_role_interrupt_an_expression) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
     hang(0);
@@ -129,7 +129,7 @@ TEST_F(Lines, an_expression_gives_way_to_a_higher_role_which_is_served_next) {
     EXPECT_THAT(next(observer), is_value("1"));
 }
 
-TEST_F(Lines, whoever_broke_one_off_is_next_before_those_of_a_lower_role) {
+TEST_F(Lines, serve_the_interrupting_role_before_lower_ones) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker worker{path(), 1001};
     EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("sent"));
@@ -147,14 +147,14 @@ TEST_F(Lines, whoever_broke_one_off_is_next_before_those_of_a_lower_role) {
     EXPECT_THAT(next(worker), is_value("1"));
 }
 
-TEST_F(Lines, whoever_waits_is_not_passed_by_somebody_of_a_role_between) {
+TEST_F(Lines, keep_a_waiting_client_ahead_of_intermediate_roles) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker worker{path(), 1001};
     Talker observer{path(), 65534};
     hang(0);
     EXPECT_THAT(ask(observer, request("gauge.target")), HasSubstr("sent"));
     ASSERT_TRUE(talker().send(request("table.height")));
-    ASSERT_TRUE(worker.send(request("1"))); // in the same cycle, behind it
+    ASSERT_TRUE(worker.send(request("1"))); // in the same cycle, after it
     EXPECT_THAT(next(talker()), HasSubstr("gives way to yours"));
     static_cast<void>(next(worker));
     static_cast<void>(next(observer));
@@ -162,7 +162,7 @@ TEST_F(Lines, whoever_waits_is_not_passed_by_somebody_of_a_role_between) {
     EXPECT_THAT(execute("table.height"), is_value("50"));
 }
 
-TEST_F(Lines, commands_that_operators_left_behind_leave_engineers_a_line) {
+TEST_F(Lines, keep_a_line_for_engineers_despite_abandoned_operator_commands) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker worker{path(), 1001};
     ram().speed.set(0.001);
@@ -180,7 +180,7 @@ TEST_F(Lines, commands_that_operators_left_behind_leave_engineers_a_line) {
     EXPECT_THAT(execute("1"), is_value("1"));
 }
 
-TEST_F(Lines, what_is_half_done_gives_way_to_nobody_and_is_broken_off_by_no_lower_role) {
+TEST_F(Lines, protect_partial_work_from_interruption_by_a_lower_role) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker worker{path(), 1001};
     EXPECT_THAT(ask(worker, request("wait 10s")), HasSubstr("sent"));
@@ -193,7 +193,7 @@ TEST_F(Lines, what_is_half_done_gives_way_to_nobody_and_is_broken_off_by_no_lowe
     EXPECT_THAT(ask("5 break_off"), HasSubstr("\"ok\": true"));
 }
 
-TEST_F(Lines, one_whose_client_leaves_is_broken_off) {
+TEST_F(Lines, abort_when_their_client_leaves) {
     auto guest = std::make_unique<Talker>(path());
     EXPECT_THAT(ask(*guest, request("while true { do gauge.zero(); yield; }")), HasSubstr("sent"));
     guest->close();
@@ -205,13 +205,13 @@ TEST_F(Lines, one_whose_client_leaves_is_broken_off) {
     EXPECT_THAT(execute("gauge.all_homed()"), is_value("true"));
 }
 
-TEST_F(Lines, one_takes_no_longer_than_lines_may) {
+TEST_F(Lines, time_out_after_the_longest_allowed_time) {
     interpreter().longest.set(1s);
     EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
     EXPECT_THAT(next(talker(), 2s), has_failed("it took longer than a line may"));
 }
 
-TEST_F(Lines, a_command_that_was_left_goes_on_and_the_next_line_has_room_beside_it) {
+TEST_F(Lines, leave_an_abandoned_command_running_beside_the_next_line) {
     ram().speed.set(0.1);
     for (const double to : {49.0, 48.5, 48.0}) {
         EXPECT_THAT(ask(request("var int n; do ram.move_to(" + std::to_string(to) + ", n)")),
@@ -224,7 +224,7 @@ TEST_F(Lines, a_command_that_was_left_goes_on_and_the_next_line_has_room_beside_
     EXPECT_THAT(execute("ram.place"), is_value("48")) << "the first never ends: it is told to go elsewhere";
 }
 
-TEST_F(Lines, what_stands_is_not_asked) {
+TEST_F(Lines, send_nothing_to_a_stopped_component) {
     EXPECT_THAT(ask("1 stop gauge"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(execute("gauge.all_homed()"),
                 HasSubstr(R"(component \"gauge\" does not run; start it first)"));
@@ -235,18 +235,18 @@ TEST_F(Lines, what_stands_is_not_asked) {
     EXPECT_THAT(execute("gauge.target"), is_value("10"));
 }
 
-TEST_F(Lines, what_is_stopped_in_the_middle_of_a_line_ends_it) {
+TEST_F(Lines, end_when_their_activity_stops_in_the_middle) {
     EXPECT_THAT(ask(request("wait gauge.force > 1000")), HasSubstr("sent"));
     EXPECT_THAT(ask("1 stop activity:motion"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(next(talker(), 4s),
-                has_failed(R"(its engine did not come to it: look at activity \"motion\")"));
+                has_failed(R"(its engine did not execute it in time: look at activity \"motion\")"));
     EXPECT_THAT(ask("2 start activity:motion"), HasSubstr("\"ok\": true"));
     EXPECT_THAT(ask(request("wait 10s")), HasSubstr("sent"));
     EXPECT_THAT(ask("1 stop interpreter"), Not(HasSubstr("\"ok\": true"))) << "it serves the browser itself";
     EXPECT_THAT(ask("9 break_off"), HasSubstr("\"ok\": true"));
 }
 
-TEST_F(Lines, a_peer_sends_one_as_a_command) {
+TEST_F(Lines, can_be_sent_by_a_peer_as_a_command) {
     panel().wanted = panel().line.assign("gauge.force * 2 + 1");
     run(100ms);
     ASSERT_EQ(panel().execute.state(), CommandState::done);
@@ -264,7 +264,7 @@ TEST_F(Lines, a_peer_sends_one_as_a_command) {
     EXPECT_EQ(interpreter().refused.last(), 1);
 }
 
-TEST_F(Lines, of_a_peer_are_executed_whatever_observers_ask) {
+TEST_F(Lines, of_a_peer_run_despite_observer_requests) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
     look(observer);
@@ -274,12 +274,12 @@ TEST_F(Lines, of_a_peer_are_executed_whatever_observers_ask) {
         EXPECT_EQ(panel().execute.state(), CommandState::done)
             << n << ": " << interpreter().said.last().view();
         panel().execute.reset();
-        run(2500ms); // nothing is kept for anybody
+        run(2500ms); // nothing is reserved
     }
 }
 
-/// Lines of two peers, while an observer looks at values all the time: each is told of its own.
-TEST_F(Lines, of_two_peers_are_told_each_of_its_own) {
+/// Lines of two peers beside a busy observer: each peer receives its own results.
+TEST_F(Lines, of_two_peers_report_to_their_own_sender) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
     look(observer);
@@ -295,11 +295,11 @@ TEST_F(Lines, of_two_peers_are_told_each_of_its_own) {
         EXPECT_TRUE(a.execute.state() == CommandState::done || b.execute.state() == CommandState::done) << n;
         a.execute.reset();
         b.execute.reset();
-        run(2500ms); // nothing is kept for anybody
+        run(2500ms); // nothing is reserved
     }
 }
 
-TEST_F(Lines, of_a_peer_that_wait_are_broken_off) {
+TEST_F(Lines, of_a_waiting_peer_can_be_aborted) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
     look(observer);
@@ -314,7 +314,7 @@ TEST_F(Lines, of_a_peer_that_wait_are_broken_off) {
     EXPECT_GT(waited, 0);
 }
 
-TEST_F(Lines, of_peers_that_say_the_same_are_told_apart) {
+TEST_F(Lines, of_two_peers_with_equal_text_stay_separate) {
     if (geteuid() != 0) GTEST_SKIP() << "only root can connect as somebody else";
     Talker observer{path(), 65534};
     look(observer);

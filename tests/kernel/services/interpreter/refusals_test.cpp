@@ -1,4 +1,4 @@
-// What a line may not do is refused before anything happens: with its place, and the cure.
+// A forbidden line is refused before it has any effect, with its place and the cure.
 #include "tests/kernel/services/interpreter/line_rig.hpp"
 
 namespace tappet::press {
@@ -17,7 +17,7 @@ struct Refused : Lines {
     LineRefusal refusal{};
 };
 
-TEST_F(Refused, a_faulty_line_is_told_its_place_the_fault_and_the_cure) {
+TEST_F(Refused, line_is_reported_with_place_fault_and_cure) {
     static constexpr struct {
         std::string_view line, sentence;
     } cases[] = {
@@ -57,7 +57,7 @@ TEST_F(Refused, a_faulty_line_is_told_its_place_the_fault_and_the_cure) {
     }
 }
 
-TEST_F(Refused, a_hostile_line_takes_no_more_than_its_room) {
+TEST_F(Refused, line_uses_no_more_than_its_room_when_hostile) {
     const auto repeated = [](std::string_view piece, std::size_t times) {
         std::string text;
         for (std::size_t i = 0; i < times; ++i) text += piece;
@@ -79,7 +79,7 @@ TEST_F(Refused, a_hostile_line_takes_no_more_than_its_room) {
     EXPECT_THAT(std::string{begin("gauge.force").view()}, testing::IsEmpty()) << "the next good one runs";
 }
 
-TEST_F(Refused, who_has_not_the_role_looks_only) {
+TEST_F(Refused, line_above_the_clients_role_changes_nothing) {
     static constexpr struct {
         std::string_view line;
         Role least;

@@ -1,5 +1,5 @@
-// Nothing reaches a component that was stopped, and what it left on its outputs stays: whatever way is tried,
-// and whether it was begun before the stop or after it.
+// Nothing reaches a stopped component, and its outputs keep their safe values: by any way, started before the
+// stop or after it.
 #include "kernel/services/interpreter/command_interpreter.hpp"
 #include "tests/kernel/services/browsing/press_rig.hpp"
 
@@ -12,7 +12,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Every way in ends with the coil on.
+/// Every entry switches the coil on.
 struct Valve {
     Output<bool> coil;
     BufferOutput<std::int64_t> strokes;
@@ -54,7 +54,7 @@ struct Valve {
     }
 };
 
-/// It begins when there is air.
+/// It starts when there is air.
 struct Spare {
     Input<bool> air;
     bool open() noexcept TAPPET_REALTIME { return true; }
@@ -64,7 +64,7 @@ struct Spare {
     }
 };
 
-/// Asks the valve in each step once it is told to.
+/// Calls the valve in each step when the test wants it.
 struct Panel {
     Output<bool> air;
     MethodCall<bool()> open, open_spare;
@@ -74,7 +74,7 @@ struct Panel {
     std::int64_t answers = 0, refusals = 0, answers_of_spare = 0;
 
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        if (open_spare().given()) ++answers_of_spare; // which is behind it, and may come to wait
+        if (open_spare().given()) ++answers_of_spare; // which comes later in order, and may still be waiting
     }
     void on_closed() noexcept TAPPET_REALTIME {
         if (asks_back) open().given() ? ++answers : ++refusals;
@@ -98,7 +98,7 @@ struct Panel {
     }
 };
 
-/// The other end of the wire: whether it was ever on.
+/// The other end of the wire: records whether it was ever on.
 struct Wire {
     Input<bool> level;
     bool was_on = false;
@@ -135,7 +135,7 @@ constexpr auto table = machine("plant",
 
 class AStoppedComponent : public press::Browsed<table> {
 protected:
-    /// All that comes within the time, after requests that were sent at once.
+    /// All packets within the time, after requests that were sent at once.
     std::string ask(std::initializer_list<std::string_view> requests, Duration time = 60ms) {
         for (const std::string_view each : requests) EXPECT_TRUE(talker().send(each));
         run(time);
@@ -148,7 +148,7 @@ protected:
     std::uint32_t dropped_writes() {
         return instance.gate_of(find_component(instance.machine().table, "valve"))->dropped_writes;
     }
-    /// From here on nothing may put the coil on.
+    /// From here on nothing may switch the coil on.
     void stop_valve() {
         EXPECT_THAT(ask({"90 stop valve"}), HasSubstr(R"("id": 90, "ok": true)"));
         expect_safe_from_now();
@@ -164,7 +164,7 @@ protected:
     }
 };
 
-TEST_F(AStoppedComponent, takes_no_call_that_comes_with_the_stop_in_one_cycle) {
+TEST_F(AStoppedComponent, refuses_a_call_in_the_cycle_of_its_stop) {
     const std::string answers = ask(
         {"1 stop valve", "2 call valve.open", "3 call valve.on", "4 call valve.count", "5 send valve.go"});
     EXPECT_THAT(answers, AllOf(HasSubstr(R"("id": 1, "ok": true)"), HasSubstr(R"("id": 2, "ok": false)"),
@@ -175,7 +175,7 @@ TEST_F(AStoppedComponent, takes_no_call_that_comes_with_the_stop_in_one_cycle) {
     EXPECT_THAT(answers, HasSubstr("rejected"));
 }
 
-TEST_F(AStoppedComponent, gives_no_answer_to_a_method_call_and_runs_no_reaction) {
+TEST_F(AStoppedComponent, refuses_method_calls_and_runs_no_reaction) {
     stop_valve();
     panel().asks = true;
     run(20ms);
@@ -191,7 +191,7 @@ TEST_F(AStoppedComponent, gives_no_answer_to_a_method_call_and_runs_no_reaction)
     stop_valve();
 }
 
-TEST_F(AStoppedComponent, is_called_back_by_nobody_whom_its_stop_tells_something) {
+TEST_F(AStoppedComponent, is_not_called_back_by_peers_that_its_stop_notifies) {
     panel().asks_back = true;
     stop_valve();
     EXPECT_EQ(panel().answers, 0);
@@ -203,7 +203,7 @@ TEST_F(AStoppedComponent, is_called_back_by_nobody_whom_its_stop_tells_something
     wire().was_on = false;
 }
 
-TEST_F(AStoppedComponent, may_be_given_by_hand_what_it_waits_for) {
+TEST_F(AStoppedComponent, can_receive_its_awaited_input_by_hand) {
     EXPECT_THAT(ask({"1 force spare.air true"}), HasSubstr(R"("ok": true)"));
     panel().asks = true;
     run(20ms);
@@ -212,7 +212,7 @@ TEST_F(AStoppedComponent, may_be_given_by_hand_what_it_waits_for) {
     stop_valve();
 }
 
-TEST_F(AStoppedComponent, is_not_called_either_before_it_has_begun) {
+TEST_F(AStoppedComponent, refuses_calls_before_its_first_start) {
     panel().asks = true;
     run(20ms);
     EXPECT_EQ(panel().answers_of_spare, 0) << "it waits for air";
@@ -224,7 +224,7 @@ TEST_F(AStoppedComponent, is_not_called_either_before_it_has_begun) {
     stop_valve();
 }
 
-TEST_F(AStoppedComponent, fails_a_line_that_was_begun_before_the_stop) {
+TEST_F(AStoppedComponent, fails_a_line_that_started_before_the_stop) {
     for (const char* line : {"wait(300ms); do valve.open();", "wait(300ms); do valve.on();",
                              "wait(300ms); var int n = valve.count();", "wait(300ms); do valve.go();"}) {
         EXPECT_THAT(ask({std::string{"1 execute \""} + line + "\""}), HasSubstr("sent")) << line;
@@ -260,7 +260,7 @@ TEST_F(AStoppedComponent, fails_the_call_of_a_loaded_script) {
     EXPECT_EQ(feeder().failures, 3);
 }
 
-TEST_F(AStoppedComponent, takes_properties_and_drops_and_counts_what_it_writes_for_them) {
+TEST_F(AStoppedComponent, accepts_properties_but_drops_and_counts_the_resulting_writes) {
     stop_valve();
     const std::uint32_t before = dropped_writes();
     const std::int64_t told = valve().changes;
@@ -273,13 +273,13 @@ TEST_F(AStoppedComponent, takes_properties_and_drops_and_counts_what_it_writes_f
     EXPECT_EQ(dropped_writes() - before, 4u);
 }
 
-TEST_F(AStoppedComponent, lets_nobody_force_its_outputs) {
+TEST_F(AStoppedComponent, refuses_forces_on_its_outputs) {
     EXPECT_THAT(ask({"1 stop valve", "2 force valve.coil true"}),
                 HasSubstr(R"(component \"valve\" does not run; start it first)"));
     EXPECT_THAT(ask({"3 force valve.coil true"}), HasSubstr("does not run"));
 }
 
-TEST_F(AStoppedComponent, whose_activity_was_stopped_is_reached_by_nobody_either) {
+TEST_F(AStoppedComponent, is_unreachable_also_when_its_activity_was_stopped) {
     panel().asks = true;
     EXPECT_THAT(ask({"1 stop motion"}), HasSubstr(R"("ok": true)"));
     expect_safe_from_now();

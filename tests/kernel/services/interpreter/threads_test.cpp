@@ -1,5 +1,5 @@
-// Lines in a machine of threads: they run in one activity after the other, all of which send to the same
-// engine through the same mailbox; some are broken off on their way.
+// Lines in a machine with threads: they run in different activities in turn, all of which send to the same
+// engine through the same mailbox; some are aborted.
 #include "tests/kernel/machine/parts.hpp"
 #include "tests/kernel/machine/real_rig.hpp"
 #include "tests/kernel/services/interpreter/line_machine.hpp"
@@ -7,7 +7,7 @@
 namespace tappet::press {
 namespace {
 
-/// Types one line after the other, and breaks every third off after so many looks.
+/// Types one line after the other, and aborts every third after some polls.
 struct Typist : Onlooker {
     static constexpr std::size_t wanted = 200;
     static constexpr std::string_view lines[] = {
@@ -50,7 +50,7 @@ constexpr auto threads = machine("press",
     reactions(), behaviours());
 // clang-format on
 
-TEST(LinesInThreads, end_one_after_the_other_wherever_they_run) {
+TEST(LinesInThreads, end_in_order_whichever_thread_runs_them) {
     RealRig<threads> rig;
     ASSERT_TRUE(rig.runs());
     const Typist& typist = rig.the<Typist>("typist");

@@ -1,4 +1,4 @@
-// A machine whose values are recorded in every way that a row can say, and which knows what they were.
+// A machine whose values are recorded in every mode of a row, and which knows the expected values.
 #pragma once
 
 #include "kernel/services/reporting/reporting.hpp"
@@ -29,14 +29,14 @@ inline constexpr auto tappet::fields_of<tappet::recorded_test::Pose> =
 
 namespace tappet::recorded_test {
 
-/// Moves by the number of its step.
+/// Its position is the number of its step.
 struct Axis {
     Output<double> position;
     Output<float> force;
     Output<Mode> mode;
     Output<Pose> pose;
     Output<double> pull;
-    double pulls = 1.0;        ///< what the test wants
+    double pulls = 1.0;        ///< set by the test
     Output<std::int32_t> late; ///< written from its third step on
     Property<double> gain{1.0};
     Property<Text<12>> label{"axis"};

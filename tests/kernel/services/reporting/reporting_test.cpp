@@ -1,5 +1,4 @@
-// What lies on the tapes of a machine that records values: which cycles, which values, and nothing of what
-// was never written.
+// The tapes of a machine that records values: the recorded cycles and values, without any unwritten value.
 #include "tests/kernel/services/reporting/recorded_machine.hpp"
 
 #include "kernel/machine/map/view.hpp"
@@ -26,7 +25,7 @@ struct Sample {
     }
 };
 
-/// All that still lies on the tapes, channel by channel in the table's order.
+/// All samples that the tapes still hold, channel by channel in table order.
 std::vector<std::vector<Sample>> samples_of(const MachineInstance& instance) {
     const auto memory = instance.observation().shared_memory();
     const auto view = map::View::open(memory);
@@ -77,7 +76,7 @@ TEST(Reporting, records_each_nth_step_from_the_first_one_on) {
         << "an activity of its own has its own steps";
 }
 
-TEST(Reporting, records_nothing_of_what_was_never_written) {
+TEST(Reporting, records_no_unwritten_port) {
     Rig<each_step> rig;
     ASSERT_TRUE(rig.start() && rig.run(10ms));
     const auto late = samples_of(rig.instance)[1];
@@ -89,7 +88,7 @@ constexpr auto changing = machine_with(
     reporting(report("axis.mode", on_change()), report("axis.position", on_change(1.0)),
               report("axis.gain", on_change()), report("axis.label", on_change()), report("press.closed")));
 
-TEST(Reporting, on_change_records_the_first_value_and_each_other_one) {
+TEST(Reporting, on_change_records_the_first_value_and_each_different_one) {
     Rig<changing> rig;
     ASSERT_TRUE(rig.start() && rig.run(100ms));
     const auto channels = samples_of(rig.instance);
@@ -103,7 +102,7 @@ TEST(Reporting, on_change_records_the_first_value_and_each_other_one) {
     EXPECT_EQ(channels[3].at(0).value<Text<12>>().view(), "axis");
 }
 
-TEST(Reporting, on_change_beyond_a_band_counts_from_what_was_recorded_last) {
+TEST(Reporting, on_change_applies_its_band_to_the_last_recorded_value) {
     Rig<changing> rig;
     ASSERT_TRUE(rig.start() && rig.run(100ms));
     const auto positions = samples_of(rig.instance)[1];
@@ -113,7 +112,7 @@ TEST(Reporting, on_change_beyond_a_band_counts_from_what_was_recorded_last) {
             << "a millimetre is within the band";
 }
 
-TEST(Reporting, on_change_records_a_step_into_what_is_no_number_and_out_of_it_once) {
+TEST(Reporting, on_change_records_each_step_to_and_from_nan_once) {
     static constexpr auto table = machine_with(reporting(report("axis.pull", on_change(0.5))));
     Rig<table> rig;
     ASSERT_TRUE(rig.start() && rig.run(5ms));
@@ -136,14 +135,14 @@ TEST(Reporting, records_the_safe_values_that_a_stop_leaves) {
     EXPECT_EQ(samples_of(rig.instance)[0].back().value<Mode>(), Mode::resting);
 }
 
-TEST(Reporting, of_a_component_takes_all_outputs_that_it_can) {
+TEST(Reporting, of_a_component_records_all_recordable_outputs) {
     static constexpr auto table = machine_with(reporting(report("axis.*", every(10)), report("axis.gain")));
     Rig<table> rig;
     ASSERT_TRUE(rig.start() && rig.run(50ms));
     EXPECT_EQ(samples_of(rig.instance).size(), 7u);
 }
 
-TEST(Reporting, overwrites_the_oldest_and_the_numbers_tell) {
+TEST(Reporting, overwrites_the_oldest_samples_and_shows_it_by_their_numbers) {
     Rig<each_step> rig;
     ASSERT_TRUE(rig.start() && rig.run(20s));
     const auto positions = samples_of(rig.instance)[0];
@@ -159,7 +158,7 @@ constexpr auto around = machine_with(
     reporting(report("axis.position", before(20ms), after(10ms), trigger("axis.missed")), report("axis.mode"),
               report("press.strokes", after(30ms), trigger("axis.missed"))));
 
-TEST(Reporting, counts_the_events_of_windows_in_each_activity_that_has_one) {
+TEST(Reporting, counts_the_events_of_windows_in_each_activity_with_one) {
     Rig<around> rig;
     rig.axis->misses_at = 60;
     ASSERT_TRUE(rig.start() && rig.run(100ms));
@@ -175,7 +174,7 @@ TEST(Reporting, counts_the_events_of_windows_in_each_activity_that_has_one) {
     EXPECT_EQ(channels[1].size(), static_cast<std::size_t>(rig.axis->steps)) << "the tape has all";
 }
 
-TEST(Reporting, leaves_what_the_machine_does_as_it_is) {
+TEST(Reporting, does_not_change_the_machines_behaviour) {
     static constexpr auto silent = machine_with();
     Rig<each_step> with;
     Rig<silent> without;
@@ -199,7 +198,7 @@ std::unique_ptr<recorded::ValueTape, Free> make_tape(std::size_t words, std::siz
     return std::unique_ptr<recorded::ValueTape, Free>{new (memory) recorded::ValueTape{words, most}};
 }
 
-TEST(ValueTape, keeps_no_cycle_without_a_sample) {
+TEST(ValueTape, keeps_only_cycles_with_samples) {
     const auto tape = make_tape(256, 8);
     tape->end(tape->begin(), 1);
     EXPECT_EQ(tape->head(), 0u);
@@ -207,8 +206,8 @@ TEST(ValueTape, keeps_no_cycle_without_a_sample) {
     EXPECT_FALSE(tape->moment_before(tape->head(), moment));
 }
 
-/// Under the thread sanitizer a race would be seen; here a torn moment.
-TEST(ValueTape, gives_no_reader_a_moment_that_is_torn) {
+/// The thread sanitizer would detect a race; this test detects a torn cycle.
+TEST(ValueTape, never_shows_a_reader_a_torn_cycle) {
     constexpr std::uint64_t moments = 200'000;
     const auto tape = make_tape(256, 8);
     std::atomic<bool> done{false};

@@ -1,5 +1,5 @@
-// The thread scope and flight recorder (thesis A.2.1) under virtual time, where every cycle takes exactly
-// what its components consume.
+// The thread scope and flight recorder (thesis A.2.1) in virtual time, where every cycle takes exactly the
+// time of its components.
 #include "kernel/services/scope/thread_scope.hpp"
 
 #include "tests/kernel/machine/virtual_rig.hpp"
@@ -62,7 +62,7 @@ struct Scope : testing::Test, RunningRig<table> {
     }
 };
 
-TEST_F(Scope, each_cycle_is_on_the_tape_of_its_activity_function_by_function) {
+TEST_F(Scope, records_each_cycle_function_by_function) {
     pass(3500us);
     const CycleTape& tape = scope::tape(*directory, motion);
     TapeCycle cycle;
@@ -83,7 +83,7 @@ TEST_F(Scope, each_cycle_is_on_the_tape_of_its_activity_function_by_function) {
     EXPECT_EQ(TapeMark::of(mark[0]).function, static_cast<std::uint32_t>(FunctionKind::reactions));
 }
 
-TEST_F(Scope, the_worst_cycle_is_kept_with_what_ran_around_it) {
+TEST_F(Scope, keeps_the_worst_cycle_with_its_surroundings) {
     pass(50ms);
     const Time slow_from = clock.now();
     run_slow(700us);
@@ -94,7 +94,7 @@ TEST_F(Scope, the_worst_cycle_is_kept_with_what_ran_around_it) {
     EXPECT_GT(worst[0]->begin, to_ns(slow_from));
     EXPECT_EQ(worst[0]->from, worst[0]->release - 2'000'000);
     EXPECT_EQ(worst[0]->to, worst[0]->end + 2'000'000);
-    // Blocks of an activity each, whole cycles in them.
+    // Each block holds whole cycles of one activity.
     std::array<std::size_t, 3> cycles{};
     const std::uint64_t* words = scope::words_of(*worst[0]);
     for (std::uint32_t at = 0; at < worst[0]->words;) {
@@ -116,7 +116,7 @@ TEST_F(Scope, the_worst_cycle_is_kept_with_what_ran_around_it) {
     EXPECT_GE(cycles[logic], 4u);
 }
 
-TEST_F(Scope, of_each_part_of_the_span_the_worst_two_are_kept) {
+TEST_F(Scope, keeps_the_worst_two_cycles_of_each_part_of_the_span) {
     pass(1s);
     run_slow(300us);
     pass(10ms);
@@ -131,7 +131,7 @@ TEST_F(Scope, of_each_part_of_the_span_the_worst_two_are_kept) {
     EXPECT_LT(worst.size() > 2 ? worst[2]->rank_ns : 0, 310'000) << "the third of this part went";
 }
 
-TEST_F(Scope, the_worst_of_the_whole_span_is_there_until_the_span_is_over) {
+TEST_F(Scope, keeps_the_worst_cycle_until_its_span_is_over) {
     pass(500ms);
     run_slow(600us);
     for (int tenth = 1; tenth < 40; ++tenth) { // of a span of four seconds
@@ -142,9 +142,9 @@ TEST_F(Scope, the_worst_of_the_whole_span_is_there_until_the_span_is_over) {
     EXPECT_LT(kept(motion).at(0)->rank_ns, 610'000) << "what is older gave its place away";
 }
 
-TEST_F(Scope, what_takes_longer_than_its_room_is_kept_with_less_around_it) {
+TEST_F(Scope, keeps_an_oversized_cycle_with_less_around_it) {
     pass(30ms);
-    // Messages without end: every cycle of logic is short, and there are many in the window.
+    // Endless messages: every cycle of logic is short, and the window holds many.
     for (int i = 0; i < 20; ++i) {
         first->load = Duration{(i + 1) * 20'000};
         pass(1ms);
@@ -157,7 +157,7 @@ TEST_F(Scope, what_takes_longer_than_its_room_is_kept_with_less_around_it) {
     }
 }
 
-TEST_F(Scope, switched_off_nothing_is_recorded_and_switched_on_again_it_goes_on) {
+TEST_F(Scope, records_nothing_while_off_and_resumes_when_on_again) {
     pass(50ms);
     scope->on.set(false);
     pass(25ms);
@@ -170,7 +170,7 @@ TEST_F(Scope, switched_off_nothing_is_recorded_and_switched_on_again_it_goes_on)
     EXPECT_EQ(directory->overtaken, 0u);
 }
 
-TEST_F(Scope, what_is_kept_can_be_forgotten) {
+TEST_F(Scope, can_forget_its_kept_cycles) {
     pass(50ms);
     run_slow(700us);
     pass(50ms);
@@ -180,7 +180,7 @@ TEST_F(Scope, what_is_kept_can_be_forgotten) {
     EXPECT_LT(kept(motion).at(0)->rank_ns, 700'000);
 }
 
-TEST_F(Scope, by_busy_time_a_late_cycle_is_not_the_worst) {
+TEST_F(Scope, ranks_a_late_cycle_by_its_busy_time_only) {
     scope->by_busy.set(true);
     pass(50ms);
     run_slow(1500us); // the next cycle begins late, and is short
@@ -191,14 +191,14 @@ TEST_F(Scope, by_busy_time_a_late_cycle_is_not_the_worst) {
     EXPECT_EQ(worst[1]->rank_ns, 20'000);
 }
 
-TEST_F(Scope, cycles_of_the_background_are_recorded_and_not_ranked) {
+TEST_F(Scope, records_background_cycles_without_ranking_them) {
     pass(100ms);
     EXPECT_GT(scope::tape(*directory, background).head(), 0u);
     EXPECT_TRUE(kept(background).empty());
     EXPECT_GT(directory->judged, 150u);
 }
 
-TEST_F(Scope, an_activity_that_is_stopped_and_started_goes_on_with_its_tape) {
+TEST_F(Scope, continues_the_tape_of_a_restarted_activity) {
     pass(50ms);
     ASSERT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     pass(50ms);

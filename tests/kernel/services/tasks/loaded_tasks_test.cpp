@@ -1,5 +1,5 @@
-// The tasks of what is loaded into a slot (thesis 5.1.6, 5.2.5): rows, scripts and people command and set it
-// as they do what is compiled with the machine, and what they set stays while behaviours come and go.
+// The tasks of loaded behaviours (thesis 5.1.6, 5.2.5): rows, scripts and people command and set them like
+// compiled ones, and the properties persist across behaviours.
 #include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
 #include "kernel/services/tasks/component_life.hpp"
@@ -12,14 +12,14 @@
 
 #include <unistd.h>
 
-// Not the namespace of tasks_test.cpp: g++ takes functions made for members of unnamed namespaces' types to
-// be the same in both.
+// A namespace different from tasks_test.cpp: g++ merges functions generated for members of types in unnamed
+// namespaces.
 namespace tappet::bakery::loaded {
 namespace {
 
 using testing::ElementsAre;
 
-/// The shape: what is loaded has these.
+/// The shape: every loaded script has these variables and programs.
 constexpr ScriptSource shape{"baking.osd", R"(
 StateMachine Baking {
     param double heat = 150.0
@@ -35,7 +35,7 @@ constexpr const ScriptUnit& script = compiled_script<shape, reach>;
 using Baking = BehaviourTask<script, "baking">;
 using Loaves = BehaviourTask<script, "loaves">;
 
-/// Counts at each tick from where it finds the count; one of two shapes of the same.
+/// Counts at each tick from the count it finds; one of two scripts with the same shape.
 std::string counting(int by) {
     return R"(program int loaves(int number, double weight) {
     var int made = 0;
@@ -67,7 +67,7 @@ struct Panel {
     }
 };
 
-/// Of another component, compiled: it asks for loaves and sets what is loaded.
+/// A compiled script of another component: it commands loaves and sets the variables of the loaded script.
 struct Shop {
     Output<std::int64_t> sold;
     Property<std::int64_t> got{0};
@@ -110,7 +110,7 @@ constexpr auto table = machine("bakery",
                behaviour("oven", slot(nodes(60), data_bytes(1024), depth(3), command_slots(2), timers(2), text_bytes(2000),
                                       peers("feeding", "door"), operations("feeding.stop"), events("door.moved"), trial(3)), on_error(OnError::report))));
 
-/// The same, and its slot begins with the shape.
+/// The same machine, with a slot that starts with the shape.
 constexpr auto begun = machine("bakery",
     components(component<Oven>("oven"), component<Door>("door"), component<Feeder>("feeder"), component<Baking>("baking", controls("oven"), set("heat", 80.0)),
                component<Loaves>("making", controls("oven")), component<Panel>("panel"), component<Onlooker>("watcher")),
@@ -152,13 +152,13 @@ struct Bakery : PlacedRig<table> {
             run(2ms);
         }
     }
-    /// What has become of so many loaves.
+    /// The state of the command for so many loaves.
     CommandState bake(ScriptInt number, double weight) {
         EXPECT_TRUE(panel().bake.send(number, weight));
         run(20ms);
         return panel().bake.state();
     }
-    /// By the transaction of a browser.
+    /// Sets it as a browser's transaction does.
     void set_count(ScriptInt value) {
         const MachineView& of = instance.machine().table;
         const std::size_t c = find_component(of, "baking");
@@ -179,13 +179,13 @@ struct Loaded : testing::Test, Directory, Bakery {
     Loaded() : Bakery{path} {}
 };
 
-TEST_F(Loaded, nothing_yet_rejects_commands_and_keeps_what_is_set) {
+TEST_F(Loaded, slot_rejects_commands_and_keeps_properties_while_empty) {
     EXPECT_EQ(property<double>("baking", "heat"), 80.0) << "of the row";
     EXPECT_EQ(count(), 7) << "of the shape";
     EXPECT_EQ(bake(2, 0.25), CommandState::rejected);
 }
 
-TEST_F(Loaded, a_program_is_a_command_with_its_parameters_and_its_result) {
+TEST_F(Loaded, program_is_a_command_with_parameters_and_a_result) {
     load(counting(10));
     EXPECT_EQ(bake(2, 0.25), CommandState::done);
     EXPECT_EQ(panel().bake.result(), 20);
@@ -195,7 +195,7 @@ TEST_F(Loaded, a_program_is_a_command_with_its_parameters_and_its_result) {
     EXPECT_EQ(panel().bake.result(), 10);
 }
 
-TEST_F(Loaded, a_command_under_way_has_failed_when_another_one_takes_over) {
+TEST_F(Loaded, command_fails_when_another_script_takes_over) {
     load(counting(1));
     tick(4);
     ASSERT_TRUE(panel().bake.send(1000, 0.0));
@@ -208,7 +208,7 @@ TEST_F(Loaded, a_command_under_way_has_failed_when_another_one_takes_over) {
     EXPECT_EQ(panel().bake.result(), 2);
 }
 
-TEST_F(Loaded, a_machine_is_stopped_by_a_row) {
+TEST_F(Loaded, machine_is_stopped_by_a_row) {
     load(counting(1));
     ASSERT_TRUE(panel().halt_it.send());
     run(20ms);
@@ -216,7 +216,7 @@ TEST_F(Loaded, a_machine_is_stopped_by_a_row) {
     EXPECT_TRUE(slot().active()->parts()[1].machine->is_final());
 }
 
-TEST_F(Loaded, one_is_given_the_properties_and_what_it_does_with_them_is_seen) {
+TEST_F(Loaded, script_receives_properties_and_shows_its_changes) {
     load(counting(1));
     EXPECT_EQ(property<double>("baking", "heat"), 80.0);
     tick(2);
@@ -227,7 +227,7 @@ TEST_F(Loaded, one_is_given_the_properties_and_what_it_does_with_them_is_seen) {
     EXPECT_EQ(count(), 21);
 }
 
-TEST_F(Loaded, the_next_one_goes_on_with_them) {
+TEST_F(Loaded, script_inherits_the_properties_of_its_predecessor) {
     load(counting(1));
     tick(5);
     ASSERT_EQ(slot().phase(), SlotPhase::steady);
@@ -239,7 +239,7 @@ TEST_F(Loaded, the_next_one_goes_on_with_them) {
     EXPECT_EQ(count(), 112) << "nothing is loaded, and they stay";
 }
 
-TEST_F(Loaded, one_that_is_taken_back_has_changed_none) {
+TEST_F(Loaded, script_that_is_rolled_back_has_changed_no_property) {
     load(counting(1));
     tick(5);
     ASSERT_EQ(slot().phase(), SlotPhase::steady);
@@ -257,7 +257,7 @@ TEST_F(Loaded, one_that_is_taken_back_has_changed_none) {
     EXPECT_EQ(property<double>("baking", "heat"), 99.0);
 }
 
-TEST_F(Loaded, what_does_not_fit_is_refused_and_says_so) {
+TEST_F(Loaded, script_that_does_not_fit_is_refused_with_the_reason) {
     const auto refused = [&](std::string_view from, std::string_view to) {
         std::string text = counting(1);
         for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
@@ -291,12 +291,12 @@ TEST_F(Loaded, what_does_not_fit_is_refused_and_says_so) {
         compile(
             "StateMachine Baking { initial state A { transition oven.tick() select B } final state B { } }\n"
             "RootStateMachine Baking loaves\nRootStateMachine Baking baking"),
-        "new.osd: task \"making\" is that of a program with parameters, and \"loaves\" is none; write it so, "
-        "or rename it");
+        "new.osd: task \"making\" is that of a program with parameters, and \"loaves\" is not one; write it "
+        "so, or rename it");
     EXPECT_EQ(compile(counting(1)), "");
 }
 
-TEST_F(Loaded, one_is_commanded_and_set_by_the_behaviour_beside_it) {
+TEST_F(Loaded, script_is_commanded_and_set_by_another_behaviour) {
     load(counting(10));
     the<Shop>("shop").opens.emit();
     run(20ms);
@@ -307,7 +307,7 @@ TEST_F(Loaded, one_is_commanded_and_set_by_the_behaviour_beside_it) {
     EXPECT_EQ(count(), 50);
 }
 
-TEST_F(Loaded, one_stops_a_component) {
+TEST_F(Loaded, script_stops_a_component) {
     load(counting(1));
     the<Door>("door").moved.emit();
     run(30ms);
@@ -315,9 +315,9 @@ TEST_F(Loaded, one_stops_a_component) {
     EXPECT_EQ(instance.life().state_of(2), ComponentState::stopped);
 }
 
-TEST(What_is_loaded, goes_on_where_the_machine_was_switched_off) {
+TEST(What_is_loaded, resumes_where_the_machine_was_switched_off) {
     const Directory directory;
-    for (const ScriptInt begins : {7, 10}) { // the shape's, then what was kept
+    for (const ScriptInt begins : {7, 10}) { // the shape's, then the stored ones
         Bakery bakery{directory.path};
         EXPECT_EQ(bakery.count(), begins);
         bakery.load(counting(1));
@@ -330,7 +330,7 @@ TEST(What_is_loaded, goes_on_where_the_machine_was_switched_off) {
 
 struct Begun : testing::Test, Rig<begun> {};
 
-TEST_F(Begun, one_is_given_the_properties_from_the_start_and_does_as_it_is_told) {
+TEST_F(Begun, behaviour_receives_properties_from_the_start_and_obeys_commands) {
     run(5ms);
     const BehaviourUnit& unit = *instance.slot_of("oven")->active();
     EXPECT_EQ(property<double>("baking", "heat"), 80.0) << "of the row";

@@ -1,4 +1,4 @@
-// What browsers see, set and command of behaviours as tasks is the same whether a script is compiled with the
+// Browsers see, set and command behaviours as tasks in the same way, whether a script is compiled with the
 // machine or loaded into its slot (thesis 4.8, 5.1.6, 5.2.5).
 #include "kernel/script/compiled.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
@@ -60,7 +60,7 @@ protected:
         run(5ms);
     }
     std::string ask(const std::string& request) { return Browsed::ask("1 " + request); }
-    /// How a command ends.
+    /// The end of a command.
     std::string follow(const std::string& command) {
         std::string answer = ask("send " + command);
         EXPECT_THAT(answer, HasSubstr(R"("state": "sent")"));
@@ -88,7 +88,7 @@ TEST_P(Task, of_a_machine_has_its_variables_seen_and_set) {
     EXPECT_THAT(ask("set " + form + "_cycle.counted many"), HasSubstr("bad_value"));
 }
 
-TEST_P(Task, of_a_machine_is_commanded_and_asked) {
+TEST_P(Task, of_a_machine_is_commanded_and_queried) {
     EXPECT_THAT(follow(form + "_cycle.request Sefe"), HasSubstr("rejected"));
     EXPECT_THAT(ask("call " + form + "_cycle.is_in Up"), HasSubstr("\"result\": true"));
     EXPECT_THAT(follow(form + "_cycle.pause"), HasSubstr("done"));
@@ -99,7 +99,7 @@ TEST_P(Task, of_a_machine_is_commanded_and_asked) {
     EXPECT_THAT(ask("call " + form + "_cycle.is_in Safe"), HasSubstr("\"result\": true"));
 }
 
-TEST_P(Task, of_a_program_runs_and_tells_its_result) {
+TEST_P(Task, of_a_program_runs_and_reports_its_result) {
     EXPECT_THAT(follow(form + "_strokes.pause"), HasSubstr("rejected")) << "it does not run";
     EXPECT_THAT(follow(form + "_strokes.run 3"), AllOf(HasSubstr("done"), HasSubstr("3")));
     EXPECT_THAT(ask("get " + form + "_strokes.wanted"), HasSubstr("3"));

@@ -1,5 +1,5 @@
-// Behaviours and lives as light-weight tasks (thesis 5.1.6, 5.2.5, 3.1.3): their commands are reached by rows
-// and scripts, their variables are properties, and a program with parameters is a command.
+// Behaviours and component life cycles as light-weight tasks (thesis 5.1.6, 5.2.5, 3.1.3): rows and scripts
+// use their commands, their variables are properties, and a program with parameters is a command.
 #include "kernel/services/configuration/property_files.hpp"
 #include "kernel/services/tasks/behaviour_task.hpp"
 #include "kernel/services/tasks/component_life.hpp"
@@ -76,7 +76,7 @@ struct Panel {
     }
 };
 
-// The one beside it, of another component, commands it.
+// The script of another component commands it.
 using Loaves = BehaviourTask<script, "loaves">;
 using Machine = BehaviourTask<script, "baking">;
 constexpr ScriptSource serving{"serving.osd", R"(
@@ -115,7 +115,7 @@ constexpr auto table = machine("bakery",
 
 struct Tasks : Rig<table> {
     Panel& panel() { return the<Panel>("panel"); }
-    /// What has become of so many loaves.
+    /// The state of the command for so many loaves.
     CommandState bake(ScriptInt number, double weight) {
         EXPECT_TRUE(panel().bake.send(number, weight));
         run(20ms);
@@ -128,7 +128,7 @@ struct A_task_of_a_program : testing::Test, Tasks {};
 using A_behaviour = A_task_of_a_program;
 using The_life_of_a_component = A_task_of_a_program;
 
-TEST_F(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_with_its_result_at_its_end) {
+TEST_F(A_task_of_a_program, is_a_command_with_parameters_that_ends_with_its_result) {
     run(10ms);
     EXPECT_TRUE(oven().told.empty()) << "it does not start by itself";
     ASSERT_TRUE(panel().bake.send(2, 0.25));
@@ -144,21 +144,21 @@ TEST_F(A_task_of_a_program, is_a_command_with_its_parameters_that_is_done_with_i
     EXPECT_THAT(oven().told, ElementsAre(25, 26, 700));
 }
 
-TEST_F(A_task_of_a_program, without_parameters_is_a_command_too) {
+TEST_F(A_task_of_a_program, is_a_command_also_without_parameters) {
     ASSERT_TRUE(panel().clean.send());
     run(10ms);
     EXPECT_EQ(panel().clean.state(), CommandState::done);
     EXPECT_THAT(oven().told, ElementsAre(500));
 }
 
-TEST_F(A_task_of_a_program, fails_when_the_program_does_and_runs_again_after_that) {
+TEST_F(A_task_of_a_program, fails_with_its_program_and_can_run_again) {
     ASSERT_EQ(bake(3, 0.0), CommandState::failed);
     oven().told.clear();
     EXPECT_EQ(bake(1, 0.5), CommandState::done);
     EXPECT_THAT(oven().told, ElementsAre(50));
 }
 
-TEST_F(A_task_of_a_program, that_is_broken_off_has_failed_and_nothing_begins_while_its_component_stands) {
+TEST_F(A_task_of_a_program, fails_when_aborted_and_never_starts_while_its_component_is_stopped) {
     ASSERT_TRUE(panel().bake.send(1000, 0.0));
     run(10ms);
     ASSERT_EQ(panel().bake.state(), CommandState::executing);
@@ -190,7 +190,7 @@ constexpr auto woken = machine("woken",
     behaviours(behaviour("oven", script, {})));
 // clang-format on
 
-TEST(A_task, answers_in_an_activity_that_nothing_else_wakes) {
+TEST(A_task, responds_in_an_activity_that_nothing_else_wakes) {
     Rig<woken> rig;
     Panel& panel = *rig.instance.find<Panel>("panel");
     rig.run(20ms);
@@ -202,7 +202,7 @@ TEST(A_task, answers_in_an_activity_that_nothing_else_wakes) {
     EXPECT_EQ(panel.halt_it.state(), CommandState::done);
 }
 
-TEST(A_task_of_a_machine, has_its_variables_and_parameters_as_properties_which_the_row_sets) {
+TEST(A_task_of_a_machine, shows_its_variables_and_parameters_as_properties_set_by_the_row) {
     Tasks rig;
     EXPECT_EQ(rig.property<double>("machine", "heat"), 80.0);
     EXPECT_EQ(rig.property<ScriptInt>("machine", "count"), 7);
@@ -226,7 +226,7 @@ constexpr auto kept = machine("kept",
     connections(), reactions(), behaviours(behaviour("oven", script, {})));
 // clang-format on
 
-TEST(A_task_of_a_machine, keeps_variables_in_its_properties_file) {
+TEST(A_task_of_a_machine, stores_variables_in_its_properties_file) {
     const std::string directory = testing::TempDir() + "tasks_test_properties";
     std::filesystem::remove_all(directory);
     std::filesystem::create_directory(directory);
@@ -242,7 +242,7 @@ TEST(A_task_of_a_machine, keeps_variables_in_its_properties_file) {
         Colour next = Colour::green;
     };
     for (const Values expected :
-         {Values{}, Values{12, {1, 2, 3}, Colour::red}}) { // the script's, then those kept
+         {Values{}, Values{12, {1, 2, 3}, Colour::red}}) { // the script's, then the stored ones
         MachineInstance instance{AtRunTime<kept, test_board>::machine(), clock};
         instance.read_properties_from(files->store());
         const auto standing = instance.configure({});
@@ -259,7 +259,7 @@ TEST(A_task_of_a_machine, keeps_variables_in_its_properties_file) {
     std::filesystem::remove_all(directory);
 }
 
-TEST(A_task_of_a_machine, leads_it_to_its_final_state_and_is_done_when_it_is_there) {
+TEST(A_task_of_a_machine, leads_it_to_its_final_state_and_is_then_done) {
     Tasks rig;
     rig.run(10ms);
     ASSERT_TRUE(rig.panel().halt_it.send());
@@ -272,10 +272,10 @@ TEST(A_task_of_a_machine, leads_it_to_its_final_state_and_is_done_when_it_is_the
     EXPECT_THAT(rig.oven().told, ElementsAre(99));
 }
 
-TEST(A_task_of_a_machine, rejects_a_state_that_it_does_not_have_or_cannot_reach) {
+TEST(A_task_of_a_machine, rejects_an_unknown_or_unreachable_state) {
     Tasks rig;
     rig.run(10ms);
-    for (const std::string_view state : {"Hott", "Hot"}) { // of the second there is no condition transition
+    for (const std::string_view state : {"Hott", "Hot"}) { // the second has no condition transition
         ScriptText text;
         static_cast<void>(text.assign(state));
         ASSERT_TRUE(rig.panel().request.send(text));
@@ -284,7 +284,7 @@ TEST(A_task_of_a_machine, rejects_a_state_that_it_does_not_have_or_cannot_reach)
     }
 }
 
-TEST_F(A_behaviour, commands_the_one_beside_it_and_the_life_of_components_and_sets_its_variables) {
+TEST_F(A_behaviour, commands_another_behaviour_and_components_and_sets_its_variables) {
     run(10ms);
     door().moved.emit();
     run(4ms);

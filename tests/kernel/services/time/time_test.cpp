@@ -1,5 +1,5 @@
-// The time service (thesis 3.3) under virtual time: events at a time, after a while and again and again;
-// watchdogs that hear the silence of an activity and of what a connection carries.
+// The time service (thesis 3.3) in virtual time: events at a time, after a delay and periodic; watchdogs that
+// detect the silence of an activity and of a connection.
 #include "kernel/services/time/timed_event.hpp"
 #include "kernel/services/time/watchdog.hpp"
 
@@ -15,7 +15,7 @@
 namespace tappet {
 namespace {
 
-/// Writes its level unless it is told to be silent, and takes the time that it is told to.
+/// Writes its level unless the test silences it, and uses the time that the test sets.
 struct Worker : Clocked {
     Output<std::int64_t> level;
     bool silent = false;
@@ -31,7 +31,7 @@ struct Worker : Clocked {
     static constexpr auto interface() { return facets(output<&Worker::level>("level", "", "counts")); }
 };
 
-/// Hears everything, and says when timed events shall come.
+/// Receives everything, and arms timed events.
 struct Office : Clocked {
     Input<std::int64_t> level;
     Event<Time> at;
@@ -88,7 +88,7 @@ constexpr std::size_t motion = 0, worker = 0;
 
 struct TimeService : testing::Test, RunningRig<table> {
     TimeService() { pass(10ms); }
-    /// Emits in the logic's activity, as it were: nothing else runs under virtual time meanwhile.
+    /// Emits as if in the logic's activity: nothing else runs in virtual time meanwhile.
     template <class E, class... A> void emit(E& event, A... arguments) {
         event(arguments...);
         instance.engines()[2].waiter().wake();
@@ -106,7 +106,7 @@ using AWatchdogInRealTime = InRealTime;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST_F(ATimedEvent, is_due_once_at_its_time_and_not_before) {
+TEST_F(ATimedEvent, is_due_exactly_once_at_its_time) {
     emit(office.at, clock.now() + 40ms);
     const Time when = clock.now() + 40ms;
     pass(40ms - 1ns);
@@ -117,7 +117,7 @@ TEST_F(ATimedEvent, is_due_once_at_its_time_and_not_before) {
     EXPECT_FALSE(bell.armed());
 }
 
-TEST_F(ATimedEvent, is_due_after_a_while_and_arming_again_moves_it) {
+TEST_F(ATimedEvent, is_due_after_a_delay_and_moves_when_armed_again) {
     emit(office.after, Duration{30ms});
     pass(20ms);
     const Time when = clock.now() + 50ms;
@@ -126,7 +126,7 @@ TEST_F(ATimedEvent, is_due_after_a_while_and_arming_again_moves_it) {
     EXPECT_THAT(office.dues, ElementsAre(when));
 }
 
-TEST_F(ATimedEvent, that_is_past_is_due_at_once) {
+TEST_F(ATimedEvent, is_due_at_once_when_its_time_is_past) {
     const Time when = clock.now() - 5ms;
     emit(office.at, when);
     pass(1ns);
@@ -134,7 +134,7 @@ TEST_F(ATimedEvent, that_is_past_is_due_at_once) {
     EXPECT_EQ(office.dues_heard_at[0], clock.now() - 1ns);
 }
 
-TEST_F(ATimedEvent, comes_again_and_again_until_it_is_cancelled) {
+TEST_F(ATimedEvent, repeats_until_it_is_cancelled) {
     const Time begin = clock.now();
     emit(office.again, Duration{15ms});
     pass(50ms);
@@ -146,18 +146,18 @@ TEST_F(ATimedEvent, comes_again_and_again_until_it_is_cancelled) {
     EXPECT_EQ(bell.skipped.last(), 0);
 }
 
-TEST_F(ATimedEvent, keeps_its_beat_and_counts_the_periods_that_were_lost_to_lateness) {
+TEST_F(ATimedEvent, keeps_its_phase_and_counts_periods_lost_to_lateness) {
     const Time begin = clock.now();
     emit(office.again, Duration{10ms});
     pass(10ms);
-    the_worker.load = 35ms; // everything waits for it under virtual time
+    the_worker.load = 35ms; // everything waits for it in virtual time
     pass(60ms);
     EXPECT_EQ(bell.skipped.last() + bell.times.last(), 7);
     EXPECT_GT(bell.skipped.last(), 0);
     for (const Time due : office.dues) EXPECT_EQ((due - begin) % 10ms, Duration::zero());
 }
 
-TEST_F(ATimedEvent, with_a_period_that_is_not_positive_is_not_armed) {
+TEST_F(ATimedEvent, is_not_armed_with_a_non_positive_period) {
     emit(office.again, Duration{10ms});
     emit(office.again, Duration{0});
     EXPECT_FALSE(bell.armed());
@@ -166,7 +166,7 @@ TEST_F(ATimedEvent, with_a_period_that_is_not_positive_is_not_armed) {
     EXPECT_THAT(office.dues, IsEmpty());
 }
 
-TEST_F(ATimedEvent, may_be_armed_anew_by_what_hears_it) {
+TEST_F(ATimedEvent, can_be_armed_again_by_its_reaction) {
     office.rearms = true;
     const Time begin = clock.now();
     emit(office.after, Duration{10ms});
@@ -174,14 +174,14 @@ TEST_F(ATimedEvent, may_be_armed_anew_by_what_hears_it) {
     EXPECT_THAT(office.dues, ElementsAre(begin + 10ms, begin + 17ms, begin + 24ms));
 }
 
-TEST_F(ATimedEvent, is_forgotten_when_its_component_stops) {
+TEST_F(ATimedEvent, is_cancelled_when_its_component_stops) {
     emit(office.after, Duration{10ms});
     static_cast<void>(instance.life().ask_component(2, LifeChange::restart));
     pass(100ms);
     EXPECT_THAT(office.dues, IsEmpty());
 }
 
-TEST_F(AWatchdog, is_content_while_there_is_life) {
+TEST_F(AWatchdog, reports_nothing_while_there_are_signs_of_life) {
     pass(10s);
     EXPECT_TRUE(cycle_dog.alive.last());
     EXPECT_TRUE(level_dog.alive.last());
@@ -189,7 +189,7 @@ TEST_F(AWatchdog, is_content_while_there_is_life) {
     EXPECT_THAT(office.level_silences, IsEmpty());
 }
 
-TEST_F(AWatchdog, tells_the_silence_of_a_connection_once_and_two_of_its_periods_after_the_limit_at_most) {
+TEST_F(AWatchdog, reports_a_silent_connection_once_within_two_periods_of_the_limit) {
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
         Random random{seed};
         office.level_silences.clear();
@@ -211,13 +211,13 @@ TEST_F(AWatchdog, tells_the_silence_of_a_connection_once_and_two_of_its_periods_
     }
 }
 
-TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew_when_it_starts) {
+TEST_F(AWatchdog, ignores_an_intended_stop_and_restarts_with_its_subject) {
     EXPECT_EQ(world.change_activity(motion, LifeChange::stop).view(), "");
     pass(200ms);
     EXPECT_THAT(office.silences, IsEmpty());
     EXPECT_THAT(office.level_silences, IsEmpty());
     EXPECT_EQ(world.change_activity(motion, LifeChange::start).view(), "");
-    static_cast<void>(instance.life().ask_component(worker, LifeChange::stop)); // its activity goes on
+    static_cast<void>(instance.life().ask_component(worker, LifeChange::stop)); // its activity continues
     pass(200ms);
     EXPECT_THAT(office.silences, IsEmpty());
     EXPECT_THAT(office.level_silences, IsEmpty());
@@ -229,20 +229,20 @@ TEST_F(AWatchdog, expects_no_life_of_what_was_stopped_on_purpose_and_counts_anew
     EXPECT_EQ(office.level_silences.size(), 1u);
 }
 
-TEST_F(AWatchdog, hears_the_silence_of_a_thread_that_was_given_up) {
+TEST_F(AWatchdog, detects_the_silence_of_an_abandoned_thread) {
     Engine& engine = instance.engines()[motion];
-    engine.stop(clock.now()); // as a thread does whose contract is broken
+    engine.stop(clock.now()); // like a thread with a broken contract
     engine.mark_failed();
     pass(100ms);
     EXPECT_EQ(office.silences.size(), 1u);
     EXPECT_FALSE(cycle_dog.alive.last());
 }
 
-/// Runs when it is told to, and hangs when it is told to.
+/// Runs or hangs as the test orders.
 struct Sleeper : Clocked {
     std::atomic<bool> hangs{false};
     Timer alarm;
-    Duration alarm_after{}; ///< it was roused; none: no alarm
+    Duration alarm_after{}; ///< delay after the wake; none: no alarm
     void rouse() noexcept TAPPET_REALTIME {
         if (hangs.exchange(false)) clock->consume(200ms);
         if (alarm_after > Duration::zero()) alarm.arm(clock->now() + alarm_after);
@@ -253,7 +253,7 @@ struct Sleeper : Clocked {
                       timer<&Sleeper::alarm, &Sleeper::ring>("alarm", "does nothing"));
     }
 };
-/// Rouses it, and hears its watchdog.
+/// Wakes it, and receives its watchdog's events.
 struct Rouser {
     Event<> now;
     std::atomic<bool> rouses{false};
@@ -283,7 +283,7 @@ constexpr auto sleeping_table = machine("sleeping",
     behaviours());
 // clang-format on
 
-TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_that_it_does_not_come) {
+TEST(AWatchdogOfAnActivityWithoutAPeriod, accepts_idle_time_and_detects_a_missed_wake) {
     RunningRig<sleeping_table> rig;
     Rouser& rouser = rig.the<Rouser>("rouser");
     EXPECT_TRUE(rig.run(1s));
@@ -291,7 +291,7 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_th
     EXPECT_TRUE(rig.run(1s));
     EXPECT_THAT(rouser.silences, IsEmpty()) << "it rests, and when it was woken it came";
     Engine& sleeping = rig.instance.engines()[2];
-    sleeping.stop(rig.clock.now()); // as a thread does whose contract is broken
+    sleeping.stop(rig.clock.now()); // like a thread with a broken contract
     sleeping.mark_failed();
     sleeping.waiter().wake();
     EXPECT_TRUE(rig.run(100ms));
@@ -299,7 +299,7 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, is_content_while_it_rests_and_hears_th
 }
 
 // clang-format off
-constexpr auto rousing_table = machine("rousing", // it is woken just before the watchdog looks
+constexpr auto rousing_table = machine("rousing", // it is woken just before the watchdog checks
     components(component<Sleeper>("sleeper"), component<Rouser>("rouser"), component<Watchdog>("dog", watches("sleep"), set("limit", 1ms))),
     activities(
         activity("watch", every(2ms), runs("rouser", "dog"), budget(50us), stack(64 * 1024)),
@@ -308,7 +308,7 @@ constexpr auto rousing_table = machine("rousing", // it is woken just before the
     reactions(when("rouser.now", tell("sleeper.rouse")), when("dog.silent", call("rouser.on_silent"))), behaviours());
 // clang-format on
 
-TEST(AWatchdogOfAnActivityWithoutAPeriod, takes_no_rest_for_silence_whose_limit_is_below_its_own_period) {
+TEST(AWatchdogOfAnActivityWithoutAPeriod, accepts_idle_time_beyond_a_limit_below_its_own_period) {
     RunningRig<rousing_table> rig;
     Rouser& rouser = rig.the<Rouser>("rouser");
     for (int i = 0; i < 20; ++i) {
@@ -318,7 +318,7 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, takes_no_rest_for_silence_whose_limit_
     EXPECT_THAT(rouser.silences, IsEmpty()) << "it comes at once, each time";
 }
 
-TEST(AWatchdogOfAnActivityWithoutAPeriod, hears_that_it_does_not_come_for_a_timer_that_is_due) {
+TEST(AWatchdogOfAnActivityWithoutAPeriod, detects_a_missed_timer) {
     RunningRig<sleeping_table> rig;
     Rouser& rouser = rig.the<Rouser>("rouser");
     rig.the<Sleeper>("sleeper").alarm_after = 50ms;
@@ -331,7 +331,7 @@ TEST(AWatchdogOfAnActivityWithoutAPeriod, hears_that_it_does_not_come_for_a_time
     EXPECT_EQ(rouser.silences.size(), 1u);
 }
 
-TEST_F(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest) {
+TEST_F(AWatchdogInRealTime, detects_a_hang_but_not_idle_time_without_a_period) {
     RealRig<sleeping_table> rig;
     ASSERT_TRUE(rig.runs());
     Rouser& rouser = rig.the<Rouser>("rouser");
@@ -346,7 +346,7 @@ TEST_F(AWatchdogInRealTime, hears_an_activity_without_a_period_hang_and_not_rest
     EXPECT_EQ(rouser.revivals.size(), rouser.silences.size());
 }
 
-TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
+TEST_F(AWatchdog, repeats_exactly_in_every_run) {
     const auto digest = [](std::uint64_t seed) {
         Random random{seed};
         RunningRig<table> again;
@@ -360,7 +360,7 @@ TEST_F(AWatchdog, runs_the_same_way_in_every_run) {
     EXPECT_NE(digest(1), digest(2));
 }
 
-TEST_F(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cycle_and_its_revival) {
+TEST_F(AWatchdogInRealTime, detects_a_hang_in_a_cycle_and_its_recovery) {
     RealRig<table> rig;
     ASSERT_TRUE(rig.runs());
     EXPECT_TRUE(rig.world.supervise(100ms));
@@ -371,7 +371,7 @@ TEST_F(AWatchdogInRealTime, hears_the_silence_of_an_activity_that_hangs_in_a_cyc
     ASSERT_FALSE(office.silences.empty());
     EXPECT_GE(office.silences[0], 20ms);
     ASSERT_EQ(office.revivals.size(), office.silences.size());
-    // Not the first: a busy host may have held the worker up before.
+    // Not the first: a busy host may have delayed the worker before.
     EXPECT_GE(*std::ranges::max_element(office.revivals), 150ms);
 }
 

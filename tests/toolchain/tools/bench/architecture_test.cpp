@@ -1,4 +1,4 @@
-// A box of the bench is of the architecture of the first program that it is given.
+// A box of the bench takes the architecture of its first program.
 #include "toolchain/tools/bench/architecture.hpp"
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/bench/initramfs.hpp"
@@ -35,16 +35,16 @@ TEST_F(ArchitectureOfABox, is_that_of_the_first_program) {
     EXPECT_EQ(architecture_of_first({program("b", EM_X86_64), program("a", EM_AARCH64)}).name, "x86-64");
 }
 
-TEST_F(ArchitectureOfABox, is_the_hosts_without_a_program) {
+TEST_F(ArchitectureOfABox, is_that_of_the_host_without_a_program) {
     EXPECT_EQ(architecture_of_first({}).name, "x86-64");
     EXPECT_EQ(architecture_of_first({script(), folder / "nothing", "/tmp"}).name, "x86-64");
 }
 
-TEST_F(ArchitectureOfABox, is_none_that_the_bench_does_not_have) {
+TEST_F(ArchitectureOfABox, is_refused_when_the_bench_does_not_have_it) {
     EXPECT_THROW(static_cast<void>(architecture_of_first({program("r", EM_RISCV)})), BenchError);
 }
 
-TEST_F(ArchitectureOfABox, takes_no_program_of_another) {
+TEST_F(ArchitectureOfABox, excludes_programs_of_another_architecture) {
     Initramfs root{folder / "root.cpio", architecture_of_first({program("a", EM_AARCH64)})};
     EXPECT_THROW(root.add(program("b", EM_X86_64), "/bin/b"), BenchError);
     EXPECT_NO_THROW(root.add(script(), "/bin/script"));

@@ -1,4 +1,4 @@
-// What a scenario brings up for a machine is what the board "bench" says.
+// A scenario creates exactly the devices of the board "bench" for a machine.
 #include "board/bench/board.hpp"
 #include "toolchain/tools/bench/bench.hpp"
 
@@ -9,12 +9,12 @@
 namespace tappet::bench {
 namespace {
 
-TEST(Board, of_a_scenario_has_every_device_that_the_bench_says) {
+TEST(Board, gives_a_scenario_every_device_of_the_bench) {
     Scenario scenario;
     add_board(scenario);
     std::size_t found = 0, own = 0;
     for (const BoardDevice& device : board::bench.devices) {
-        if (device.kind == "serial") ++own; // a pseudo-terminal, which a case makes itself
+        if (device.kind == "serial") ++own; // a pseudo-terminal, which each case creates itself
         for (const std::string& bus : scenario.can)
             if (device.kind == "can" && device.address == bus) ++found;
         const Fact* lines = said(device.facts, gpio::lines_word);

@@ -31,7 +31,7 @@ TEST_F(Completing, an_empty_line_offers_the_commands) {
     EXPECT_THAT(after("wa").candidates, ElementsAre("watch"));
 }
 
-TEST_F(Completing, a_name_is_one_that_the_command_takes) {
+TEST_F(Completing, a_command_offers_only_names_that_it_accepts) {
     EXPECT_THAT(after("set ").candidates, ElementsAre("shaft.gains.i", "shaft.gains.p"));
     EXPECT_THAT(after("send ").candidates, ElementsAre("shaft.stop"));
     EXPECT_THAT(after("events ").candidates, ElementsAre("shaft.beat_up"));
@@ -41,14 +41,14 @@ TEST_F(Completing, a_name_is_one_that_the_command_takes) {
     EXPECT_THAT(after("get shaft.").candidates, Not(Contains("shaft.stop")));
 }
 
-TEST_F(Completing, where_a_value_belongs_no_name_is_offered) {
+TEST_F(Completing, no_name_is_offered_in_place_of_a_value) {
     EXPECT_THAT(after("set shaft.gains.p ").candidates, IsEmpty());
     EXPECT_THAT(after("set shaft.gains.p 1 ").candidates, ElementsAre("shaft.gains.i", "shaft.gains.p"));
     EXPECT_THAT(after("force loom.lamp ").candidates, IsEmpty());
     EXPECT_THAT(after("get shaft.angle l").candidates, Contains("loom.lamp"));
 }
 
-TEST_F(Completing, goes_as_far_as_all_candidates_agree) {
+TEST_F(Completing, a_name_extends_as_far_as_all_candidates_agree) {
     const Completion completion = after("set sh");
     EXPECT_EQ(completion.begin, 4u);
     EXPECT_EQ(completion.common(), "shaft.gains.");

@@ -1,5 +1,5 @@
-// A line typed at the browser in a machine that runs: from the command line through the socket into the
-// engine and back to the exit code (thesis 3.4.6, 4.8).
+// A line typed at the browser on a running machine: from the command line through the socket into the engine
+// and back to the exit code (thesis 3.4.6, 4.8).
 #include "tests/kernel/services/interpreter/line_rig.hpp"
 #include "tests/toolchain/tools/browser/outcome.hpp"
 
@@ -13,12 +13,12 @@ using browser::Outcome;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// The machine's time goes on in a thread of its own, while the program waits for answers.
+/// The machine's time runs in a thread of its own, while the program waits for answers.
 class Execute : public Lines {
 protected:
     void SetUp() override {
         Lines::SetUp();
-        interpreter().longest.set(24h); // of the machine's time, which flies
+        interpreter().longest.set(24h); // in the machine's time, which runs fast
         time = std::thread{[this] {
             while (!is_over) {
                 run(10ms);
@@ -38,7 +38,7 @@ protected:
     std::thread time;
 };
 
-TEST_F(Execute, tells_a_value_or_that_it_is_done) {
+TEST_F(Execute, prints_a_value_or_done) {
     EXPECT_EQ(type({"execute", "gauge.force * 2 + 1"}).out, "26\n");
     EXPECT_EQ(type({"execute", "gauge.all_homed()"}).out, "true\n");
     EXPECT_EQ(type({"execute", "set gauge.target = 35.0"}).out, "done\n");
@@ -48,7 +48,7 @@ TEST_F(Execute, tells_a_value_or_that_it_is_done) {
     EXPECT_THAT(type({"execute", "1 + 1", "--json"}).out, HasSubstr(R"("final":true,"value":2})"));
 }
 
-TEST_F(Execute, ends_with_the_code_of_what_went_wrong) {
+TEST_F(Execute, ends_with_the_exit_code_of_the_failure) {
     const Outcome refused = type({"execute", "gauge.forse"});
     EXPECT_EQ(refused.code, 1);
     EXPECT_THAT(refused.errors, HasSubstr(R"(line:1:7: "gauge" has no "forse"; did you mean "force"?)"));
@@ -61,7 +61,7 @@ TEST_F(Execute, ends_with_the_code_of_what_went_wrong) {
     EXPECT_EQ(type({"execute", "1", "--stop"}).code, 2);
 }
 
-TEST_F(Execute, breaks_a_line_off_upon_a_signal_and_upon_request) {
+TEST_F(Execute, cancels_a_line_on_a_signal_and_on_request) {
     volatile std::sig_atomic_t signal = SIGINT;
     const Outcome ended = type({"execute", "wait gauge.force > 1000"}, &signal);
     EXPECT_EQ(ended.code, 4);

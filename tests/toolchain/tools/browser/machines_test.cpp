@@ -1,5 +1,5 @@
-// Several machines in one command: by name, side by side, and whatever one of them does the others are seen
-// (thesis 4.8).
+// Several machines in one command: by name, side by side; the failure of one does not hide the others (thesis
+// 4.8).
 #include "tests/toolchain/tools/browser/outcome.hpp"
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
 
@@ -34,7 +34,7 @@ protected:
     test::Folder directory;
 };
 
-TEST_F(Several, are_listed_with_what_they_are_about) {
+TEST_F(Several, are_listed_with_their_states) {
     saw.answer("behaviours", {R"({"id": %, "ok": true, "behaviours": [{"name": "loom.cycle", )"
                               R"("status": "running", "state": "weave"}], "slots": []})"});
     drill.force("shaft.angle", true, 90.0);
@@ -77,7 +77,7 @@ TEST_F(Several, a_machine_hears_its_own_names_and_the_other_hears_nothing) {
     EXPECT_THAT(drill.asked(), ElementsAre("call shaft.reset", "call shaft.reset"));
 }
 
-TEST_F(Several, events_of_both_are_told_as_they_come) {
+TEST_F(Several, events_of_both_are_printed_as_they_come) {
     for (SampleMachine* each : {&saw, &drill})
         each->answer("subscribe",
                      {R"({"id": %, "ok": true})",
@@ -88,7 +88,7 @@ TEST_F(Several, events_of_both_are_told_as_they_come) {
     EXPECT_THAT(drill.asked(), ElementsAre("subscribe shaft.beat_up", "unsubscribe shaft.beat_up"));
 }
 
-TEST_F(Several, what_one_command_tells_of_a_machine_is_told_of_each_or_of_the_one_that_is_named) {
+TEST_F(Several, a_command_describes_each_machine_or_the_named_one) {
     EXPECT_THAT(run({"manifest"}).out,
                 AllOf(HasSubstr("drill:\nmachine sample"), HasSubstr("saw:\nmachine")));
     EXPECT_THAT(run({"manifest", "saw"}).out, Not(HasSubstr("saw:\n")));
@@ -98,7 +98,7 @@ TEST_F(Several, what_one_command_tells_of_a_machine_is_told_of_each_or_of_the_on
     EXPECT_THAT(run({"info", "saw.loom.angle"}).out, HasSubstr("<- saw.shaft.angle (stale after 4ms: hold)"));
 }
 
-TEST_F(Several, one_that_is_down_is_told_and_the_other_goes_on) {
+TEST_F(Several, one_that_is_down_is_reported_and_the_other_answers) {
     drill.end();
     saw.write("shaft.angle", 12.5);
     const Outcome listed = run({"list"});
@@ -120,7 +120,7 @@ TEST_F(Several, one_that_is_down_is_told_and_the_other_goes_on) {
     EXPECT_THAT(each.out, HasSubstr("saw:\n"));
 }
 
-TEST_F(Several, one_that_ends_while_it_is_watched_is_told_and_the_other_is_watched_on) {
+TEST_F(Several, one_that_ends_is_reported_and_the_other_stays_watched) {
     saw.write("shaft.angle", 12.5);
     std::jthread ending{[this] {
         std::this_thread::sleep_for(std::chrono::milliseconds{200});
@@ -131,10 +131,10 @@ TEST_F(Several, one_that_ends_while_it_is_watched_is_told_and_the_other_is_watch
     EXPECT_EQ(watched.code, 3);
     EXPECT_THAT(watched.out,
                 testing::ContainsRegex("\ndrill: the machine has ended\n(saw.shaft.angle = 12.5 deg\n)+$"));
-    EXPECT_THAT(watched.errors, HasSubstr("drill ended; what was shown last is the last"));
+    EXPECT_THAT(watched.errors, HasSubstr("drill ended; the last values shown are the last"));
 }
 
-TEST_F(Several, one_that_does_not_answer_in_time_is_told_and_the_other_goes_on) {
+TEST_F(Several, a_time_out_of_one_is_reported_and_the_other_answers) {
     drill.answer("behaviours", {});
     const Outcome silent = run({"list"});
     EXPECT_EQ(silent.code, 5);
@@ -142,7 +142,7 @@ TEST_F(Several, one_that_does_not_answer_in_time_is_told_and_the_other_goes_on) 
     EXPECT_THAT(silent.out, HasSubstr("saw    on test"));
 }
 
-TEST_F(Several, a_name_that_begins_with_no_machine_is_told_what_was_meant) {
+TEST_F(Several, a_name_without_a_machine_is_refused_with_the_likely_names) {
     const auto errors = [this](std::vector<std::string> words) {
         const Outcome refused = run(std::move(words));
         EXPECT_EQ(refused.code, 2);
@@ -159,16 +159,15 @@ TEST_F(Several, a_name_that_begins_with_no_machine_is_told_what_was_meant) {
     EXPECT_THAT(errors({"get", "saw.shaft.angel"}), HasSubstr("did you mean \"saw.shaft.angle\"?"));
     EXPECT_THAT(errors({"get", "saw.shaft.angle", "drill.shaft.angel"}), HasSubstr("drill.shaft.angle"));
     EXPECT_THAT(errors({"get", "saw"}), HasSubstr("'saw' is a machine; name what is meant in it"));
-    EXPECT_THAT(errors({"save"}),
-                HasSubstr("say of which machine, as in 'save drill'; there are drill, saw"));
+    EXPECT_THAT(errors({"save"}), HasSubstr("name one machine, as in 'save drill'; there are drill, saw"));
     EXPECT_THAT(errors({"set", "saw.shaft.gains.p", "1", "drill.shaft.gains.p", "1"}),
-                HasSubstr("'set' is about one machine at a time; these are of saw and drill"));
+                HasSubstr("'set' takes names of one machine; these are of saw and drill"));
     EXPECT_THAT(errors({"set", "saw.shaft.gains.p"}), HasSubstr("'set' was given 1 arguments"));
     EXPECT_THAT(saw.asked(), IsEmpty());
     EXPECT_THAT(drill.asked(), IsEmpty());
 }
 
-TEST_F(Several, may_be_given_one_by_one_and_two_of_one_name_are_refused) {
+TEST_F(Several, may_be_named_one_by_one_but_two_of_one_name_are_refused) {
     const Outcome named = run_words(
         {"--socket", "a=" + saw.socket(), "--socket", "b=" + drill.socket(), "get", "b.shaft.angle"});
     EXPECT_EQ(named.out, "b.shaft.angle = 0 deg   never written\n") << named.errors;
@@ -177,7 +176,7 @@ TEST_F(Several, may_be_given_one_by_one_and_two_of_one_name_are_refused) {
     EXPECT_THAT(twice.errors, AllOf(HasSubstr("two machines are called 'sample'"), HasSubstr("NAME=FILE")));
 }
 
-TEST_F(Several, the_only_one_left_answers_to_its_name_all_the_same) {
+TEST_F(Several, the_only_one_left_still_answers_to_its_name) {
     std::filesystem::remove(directory / "drill.socket");
     saw.write("shaft.angle", 12.5);
     EXPECT_EQ(run({"get", "saw.shaft.angle"}).out, "shaft.angle = 12.5 deg\n");
@@ -186,7 +185,7 @@ TEST_F(Several, the_only_one_left_answers_to_its_name_all_the_same) {
     EXPECT_THAT(saw.asked(), ElementsAre("restart shaft"));
 }
 
-TEST_F(Several, a_refusal_says_whose_it_is) {
+TEST_F(Several, a_refusal_names_its_machine) {
     saw.answer("set", {R"({"id": %, "ok": false, "code": "denied", "error": "an observer sets nothing"})"});
     const Outcome refused = run({"set", "saw.shaft.gains.p", "1"});
     EXPECT_EQ(refused.code, 1);

@@ -1,4 +1,5 @@
-// A map is checked before it is believed: no damage in the machine's memory leads outside of it (thesis 4.8).
+// A map is checked before it is used: no damage in the machine's memory causes a read outside of it (thesis
+// 4.8).
 #include "toolchain/tools/browser/map_reader.hpp"
 
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
@@ -71,8 +72,9 @@ TEST(MapReader, refuses_a_type_that_holds_itself) {
     EXPECT_NE(map.error().find("holds itself"), std::string::npos);
 }
 
-/// Under an address sanitizer a step outside would be seen; here each place that is let through is inside.
-TEST(MapReader, no_damage_leads_outside_of_the_block) {
+/// An address sanitizer would report a read outside; without one, the test checks that each accepted offset
+/// is inside.
+TEST(MapReader, never_reads_outside_of_a_damaged_block) {
     SampleMap sample = shaft();
     const auto block = sample.build();
     const std::size_t map_bytes = sample.header().map_bytes;

@@ -26,12 +26,12 @@ namespace {
 using namespace std::chrono_literals;
 using Nanoseconds = std::int64_t;
 
-/// What the watching process and the measuring one share beside the machine.
+/// Shared memory of the watching and the measuring process.
 struct Control {
     std::atomic<int> memory{-1}; ///< the measuring process' descriptor of the machine's memory
     std::atomic<bool> reads{false};
-    std::atomic<std::uint64_t> sweeps{0}; ///< every facet and every figure was read so often
-    std::atomic<std::uint64_t> busy{0};   ///< readings that found the machine in its cycle each time
+    std::atomic<std::uint64_t> sweeps{0}; ///< passes over every facet and every figure
+    std::atomic<std::uint64_t> busy{0};   ///< reads that found the machine in its cycle each time
 };
 
 void stay_on(std::size_t processor) {
@@ -41,7 +41,7 @@ void stay_on(std::size_t processor) {
     static_cast<void>(::sched_setaffinity(0, sizeof set, &set)); // without it the figures are only noisier
 }
 
-/// The life of the watching process.
+/// Body of the watching process.
 [[noreturn]] void watch(Control& control) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     stay_on(1);
@@ -70,8 +70,8 @@ void stay_on(std::size_t processor) {
     }
 }
 
-/// One run of the loom with its plant under virtual time, which is the same run each time. In every other
-/// block of cycles the machine is watched: in the odd blocks or in the even ones.
+/// One run of the loom with its plant under virtual time, the same in each run. The machine is watched in
+/// every other block of cycles: in the odd blocks or in the even ones.
 class MeasuredRun {
 public:
     static constexpr std::size_t cycles = 16'000;
@@ -84,7 +84,7 @@ public:
 
     void go() {
         control_.memory = -1;
-        const pid_t watcher = ::fork(); // before the machine's memory is there: no page of it is copied later
+        const pid_t watcher = ::fork(); // created before the machine's memory: no page of it is copied later
         if (watcher == 0) watch(control_);
         carpet::LoomRun run{loom::Settings{}, 1};
         run.world().run_cycles_by({this, [](void* self, Engine& engine, bool woken) {
@@ -107,7 +107,7 @@ public:
     }
 
     std::vector<Nanoseconds> took{};
-    std::vector<bool> watched{}; ///< by a reader that got through at least once in this block
+    std::vector<bool> watched{}; ///< by a reader that completed at least one pass in this block
 
 private:
     void cycle(Engine& engine, bool woken) {
@@ -119,7 +119,8 @@ private:
         watched.push_back(reads_);
     }
 
-    /// The reader is under way before the first cycle of a block, or has ended its last sweep.
+    /// Waits until the reader runs, before the first cycle of a watched block, or until it has ended its last
+    /// pass.
     void begin_block() {
         reads_ = (took.size() / block % 2 == 0) == watched_first_;
         control_.reads.store(reads_, std::memory_order_release);
@@ -129,7 +130,7 @@ private:
         while (control_.sweeps.load(std::memory_order_acquire) < sweeps + 2) {
             std::this_thread::yield();
             if (std::chrono::steady_clock::now() < end) continue;
-            reads_ = false; // the watcher is gone: go() says so
+            reads_ = false; // the watcher is gone: go() reports it
             return;
         }
     }
@@ -153,15 +154,15 @@ Quantiles quantiles_of(std::vector<Nanoseconds> values) {
     return {at(0.5), at(0.999)};
 }
 
-/// Of one and the same cycle, in several runs: the host's own interruptions are not in the best of them, the
-/// reader is in each.
+/// Keeps the shortest time of each cycle over several runs: that removes the host's interruptions, while the
+/// reader is in every run.
 void keep_best(std::vector<Nanoseconds>& best, std::size_t cycle, Nanoseconds took) {
     best[cycle] = std::min(best[cycle], took);
 }
 
-/// What may be lost at most. A reader on another processor takes lines that the machine must fetch back when
-/// it writes them: the rare cycle that writes many of them pays a thousandth of its period, the usual one
-/// nothing.
+/// The largest accepted loss. A reader on another processor takes cache lines that the machine must fetch
+/// back when it writes them: the rare cycle that writes many of them pays a thousandth of its period, the
+/// usual one nothing.
 constexpr double median_margin = 1.10;
 constexpr double resolution_ns = 50; // two readings of the clock
 constexpr double p999_margin_ns = 1000;
@@ -173,7 +174,7 @@ bool within_margin(const Quantiles& alone, const Quantiles& observed) {
            observed.p999 <= alone.p999 + p999_margin_ns;
 }
 
-TEST(Observation, a_motion_cycle_takes_as_long_while_everything_is_read_in_a_loop_as_without) {
+TEST(Observation, reading_everything_in_a_loop_does_not_slow_a_motion_cycle) {
     if (std::thread::hardware_concurrency() < 2)
         GTEST_SKIP() << "one processor: reader and machine take turns";
     void* const shared =
@@ -190,7 +191,7 @@ TEST(Observation, a_motion_cycle_takes_as_long_while_everything_is_read_in_a_loo
     Quantiles a;
     Quantiles o;
     int pairs = 0;
-    // More of a kind make the host's noise smaller and leave what reading costs as it is.
+    // More runs of each kind reduce the host's noise and keep the cost of reading.
     while (pairs < fewest_pairs || (pairs < most_pairs && !within_margin(a, o))) {
         for (const bool watched_first : {true, false}) {
             MeasuredRun run{control, watched_first};
@@ -224,7 +225,7 @@ TEST(Observation, a_motion_cycle_takes_as_long_while_everything_is_read_in_a_loo
         static_cast<unsigned long long>(control.busy.load()));
     EXPECT_GT(control.sweeps.load(), 100u) << "the reader hardly ran: nothing was measured";
     EXPECT_LE(o.median, a.median * median_margin + resolution_ns);
-    // Where the host alone takes longer away from more than one cycle in a thousand, the tail is the host's.
+    // When the host alone delays more than one cycle in a thousand, the tail belongs to the host.
     if (raw_a.p999 > a.p999 + p999_margin_ns)
         std::printf("  the host is too busy for the tail to be judged\n");
     else

@@ -1,4 +1,4 @@
-// Watching without disturbing: what is shown is whole, of one moment, or said to be busy (thesis 4.8).
+// Watching without disturbing: each shown value is whole and of one moment, or marked busy (thesis 4.8).
 #include "toolchain/tools/browser/observer.hpp"
 
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
@@ -55,7 +55,7 @@ TEST_F(Watching, an_old_value_is_marked_stale_where_its_row_has_a_limit) {
     EXPECT_EQ(shown("loom.angle"), "loom.angle = 12.5 deg   stale");
 }
 
-TEST_F(Watching, what_a_device_gave_stands_beside_what_was_read_when_they_differ) {
+TEST_F(Watching, the_device_value_is_shown_when_the_read_value_differs) {
     machine.write("loom.angle", 12.5, 1'000'000);
     EXPECT_EQ(shown("loom.angle"), "loom.angle = 12.5 deg") << "the device gave nothing yet";
     machine.write("shaft.angle", 12.5, 1'000'000);
@@ -67,7 +67,7 @@ TEST_F(Watching, what_a_device_gave_stands_beside_what_was_read_when_they_differ
     EXPECT_EQ(shown("shaft.angle"), "shaft.angle = 14 deg") << "nobody feeds it but its own device";
 }
 
-TEST_F(Watching, what_is_forced_at_the_device_is_not_taken_for_the_wire) {
+TEST_F(Watching, a_value_forced_at_the_device_is_not_shown_as_the_wire) {
     machine.write("loom.angle", 12.5, 1'000'000);
     machine.write("shaft.angle", 14.0, 3'000'000);
     machine.force("shaft.angle", true, 90.0);

@@ -30,7 +30,7 @@ TEST(Options, after_two_dashes_everything_is_a_word) {
     EXPECT_THAT(parsed({"set", "a.b", "--", "--json"})->words, ElementsAre("set", "a.b", "--json"));
 }
 
-TEST(Options, a_wrong_one_is_told_with_its_cure) {
+TEST(Options, a_wrong_one_is_refused_with_its_cure) {
     EXPECT_THAT(parsed({"get", "--jason"}).error(), HasSubstr("did you mean --json?"));
     EXPECT_THAT(parsed({"watch", "a", "--every"}).error(), HasSubstr("needs a value"));
     EXPECT_THAT(parsed({"watch", "a", "--every", "soon"}).error(), HasSubstr("write 200ms"));

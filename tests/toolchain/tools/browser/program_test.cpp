@@ -1,4 +1,4 @@
-// The program from its command line to its exit code, against a machine under the test's hand (thesis 4.8).
+// The program from its command line to its exit code, against a machine that the test controls (thesis 4.8).
 
 #include "tests/toolchain/tools/browser/outcome.hpp"
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
@@ -61,7 +61,7 @@ TEST_F(Program, shows_the_wire_wherever_a_component_has_read_another_value) {
 
 class BlackBox : public Program {
 protected:
-    /// Of the machine as it is now.
+    /// Writes a black box of the machine in its present state.
     std::string keep(std::uint32_t version = map::black_box::version, std::string_view answers = {}) {
         map::black_box::Record box;
         box.magic = map::black_box::magic;
@@ -85,7 +85,7 @@ protected:
     }
 };
 
-TEST_F(BlackBox, tells_why_the_machine_ended_and_where_its_activities_stood) {
+TEST_F(BlackBox, shows_why_the_machine_ended_and_where_its_activities_stood) {
     machine.hold("shaft.angle", true);
     const Outcome told = run({"post-mortem", keep()});
     EXPECT_EQ(told.code, 0) << told.errors;
@@ -96,19 +96,19 @@ TEST_F(BlackBox, tells_why_the_machine_ended_and_where_its_activities_stood) {
     EXPECT_THAT(asked(), IsEmpty()) << "nobody is asked";
 }
 
-TEST_F(BlackBox, is_read_by_the_commands_that_read_a_machine_and_answers_no_other) {
+TEST_F(BlackBox, answers_only_commands_that_read) {
     machine.write("shaft.angle", 12.5);
-    machine.hold("shaft.angle", true); // what was half written is told, not waited for
+    machine.hold("shaft.angle", true); // half-written values are shown at once, without waiting
     const std::string file = keep();
     EXPECT_THAT(run({"post-mortem", file, "get", "shaft.angle"}).out, HasSubstr("12.5"));
     EXPECT_EQ(run({"post-mortem", file, "list"}).out, run({"list"}).out);
     const Outcome asked_for = run({"post-mortem", file, "send", "shaft.stop"});
     EXPECT_EQ(asked_for.code, 2);
-    EXPECT_THAT(asked_for.errors, HasSubstr("is a black box: it can be read, and does not answer that"));
+    EXPECT_THAT(asked_for.errors, HasSubstr("is a black box: it can be read, but it answers no requests"));
     EXPECT_THAT(run({"post-mortem", file, "lits"}).errors, HasSubstr("list"));
 }
 
-TEST_F(BlackBox, gives_the_answers_that_the_machine_gave_when_it_stood) {
+TEST_F(BlackBox, gives_the_last_answers_of_the_machine) {
     const std::string file =
         keep(map::black_box::version,
              "behaviours\t{\"id\": 0, \"ok\": true, \"behaviours\": [{\"name\": \"loom.cycle\", "
@@ -116,20 +116,20 @@ TEST_F(BlackBox, gives_the_answers_that_the_machine_gave_when_it_stood) {
              "behaviours loom.cycle\t{\"cut off");
     EXPECT_EQ(run({"post-mortem", file, "behaviour"}).out, "loom.cycle: running, in weave\n");
     EXPECT_THAT(run({"post-mortem", file, "behaviour", "list", "loom.cycle"}).errors,
-                HasSubstr("does not answer that"));
+                HasSubstr("it answers no requests"));
 }
 
-TEST_F(BlackBox, of_a_machine_that_nobody_saw_is_told_all_the_same) {
+TEST_F(BlackBox, is_shown_even_for_a_machine_without_a_browser_service) {
     const std::string file = keep(map::black_box::version, {});
     std::fstream box{file, std::ios::binary | std::ios::in | std::ios::out};
     box.seekp(offsetof(map::black_box::Record, memory_bytes));
     box.write("\0\0\0\0\0\0\0", 8);
     box.close();
     EXPECT_THAT(run({"post-mortem", file}).errors,
-                HasSubstr("(a BrowserService does); what is known: SEGV at instruction 0x4e1c99"));
+                HasSubstr("which had no BrowserService; what is known: SEGV at instruction 0x4e1c99"));
 }
 
-TEST_F(BlackBox, that_is_none_or_cut_off_or_of_another_version_is_refused) {
+TEST_F(BlackBox, is_refused_when_foreign_truncated_or_of_another_version) {
     EXPECT_THAT(run({"post-mortem", "/nowhere"}).errors,
                 HasSubstr("'/nowhere' cannot be opened: No such file"));
     const std::string file = keep();
@@ -137,12 +137,12 @@ TEST_F(BlackBox, that_is_none_or_cut_off_or_of_another_version_is_refused) {
     EXPECT_THAT(run({"post-mortem", file}).errors, HasSubstr("is cut off"));
     EXPECT_THAT(run({"post-mortem", keep(7)}).errors, HasSubstr("is a black box of version 7"));
     std::ofstream{file} << "text";
-    EXPECT_THAT(run({"post-mortem", file}).errors, HasSubstr("is no black box"));
-    EXPECT_THAT(run({"post-mortem"}).errors, HasSubstr("it is spelled: post-mortem FILE"));
+    EXPECT_THAT(run({"post-mortem", file}).errors, HasSubstr("is not a black box"));
+    EXPECT_THAT(run({"post-mortem"}).errors, HasSubstr("usage: post-mortem FILE"));
     std::filesystem::remove(file);
 }
 
-TEST_F(Program, says_why_the_machine_lets_it_go) {
+TEST_F(Program, reports_why_the_machine_disconnected_it) {
     machine.answer("save",
                    {R"({"id": 0, "ok": false, "code": "not_now", "error": "an engineer needs this place"})"});
     const Outcome outcome = run({"save"});
@@ -150,7 +150,7 @@ TEST_F(Program, says_why_the_machine_lets_it_go) {
     EXPECT_THAT(outcome.errors, HasSubstr("an engineer needs this place"));
 }
 
-TEST_F(Program, keeps_no_descriptor_of_the_machine_beyond_the_end_of_its_session) {
+TEST_F(Program, closes_the_machines_descriptors_with_its_session) {
     const auto of_its_memory = [] {
         std::size_t count = 0;
         for (const auto& each : std::filesystem::directory_iterator{"/proc/self/fd"}) {
@@ -159,7 +159,7 @@ TEST_F(Program, keeps_no_descriptor_of_the_machine_beyond_the_end_of_its_session
         }
         return count;
     };
-    EXPECT_EQ(run({"list"}).code, 0); // its first session may open what stays
+    EXPECT_EQ(run({"list"}).code, 0); // the first session may open lasting descriptors
     const auto before = of_its_memory();
     EXPECT_EQ(run({"list"}).code, 0);
     EXPECT_EQ(of_its_memory(), before);
@@ -197,7 +197,7 @@ TEST_F(Program, gets_values_for_people_and_for_programs) {
     EXPECT_THAT(run({"get", "shaft"}).out, HasSubstr("shaft.gains.p = 0"));
 }
 
-TEST_F(Program, an_unknown_name_is_told_with_the_nearest_and_exit_code_2) {
+TEST_F(Program, an_unknown_name_is_refused_with_the_nearest_and_exit_code_2) {
     const Outcome outcome = run({"get", "shaft.angel"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.errors, HasSubstr("did you mean \"shaft.angle\"?"));
@@ -208,12 +208,12 @@ TEST_F(Program, an_unknown_name_is_told_with_the_nearest_and_exit_code_2) {
     EXPECT_THAT(asked(), IsEmpty());
 }
 
-TEST_F(Program, a_misspelt_command_is_told_the_nearest_wherever_it_is_named) {
+TEST_F(Program, a_misspelt_command_is_refused_with_the_nearest_one) {
     EXPECT_THAT(run({"help", "lsit"}).errors, HasSubstr("did you mean \"list\"?"));
     EXPECT_EQ(run({"help", "lsit"}).code, 2);
     EXPECT_THAT(run({"help", "list"}).out, HasSubstr("list [COMPONENT]"));
     EXPECT_THAT(run({"behaviour", "pasue", "loom.cycle"}).errors, HasSubstr("did you mean \"pause\"?"));
-    EXPECT_THAT(run({"behaviour", "pause"}).errors, HasSubstr("is not spelled so"));
+    EXPECT_THAT(run({"behaviour", "pause"}).errors, HasSubstr("has the wrong arguments"));
     EXPECT_THAT(asked(), IsEmpty());
 }
 
@@ -222,14 +222,13 @@ TEST_F(Program, an_option_of_another_command_is_refused_and_its_own_named) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.errors, "tappet-browse: 'get' takes no --every; watch behaviour may\n");
     EXPECT_THAT(run({"save", "--follow"}).errors, HasSubstr("'save' takes no --follow; send may"));
-    EXPECT_THAT(run({"--to", "a.vcd"}).errors,
-                HasSubstr("without a command nothing takes --to; post-mortem scope may"));
+    EXPECT_THAT(run({"--to", "a.vcd"}).errors, HasSubstr("only a command takes --to; post-mortem scope may"));
     EXPECT_EQ(run({"get", "shaft.angle", "--json", "--timeout", "1s"}).code, 0) << "those are for all";
     EXPECT_EQ(run({"watch", "shaft.angle", "--count", "1", "--every", "1ms"}).code, 0);
     EXPECT_THAT(asked(), IsEmpty());
 }
 
-TEST_F(Program, prints_the_table_that_is_in_effect) {
+TEST_F(Program, prints_the_effective_table) {
     machine.write("shaft.gains.p", 1.0 / 3.0, 5);
     const Outcome manifest = run({"manifest"});
     EXPECT_EQ(manifest.code, 0) << manifest.errors;
@@ -247,7 +246,7 @@ TEST_F(Program, prints_the_table_that_is_in_effect) {
     for (std::string line; std::getline(lines, line);) EXPECT_TRUE(nlohmann::json::accept(line)) << line;
 }
 
-TEST_F(Program, a_name_of_another_kind_is_told_with_what_it_is_for) {
+TEST_F(Program, a_name_of_another_kind_is_refused_with_its_proper_use) {
     EXPECT_THAT(run({"set", "shaft.angle", "3"}).errors, HasSubstr("of kind output; read it with get"));
     EXPECT_THAT(run({"get", "shaft.stop"}).errors, HasSubstr("of kind command; send it with send"));
     EXPECT_THAT(run({"force", "shaft.gains.p", "3"}).errors, HasSubstr("cannot be forced"));
@@ -291,7 +290,7 @@ TEST_F(Program, a_command_that_is_rejected_is_exit_code_4) {
     const Outcome outcome = run({"send", "shaft.stop", "180", "--follow"});
     EXPECT_EQ(outcome.code, 4);
     EXPECT_THAT(outcome.errors, HasSubstr("rejected"));
-    EXPECT_EQ(run({"send", "shaft.stop", "180"}).code, 0); // sent is all that was asked
+    EXPECT_EQ(run({"send", "shaft.stop", "180"}).code, 0); // success means only that it was sent
 }
 
 TEST_F(Program, calls_forces_releases_and_restarts) {
@@ -304,7 +303,7 @@ TEST_F(Program, calls_forces_releases_and_restarts) {
                                      "restart motion"));
 }
 
-TEST_F(Program, tells_events_with_what_was_lost) {
+TEST_F(Program, prints_events_and_how_many_were_lost) {
     machine.answer(
         "subscribe",
         {R"({"id": %, "ok": true})",
@@ -330,7 +329,7 @@ TEST_F(Program, a_value_that_is_always_busy_is_exit_code_5) {
     EXPECT_THAT(outcome.errors, HasSubstr("try again"));
 }
 
-TEST_F(Program, without_a_machine_the_exit_code_is_3_and_the_cure_is_said) {
+TEST_F(Program, without_a_machine_the_exit_code_is_3_and_the_cure_is_named) {
     machine.end();
     const Outcome outcome = run({"list"});
     EXPECT_EQ(outcome.code, 3);
@@ -347,7 +346,7 @@ TEST_F(Program, a_machine_that_does_not_answer_is_exit_code_5) {
     EXPECT_THAT(outcome.errors, HasSubstr("no answer within 50 ms"));
 }
 
-TEST_F(Program, an_answer_that_is_none_is_told_and_ends_nothing_else) {
+TEST_F(Program, an_invalid_answer_is_reported_and_ends_nothing_else) {
     machine.answer("save", {"no JSON"});
     EXPECT_EQ(run({"save"}).code, 3);
     machine.answer("forc", {R"({"id": {}, "ok": true})"});
@@ -356,7 +355,7 @@ TEST_F(Program, an_answer_that_is_none_is_told_and_ends_nothing_else) {
     EXPECT_THAT(outcome.errors, HasSubstr("is another program at this socket?"));
 }
 
-TEST_F(Program, tells_about_the_machine_and_about_one_name) {
+TEST_F(Program, describes_the_machine_and_a_single_name) {
     machine.answer("counters", {R"({"id": %, "ok": true,
         "stacks": [{"activity": "fast", "bytes": 65536, "used_bytes": 4096}, {"activity": "slow", "bytes": 65536, "used_bytes": 0}],
         "held_back": [{"row": "loom.speed", "times": 3}]})"});

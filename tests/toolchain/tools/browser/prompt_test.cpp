@@ -1,4 +1,4 @@
-// The prompt and the watch view as a person meets them: the program on a terminal of 80 columns and 24 rows
+// The prompt and the watch view as a user sees them: the program on a terminal of 80 columns and 24 rows
 // (thesis 4.8).
 #include "tests/toolchain/tools/browser/sample_machine.hpp"
 
@@ -48,7 +48,7 @@ public:
     void type(std::string_view keys) {
         EXPECT_EQ(::write(terminal_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
     }
-    /// What was shown since the last look that found what it looked for.
+    /// Searches the output since the last successful search.
     bool shows(std::string_view text) {
         const auto end = std::chrono::steady_clock::now() + 10s;
         while (std::chrono::steady_clock::now() < end) {
@@ -66,7 +66,7 @@ public:
         return false;
     }
     [[nodiscard]] const std::string& seen() const { return seen_; }
-    /// How it ended; -1 when it does not within 10 s.
+    /// The exit code; -1 when it does not end within 10 s.
     int code() {
         int status = 0;
         const auto end = std::chrono::steady_clock::now() + 10s;
@@ -97,21 +97,21 @@ TEST(Prompt, completes_names_with_tab_and_runs_the_line) {
     EXPECT_EQ(typed.code(), 0);
 }
 
-TEST(Prompt, lists_what_a_name_may_go_on_with) {
+TEST(Prompt, lists_the_completions_of_a_name) {
     SampleMachine machine;
     Typed typed{machine};
     typed.type("set shaft.gains.\t");
     EXPECT_TRUE(typed.shows("shaft.gains.i\r\nshaft.gains.p")) << typed.seen();
 }
 
-TEST(Prompt, tells_what_was_wrong_and_goes_on) {
+TEST(Prompt, reports_an_error_and_continues) {
     SampleMachine machine;
     Typed typed{machine};
     typed.type("get shaft.angel\n");
     EXPECT_TRUE(typed.shows("did you mean \"shaft.angle\"?")) << typed.seen();
     typed.type("help send\n");
     EXPECT_TRUE(typed.shows("--follow")) << typed.seen();
-    ASSERT_TRUE(typed.shows("sample> ")) << typed.seen(); // only the prompt takes it as a key
+    ASSERT_TRUE(typed.shows("sample> ")) << typed.seen(); // the key works only at the prompt
     typed.type("\x04");
     EXPECT_EQ(typed.code(), 0);
 }
@@ -131,7 +131,7 @@ TEST(Prompt, keeps_its_history_for_the_next_session) {
     EXPECT_TRUE(typed.shows("loom.state = stopped")) << typed.seen();
 }
 
-TEST(Prompt, an_interrupt_gives_up_the_line_and_no_more) {
+TEST(Prompt, an_interrupt_cancels_only_the_line) {
     SampleMachine machine;
     Typed typed{machine};
     typed.type("get nonsense\x03");

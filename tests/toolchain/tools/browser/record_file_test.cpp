@@ -1,5 +1,5 @@
-// A recording that ends as nobody planned: who writes it is killed, or the disk is full. What stands in the
-// file is whole records, from the first one on, and nothing older than a second is missing.
+// A recording ends unexpectedly: its writer is killed, or the disk is full. The file then holds whole
+// records, from the first one on, and loses at most the last second.
 #include "toolchain/tools/browser/mcap.hpp"
 #include "toolchain/tools/browser/record_file.hpp"
 
@@ -29,7 +29,7 @@ using testing::HasSubstr;
 
 std::uint64_t now_ns() { return static_cast<std::uint64_t>(steady_clock::now().time_since_epoch().count()); }
 
-/// A program that records, in a process of its own, and what it tells of that.
+/// A program that records in a process of its own, and its reports.
 class Recorder {
 public:
     Recorder() {
@@ -49,7 +49,7 @@ public:
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// Begins; `first` runs in the process before.
+    /// Starts the process, in which `first` runs before the recording.
     void start(const std::function<void()>& first = [] {}) {
         child_ = ::fork();
         ASSERT_GE(child_, 0);
@@ -69,7 +69,7 @@ public:
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
     [[nodiscard]] std::string fault() const { return told_->fault; }
-    /// Of the messages that were handed over.
+    /// Number of the messages that were handed over.
     [[nodiscard]] std::uint64_t count() const { return told_->count.load(); }
 
     std::string file{};
@@ -80,7 +80,7 @@ private:
         char fault[300]{};
     };
 
-    /// As 'report start' does.
+    /// Records as 'report start' does.
     int write_on(Told& told) const {
         auto record = RecordFile::create(file);
         if (!record) return 2;
@@ -105,7 +105,7 @@ private:
     pid_t child_ = 0;
 };
 
-/// What a file holds, which is a beginning of what was recorded: message by message.
+/// The times of all messages in a file, which must be a beginning of the recording.
 std::vector<std::uint64_t> times_in(const std::string& name) {
     const auto bytes = read_whole(name);
     if (!bytes) return {};
@@ -122,8 +122,8 @@ std::vector<std::uint64_t> times_in(const std::string& name) {
     return times;
 }
 
-// What a busy host holds up it holds up in all rounds but one.
-TEST(RecordFile, of_a_writer_that_was_killed_is_whole_up_to_the_last_second) {
+// Several rounds exclude delays by a busy host: one good round is enough.
+TEST(RecordFile, is_complete_up_to_the_last_second_when_its_writer_is_killed) {
     std::mt19937_64 random{5};
     std::uint64_t least_lag = ~std::uint64_t{0};
     for (int round = 0; round < 6; ++round) {
@@ -147,17 +147,17 @@ TEST(RecordFile, of_a_writer_that_was_killed_is_whole_up_to_the_last_second) {
     EXPECT_LT(least_lag, 1'000'000'000u);
 }
 
-TEST(RecordFile, that_finds_no_more_room_says_so_and_is_whole_up_to_there) {
-    for (const rlim_t most : {20'000u, 20'013u, 20'031u}) { // somewhere in a record
+TEST(RecordFile, reports_a_full_disk_and_is_complete_up_to_there) {
+    for (const rlim_t most : {20'000u, 20'013u, 20'031u}) { // limits that cut a record
         Recorder recorder;
-        recorder.start([most] { // as of a disk that is full: the last write takes a part
+        recorder.start([most] { // as on a full disk: the last write is short
             ::signal(SIGXFSZ, SIG_IGN);
             const rlimit room{most, most};
             ::setrlimit(RLIMIT_FSIZE, &room);
         });
         ASSERT_EQ(recorder.wait_for_it(), 0);
         EXPECT_THAT(recorder.fault(), HasSubstr("' cannot be written: "));
-        EXPECT_THAT(recorder.fault(), HasSubstr("; what stands in it up to there is good"));
+        EXPECT_THAT(recorder.fault(), HasSubstr("; its contents up to that point are good"));
         EXPECT_EQ(std::filesystem::file_size(recorder.file), most);
         const auto times = times_in(recorder.file);
         EXPECT_GT(times.size(), 300u);
@@ -165,7 +165,7 @@ TEST(RecordFile, that_finds_no_more_room_says_so_and_is_whole_up_to_there) {
     }
 }
 
-TEST(RecordFile, of_a_writer_that_was_killed_is_free_again) {
+TEST(RecordFile, is_free_again_after_its_writer_was_killed) {
     Recorder recorder;
     recorder.start();
     for (int i = 0; i < 3000 && !std::filesystem::exists(recorder.file); ++i)

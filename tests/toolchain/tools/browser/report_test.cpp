@@ -1,5 +1,5 @@
-// Recorded values on their way out of a machine (thesis 3.3): what a browser takes off the tapes, what the
-// file then says, and what is left of both after overwriting, cuts and damage.
+// Recorded values on their way out of a machine (thesis 3.3): a browser reads the tapes and writes the file;
+// both survive overwriting, truncation and damage.
 #include "tests/kernel/services/reporting/recorded_machine.hpp"
 #include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
@@ -33,7 +33,7 @@ constexpr auto shop = machine_with(reporting(
     report("axis.pull", every(50)), report("press.strokes")));
 constexpr std::int64_t zero_ns = 1'700'000'000'000'000'000;
 
-/// The machine, and who records it.
+/// The machine and its recorder.
 struct Recorded : testing::Test {
     Rig<shop> rig;
     std::optional<MapReader> map;
@@ -114,7 +114,7 @@ TEST_F(Recorded, the_file_says_what_the_machine_computed) {
     EXPECT_FALSE(read.contains("lost"));
 }
 
-TEST_F(Recorded, what_was_overwritten_before_it_was_read_is_counted_and_told_in_the_file) {
+TEST_F(Recorded, overwritten_values_are_counted_in_the_file) {
     record(40ms);
     ASSERT_TRUE(rig.run(10s));
     record(40ms);
@@ -138,7 +138,7 @@ TEST_F(Recorded, what_was_overwritten_before_it_was_read_is_counted_and_told_in_
     }
 }
 
-TEST(Overwritten, of_what_changes_seldom_the_value_that_stands_is_told_as_soon_as_the_loss_is_seen) {
+TEST(Overwritten, a_rarely_changing_value_is_written_again_once_the_loss_is_seen) {
     static constexpr auto table =
         machine_with(reporting(report("axis.position"), report("axis.pull", on_change())));
     Rig<table> rig;
@@ -164,7 +164,7 @@ TEST(Overwritten, of_what_changes_seldom_the_value_that_stands_is_told_as_soon_a
     for (const RecordedSample& each : reader->follow()) EXPECT_NE(each.channel, 1u) << "it was told";
 }
 
-TEST_F(Recorded, a_file_that_begins_late_has_the_values_that_stand_and_counts_from_there) {
+TEST_F(Recorded, a_file_that_begins_late_starts_with_the_current_values) {
     ASSERT_TRUE(rig.run(700ms));
     auto late = RecordReader::open(*map);
     ASSERT_TRUE(late.has_value());
@@ -183,7 +183,7 @@ TEST_F(Recorded, a_file_that_begins_late_has_the_values_that_stand_and_counts_fr
     EXPECT_GT(lost.at(0), 0u);
 }
 
-TEST_F(Recorded, a_file_that_was_cut_off_at_any_byte_is_good_up_to_its_last_whole_record) {
+TEST_F(Recorded, a_truncated_file_is_good_up_to_its_last_whole_record) {
     record(40ms);
     const std::string whole = end();
     const auto all = mcap::read(whole);
@@ -202,7 +202,7 @@ TEST_F(Recorded, a_file_that_was_cut_off_at_any_byte_is_good_up_to_its_last_whol
     EXPECT_EQ(before, all->messages.size());
 }
 
-TEST_F(Recorded, no_damage_of_a_file_leads_outside_of_it) {
+TEST_F(Recorded, damage_of_a_file_never_causes_a_read_outside_of_it) {
     record(40ms);
     const std::string whole = end();
     std::mt19937_64 random{7};
@@ -214,8 +214,8 @@ TEST_F(Recorded, no_damage_of_a_file_leads_outside_of_it) {
     }
 }
 
-// Outside of the chunks stand the header, what the machine is called and the end.
-TEST_F(Recorded, a_bit_that_flipped_in_a_file_is_told_and_costs_the_chunk_that_it_is_in_at_most) {
+// Outside of the chunks are the header, the machine's name and the end.
+TEST_F(Recorded, a_flipped_bit_is_reported_and_costs_at_most_its_chunk) {
     record(1s);
     const std::string whole = end();
     const auto all = mcap::read(whole);
@@ -234,7 +234,7 @@ TEST_F(Recorded, a_bit_that_flipped_in_a_file_is_told_and_costs_the_chunk_that_i
         cut += read->has_end ? 0 : 1;
         if (read->has_end) most_lost = std::max(most_lost, all->messages.size() - read->messages.size());
     }
-    // A chunk whose kind became that of an index, which nobody asks for.
+    // A damaged byte makes a chunk an index, which no reader uses.
     EXPECT_LE(unnoticed, 3);
     EXPECT_LT(most_lost, all->messages.size() / 10) << "of a chunk";
     EXPECT_LE(cut, 12) << "a length that flipped";
@@ -243,7 +243,7 @@ TEST_F(Recorded, a_bit_that_flipped_in_a_file_is_told_and_costs_the_chunk_that_i
         unnoticed, cut, most_lost, all->messages.size());
 }
 
-TEST_F(Recorded, noughts_that_a_power_cut_leaves_are_a_cut) {
+TEST_F(Recorded, zeros_left_by_a_power_cut_are_not_damage) {
     record(40ms);
     const std::string whole = file;
     const auto all = mcap::read(whole);
@@ -259,7 +259,7 @@ constexpr auto windowed = machine_with(reporting(
     report("axis.position", every(2), before(20ms), after(10ms), trigger("axis.missed")),
     report("axis.mode", on_change(), before(15ms), trigger("axis.missed")), report("press.strokes")));
 
-TEST(Window, keeps_what_was_recorded_around_its_event_and_nothing_else) {
+TEST(Window, keeps_only_what_was_recorded_around_its_event) {
     Rig<windowed> rig;
     const auto map = MapReader::open(rig.instance.observation().shared_memory());
     ASSERT_TRUE(map.has_value());
@@ -314,8 +314,8 @@ private:
     std::size_t size_;
 };
 
-/// Under an address sanitizer a step outside would be seen.
-TEST_F(Recorded, a_damaged_description_in_the_machines_memory_leads_nowhere) {
+/// An address sanitizer would report a read outside.
+TEST_F(Recorded, a_damaged_description_in_memory_causes_no_read_outside_of_it) {
     record(100ms);
     const auto memory = rig.instance.observation().shared_memory();
     const Copied copy{memory};
@@ -324,7 +324,7 @@ TEST_F(Recorded, a_damaged_description_in_the_machines_memory_leads_nowhere) {
     int refused = 0;
     for (int round = 0; round < 400; ++round) {
         copy.take(memory);
-        // What describes it is hit more often than its mass says.
+        // Most damage hits the description, although the values are larger.
         for (int n = 0; n < 1 + round % 20; ++n)
             copy.bytes()[begin + random() % (n % 2 == 0 ? 600 : memory.size() - begin)] =
                 static_cast<std::byte>(random());
@@ -337,7 +337,7 @@ TEST_F(Recorded, a_damaged_description_in_the_machines_memory_leads_nowhere) {
     EXPECT_GT(refused, 50);
 }
 
-TEST_F(Recorded, damaged_words_on_a_tape_lead_nowhere) {
+TEST_F(Recorded, damaged_words_on_a_tape_cause_no_read_outside_of_it) {
     const auto memory = rig.instance.observation().shared_memory();
     const std::byte* begin = memory.data() + map->header().report_at;
     const auto* tape = reinterpret_cast<const recorded::Tape*>(
@@ -362,7 +362,7 @@ TEST_F(Recorded, damaged_words_on_a_tape_lead_nowhere) {
     EXPECT_LT(least, 300u) << "some of it was thrown away";
 }
 
-TEST_F(Recorded, a_reader_that_is_not_ours_finds_the_same) {
+TEST_F(Recorded, an_independent_reader_finds_the_same) {
     record(300ms);
     ASSERT_TRUE(rig.run(5s)); // so that something is lost
     record(20ms);
@@ -421,7 +421,7 @@ TEST(Csv, has_a_line_for_each_time_and_a_column_for_each_channel) {
                                          "3.000000000,\"{\"\"other\"\":1,\"\"value\"\":2}\",\r\n");
 }
 
-TEST(Csv, of_an_empty_recording_is_its_head) {
+TEST(Csv, has_only_its_header_for_an_empty_recording) {
     std::string file;
     mcap::put_begin(file, "test");
     EXPECT_EQ(as_csv(contents_of(file)), "time_s\r\n");
@@ -434,8 +434,8 @@ std::string fault_of(std::string_view file) {
     return read ? read->damage : read.error();
 }
 
-TEST(Mcap, refuses_what_is_none_and_what_contradicts_itself) {
-    EXPECT_THAT(fault_of("PNG"), HasSubstr("is no MCAP file"));
+TEST(Mcap, refuses_other_files_and_contradictions) {
+    EXPECT_THAT(fault_of("PNG"), HasSubstr("is not an MCAP file"));
     std::string file;
     mcap::put_begin(file, "test");
     EXPECT_EQ(fault_of(file), "");
@@ -462,7 +462,7 @@ struct Disk : testing::Test {
     [[nodiscard]] std::string at(const char* name) const { return (folder / name).string(); }
 };
 
-TEST_F(Disk, a_recording_holds_all_that_was_written_and_is_made_once) {
+TEST_F(Disk, a_recording_holds_all_that_was_written_and_is_never_overwritten) {
     {
         auto file = RecordFile::create(at("a.mcap"));
         ASSERT_TRUE(file.has_value());
@@ -477,7 +477,7 @@ TEST_F(Disk, a_recording_holds_all_that_was_written_and_is_made_once) {
     EXPECT_FALSE(RecordFile::create(at("none/a.mcap")).has_value());
 }
 
-TEST_F(Disk, nobody_records_into_a_file_that_nobody_locks) {
+TEST_F(Disk, a_file_without_a_lock_has_no_recorder) {
     std::ofstream{at("a.mcap")} << "x";
     const auto stopped = stop_recording(at("a.mcap"));
     ASSERT_FALSE(stopped.has_value());

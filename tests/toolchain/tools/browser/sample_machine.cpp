@@ -15,7 +15,7 @@ namespace tappet::browser {
 
 namespace {
 
-constexpr std::uint64_t values_at = 64 * 1024; ///< after every map that a test builds
+constexpr std::uint64_t values_at = 64 * 1024; ///< behind the largest map of any test
 
 } // namespace
 
@@ -347,7 +347,7 @@ void SampleMachine::reply(int client, std::string_view text) {
     for (std::string packet : packets) {
         if (const std::size_t at = packet.find('%'); at != std::string::npos) packet.replace(at, 1, number);
         iovec place{packet.data(), packet.size()};
-        const std::array passed{memory_, memory_}; // one more than a browser wants
+        const std::array passed{memory_, memory_}; // one more than a browser accepts
         alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof passed)> control{};
         msghdr message{};
         message.msg_iov = &place;

@@ -1,5 +1,5 @@
-// A machine as a browser meets it, small and under the test's hand: a block of memory with a map, and a
-// socket that answers by rules which the test sets.
+// A small machine as a browser sees it, controlled by the test: a block of memory with a map, and a socket
+// that answers by the test's rules.
 #pragma once
 
 #include "kernel/machine/map/layout.hpp"
@@ -27,7 +27,7 @@ public:
     std::uint32_t activity(std::string_view name);
     std::uint32_t component(std::string_view name, std::string_view type, std::uint32_t activity,
                             std::string_view device = "");
-    /// Of the component that was added last.
+    /// Adds a facet to the last component.
     std::uint32_t facet(std::string_view name, std::string_view kind, std::uint32_t type,
                         std::string_view unit = {}, std::string_view doc = {}, std::uint32_t flags = 0);
     std::uint32_t type(std::string_view name, map::Shape shape, std::uint64_t size);
@@ -43,13 +43,13 @@ public:
     void react(std::string_view how, std::uint32_t from, std::uint32_t to);
     void figure(map::Owner owner, std::uint32_t index, std::string_view name, std::uint32_t type);
 
-    /// Lays everything out; the block is as long as it must be.
+    /// Lays everything out and returns the block.
     std::vector<std::byte> build();
 
     [[nodiscard]] const std::vector<map::Facet>& facets() const { return facets_; }
     [[nodiscard]] const std::vector<map::Activity>& activities() const { return activities_; }
     [[nodiscard]] const map::Header& header() const { return header_; }
-    std::uint32_t f64 = 0, i32 = 0, u8 = 0, boolean = 0, duration = 0; ///< types that are there
+    std::uint32_t f64 = 0, i32 = 0, u8 = 0, boolean = 0, duration = 0; ///< types that are always there
 
 private:
     map::Text text(std::string_view text);
@@ -82,23 +82,23 @@ public:
 
     [[nodiscard]] const std::string& socket() const { return path_; }
     [[nodiscard]] const std::string& directory() const { return directory_.string(); }
-    /// Writes a value as the machine would: its activity's generation is odd meanwhile.
+    /// Writes a value as the machine would: the generation of its activity is odd meanwhile.
     template <class T> void write(std::string_view facet, const T& value, std::int64_t stamp_ns = 1000) {
         write_bytes(facet, std::as_bytes(std::span{&value, 1}), stamp_ns);
     }
     void force(std::string_view facet, bool forced, double value);
-    /// The activity of a facet is caught in a cycle until it is let go.
+    /// Holds the activity of a facet in a cycle until it is released.
     void hold(std::string_view facet, bool in_cycle);
     void set_now(std::string_view facet, std::int64_t now_ns);
-    /// What is answered, one packet each, to requests that begin so (after the number); "%" stands for the
-    /// number. Anything else gets an "ok".
+    /// Sets the answer, one packet each, to requests with this beginning (after the number); "%" stands for
+    /// the number. All other requests get an "ok".
     void answer(std::string_view request, std::vector<std::string> packets);
     [[nodiscard]] std::vector<std::string> requests() const;
-    /// After those that open a session.
+    /// The requests after those that open a session.
     [[nodiscard]] std::vector<std::string> asked() const;
-    /// As the guardian of the machine would see it.
+    /// The memory as the machine's guardian sees it.
     [[nodiscard]] std::span<const std::byte> memory() const { return block_; }
-    /// Closes every connection, as a machine that ends does.
+    /// Closes every connection, as a machine does at its end.
     void end();
 
     std::string role = "engineer";

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Duration between_looks = 20ms;
 
-/// A loom that has been started, and what reads its memory.
+/// A started loom, and a reader of its memory.
 struct Scope : testing::Test {
     std::unique_ptr<carpet::LoomRun> run = std::make_unique<carpet::LoomRun>(loom::Settings{}, 7);
     std::optional<MapReader> map;
@@ -43,7 +43,7 @@ struct Scope : testing::Test {
     }
 };
 
-TEST_F(Scope, follows_every_cycle_of_an_activity_by_the_names_of_its_functions) {
+TEST_F(Scope, names_the_functions_in_every_cycle_of_an_activity) {
     const std::uint32_t motion = activity("motion");
     Waves waves = scope->empty();
     std::uint64_t position = scope->tape(motion).head();
@@ -67,7 +67,7 @@ TEST_F(Scope, follows_every_cycle_of_an_activity_by_the_names_of_its_functions) 
     EXPECT_EQ(VcdReader{as_vcd(waves)}.fault(), "");
 }
 
-TEST_F(Scope, says_that_cycles_were_overwritten_before_they_were_read) {
+TEST_F(Scope, reports_cycles_that_were_overwritten_before_reading) {
     const std::uint32_t motion = activity("motion");
     Waves waves = scope->empty();
     std::uint64_t position = scope->tape(motion).head();
@@ -99,8 +99,8 @@ TEST_F(Scope, keeps_worst_cycles_of_every_real_time_activity_with_what_ran_aroun
     EXPECT_EQ(scope->directory().overtaken, 0u);
 }
 
-/// Under an address sanitizer a step outside would be seen.
-TEST_F(Scope, no_damage_in_the_machines_memory_leads_outside_of_it) {
+/// An address sanitizer would report a read outside.
+TEST_F(Scope, never_reads_outside_of_a_damaged_memory) {
     run->run_for(200ms);
     const auto memory = run->instance().observation().shared_memory();
     const std::size_t bytes = memory.size();
@@ -115,7 +115,7 @@ TEST_F(Scope, no_damage_in_the_machines_memory_leads_outside_of_it) {
     std::memcpy(copy.get(), memory.data(), bytes);
     for (int round = 0; round < 300; ++round) {
         std::memcpy(copy.get() + scope_at, memory.data() + scope_at, scope_bytes);
-        // The directory and the tapes' heads are hit more often than their mass says.
+        // Most damage hits the directory and the heads of the tapes.
         for (int n = 0; n < 1 + round % 20; ++n) {
             const std::size_t within =
                 round % 2 == 0 ? sizeof(scope::Directory) + 10 * sizeof(scope::Tape) + 64 : scope_bytes;

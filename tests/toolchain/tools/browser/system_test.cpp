@@ -1,4 +1,4 @@
-// The lane as one looks at it: all its machines by the names of their system, whatever one of them does.
+// The lane in a browser: all its machines by the names of their system, whatever one of them does.
 #include "apps/woodworking_lane/host/lane_run.hpp"
 #include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/tools/browser/outcome.hpp"
@@ -49,7 +49,7 @@ protected:
     std::thread thread;
 };
 
-TEST_F(LaneBrowsed, shows_all_its_machines_and_goes_on_when_one_is_gone) {
+TEST_F(LaneBrowsed, shows_all_machines_and_continues_when_one_is_gone) {
     const Outcome all = run({"list"});
     EXPECT_EQ(all.code, 0) << all.errors;
     EXPECT_THAT(all.out,

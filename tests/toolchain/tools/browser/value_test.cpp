@@ -36,7 +36,7 @@ TEST_F(Values, numbers_are_shown_as_they_can_be_read_back) {
     EXPECT_EQ(shown(sample.boolean, bytes_of(true)), "true");
 }
 
-TEST_F(Values, what_is_no_number_is_a_string_in_json) {
+TEST_F(Values, nan_and_infinity_are_strings_in_json) {
     EXPECT_EQ(shown(sample.f64, bytes_of(std::numeric_limits<double>::quiet_NaN()), Style::json), "\"nan\"");
     EXPECT_EQ(shown(sample.f64, bytes_of(std::numeric_limits<double>::infinity()), Style::json), "\"inf\"");
 }
@@ -64,7 +64,7 @@ TEST_F(Values, times_are_rounded_for_people_and_still_read_as_they_are_shown) {
     EXPECT_EQ(clock_text(78'537'605'353'999), "78537.605354s");
 }
 
-TEST_F(Values, types_bear_the_names_of_people) {
+TEST_F(Values, types_have_readable_names) {
     EXPECT_EQ(user_name("tappet::can::Bus<cut_to_length::can_signals>"), "can::Bus<can_signals>");
     EXPECT_EQ(user_name("cut_to_length::Line"), "Line");
     EXPECT_EQ(user_name("tappet::Map<of_a::deep::Name, 3>"), "Map<Name, 3>");
@@ -111,7 +111,7 @@ TEST_F(Values, records_have_names_and_texts_have_quotes) {
     EXPECT_EQ(shown(sample.text_type(16), bytes_of(text)), "\"a\\\"b\\u000a\"");
 }
 
-TEST_F(Values, a_length_that_cannot_be_is_cut_at_the_capacity) {
+TEST_F(Values, an_impossible_length_is_cut_at_the_capacity) {
     const auto type = sample.sequence(sample.u8, 3);
     std::array<std::uint8_t, 11> bytes{255, 255, 255, 255, 255, 255, 255, 255, 1, 2, 3};
     EXPECT_EQ(shown(type, bytes_of(bytes)), "[1, 2, 3]");
@@ -127,7 +127,7 @@ TEST_F(Values, arguments_are_a_list_and_have_a_signature) {
     EXPECT_EQ(signature(*MapReader::open(block), list), "(double, bool)");
 }
 
-TEST(Words, of_a_request_stay_one_word) {
+TEST(Words, are_quoted_to_stay_one_word) {
     EXPECT_EQ(as_word("12.5"), "12.5");
     EXPECT_EQ(as_word("[1, 2]"), "[1, 2]");
     EXPECT_EQ(as_word("two words"), "\"two words\"");

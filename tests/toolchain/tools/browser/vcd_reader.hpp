@@ -17,10 +17,10 @@ using Pulse = std::pair<std::int64_t, std::int64_t>;
 class VcdReader {
 public:
     explicit VcdReader(const std::string& text) : words_{text} { read(); }
-    [[nodiscard]] const std::string& fault() const { return fault_; } ///< empty: it is a sound file
+    [[nodiscard]] const std::string& fault() const { return fault_; } ///< empty: the file is sound
     [[nodiscard]] const std::string& timescale() const { return timescale_; }
     [[nodiscard]] std::int64_t end() const { return time_; }
-    /// Of each wire by its full name, "top.motion.runs".
+    /// The pulses of each wire by its full name, "top.motion.runs".
     [[nodiscard]] const std::map<std::string, std::vector<Pulse>>& pulses() const { return pulses_; }
 
 private:

@@ -19,7 +19,7 @@ WatchPicture picture(std::size_t rows) {
     return all;
 }
 
-/// Without the sequences that take no place.
+/// Removes the sequences that take no space.
 std::string visible(const std::string& line) {
     std::string text;
     for (std::size_t i = 0; i < line.size(); ++i) {

@@ -1,4 +1,4 @@
-// Block waves as files: what independent readers find in them is what was recorded (thesis A.2.1).
+// Block waves as files: independent readers find exactly the recorded waves in them (thesis A.2.1).
 #include "toolchain/tools/browser/waves.hpp"
 
 #include "tests/toolchain/tools/browser/vcd_reader.hpp"
@@ -19,7 +19,7 @@ std::int64_t below(Random& random, std::int64_t bound) {
     return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(bound));
 }
 
-/// What a machine may have recorded: cycles of an activity never overlap, functions fill them in order.
+/// Waves that a machine may have recorded: cycles of an activity never overlap, functions fill them in order.
 Waves any_waves(std::uint64_t seed) {
     Random random{seed};
     Waves waves;

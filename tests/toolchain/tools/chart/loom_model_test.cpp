@@ -1,5 +1,5 @@
-// What the loom's verification says of its C++ programs is what they do: each of them is run on a component,
-// and the events that it emits are those of its row, in their order; a program without a row emits none.
+// The loom's verification describes its C++ programs correctly: each of them runs on a component and emits
+// the events of its row, in their order; a program without a row emits none.
 #include "apps/carpet_loom/loom_model.hpp"
 #include "toolchain/tools/chart/names.hpp"
 
@@ -13,7 +13,7 @@
 namespace tappet::chart {
 namespace {
 
-/// A loom whose events tell that they were emitted.
+/// A loom that records its emitted events.
 class ListeningLoom {
 public:
     ListeningLoom() {
@@ -57,7 +57,7 @@ std::vector<std::string> said_of(StateProgram program) {
     return events;
 }
 
-TEST(LoomModel, emits_what_the_programs_of_the_loom_emit) {
+TEST(LoomModel, emits_the_same_events_as_the_programs_of_the_loom) {
     ListeningLoom loom;
     ASSERT_GE(loom.events(), 8u);
     std::vector<StateProgram> programs;

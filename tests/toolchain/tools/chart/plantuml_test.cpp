@@ -1,4 +1,5 @@
-// State machines as UML state charts (thesis 5.2, figure 5.15): what stands in a table stands in the picture.
+// State machines as UML state charts (thesis 5.2, figure 5.15): the picture shows everything that the table
+// contains.
 #include "tests/toolchain/tools/chart/sample.hpp"
 #include "toolchain/tools/chart/plantuml.hpp"
 
@@ -53,7 +54,7 @@ TEST(Plantuml, shows_time_history_internal_reactions_and_reasons) {
     EXPECT_THAT(text, HasSubstr("s_held : panel.mark / count\n"));
 }
 
-TEST(Plantuml, tells_the_transitions_that_every_machine_has) {
+TEST(Plantuml, shows_the_transitions_that_every_machine_has) {
     EXPECT_THAT(to_plantuml(press()), HasSubstr("any state --> safe\n  safe --> idle\n"));
     Chart chart = press();
     std::array<StateRow, press_states.size()> states = press_states;
@@ -62,7 +63,7 @@ TEST(Plantuml, tells_the_transitions_that_every_machine_has) {
     EXPECT_THAT(to_plantuml(chart), Not(HasSubstr("always valid")));
 }
 
-TEST(Plantuml, is_a_language_that_its_tool_reads) {
+TEST(Plantuml, is_accepted_by_its_own_tool) {
     if (std::system("command -v plantuml dot >/dev/null") != 0) // NOLINT: a tool of the host
         GTEST_SKIP() << "plantuml is not installed; ci/setup does it";
     const auto place = std::filesystem::path{testing::TempDir()} / "tappet_chart_press.puml";
@@ -76,7 +77,7 @@ TEST(Plantuml, is_a_language_that_its_tool_reads) {
     std::filesystem::remove(place);
 }
 
-TEST(Names, of_functions_without_a_symbol_are_told_apart_from_known_ones) {
+TEST(Names, mark_functions_that_have_no_symbol) {
     EXPECT_EQ(function_name(StateProgram{}), "c++");
     EXPECT_EQ(function_name(press_states[0].entry.call), "lift");
     EXPECT_EQ(identifier("cycle.left-1"), "cycle_left_1");

@@ -1,4 +1,4 @@
-// A machine's chart program as a user runs it: the chart of its table, its behaviours, and what it refuses.
+// A machine's chart program as a user runs it: the chart of its table, its behaviours, and its refusals.
 #include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 
@@ -34,7 +34,7 @@ struct ChartProgram : testing::Test {
     }
 };
 
-TEST_F(ChartProgram, shows_who_runs_how_often_by_when_and_how_urgently) {
+TEST_F(ChartProgram, shows_period_deadline_and_priority_of_every_activity) {
     const std::string table = made(CUTTER_CHART, "dot", "cut_to_length.dot");
     EXPECT_THAT(table,
                 HasSubstr("label=\"can\\non device of can, at most 4 in 1 ms\\ndeadline 500 us, priority"));
@@ -44,7 +44,7 @@ TEST_F(ChartProgram, shows_who_runs_how_often_by_when_and_how_urgently) {
         << "with the behaviour that drives it";
 }
 
-TEST_F(ChartProgram, shows_data_as_solid_arrows_and_what_makes_something_happen_as_dashed_ones) {
+TEST_F(ChartProgram, shows_data_as_solid_and_triggers_as_dashed_arrows) {
     const std::string table = made(CUTTER_CHART, "dot", "cut_to_length.dot");
     EXPECT_THAT(table, HasSubstr("c0 -> c2 [label=\"wheel.position → code, stale after 20 ms, wakes\"];"));
     EXPECT_THAT(table,
@@ -59,7 +59,7 @@ TEST_F(ChartProgram, shows_data_as_solid_arrows_and_what_makes_something_happen_
     EXPECT_THAT(table, HasSubstr("d0 -> c0 [dir=both"));
 }
 
-TEST_F(ChartProgram, shows_what_a_compiled_script_asks_of_others_and_its_programs) {
+TEST_F(ChartProgram, shows_the_requests_and_programs_of_a_compiled_script) {
     const std::string table = made(TRACKER_CHART, "dot plantuml scxml", "car_tracking.dot");
     EXPECT_THAT(table, HasSubstr("c2 -> c0 [label=\"start\\nstop\\nmove_camera\\ncalibrate\\n"));
     const std::string states = contents_of(folder / "charts/car_tracking.tracking.puml");
@@ -75,7 +75,7 @@ TEST_F(ChartProgram, names_the_cpp_programs_of_a_machine) {
                 HasSubstr("s_running : entry / enter_running"));
 }
 
-TEST_F(ChartProgram, refuses_what_it_does_not_draw_before_it_writes) {
+TEST_F(ChartProgram, refuses_unknown_words_before_it_writes) {
     const Ended word = run(CUTTER_CHART, "dott");
     EXPECT_EQ(word.exit_code, 2);
     EXPECT_EQ(word.text, "cut-to-length: word dott is unknown; did you mean dot?\n");
@@ -88,11 +88,10 @@ TEST_F(ChartProgram, says_where_it_cannot_write) {
     std::ofstream{folder / "charts"} << "no folder\n";
     const Ended ended = run(CUTTER_CHART, "dot");
     EXPECT_EQ(ended.exit_code, 1);
-    EXPECT_THAT(ended.text, HasSubstr("charts/cut_to_length.dot cannot be written; see to"));
+    EXPECT_THAT(ended.text, HasSubstr("charts/cut_to_length.dot cannot be written; check"));
 }
 
-/// The words of a drawing without where they stand: another version of dot, or another font, places them
-/// elsewhere.
+/// The words of a drawing without their positions, which depend on the version of dot and on the font.
 std::vector<std::string> words_of(const std::string& svg) {
     static const std::regex word{"<(title|text)[^>]*>([^<]*)</"};
     std::vector<std::string> found;

@@ -1,6 +1,5 @@
-// State machines searched by spin, from the tables that run (thesis 5.2, 6.2.5): no deadlock, each state
-// reachable, the final state reached from everywhere, invariants kept; and seeded faults, each of which must
-// be found.
+// spin searches state machines, built from the tables that run (thesis 5.2, 6.2.5): no deadlock, each state
+// reachable, the final state reached from everywhere, invariants kept; it must find each seeded fault.
 #include "apps/car_tracking/behaviour.hpp"
 #include "apps/carpet_loom/loom_model.hpp"
 #include "tests/toolchain/tools/chart/sample.hpp"
@@ -36,14 +35,14 @@ SpinSearch searched(const PromelaModel& model, const std::vector<std::string>& d
     return found;
 }
 
-/// And nothing was found.
+/// Expects a search without findings.
 SpinSearch found_sound(const PromelaModel& model, const std::vector<std::string>& defines) {
     SpinSearch found = searched(model, defines);
     EXPECT_EQ(found.errors, 0) << found.error << "\n" << in_words(found.trail);
     return found;
 }
 
-/// States, transitions, events and requests that no run comes to.
+/// States, transitions, events and requests that no run reaches.
 std::vector<std::string> never(const SpinSearch& found) {
     std::vector<std::string> marks;
     for (const std::string& mark : found.unreached)
@@ -69,13 +68,13 @@ void expect_sound(const Chart& chart) {
     found_sound(model, {"STOP"});
 }
 
-TEST_F(Verification, of_the_loom_finds_no_deadlock_and_each_state_and_the_final_one_from_everywhere) {
+TEST_F(Verification, proves_that_the_loom_has_no_deadlock_and_reaches_every_state) {
     expect_sound(charts_of(carpet::table.view()).at(0));
 }
 
-TEST_F(Verification, of_regions_history_and_choices_finds_the_same) { expect_sound(press()); }
+TEST_F(Verification, proves_the_same_of_regions_history_and_choices) { expect_sound(press()); }
 
-TEST_F(Verification, of_the_car_tracker_s_script_finds_the_same_from_its_flat_form) {
+TEST_F(Verification, proves_the_same_of_the_flat_form_of_the_car_trackers_script) {
     const Chart chart = charts_of(car_tracking::tracking_script, "tracking").at(0);
     expect_sound(chart);
     // The program runs until stopProgram, which only an event sets: the model follows that variable.
@@ -94,7 +93,7 @@ TEST_F(Verification, finds_a_state_that_is_never_left) {
     EXPECT_THAT(in_words(found.trail), HasSubstr("transition trap 1 a -> b"));
 }
 
-TEST_F(Verification, finds_a_state_that_no_run_comes_to) {
+TEST_F(Verification, finds_an_unreachable_state) {
     static constexpr std::array states{state("a", initial), state("b"), state("end", final)};
     static constexpr std::array rows{transition("a", "end", on("panel.stop")),
                                      transition("b", "a", on("panel.go"))};
@@ -106,14 +105,14 @@ TEST_F(Verification, finds_a_state_that_no_run_comes_to) {
 
 Composition loom() { return {charts_of(carpet::table.view()), carpet::table.view(), carpet::model}; }
 
-TEST_F(Verification, of_the_loom_with_its_weft_keeps_every_invariant) {
+TEST_F(Verification, proves_every_invariant_of_the_loom_with_its_weft) {
     const PromelaModel model = to_promela(loom());
     const SpinSearch found = found_sound(model, {"REQUESTS"});
     EXPECT_THAT(never(found), IsEmpty());
     EXPECT_GT(found.states, 10'000) << "so small a space shows nothing";
 }
 
-TEST_F(Verification, of_the_loom_with_its_weft_comes_to_the_final_state_from_everywhere) {
+TEST_F(Verification, proves_that_the_loom_with_its_weft_can_always_finish) {
     found_sound(to_promela(loom()), {"STOP"});
 }
 
@@ -161,7 +160,7 @@ TEST_F(Verification, finds_an_emergency_that_does_not_reach_the_weft) {
 
 // ---- bad input
 
-TEST(Model, that_names_an_event_nobody_has_is_refused_with_the_nearest_one) {
+TEST(Model, with_an_unknown_event_is_refused_with_the_nearest_one) {
     static constexpr auto rows = verification(only_when("weft.open_valv", "true", "a slip of the pen"));
     Composition wrong = loom();
     wrong.model = rows;
@@ -170,7 +169,7 @@ TEST(Model, that_names_an_event_nobody_has_is_refused_with_the_nearest_one) {
               "mean \"weft.open_valve\"?");
 }
 
-TEST(Model, whose_events_lead_back_to_themselves_is_refused) {
+TEST(Model, with_a_cycle_of_events_is_refused) {
     static constexpr auto rows = verification(operation("weft.hold", emits("shaft.brake_now")));
     Composition wrong = loom();
     wrong.model = rows;

@@ -36,7 +36,7 @@ struct Read {
     }
 };
 
-TEST(Scxml, is_well_formed_and_every_target_and_initial_state_is_there_once) {
+TEST(Scxml, is_well_formed_and_declares_every_target_once) {
     const Read read{to_scxml(press())};
     ASSERT_TRUE(read.result) << read.result.description();
     EXPECT_STREQ(read.document.document_element().name(), "scxml");
@@ -75,7 +75,7 @@ TEST(Scxml, sends_itself_a_time_out_and_cancels_it) {
                  down.child("onentry").child("send").attribute("event").value());
 }
 
-TEST(Scxml, takes_the_else_branch_with_the_next_transition_of_the_event) {
+TEST(Scxml, expresses_an_else_branch_as_the_next_transition_of_the_event) {
     const Read read{to_scxml(press())};
     const pugi::xml_node first = read.by_id("idle").child("transition");
     EXPECT_STREQ(first.attribute("cond").value(), "closed");

@@ -1,5 +1,5 @@
-// The front door as a user meets it: help and completion of every word from one table, and what is wrong is
-// said before anything is built.
+// The front door as a user sees it: one table gives help and completion of every word, and mistakes are
+// reported before anything is built.
 #include "tests/toolchain/folder.hpp"
 #include "tests/toolchain/program.hpp"
 #include "toolchain/tools/front/figures.hpp"
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> every_word{"new",   "build", "run",    "test", "chart",  "figures", "bench",
                                           "image", "flash", "update", "box",  "browse", "scope"};
 
-/// In a new machine's folder, which is gone with the test.
+/// Runs in a new machine's folder, which is removed after the test.
 struct Door : testing::Test {
     test::Folder folder;
     Door() {
@@ -72,17 +72,17 @@ TEST_F(Door, refuses_an_option_of_another_word_before_it_builds) {
     EXPECT_EQ(refusal("test --for 3"), "tappet: option --for belongs to tappet run, not to tappet test\n");
 }
 
-TEST_F(Door, refuses_an_option_that_nobody_has_before_it_builds) {
+TEST_F(Door, refuses_an_unknown_option_before_it_builds) {
     EXPECT_EQ(refusal("run --runs 3"),
-              "tappet: run: option --runs is unknown, and no source here names it; see "
-              "--help; what stands after -- goes to the machine unread\n");
+              "tappet: run: option --runs is unknown, and no source file here names it; see "
+              "--help; words after -- go to the machine unchecked\n");
     for (const std::string word : {"build", "test", "chart", "figures", "bench"})
         EXPECT_THAT(refusal(word + " --rums 3"),
                     StartsWith("tappet: " + word + ": option --rums is unknown"));
     EXPECT_THAT(refusal("run --sed 3"), HasSubstr("did you mean --seed?"));
 }
 
-TEST_F(Door, refuses_a_value_that_is_none_before_it_builds) {
+TEST_F(Door, refuses_an_invalid_value_before_it_builds) {
     EXPECT_EQ(refusal("run --seed"), "tappet: run: option --seed needs a value after it; see --help\n");
     EXPECT_EQ(refusal("run --for 0"), "tappet: run: option --for: \"0\" is not from 1 to 1000000000\n");
     EXPECT_THAT(refusal("bench --for soon"),
@@ -91,7 +91,7 @@ TEST_F(Door, refuses_a_value_that_is_none_before_it_builds) {
     EXPECT_EQ(refusal("chart sgv"), "tappet: chart: word sgv is unknown; did you mean svg?\n");
     EXPECT_EQ(refusal("run --machine pres"),
               "tappet: there is no machine \"pres\" here; did you mean press?\n");
-    EXPECT_THAT(refusal("biuld"), HasSubstr("\"biuld\" is no command; did you mean build?"));
+    EXPECT_THAT(refusal("biuld"), HasSubstr("\"biuld\" is not a command; did you mean build?"));
 }
 
 TEST_F(Door, refuses_an_image_of_a_board_that_the_machine_does_not_name) {
@@ -102,7 +102,7 @@ TEST_F(Door, refuses_an_image_of_a_board_that_the_machine_does_not_name) {
     EXPECT_THAT(refusal("image my_box --watchdog 256"), HasSubstr("\"256\" is not from 0 to 255"));
 }
 
-TEST_F(Door, flashes_nothing_that_is_no_disk) {
+TEST_F(Door, flashes_only_disks) {
     EXPECT_THAT(refusal("flash"), HasSubstr("say flash --image disk.img DEVICE"));
     EXPECT_THAT(refusal("flash --image CMakeLists.txt /dev/null"), HasSubstr("is neither a disk nor a file"));
 }
@@ -132,7 +132,7 @@ TEST_F(Door, completes_in_bash) {
     EXPECT_EQ(ended.text, "--quiet\n");
 }
 
-TEST(Figures, stand_beside_what_the_rows_claim) {
+TEST(Figures, show_the_measurements_beside_the_claims_of_the_rows) {
     const auto text =
         figures_of(R"({"machine": "press", "world": "host", "kernel_release": "6.1", "realtime": false,
         "activities": [{"name": "cell", "cycles": 7, "most_processor_us": 12.25, "claim_us": 60,
@@ -145,7 +145,7 @@ TEST(Figures, stand_beside_what_the_rows_claim) {
     EXPECT_THAT(*text, testing::ContainsRegex("browser +3 +- +- +- +- +0\n"));
 }
 
-TEST(Figures, of_no_summary_are_an_error) {
+TEST(Figures, need_a_valid_summary) {
     EXPECT_THAT(figures_of("").error(), HasSubstr("the summary cannot be read"));
     EXPECT_THAT(figures_of("{}").error(), HasSubstr("machine"));
 }

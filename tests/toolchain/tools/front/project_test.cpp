@@ -1,5 +1,5 @@
-// Projects from templates: what a choice leaves out is out, names that no tool takes are refused, and nothing
-// that is there is written over.
+// Projects from templates: an unchosen part is absent, invalid names are refused, and existing files are
+// never overwritten.
 #include "toolchain/tools/front/project.hpp"
 
 #include "tests/toolchain/folder.hpp"
@@ -28,7 +28,7 @@ struct Folder : testing::Test {
 struct Line {
     fs::path path;
     std::string text;
-    /// Neither blank nor nothing but a comment.
+    /// Returns whether the line is neither blank nor only a comment.
     [[nodiscard]] bool says_something() const {
         const std::size_t first = text.find_first_not_of(' ');
         return first != text.npos && !std::string_view{text}.substr(first).starts_with("//");
@@ -49,7 +49,7 @@ TEST(Template, keeps_the_lines_of_a_choice_and_fills_its_names_in) {
     EXPECT_EQ(filled(text, {"press", false, true}), "no bus\nserver\nalways \"press\"\n");
 }
 
-TEST(Template, keeps_the_lines_for_which_all_was_chosen) {
+TEST(Template, keeps_a_line_when_all_its_choices_were_made) {
     constexpr std::string_view text = "@can @cam both\n@can @nocam drive\n@bus wire\n@nobus none\n";
     EXPECT_EQ(filled(text, {.name = "a", .can = true, .cam = true}), "both\nwire\n");
     EXPECT_EQ(filled(text, {.name = "a", .can = true}), "drive\nwire\n");
@@ -57,7 +57,7 @@ TEST(Template, keeps_the_lines_for_which_all_was_chosen) {
     EXPECT_EQ(filled(text, {.name = "a"}), "none\n");
 }
 
-TEST_F(Folder, gets_a_project_that_can_be_read_at_once_without_a_tag_left) {
+TEST_F(Folder, gets_a_readable_project_without_leftover_tags) {
     ASSERT_THAT(write_project(TAPPET_TEMPLATE, {"press", true, true, true}), IsEmpty());
     for (const auto& [path, line] : lines_of("press")) {
         EXPECT_THAT(line, Not(HasSubstr("@"))) << path;
@@ -81,24 +81,24 @@ TEST_F(Folder, gets_a_whole_machine_in_few_lines) {
     }
 }
 
-TEST_F(Folder, that_is_there_is_not_written_over) {
+TEST_F(Folder, is_not_overwritten_when_it_exists) {
     fs::create_directory("press");
-    EXPECT_THAT(write_project(TAPPET_TEMPLATE, {"press"}), HasSubstr("\"press\" is there already"));
+    EXPECT_THAT(write_project(TAPPET_TEMPLATE, {"press"}), HasSubstr("\"press\" exists already"));
 }
 
-TEST_F(Folder, gets_no_project_of_a_name_that_no_tool_takes) {
+TEST_F(Folder, gets_no_project_with_an_invalid_name) {
     for (const char* name : {"", "9lives", "Press", "a b", "a-b", "_a", "a__b", "../x", "tappet"})
         EXPECT_THAT(write_project(TAPPET_TEMPLATE, {name}), Not(IsEmpty())) << name;
     EXPECT_TRUE(fs::is_empty(folder));
 }
 
-TEST_F(Folder, without_a_machine_says_where_to_go) {
+TEST_F(Folder, names_the_cure_when_it_holds_no_machine) {
     EXPECT_THAT(machines_of("CMakeLists.txt").error(), HasSubstr("tappet new NAME"));
     std::ofstream{"CMakeLists.txt"} << "project(x)\n";
     EXPECT_THAT(machines_of("CMakeLists.txt").error(), HasSubstr("names no tappet_machine(..)"));
 }
 
-TEST_F(Folder, knows_the_options_that_its_sources_name_and_no_other) {
+TEST_F(Folder, knows_only_the_options_that_its_sources_name) {
     fs::create_directories("build");
     std::ofstream{"build/CMakeCache.txt"} << "\n";
     std::ofstream{"build/old.hpp"} << "\"--runs\"";

@@ -1,5 +1,5 @@
-// What ci/image says before it builds anything: which machines have an image, and what to name instead of
-// others.
+// ci/image checks its arguments before it builds anything: it lists the machines that have an image, and
+// suggests corrections.
 #include "tests/toolchain/program.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ std::string refusal(const std::string& words) {
     return ended.text;
 }
 
-TEST(ImageCommand, of_a_system_names_its_machines_and_their_boards) {
+TEST(ImageCommand, names_the_machines_and_boards_of_a_system) {
     EXPECT_THAT(
         refusal("woodworking_lane"),
         HasSubstr(
@@ -25,7 +25,7 @@ TEST(ImageCommand, of_a_system_names_its_machines_and_their_boards) {
     EXPECT_THAT(refusal("two_robots bench"), HasSubstr("name one of k160 k361 and its board, bench\n"));
 }
 
-TEST(ImageCommand, offers_what_can_be_built_and_nothing_else) {
+TEST(ImageCommand, offers_only_what_can_be_built) {
     EXPECT_THAT(
         refusal("carpet_lom"),
         HasSubstr("there is no machine 'carpet_lom' with a firmware for board 'ipc-x86_64'; for it there are "

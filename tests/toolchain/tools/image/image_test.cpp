@@ -1,5 +1,5 @@
-// What goes into an image and where it may be written, without a kernel of ours: the kernel's tables and the
-// disks are made up.
+// The contents of an image and the disks that may receive it, without a kernel of ours: the test makes the
+// kernel's tables and the disks.
 #include "tests/toolchain/folder.hpp"
 #include "toolchain/tools/image/disk.hpp"
 #include "toolchain/tools/image/flash.hpp"
@@ -61,7 +61,7 @@ struct Modules : Folder {
     }
 };
 
-TEST_F(Modules, are_named_with_what_they_need_before_them_and_the_devices_they_drive) {
+TEST_F(Modules, are_listed_with_their_dependencies_and_devices) {
     EXPECT_EQ(table({"peak_pci restart=1"}), "module peak_pci restart=1\n"
                                              "needs can_dev\n"
                                              "needs sja1000\n"
@@ -71,26 +71,26 @@ TEST_F(Modules, are_named_with_what_they_need_before_them_and_the_devices_they_d
                                              "needs can_dev\n");
 }
 
-TEST_F(Modules, that_drive_no_device_are_always_loaded) {
+TEST_F(Modules, are_always_loaded_when_they_drive_no_device) {
     EXPECT_THAT(table({"can-dev"}), HasSubstr("module can_dev\nalias always\n"));
 }
 
-TEST_F(Modules, that_may_come_later_bring_with_them_what_others_need_before) {
+TEST_F(Modules, include_early_dependencies_of_later_modules) {
     const std::string text = choose_modules({"can-dev"}, {"peak_pci"}, folder).table;
     EXPECT_THAT(text, HasSubstr("module can_dev\nalias always\nlater-module peak_pci\nneeds can_dev\n"));
     EXPECT_THAT(text, HasSubstr("\nmodule sja1000\n"));
 }
 
-TEST_F(Modules, bring_what_the_kernel_would_ask_modprobe_for_in_the_form_that_every_processor_runs) {
+TEST_F(Modules, include_the_generic_modules_that_the_kernel_would_request) {
     const std::string text = table({"ext4"});
     EXPECT_THAT(text, HasSubstr("module ext4\nneeds crc32c_plain\nneeds jbd2\nalias always\n"));
     EXPECT_THAT(text, Not(HasSubstr("crc32c_fast")));
     EXPECT_EQ(choose_modules({"ext4"}, {}, folder).files.size(), 3u);
 }
 
-TEST_F(Modules, that_the_kernel_has_built_in_take_no_place) { EXPECT_EQ(table({"serial"}), ""); }
+TEST_F(Modules, are_omitted_when_built_into_the_kernel) { EXPECT_EQ(table({"serial"}), ""); }
 
-TEST_F(Modules, that_the_kernel_does_not_have_are_refused) {
+TEST_F(Modules, are_refused_when_the_kernel_lacks_them) {
     EXPECT_THAT(fault_of([&] { static_cast<void>(table({"peek_pci"})); }),
                 HasSubstr("has no module \"peek_pci\"; correct the board's kernel_modules(..)"));
 }
@@ -131,7 +131,7 @@ TEST_F(Disk, is_the_same_bit_by_bit_when_it_is_written_again) {
     EXPECT_FALSE(read_file(disk) == first) << "else this compares nothing";
 }
 
-TEST_F(Disk, takes_a_new_version_into_the_slot_that_is_not_in_use_for_one_trial) {
+TEST_F(Disk, receives_a_new_version_in_the_unused_slot_for_one_trial) {
     make("version 1");
     write_file(folder / "new.efi", "version 2");
     EXPECT_EQ(install(disk, folder / "new.efi"), 3u);
@@ -142,17 +142,17 @@ TEST_F(Disk, takes_a_new_version_into_the_slot_that_is_not_in_use_for_one_trial)
     EXPECT_EQ(slot(1).revision, 4u) << "then the other is not in use";
 }
 
-TEST_F(Disk, without_slots_of_ours_is_refused) {
+TEST_F(Disk, is_refused_without_our_slots) {
     write_file(disk, std::string(1'000'000, 'x'));
     EXPECT_THAT(fault_of([&] { install(disk, disk); }), HasSubstr("mcopy failed"));
 }
 
-TEST_F(Disk, takes_no_kernel_that_is_larger_than_a_slot) {
+TEST_F(Disk, refuses_a_kernel_that_is_larger_than_a_slot) {
     EXPECT_THAT(fault_of([&] { make(std::string(partitions()[1].bytes(), 'x')); }),
                 HasSubstr("leave modules out of the board"));
 }
 
-TEST_F(Disk, tells_of_each_slot_what_lies_in_it) {
+TEST_F(Disk, names_the_version_in_each_slot) {
     make("version 7");
     for (const std::size_t i : {1u, 2u}) {
         const std::string at =
@@ -165,7 +165,7 @@ TEST_F(Disk, tells_of_each_slot_what_lies_in_it) {
 
 struct UnifiedKernel : Folder {
     const std::string stub = "/usr/lib/x86_64-linux-gnu/efibootguard/kernel-stubx64.efi";
-    const std::string kernel = read_file(stub); // any program of the firmware's will do
+    const std::string kernel = read_file(stub); // any program will do
     std::string bytes;
     UnifiedKernel() {
         write_file(folder / "root", std::string(50'000, 'r'));
@@ -173,7 +173,7 @@ struct UnifiedKernel : Folder {
                   "--initrd", (folder / "root").string()});
         bytes = read_file(folder / "unified");
     }
-    /// As the table of sections says: its number, name, size, two addresses and place in the file.
+    /// A row of the table of sections: number, name, size, two addresses and place in the file.
     [[nodiscard]] std::string section(const std::string& name) const {
         write_file(folder / "unified", bytes);
         std::istringstream table{run_tool({"objdump", "-h", (folder / "unified").string()})};
@@ -198,7 +198,7 @@ TEST_F(UnifiedKernel, takes_no_more_memory_than_its_parts) {
     EXPECT_TRUE(section(".initrd").starts_with(std::string(50'000, 'r')));
 }
 
-TEST_F(UnifiedKernel, that_is_none_is_refused) {
+TEST_F(UnifiedKernel, is_refused_when_it_is_malformed) {
     const std::string whole = bytes;
     for (const std::size_t left : {0u, 60u, 300u}) {
         bytes = whole.substr(0, left);
@@ -220,7 +220,7 @@ struct Keys : Folder {
     }
 };
 
-TEST_F(Keys, sign_what_boots_the_same_each_time_and_nobody_elses_fit) {
+TEST_F(Keys, sign_reproducibly_and_no_other_key_verifies) {
     sign_program(loader, keys);
     const std::string first = read_file(loader);
     EXPECT_THAT(verify(keys / "db.crt"), HasSubstr("Succeeded"));
@@ -230,13 +230,13 @@ TEST_F(Keys, sign_what_boots_the_same_each_time_and_nobody_elses_fit) {
     EXPECT_TRUE(read_file(loader) == first);
 }
 
-TEST_F(Keys, are_never_written_over_and_only_their_owner_reads_what_signs) {
+TEST_F(Keys, are_never_overwritten_and_only_their_owner_reads_the_secret) {
     EXPECT_THAT(fault_of([&] { write_keys(keys); }), HasSubstr("is there already; name another folder"));
     for (const char* secret : {"secret", "db.key", "KEK.key", "PK.key"})
         EXPECT_EQ(fs::status(keys / secret).permissions(), fs::perms::owner_read) << secret;
 }
 
-TEST_F(Keys, without_what_is_secret_sign_nothing) {
+TEST_F(Keys, sign_nothing_without_the_secret_key) {
     fs::remove(keys / "secret");
     EXPECT_THAT(fault_of([&] { sign(folder, keys); }), HasSubstr("has no secret key"));
 }
@@ -249,7 +249,7 @@ struct Flash : Folder {
     }
 };
 
-TEST_F(Flash, writes_every_byte_and_no_more_than_the_old_tables_end) {
+TEST_F(Flash, writes_every_byte_and_erases_only_the_old_tables) {
     ASSERT_EQ(refusal_to_flash(image, device, false), "");
     std::uint64_t last = 0, all = 0;
     flash(image, device, [&](std::uint64_t bytes, std::uint64_t of) { last = bytes, all = of; });
@@ -259,20 +259,20 @@ TEST_F(Flash, writes_every_byte_and_no_more_than_the_old_tables_end) {
     EXPECT_LT(last, all);
 }
 
-TEST_F(Flash, forgets_the_second_copy_of_an_old_partition_table) {
+TEST_F(Flash, erases_the_second_copy_of_an_old_partition_table) {
     write_file(device, std::string(5'000'000, 'o'));
     flash(image, device, {});
     EXPECT_EQ(read_file(device).find_last_not_of('\0'), 5'000'000u - 64 * 512 - 1);
 }
 
-TEST_F(Flash, refuses_what_is_not_empty_unless_it_may_be_lost) {
+TEST_F(Flash, refuses_a_disk_with_data_unless_it_may_be_erased) {
     write_file(device, std::string(5'000'000, 'o'));
     EXPECT_THAT(refusal_to_flash(image, device, false),
-                HasSubstr("is not empty, and all that is on it would be lost"));
+                HasSubstr("is not empty: its contents would be lost"));
     EXPECT_EQ(refusal_to_flash(image, device, true), "");
 }
 
-TEST_F(Flash, refuses_what_is_too_small_not_there_or_no_disk) {
+TEST_F(Flash, refuses_a_target_that_is_too_small_missing_or_no_disk) {
     write_file(device, "");
     EXPECT_THAT(refusal_to_flash(image, device, false), HasSubstr("take a larger disk"));
     EXPECT_THAT(refusal_to_flash(image, folder / "nothing", false),
@@ -303,7 +303,7 @@ TEST_F(Bill, names_the_package_of_every_file_that_was_linked) {
     EXPECT_EQ(parts[1].version, debian_package(parts[1].name).version);
 }
 
-TEST_F(Bill, leaves_nothing_out) {
+TEST_F(Bill, refuses_files_of_no_package) {
     write_file(folder / "program.inputs", "program: \\\n  /usr/lib/of_nobody.a\n");
     EXPECT_THAT(fault_of([&] { static_cast<void>(linked_into(folder / "program.inputs", folder)); }),
                 HasSubstr("no Debian package holds /usr/lib/of_nobody.a"));
@@ -311,7 +311,7 @@ TEST_F(Bill, leaves_nothing_out) {
                 HasSubstr("build the firmware by tappet_machine(..)"));
 }
 
-TEST_F(Bill, is_sorted_names_each_once_and_says_no_date) {
+TEST_F(Bill, is_sorted_without_duplicates_and_dates) {
     const Component b{"b", "2"}, a{"a", "1"};
     const std::string bill = bill_of_materials("loom", "box", 7, {b, a, b});
     EXPECT_EQ(bill, bill_of_materials("loom", "box", 7, {a, b}));

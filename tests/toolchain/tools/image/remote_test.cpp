@@ -1,4 +1,4 @@
-// What answers at an address may be no box, or one in a stranger's hands: the engineer's side takes no harm.
+// The peer at an address may be no box, or a compromised one: the engineer's side takes no harm.
 #include "toolchain/tools/image/remote.hpp"
 #include "toolchain/tools/image/tool.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Says the same to the first who comes, whatever he wants, until he hangs up.
+/// Sends the same text to the first client, whatever it asks, until the client closes.
 class Stranger {
 public:
     explicit Stranger(std::string says) : says_{std::move(says)} {
@@ -62,19 +62,20 @@ TEST(Remote, shows_what_a_box_says) {
     EXPECT_EQ(answer.text, "machine carpet-loom\n");
 }
 
-TEST(Remote, shows_text_only_which_does_nothing_to_a_terminal) {
+TEST(Remote, shows_no_control_characters) {
     const Stranger box{greeting + "refused\n\x1b]0;mine\x07\x9b" + "2Jtext\tmore\r\n"};
     const Answer answer = ask_status(box.address());
     EXPECT_FALSE(answer.is_accepted);
     EXPECT_EQ(answer.text, "?]0;mine??2Jtext\tmore?\n");
 }
 
-TEST(Remote, refuses_what_greets_as_no_box_does) {
-    for (const auto& [says, why] : {std::pair{"tappet-box 1 \n", "another version of the protocol"},
-                                    {"tappet-box 1 carpet-loom bench\n", "another version of the protocol"},
-                                    {"220 mail\n", "is no box"},
-                                    {"", "is no box"},
-                                    {"tappet-box 1 carpet-loom bench 0123\n", "hung up without an answer"}}) {
+TEST(Remote, refuses_a_peer_without_the_greeting_of_a_box) {
+    for (const auto& [says, why] :
+         {std::pair{"tappet-box 1 \n", "another version of the protocol"},
+          {"tappet-box 1 carpet-loom bench\n", "another version of the protocol"},
+          {"220 mail\n", "is not a box"},
+          {"", "is not a box"},
+          {"tappet-box 1 carpet-loom bench 0123\n", "closed the connection without an answer"}}) {
         const Stranger box{says};
         EXPECT_THAT([&] { static_cast<void>(ask_status(box.address())); },
                     ThrowsMessage<Fault>(HasSubstr(why)))
@@ -82,11 +83,11 @@ TEST(Remote, refuses_what_greets_as_no_box_does) {
     }
 }
 
-TEST(Remote, listens_to_nobody_without_end) {
+TEST(Remote, limits_the_bytes_that_it_reads_from_a_peer) {
     const std::string much(16 * 1024 * 1024, 'x');
     const Stranger greets{much};
     EXPECT_THAT([&] { static_cast<void>(ask_status(greets.address())); },
-                ThrowsMessage<Fault>(HasSubstr("is no box")));
+                ThrowsMessage<Fault>(HasSubstr("is not a box")));
     const Stranger answers{greeting + "ok\n" + much};
     EXPECT_LT(ask_status(answers.address()).text.size(), 1024u * 1024u);
 }

@@ -1,4 +1,4 @@
-// The pages that the code makes: nothing is left out, and what says nothing of itself is an error.
+// The pages that the code generates: nothing is left out, and an entry without a text is an error.
 #include "toolchain/tools/pages/pages.hpp"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ TEST(Words, are_functions_and_constants_with_the_comment_above) {
     EXPECT_EQ((*found)[0].text, "From the release to the end.");
 }
 
-TEST(Words, without_a_text_are_an_error_that_names_them) {
+TEST(Words, are_refused_by_name_when_they_have_no_text) {
     const auto found = words("a.hpp", "/// Of a struct, not of the word.\nstruct Age {};\n"
                                       "constexpr Age age(int years) { return {years}; }\n"
                                       "inline constexpr Age young{};\n");
@@ -44,7 +44,7 @@ TEST(Words, without_a_text_are_an_error_that_names_them) {
     EXPECT_EQ(found.error(), "a.hpp has no text of age, young; say above each, after ///, what it is");
 }
 
-TEST(Words, of_one_name_share_a_text) {
+TEST(Words, share_a_text_when_they_share_a_name) {
     const auto found = words("a.hpp", "/// A value.\nconstexpr A a(int i) { return {i}; }\n"
                                       "template <class T> constexpr A a(T t) { return {t}; }\n"
                                       "constexpr bool is_one(A a) { return a == 1; }\n");
@@ -52,14 +52,14 @@ TEST(Words, of_one_name_share_a_text) {
     EXPECT_EQ(found->back().text, "as above");
 }
 
-TEST(Text, of_a_type_is_the_comment_above_it) {
+TEST(Text, is_the_comment_above_a_type) {
     EXPECT_EQ(text_of("/// Not this.\nint a;\n/// One\n/// two.\ntemplate <class T> struct Box {\n", "Box"),
               "One two.");
     EXPECT_EQ(text_of("struct Box;\nstruct Box {\n", "Box"), "");
     EXPECT_EQ(text_of("/// Of a larger one.\nstruct BoxOfBoxes {\n", "Box"), "");
 }
 
-TEST(Cells, keep_what_is_theirs) {
+TEST(Cells, escape_pipes_and_angle_brackets) {
     EXPECT_EQ(cell("a|b <c> `<d|e>`"), "a\\|b \\<c> `<d\\|e>`");
     EXPECT_EQ(code("set_it|not"), "`set_it\\|not`");
 }
@@ -84,11 +84,11 @@ TEST(Reference, holds_every_component_of_the_library_and_the_drivers) {
         EXPECT_THAT(*page, HasSubstr(part));
 }
 
-TEST(Reference, of_a_tree_that_is_not_there_is_an_error) {
+TEST(Reference, is_refused_for_a_missing_tree) {
     EXPECT_THAT(reference_page("/nowhere").error(), HasSubstr("has no text"));
 }
 
-TEST(Refusals, have_a_name_and_a_cure_each) {
+TEST(Refusals, each_have_a_name_and_a_cure) {
     const auto page = refusals_page(tree);
     ASSERT_TRUE(page) << page.error();
     EXPECT_GT(refusals(tree).size(), 200u);

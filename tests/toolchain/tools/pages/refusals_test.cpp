@@ -1,4 +1,4 @@
-// Every sentence by which the table's check refuses stands in a test of tests/diagnostics, and so in the
+// Every sentence with which the table's check refuses appears in a test of tests/diagnostics, and so in the
 // index of refusals.
 #include "toolchain/tools/pages/pages.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 using testing::IsEmpty;
 namespace fs = std::filesystem;
 
-/// What a statement that makes a sentence spells out itself, in order; one of two alternatives is left out.
+/// The literal pieces of a statement that makes a sentence, in order; one of two alternatives is omitted.
 using Pieces = std::vector<std::string>;
 
 std::vector<Pieces> sentences_in(const std::string& source) {
@@ -31,7 +31,7 @@ std::vector<Pieces> sentences_in(const std::string& source) {
         pieces.clear();
         code.clear();
     };
-    bool joins = false; // literals beside each other are one
+    bool joins = false; // adjacent literals are one
     for (std::sregex_iterator at(source.begin(), source.end(), token), end; at != end; ++at) {
         const std::string word = at->str();
         if (word.starts_with("//") || word.starts_with("#include")) continue;
@@ -65,25 +65,24 @@ bool says(const std::string& sentence, const Pieces& pieces) {
     return true;
 }
 
-/// What no row says: a script's compiler refuses it before, or the machine that does it is too large for a
-/// row.
+/// Sentences without a row: a script's compiler refuses earlier, or the machine would be too large for a row.
 constexpr std::string_view unsaid[] = {
-    ": among its events, \" .. \" has  ..  bytes of arguments, more than the  ..  that a state "
+    ": events(...): \" .. \" has  ..  bytes of arguments, more than the  ..  that a state "
     "machine keeps; read its component's ports instead",
     "its  ..  bytes of arguments exceed the  ..  that a state machine keeps; send them through a port",
     ": script \" .. \" hears more than  ..  events; split it",
-    ": script \" .. \" names facet  ..  of \" .. \", which has fewer; compile it anew",
-    ": script \" .. \" touches \" .. . .. \" ( .. ) of activity \" .. \"; send it a command, or declare the "
+    ": script \" .. \" names facet  ..  of \" .. \", which has fewer; compile the script again",
+    ": script \" .. \" uses \" .. . .. \" ( .. ) of activity \" .. \"; send it a command, or declare the "
     "operation any_thread if it is safe there",
-    " is one more than the  ..  buffer rows a port may have; merge some",
+    " exceeds the  ..  buffer rows that a port may have; merge some",
     ": component \" .. \" may block, and activity \" .. \" runs functions of \" .. \" too; ",
     "the table has more than  ..  activities; merge those of equal period",
     "inputs from other activities",
-    "calls answered by turns",
-    "inputs written by turns",
+    "calls answered by several chains",
+    "inputs written by several chains",
 };
 
-TEST(Refusals, of_the_table_are_said_by_a_test_each) {
+TEST(Refusals, of_the_table_each_have_a_test) {
     const fs::path tree{TAPPET_TREE};
     std::vector<fs::path> sources{tree / "kernel/machine/table/names.hpp",
                                   tree / "kernel/machine/firmware.hpp"};
