@@ -191,13 +191,15 @@ struct Bus {
                  output<&Bus::sent_too_often>(
                      "sent_too_often", "",
                      "frames on demand that followed sooner than the map says; written on change"),
-                 output<&Bus::no_numbers>("no_numbers", "", "signals that came and are none, since start"),
+                 output<&Bus::no_numbers>("no_numbers", "",
+                                          "received signals that are not a number, since start"),
                  output<&Bus::out_of_range>("out_of_range", "",
-                                            "values sent as their signal's end, or, of none, held back"),
+                                            "values outside their signal's range: sent as its nearest bound; "
+                                            "held back when not a number"),
                  tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
                  tappet::event<&Bus::bus_recovered>("bus_recovered",
                                                     "the bus works again, with empty queues"),
-                 operation<&Bus::purge>("purge", "drops what waits to be sent"),
+                 operation<&Bus::purge>("purge", "drops the queued frames"),
                  timer<&Bus::next_send, &Bus::send_cyclic>("next_send", "the next cyclic frame"),
                  timer<&Bus::next_service, &Bus::serve_device>("next_service",
                                                                "the next time-out of a frame"),

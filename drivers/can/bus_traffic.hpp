@@ -19,9 +19,8 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
     const Sentence most{"most of it, ", us(found.largest_ns), ", "};
     switch (found.largest) {
     case Part::jitter:
-        return Sentence{most,
-                        "is how late it may come to its queue; shorten the response of the activity that "
-                        "drives the bus, or what its node is said to be late by"};
+        return Sentence{most, "is how late it may enter its queue; shorten the response of the activity that "
+                              "drives the bus, or the jitter of its node"};
     case Part::own_time:
         return Sentence{most, "is its own time on the wire; lengthen its period, or run the bus faster than ",
                         bit_rate, " bit/s"};
@@ -33,9 +32,8 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
                         "are less urgent frames of this machine that the controller holds already; shorten "
                         "those, or lengthen the period"};
     case Part::handing_over:
-        return Sentence{most,
-                        "is the time until more frames are handed over, when those in flight are through; "
-                        "shorten the response of the activity that drives the bus"};
+        return Sentence{most, "is the time until the next frames follow those in flight; shorten the "
+                              "response of the activity that drives the bus"};
     case Part::others:
         return Sentence{most, "is \"", of,
                         "\", which wins the bus before it; send that less often, or give this "
@@ -61,8 +59,8 @@ constexpr Sentence late_fault(const FrameRow& row, const FrameResponse& found, s
     if (!found.response.bounded)
         return Sentence{"frame \"",
                         row.name,
-                        "\" may never come through: what is more urgent, and itself, "
-                        "fill the bus, which all frames together load by ",
+                        "\" may never be sent: it and more urgent frames fill the bus, which all frames "
+                        "together load by ",
                         load_ppm / 10'000,
                         " % at ",
                         bit_rate,
@@ -85,12 +83,12 @@ struct ProvenRates {
 };
 constexpr Sentence bit_rate_fault(const ProvenRates& proven, const BusFacts& bus) {
     if (proven.nominal != 0 && proven.nominal != bus.bit_rate)
-        return Sentence{"it runs at ", bus.bit_rate, " bit/s, but what crosses it was proven for ",
-                        proven.nominal, "; correct one of them"};
+        return Sentence{"it runs at ", bus.bit_rate, " bit/s, but its wire was checked for ", proven.nominal,
+                        "; correct one of them"};
     if (proven.data != 0 && proven.data != bus.data_bit_rate)
         return Sentence{"its data phase runs at ",
                         bus.data_bit_rate,
-                        " bit/s, but what crosses it was proven for ",
+                        " bit/s, but its wire was checked for ",
                         proven.data,
                         "; write bit_rate(",
                         proven.nominal,
@@ -110,10 +108,11 @@ constexpr Sentence bus_traffic(const std::array<FrameRow, F>& crossing, const Bu
                         " that the analysis takes; make it two buses"};
     for (const FrameRow& row : crossing)
         if (row.format != Format::classical && bus.data_bit_rate == 0)
-            return Sentence{"frame \"", row.name,
-                            "\" is CAN FD, and no bit rate of CAN FD's data phase is said; add it to the "
-                            "device's row, bit_rate(",
-                            bus.bit_rate, ", 2'000'000), or make the frame a classical one, bytes(8)"};
+            return Sentence{
+                "frame \"", row.name,
+                "\" is CAN FD, but the board states no bit rate for CAN FD's data phase; add it to the "
+                "device's row, bit_rate(",
+                bus.bit_rate, ", 2'000'000), or make the frame a classical one, bytes(8)"};
     constexpr Settings sending;
     std::array<std::size_t, F> by_rank{};
     std::array<FrameTiming, F> frames{};

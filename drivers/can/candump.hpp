@@ -69,12 +69,13 @@ constexpr std::expected<Duration, Fault> take_seconds(Rest& rest) noexcept {
     if (seconds.empty() || seconds.size() > 10)
         return before.refuse("a time is seconds, as in 1700000000.123456");
     for (const char c : seconds) ns = 10 * ns + (c - '0');
-    if (ns > 9'000'000'000) return before.refuse("a time of more than 9000000000 seconds is none of a log");
+    if (ns > 9'000'000'000)
+        return before.refuse("a time of more than 9000000000 seconds is not a time of a log");
     ns *= 1'000'000'000;
     if (!rest.take('.')) return Duration{ns};
     const std::string_view fraction = rest.take_while(is_digit, 10);
     if (fraction.empty() || fraction.size() > 9)
-        return rest.refuse("behind the point of a time stand one to nine digits");
+        return rest.refuse("expected one to nine digits after the point of the time");
     std::int64_t unit = 100'000'000;
     for (const char c : fraction) {
         ns += unit * (c - '0');
@@ -121,7 +122,7 @@ constexpr std::expected<void, Fault> take_data(Rest& rest, Frame& frame) noexcep
 constexpr std::expected<Duration, Fault> read_seconds(std::string_view text) noexcept {
     detail::Rest rest{text};
     const auto time = detail::take_seconds(rest);
-    if (time && !rest.text.empty()) return rest.refuse("nothing stands behind the seconds");
+    if (time && !rest.text.empty()) return rest.refuse("expected nothing after the seconds");
     return time;
 }
 
@@ -136,17 +137,17 @@ constexpr std::expected<Logged, Fault> read(std::string_view line) noexcept {
     const auto time = detail::take_seconds(rest);
     if (!time) return std::unexpected(time.error());
     frame.stamp = Time{*time};
-    if (!rest.take(')')) return rest.refuse("behind the time stands ')'");
-    if (!rest.take(' ')) return rest.refuse("behind the time stand a blank and the interface");
+    if (!rest.take(')')) return rest.refuse("expected ')' after the time");
+    if (!rest.take(' ')) return rest.refuse("expected a blank and the interface after the time");
     logged.interface = rest.take_while([](char c) { return c > ' ' && c != '\x7f'; }, 64);
-    if (logged.interface.empty()) return rest.refuse("behind the time stand a blank and the interface");
-    if (!rest.take(' ')) return rest.refuse("behind the interface stand a blank and the frame");
+    if (logged.interface.empty()) return rest.refuse("expected a blank and the interface after the time");
+    if (!rest.take(' ')) return rest.refuse("expected a blank and the frame after the interface");
     if (auto taken = detail::take_identifier(rest, logged); !taken) return std::unexpected(taken.error());
-    if (!rest.take('#')) return rest.refuse("behind the identifier stands # or, for CAN FD, ##");
+    if (!rest.take('#')) return rest.refuse("expected # or, for CAN FD, ## after the identifier");
     if (rest.take('#')) {
         const int flags = detail::hex_digit(rest.front());
         if (flags < 0 || flags > 7)
-            return rest.refuse("behind ## stands a digit of flags, a sum of 1, 2 and 4");
+            return rest.refuse("expected a digit of flags after ##, a sum of 1, 2 and 4");
         rest.text.remove_prefix(1);
         frame.fd = true;
         frame.bit_rate_switch = (flags & 1) != 0;
@@ -161,13 +162,13 @@ constexpr std::expected<Logged, Fault> read(std::string_view line) noexcept {
     const detail::Rest contents = rest;
     if (!frame.remote)
         if (auto taken = detail::take_data(rest, frame); !taken) return std::unexpected(taken.error());
-    if (!valid(frame)) return contents.refuse("CAN FD knows no frame of this length");
+    if (!valid(frame)) return contents.refuse("CAN FD has no frame of this length");
     // Eight bytes with a length code above eight.
     if (!frame.fd && frame.length == 8 && rest.take('_') &&
         (detail::hex_digit(rest.front()) < 9 || !rest.take(rest.front())))
-        return rest.refuse("behind _ stands a length code from 9 to F");
+        return rest.refuse("expected a length code from 9 to F after _");
     if (rest.text == " R" || rest.text == " T") rest.text = {}; // candump -x: received, or sent
-    if (!rest.text.empty()) return rest.refuse("nothing stands behind the frame's bytes");
+    if (!rest.text.empty()) return rest.refuse("expected nothing after the frame's bytes");
     return logged;
 }
 

@@ -51,9 +51,9 @@ template <const auto& row> struct ClockTeller {
     void fire(const Cycle& cycle) noexcept TAPPET_REALTIME { step(cycle); }
 
     static constexpr auto interface() {
-        return facets(output<&ClockTeller::told>("told", "", "times that the clock was told"),
-                      output<&ClockTeller::given_up>("given_up", "",
-                                                     "SYNC that were not through in time to be followed up"),
+        return facets(output<&ClockTeller::told>("told", "", "times that the clock was sent"),
+                      output<&ClockTeller::given_up>(
+                          "given_up", "", "SYNC frames that were confirmed too late for their follow-up"),
                       timer<&ClockTeller::next, &ClockTeller::fire>("next", "the next SYNC"));
     }
 
@@ -148,7 +148,7 @@ template <const auto& row> struct ToldClock {
         return facets(
             input<&ToldClock::received>("received", "", "frames of the bus"),
             output<&ToldClock::ahead>("ahead", "s",
-                                      "the teller's clock of the own one, give or take the error"),
+                                      "how far the teller's clock is ahead of the own one, within the error"),
             output<&ToldClock::error>("error", "s",
                                       "the most by which `ahead` may be wrong; it grows between exchanges"),
             output<&ToldClock::is_known>(
@@ -157,21 +157,21 @@ template <const auto& row> struct ToldClock {
                 "change",
                 while_stopped(false)),
             output<&ToldClock::rate>("rate", "",
-                                     "by how much the teller's clock went faster, s in a s, on the "
-                                     "average of the last time over which it is taken"),
+                                     "how much faster the teller's clock runs, s per s, averaged over the "
+                                     "last time of at least `rate_over`"),
             output<&ToldClock::rate_error>("rate_error", "", "the most by which `rate` may be wrong"),
-            output<&ToldClock::exchanges>("exchanges", "", "times that the clock was told"),
+            output<&ToldClock::exchanges>("exchanges", "", "times that the clock was received"),
             output<&ToldClock::discarded>("discarded", "",
                                           "frames that came twice, out of order or without their other half"),
-            output<&ToldClock::invalid>("invalid", "", "frames that are spoilt or unsecured"),
-            output<&ToldClock::jumps>("jumps", "", "times that the clock was another one"),
+            output<&ToldClock::invalid>("invalid", "", "frames that are corrupt or unprotected"),
+            output<&ToldClock::jumps>("jumps", "", "times that the teller's clock jumped"),
             property<&ToldClock::teller_late>(
                 "teller_late", "s", "the longest from a frame's end to the teller's stamp", range(0.0, 0.1)),
             property<&ToldClock::own_late>(
                 "own_late", "s", "the longest from a frame's end to its stamp here", range(0.0, 0.1)),
-            property<&ToldClock::drift>("drift", "", "of the two clocks against each other at most, s in a s",
-                                        range(0.0, 1e-2)),
-            property<&ToldClock::silent_after>("silent_after", "s", "then `known` is false",
+            property<&ToldClock::drift>(
+                "drift", "", "largest drift of the two clocks against each other, s per s", range(0.0, 1e-2)),
+            property<&ToldClock::silent_after>("silent_after", "s", "after this silence `known` is false",
                                                range(0.01, 3600.0)),
             property<&ToldClock::within>("within", "s", "an error above it makes `known` false",
                                          range(0.0, 1.0)),

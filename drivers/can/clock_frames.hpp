@@ -31,7 +31,7 @@ constexpr Sentence clock_fault(const ClockRow& row) noexcept {
     if (!valid(row.identifier))
         return Sentence{"the clock's identifier ", row.identifier.id, " is out of range: give it another"};
     if (row.every < 10ms || row.every > 10s)
-        return Sentence{"the clock is told every ", row.every.count() / 1'000'000,
+        return Sentence{"the clock is sent every ", row.every.count() / 1'000'000,
                         " ms: write every(..) from 10 ms to 10 s"};
     if (row.jitter < Duration::zero() || row.jitter > row.every / 4)
         return Sentence{"the clock's teller may be late by ", row.jitter.count() / 1'000'000,

@@ -77,7 +77,7 @@ std::expected<Link, Sentence> read_link(std::string_view interface, std::span<co
     std::memcpy(&info, answer.data() + sizeof(nlmsghdr), sizeof info);
     if (info.ifi_type != ARPHRD_CAN)
         return std::unexpected{
-            Sentence{who, " is no CAN interface; name another in the board (ip link show type can)"}};
+            Sentence{who, " is not a CAN interface; name another in the board (ip link show type can)"}};
     Link link;
     link.index = info.ifi_index;
     link.up = (info.ifi_flags & IFF_UP) != 0;

@@ -62,9 +62,10 @@ struct Restarter {
 
     static constexpr auto interface() {
         return facets(
-            input<&Restarter::faulted>("faulted", "", "the bus' state, of its component"),
-            output<&Restarter::restarts>("restarts", "", "restarts that the controller took, since start"),
-            event<&Restarter::gave_up>("gave_up", "the bus stays faulted: nobody restarts it any more"),
+            input<&Restarter::faulted>("faulted", "", "whether the bus is faulted, from its driver"),
+            output<&Restarter::restarts>("restarts", "",
+                                         "restarts that the controller accepted, since start"),
+            event<&Restarter::gave_up>("gave_up", "the bus stays faulted: no more restarts"),
             property<&Restarter::attempts>("attempts", "", "restarts tried at most, since start",
                                            range(0, 1000)),
             property<&Restarter::pause>("pause", "s", "from a fault to a restart, and from one to the next",

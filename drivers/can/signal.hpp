@@ -347,19 +347,16 @@ constexpr double physical_of(const Signal& s, const ValueName& value) noexcept {
 }
 /// Returns why a name does not identify a value.
 constexpr Sentence name_fault(std::string_view frame, const Signal& s, std::string_view name) noexcept {
-    const Sentence who{"signal \"", frame, ".", s.name, "\" calls "};
+    const Sentence who{"signal \"", frame, ".", s.name, "\" has "};
     const ValueName* const value = value_called(s, name);
     Nearest nearest{name};
     for (const ValueName& each : s.names) {
         nearest.consider(each.name);
         if (each.name == name && &each != value)
-            return Sentence{who,
-                            value->value,
-                            " and ",
-                            each.value,
-                            " \"",
-                            name,
-                            "\"; name them apart, by VAL_ or by .named(..)"};
+            return Sentence{who,          "two values \"",
+                            name,         "\", ",
+                            value->value, " and ",
+                            each.value,   "; give them different names, by VAL_ or by .named(..)"};
     }
     if (value != nullptr) return {};
     return Sentence{who, "no value \"", name, "\"",

@@ -222,7 +222,7 @@ constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept
     if (s.factor == 0 || s.factor != s.factor)
         return Sentence{who, " has the factor 0: every value would be the offset; give it another"};
     if (s.has_range && !(s.least <= s.most))
-        return Sentence{who, " has a range that holds nothing: say the lesser end first"};
+        return Sentence{who, " has an empty range: put the lower bound first"};
     const unsigned end = 8u * frame.length;
     const unsigned low = bit_place(s, 0);
     const unsigned high = bit_place(s, s.bits - 1u);
@@ -299,7 +299,7 @@ constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
                             each.name,
                             "\" selects \"",
                             s.name,
-                            "\" but is no whole number of at most 32 bits: take factor and offset away"};
+                            "\" but is not an integer of at most 32 bits: remove factor and offset"};
         for (const Selection& values : s.selections)
             if (values.from > values.to || values.to > mask_of(each))
                 return Sentence{who,         " is selected by values that \"",

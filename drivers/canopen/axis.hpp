@@ -111,7 +111,7 @@ template <text unit> struct Axis {
             input<&Axis::mode_display>("mode_display", "", "6061h"),
             input<&Axis::position>("position", unit.view(), "6064h, as it is"),
             input<&Axis::velocity>("velocity", speed_unit.view(), "606Ch, as it is"),
-            input<&Axis::set_point>("set_point", "", "of the cyclic mode that it is in, written since; positions count once it follows", optional),
+            input<&Axis::set_point>("set_point", "", "set point of the present cyclic mode, written since it began; positions count once the axis follows", optional),
             output<&Axis::controlword>("controlword", "", "6040h"),
             output<&Axis::mode>("mode", "", "6060h"),
             output<&Axis::target_position>("target_position", unit.view(), "607Ah"),
@@ -122,19 +122,19 @@ template <text unit> struct Axis {
             output<&Axis::follows>("follows", "", "its set points, in a cyclic mode; written on change"),
             output<&Axis::lags>("lags", "", "behind its set point; written on change"),
             output<&Axis::limited>("limited", "", "held by a limit of the drive's; written on change"),
-            event<&Axis::stopped_by_error>("stopped_by_error", "a fault, a silence, a mode that it does not show, or power that went away"),
+            event<&Axis::stopped_by_error>("stopped_by_error", "a fault, a silence, a mode that the drive does not enter, or lost power"),
             property<&Axis::standing>("standing", speed_unit.view(), "up to this speed it stands", range(0, 1e9)),
             operation<&Axis::power_on>("power_on", "MC_Power"),
             operation<&Axis::power_off>("power_off", "MC_Power, not enabled"),
-            operation<&Axis::reset>("reset", "MC_Reset: of one fault"),
-            operation<&Axis::release>("release", "lets a stop go"),
+            operation<&Axis::reset>("reset", "MC_Reset: resets one fault"),
+            operation<&Axis::release>("release", "ends a stop"),
             command<&Axis::home, &Axis::homed>("home", "MC_Home"),
             command<&Axis::move_to, &Axis::moved>("move_to", "MC_MoveAbsolute: place, velocity"),
             command<&Axis::move_at>("move_at", "MC_MoveVelocity"),
             command<&Axis::superimpose, &Axis::superimposed>("superimpose", "MC_MoveSuperimposed: distance, velocity, acceleration; while it follows positions, or stands"),
             command<&Axis::synchronize>("synchronize", "with set points: 8 positions, 9 velocities, 10 torques; not 8 over a superimposed distance"),
             command<&Axis::halt, &Axis::halted>("halt", "MC_Halt"),
-            command<&Axis::stop_axis, &Axis::is_stopped>("stop", "MC_Stop: takes no motion before it is released"));
+            command<&Axis::stop_axis, &Axis::is_stopped>("stop", "MC_Stop: accepts no motion until it is released"));
     }
     // clang-format on
 

@@ -218,7 +218,7 @@ private:
         if (type != domain && type != variable && type != array && type != record)
             return refuse(section.entries[object_type].line, "ObjectType is ",
                           section.entries[object_type].text,
-                          ", which is no object of a device; write 0x2, 0x7, 0x8 or 0x9");
+                          ", which is not an object type of a device; write 0x2, 0x7, 0x8 or 0x9");
         const bool plain = type == domain || type == variable;
         static_cast<void>(
             records_.push({index, section.line, section.entries[sub_number], compact != 0, plain}));
@@ -248,7 +248,7 @@ private:
         const bool is_text = number == 9 || number == 10 || number == 11 || number == 15;
         if (!is_text && (number > 0x1B || bits_of(object.type) == 0))
             return refuse(type.line, "DataType ", type.text,
-                          " is none of CiA 301's; write the number of a basic type");
+                          " is not one of CiA 301; write the number of a basic type");
         read_access(section, object);
         const std::uint32_t may_map = count_of(section, pdo_mapping, 0, 1);
         object.mappable = may_map != 0;
@@ -292,8 +292,8 @@ private:
         const NumberRead read = to_number(entry.text, object.type);
         if (read.fault == NumberFault::no_number)
             refuse(entry.line, key, " \"", entry.text.substr(0, 40),
-                   is_real(object.type) ? "\" is no number of up to 15 digits; write one"
-                                        : "\" is no number; write 0x1F, 31 or $NODEID+0x1F");
+                   is_real(object.type) ? "\" is not a number of up to 15 digits; write one"
+                                        : "\" is not a number; write 0x1F, 31 or $NODEID+0x1F");
         if (read.fault == NumberFault::does_not_fit)
             refuse(entry.line, key, " ", entry.text, " does not fit the ", bits_of(object.type), " bits of ",
                    to_text(object.at), is_signed(object.type) ? ", which has a sign" : "",
@@ -309,7 +309,7 @@ private:
             if (objects[i].at == objects[i - 1].at)
                 return refuse(objects[i].line, "object ", to_text(objects[i].at),
                               " is there twice, first in line ", objects[i - 1].line, "; keep one of them");
-        if (objects.empty()) refuse(1, "there is no object in it; is it an EDS or DCF file of CiA 306?");
+        if (objects.empty()) refuse(1, "it has no object; is it an EDS or DCF file of CiA 306?");
     }
 
     constexpr void check_records() {

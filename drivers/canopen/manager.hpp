@@ -106,7 +106,7 @@ template <const auto& map> struct Manager {
                  output<&Manager::operational>("operational", "", "every node works; written on change",
                                                while_stopped(false)),
                  output<&Manager::silent_node>("silent_node", "",
-                                               "the first that is not heard, 0: none; written on change"),
+                                               "the first node that is silent, 0: none; written on change"),
                  output<&Manager::reason>("reason", "", "why not every node works; written on change"),
                  output<&Manager::reboots>("reboots", "", "of nodes that worked; written on change"),
                  output<&Manager::not_sent>("not_sent", "", "frames that found no room; written on change"),
@@ -118,7 +118,7 @@ template <const auto& map> struct Manager {
             list[n++] = facet;
         for (std::size_t i = 0; i < node_count; ++i) {
             list[n++] = nth_output<&Manager::phases>(i, phase_names[i].view(), "",
-                                                     "how far the node is; written on change");
+                                                     "how far the node's start has come; written on change");
             list[n++] = nth_output<&Manager::errors>(
                 i, error_names[i].view(), "", "code of its last emergency, 0: none; written on change");
         }

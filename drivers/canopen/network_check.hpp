@@ -114,19 +114,18 @@ constexpr Sentence times_fault(const Sentence& subject, const NodeRow& node, con
         return time % unit == Duration{} && time / unit <= 65535;
     };
     if (!fits(row.how.event_timer, 1ms) || !fits(row.how.inhibit_time, 100us))
-        return Sentence{subject,
-                        " has an event timer that is no count of ms, or an inhibit time that is none of "
-                        "100 us, up to 65535; round it"};
+        return Sentence{subject, " has an event timer that is not a multiple of 1 ms, or an inhibit time "
+                                 "that is not one of 100 us, up to 65535; round it"};
     if (row.how.event_timer != Duration{} && node.dictionary.find({place.communication(), 5}) == nullptr)
         return Sentence{subject,
-                        " has an event timer, which the device has not: ",
+                        " has an event timer, which the device does not have: ",
                         node.dictionary.file,
                         " has no ",
                         to_text({place.communication(), 5}),
                         "; let it be synchronous, or send by itself"};
     if (row.how.inhibit_time != Duration{} && node.dictionary.find({place.communication(), 3}) == nullptr)
         return Sentence{subject,
-                        " has an inhibit time, which the device has not: ",
+                        " has an inhibit time, which the device does not have: ",
                         node.dictionary.file,
                         " has no ",
                         to_text({place.communication(), 3}),
@@ -146,7 +145,7 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
         return Sentence{subject,
                         " has the identifier ",
                         hex(frame.identifier.id, 3),
-                        ", which is none of the node's PDOs; its first are ",
+                        ", which is not one of the node's PDOs; its first are ",
                         hex(cob::tpdo + node.id, 3),
                         " (it sends) and ",
                         hex(cob::rpdo + node.id, 3),
@@ -157,7 +156,7 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
     if (node.dictionary.find({place.communication(), 1}) == nullptr ||
         node.dictionary.find({place.mapping(), 0}) == nullptr)
         return Sentence{subject,
-                        " is a PDO that the device has not: ",
+                        " is a PDO that the device does not have: ",
                         node.dictionary.file,
                         " has no ",
                         hex(place.communication(), 4),
@@ -181,7 +180,7 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
     if (row.how.type > 240 && row.how.type < 252)
         return Sentence{subject, " is synchronous(", unsigned{row.how.type}, "); the standard ends at 240"};
     if (row.how.type <= 240 && manager.sync_every == Duration{})
-        return Sentence{subject, " is synchronous and nobody produces SYNC; write manager(..).sync(..)"};
+        return Sentence{subject, " is synchronous, but nothing produces SYNC; write manager(..).sync(..)"};
     if (const Sentence fault = times_fault(subject, node, row, place); !fault.empty()) return fault;
     return signals_fault(signals, node, row, frame);
 }
@@ -212,7 +211,7 @@ constexpr Sentence parameter_fault(const NodeRow& node, const ParameterRow& row)
     const Object* const object = node.dictionary.find(row.at);
     const Sentence subject{who(node), ": write(", to_text(row.at), ", ", row.value, ")"};
     if (is_configured_by_rows(row.at.index))
-        return Sentence{subject, " is what heartbeat(), pdo() and sync() write; say it there"};
+        return Sentence{subject, " is written by heartbeat(), pdo() and sync(); set it there"};
     if (object == nullptr)
         return Sentence{subject, ": ", node.dictionary.file, " has no such object; correct one of them"};
     if (!writable(object->access))
@@ -225,7 +224,7 @@ constexpr Sentence parameter_fault(const NodeRow& node, const ParameterRow& row)
                                                     : is_signed(object->type) && ~bits >> (wide - 1) == 0);
     if (wide == 0 || is_real(object->type) || !fits || !within_limits(*object, low_bits(bits, wide), node.id))
         return Sentence{subject,
-                        ": the value is outside of what the object takes (",
+                        ": the value is outside of the range of the object (",
                         node.dictionary.file,
                         ":",
                         object->line,
@@ -261,9 +260,9 @@ constexpr Sentence node_fault(const ManagerRow& manager, const NodeRow& node) no
                         "; take the one of this node"};
     if (node.beats == Duration{})
         return Sentence{subject,
-                        " has no heartbeat, so that nobody would see it lost; write .heartbeat(100ms)"};
+                        " has no heartbeat, so that its loss would not be detected; write .heartbeat(100ms)"};
     if (node.beats % 1ms != Duration{} || node.beats / 1ms > 65535 || node.beats < 1ms)
-        return Sentence{subject, " has a heartbeat that is no count of ms up to 65535; round it"};
+        return Sentence{subject, " has a heartbeat that is not a whole number of ms up to 65535; round it"};
     if (node.lost_after <= node.beats)
         return Sentence{
             subject,
@@ -282,7 +281,7 @@ constexpr Sentence network_fault(const can::SignalMap<F, S>& signals, const Netw
         return Sentence{"manager(", unsigned{manager.id}, "): its identifier is from 1 to 127; give it one"};
     if (manager.beats < Duration{} || manager.beats % 1ms != Duration{} ||
         manager.beats / 1ms > most_beats_ms)
-        return Sentence{"manager: its heartbeat is a count of ms up to ", most_beats_ms,
+        return Sentence{"manager: its heartbeat must be a whole number of ms up to ", most_beats_ms,
                         ", since its nodes wait for three and a half of them; shorten it"};
     if (manager.sync_overflow == 1 || manager.sync_overflow > 240)
         return Sentence{"manager: SYNC counts to ", unsigned{manager.sync_overflow},
@@ -324,7 +323,7 @@ constexpr Sentence network_fault(const can::SignalMap<F, S>& signals, const Netw
             for (const PdoRow& row : node.pdos) is_mapped |= row.frame == frame.name;
             if (!is_mapped)
                 return Sentence{who(node),  ": frame \"",
-                                frame.name, "\" is one of its PDOs and nobody configures it; write .pdo(\"",
+                                frame.name, "\" is one of its PDOs, but no row configures it; write .pdo(\"",
                                 frame.name, "\", {..})"};
         }
     }

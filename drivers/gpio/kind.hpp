@@ -38,7 +38,7 @@ constexpr Sentence check_chip(const DeviceAsked& asked) {
                 return Sentence{"lines \"", other.part, "\" and \"", line.part,
                                 "\" share a name or an offset; correct one"};
         if (line.numbers[0] >= count)
-            return Sentence{"line \"",        line.part,    "\" stands at ",      line.numbers[0],
+            return Sentence{"line \"",        line.part,    "\" has offset ",     line.numbers[0],
                             " but device \"", asked.device, "\" has lines 0 to ", count - 1,
                             "; correct it"};
         bool wanted = false;

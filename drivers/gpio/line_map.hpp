@@ -100,7 +100,7 @@ template <class... Rows> constexpr LineMap<sizeof...(Rows)> line_map(const Rows&
             map.fault = Sentence{"sensor \"", line.name, "\" has a safe value: only outputs have one"};
         for (std::size_t j = 0; j < i; ++j)
             if (line.name == map.rows[j].line.name)
-                map.fault = Sentence{"line \"", line.name, "\" stands in the map twice: rename one of them"};
+                map.fault = Sentence{"line \"", line.name, "\" appears twice in the map: rename one of them"};
     }
     return map;
 }

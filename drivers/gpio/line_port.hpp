@@ -158,8 +158,8 @@ private:
         std::array<Facet, facet_count> all{};
         std::size_t n = 0;
         (add_line<i>(all, n), ...);
-        all[n++] = tappet::output<&LinePort::edges_lost>("edges_lost", "",
-                                                         "edges the kernel could not deliver, since start");
+        all[n++] = tappet::output<&LinePort::edges_lost>(
+            "edges_lost", "", "edges that the kernel could not deliver, since start");
         all[n++] = tappet::event<&LinePort::edges_were_lost>("edges_were_lost",
                                                              "edges were lost; the levels were read anew");
         all[n++] = tappet::output<&LinePort::is_faulted>(

@@ -87,7 +87,7 @@ std::expected<void, Sentence> Lines::open(const Settings& settings) {
     if (fd < 0 || ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK) != 0) {
         const Sentence error{"GPIO chip \"", settings.chip,
                              "\" does not grant the lines: ", strerrordesc_np(errno),
-                             "; take back a bias or debounce that this chip lacks, or use other lines"};
+                             "; remove a bias or debounce that this chip lacks, or use other lines"};
         close();
         return std::unexpected{error};
     }

@@ -73,7 +73,7 @@ struct AnalogInput {
         return facets(
             input<&AnalogInput::raw>("raw", "", "of the converter: mA, V or counts"),
             output<&AnalogInput::value>("value", unit.view(), "the quantity"),
-            output<&AnalogInput::good>("good", "", "the wire is whole and the value that of now",
+            output<&AnalogInput::good>("good", "", "the wire is intact and the value is current",
                                        while_stopped(false)),
             property<&AnalogInput::raw_low>("raw_low", "", "one end of the signal", range(-1e9, 1e9)),
             property<&AnalogInput::raw_high>("raw_high", "", "the other end", range(-1e9, 1e9)),

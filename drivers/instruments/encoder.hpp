@@ -43,7 +43,7 @@ struct Encoder {
     static constexpr auto interface() {
         return facets(input<&Encoder::counts>("counts", "", "of the encoder's register"),
                       output<&Encoder::position>("position", unit.view(), "of the axis"),
-                      output<&Encoder::good>("good", "", "the position is that of now", while_stopped(false)),
+                      output<&Encoder::good>("good", "", "the position is current", while_stopped(false)),
                       property<&Encoder::counts_per_unit>("counts_per_unit", "",
                                                           "negative: it is mounted the other "
                                                           "way round",

@@ -40,13 +40,13 @@ struct ForceSensor {
     }
 
     static constexpr auto interface() {
-        return facets(
-            input<&ForceSensor::measured>("measured", "N", "by the cell"),
-            output<&ForceSensor::force>("force", "N", "without the tare"),
-            output<&ForceSensor::good>("good", "", "the force is that of now", while_stopped(false)),
-            event<&ForceSensor::overloaded>("overloaded", "N: it is above the cell's range"),
-            property<&ForceSensor::most>("most", "N", "that the cell bears, tare included", range(0.0, 1e9)),
-            operation<&ForceSensor::tare>("tare", "what lies on it now is no load"));
+        return facets(input<&ForceSensor::measured>("measured", "N", "by the cell"),
+                      output<&ForceSensor::force>("force", "N", "without the tare"),
+                      output<&ForceSensor::good>("good", "", "the force is current", while_stopped(false)),
+                      event<&ForceSensor::overloaded>("overloaded", "N: it is above the cell's range"),
+                      property<&ForceSensor::most>(
+                          "most", "N", "largest force that the cell bears, tare included", range(0.0, 1e9)),
+                      operation<&ForceSensor::tare>("tare", "takes the present load as zero"));
     }
 
 private:

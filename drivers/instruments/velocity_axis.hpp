@@ -29,7 +29,8 @@ struct VelocityAxis {
     static constexpr auto interface() {
         return facets(input<&VelocityAxis::wanted>("wanted", unit.view(), "of the drive"),
                       output<&VelocityAxis::velocity>("velocity", unit.view(), "sent, within the limit"),
-                      property<&VelocityAxis::most>("most", unit.view(), "either way; 0: it never moves",
+                      property<&VelocityAxis::most>("most", unit.view(),
+                                                    "limit in both directions; 0: it never moves",
                                                     range(0.0, 1e9)));
     }
 };

@@ -108,11 +108,11 @@ template <const auto& map> struct Client {
         list[n++] = output<&Client::outages_survived>("outages_survived", "", "times it came back");
         list[n++] = output<&Client::no_numbers>(
             "no_numbers", "",
-            "registers that were read and are no number, since start; their outputs grow stale");
-        list[n++] = output<&Client::out_of_range>("out_of_range", "",
-                                                  "values to write that their register does not hold, since "
-                                                  "start: its nearest end is written, or, of what is "
-                                                  "no number, nothing");
+            "registers read that are not a number, since start; their outputs become stale");
+        list[n++] =
+            output<&Client::out_of_range>("out_of_range", "",
+                                          "values outside their register's range, since start: its nearest "
+                                          "bound is written; nothing is written when not a number");
         list[n++] = output<&Client::reason>(
             "reason", "", "why it is lost, or which row it refuses, and the cure; written on change");
         list[n++] = event<&Client::lost>("lost", "the server does not answer");

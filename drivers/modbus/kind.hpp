@@ -37,12 +37,12 @@ constexpr ServerFacts server_facts(std::span<const Fact> bound) noexcept {
 constexpr Sentence check_server(const DeviceAsked& asked) {
     const ServerFacts server = server_facts(asked.bound);
     if (server.unit < 1 || server.unit > 255)
-        return Sentence{"unit(", server.unit, ") is no server; write 1 to 247, over TCP also 255"};
+        return Sentence{"unit(", server.unit, ") is not a server address; write 1 to 247, over TCP also 255"};
     if (server.answer_within <= Duration::zero())
         return Sentence{"answer_within is not above 0; write for example answer_within(300ms)"};
     if ((server.parity != 'N' && server.parity != 'E' && server.parity != 'O') || server.baud < 300 ||
         server.stop_bits < 1 || server.stop_bits > 2)
-        return Sentence{"no serial line is set so; write for example serial_line(19'200, 'E', 1)"};
+        return Sentence{"no serial line has these settings; write for example serial_line(19'200, 'E', 1)"};
     return {};
 }
 

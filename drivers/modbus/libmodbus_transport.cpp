@@ -42,7 +42,7 @@ std::expected<modbus_t*, Sentence> prepare(const Tcp& tcp) {
     if (::inet_pton(AF_INET, address.c_str(), &parsed) != 1 || tcp.port == 0)
         return std::unexpected{Sentence{
             "Modbus server \"", tcp.address, "\", port ", unsigned{tcp.port},
-            ": this is no numeric IPv4 address and port; write it like \"192.168.0.7\" in the board"}};
+            ": this is not a numeric IPv4 address and port; write it like \"192.168.0.7\" in the board"}};
     return modbus_new_tcp(address.c_str(), tcp.port);
 }
 
@@ -50,10 +50,10 @@ std::expected<modbus_t*, Sentence> prepare(const Serial& serial) {
     const bool known_parity = serial.parity == 'N' || serial.parity == 'E' || serial.parity == 'O';
     if (serial.device.empty() || !known_parity || serial.baud < 1200 || serial.stop_bits < 1 ||
         serial.stop_bits > 2)
-        return std::unexpected{
-            Sentence{"Modbus line \"", serial.device, "\", ", serial.baud, " baud, parity ",
-                     std::string_view{&serial.parity, 1}, ", ", serial.stop_bits,
-                     " stop bits: this cannot be; 1200 baud or more, parity N, E or O, 1 or 2 stop bits"}};
+        return std::unexpected{Sentence{
+            "Modbus line \"", serial.device, "\", ", serial.baud, " baud, parity ",
+            std::string_view{&serial.parity, 1}, ", ", serial.stop_bits,
+            " stop bits: not possible; write 1200 baud or more, parity N, E or O, 1 or 2 stop bits"}};
     return modbus_new_rtu(std::string{serial.device}.c_str(), serial.baud, serial.parity, 8,
                           serial.stop_bits);
 }

@@ -93,9 +93,9 @@ void RealServer::report(os::ArmingReport& report, std::string_view name) {
     if (server_.connect().outcome == Outcome::ok)
         report.passed("modbus-server", Sentence{who, " answers"});
     else
-        report.warning("modbus-server", Sentence{who, " does not answer"},
-                       Sentence{"switch it on, or correct its address in the binding; the machine goes on "
-                                "asking"});
+        report.warning(
+            "modbus-server", Sentence{who, " does not answer"},
+            Sentence{"switch it on, or correct its address in the binding; the machine keeps trying"});
     server_.disconnect();
 }
 

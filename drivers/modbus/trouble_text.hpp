@@ -35,7 +35,8 @@ inline Sentence to_text(std::string_view row, const Trouble& trouble) noexcept {
     case Outcome::timeout:
         return text.add("no answer in time; look at the server's supply, its unit and the line's setting");
     case Outcome::garbled:
-        return text.add("what came is no answer to it; look at the line's setting, its cable and its ends");
+        return text.add(
+            "the reply does not match the request; look at the line's setting, its cable and its ends");
     case Outcome::refused: return text.add("no connection; look at the server's address, supply and cable");
     case Outcome::disconnected: return text.add("the connection broke; look at the server and its cable");
     }

@@ -203,9 +203,9 @@ Sentence CanReplay::report() const {
         .add(c.remote)
         .add(" remote and ")
         .add(c.errors)
-        .add(" error frames; of what the machine sent itself ")
+        .add(" error frames; of the frames that the machine sent, ")
         .add(c.equal)
-        .add(" frames are as in the log, ")
+        .add(" are as in the log, ")
         .add(c.different)
         .add(" are not");
     if (c.different != 0)

@@ -49,7 +49,7 @@ struct LinkFacets {
         const PortPlace& port = Rows::ports[p];
         return {.name = Rows::port_names[p].view(),
                 .unit = port.facet->unit,
-                .doc = port.is_input ? "told to other nodes" : "as another node tells it",
+                .doc = port.is_input ? "sent to other nodes" : "received from another node",
                 .kind = port.is_input ? FacetKind::input : FacetKind::output,
                 .type = port.facet->type,
                 .at_rest = AtRest::as_it_was,
@@ -101,9 +101,9 @@ struct LinkFacets {
         for (const Facet& facet : {
                  input<&Link::received>("received", "", "frames of the wire"),
                  output<&Link::refused>("refused", "",
-                                        "the row that another node has otherwise; written on change"),
+                                        "the row that another node has differently; written on change"),
                  output<&Link::events_lost>("events_lost", "",
-                                            "that nobody answered in time; written on change"),
+                                            "events that no node answered in time; written on change"),
                  output<&Link::frames_refused>("frames_refused", "",
                                                "damaged, or of another version; written on change"),
                  output<&Link::beyond>("beyond", "", "values that their bits cannot hold; written on change"),
@@ -116,9 +116,9 @@ struct LinkFacets {
              })
             list[k++] = facet;
         if constexpr (Rows::is_told_time) {
-            list[k++] = input<&Link::ahead>("ahead", "s", "the common clock of the own one");
-            list[k++] = input<&Link::knows_time>("knows_time", "", "it is known well enough");
-            list[k++] = input<&Link::exchanges>("exchanges", "", "times that it was told");
+            list[k++] = input<&Link::ahead>("ahead", "s", "how far the common clock is ahead of the own one");
+            list[k++] = input<&Link::knows_time>("knows_time", "", "the common time is known well enough");
+            list[k++] = input<&Link::exchanges>("exchanges", "", "times that the common clock was received");
         }
         for (std::size_t node = 0; node < node_count; ++node)
             if (node != Link::this_node)

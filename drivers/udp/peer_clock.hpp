@@ -44,7 +44,7 @@ struct ClockAnswers {
 
     static constexpr auto interface() {
         return facets(output<&ClockAnswers::answers>("answers", "", "questions that were answered"),
-                      output<&ClockAnswers::invalid>("invalid", "", "datagrams that are no question"));
+                      output<&ClockAnswers::invalid>("invalid", "", "datagrams that are not a question"));
     }
 
 private:
@@ -92,17 +92,18 @@ struct PeerClock {
     }
 
     static constexpr auto interface() {
-        return facets(
-            output<&PeerClock::ahead>("ahead", "s", "the other clock of the own one, give or take the error"),
-            output<&PeerClock::error>("error", "s",
-                                      "the most by which `ahead` may be wrong; it grows "
-                                      "between exchanges"),
-            output<&PeerClock::exchanges>("exchanges", "", "questions that were answered"),
-            output<&PeerClock::lost>("lost", "", "questions without an answer before the next one"),
-            output<&PeerClock::jumps>("jumps", "", "times that the other clock was another one"),
-            property<&PeerClock::period>("period", "s", "between questions", range(0.01, 3600.0)),
-            property<&PeerClock::drift>("drift", "", "of the two clocks against each other at most, s in a s",
-                                        range(0.0, 1e-2)));
+        return facets(output<&PeerClock::ahead>(
+                          "ahead", "s", "how far the other clock is ahead of the own one, within the error"),
+                      output<&PeerClock::error>("error", "s",
+                                                "the most by which `ahead` may be wrong; it grows "
+                                                "between exchanges"),
+                      output<&PeerClock::exchanges>("exchanges", "", "questions that were answered"),
+                      output<&PeerClock::lost>("lost", "", "questions without an answer before the next one"),
+                      output<&PeerClock::jumps>("jumps", "", "times that the other clock jumped"),
+                      property<&PeerClock::period>("period", "s", "between questions", range(0.01, 3600.0)),
+                      property<&PeerClock::drift>(
+                          "drift", "", "largest drift of the two clocks against each other, s per s",
+                          range(0.0, 1e-2)));
     }
 
 private:

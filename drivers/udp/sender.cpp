@@ -19,7 +19,7 @@ std::expected<void, Sentence> Sender::open(std::string_view address, std::uint16
     sockaddr_in to;
     const std::string_view numbers = address == "0.0.0.0" ? "127.0.0.1" : address;
     if (!read_address(numbers, port, to))
-        return std::unexpected(Sentence{"\"", address, "\" is no IPv4 address; write it as 127.0.0.1"});
+        return std::unexpected(Sentence{"\"", address, "\" is not an IPv4 address; write it as 127.0.0.1"});
     socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (socket_ < 0 || ::connect(socket_, as_socket_address(to), sizeof to) != 0)
         return std::unexpected(Sentence{"no way to ", numbers, ": ", std::string_view{std::strerror(errno)},

@@ -23,7 +23,7 @@ void Socket::make_anew() {
 std::expected<void, Sentence> Socket::open(std::string_view address, std::uint16_t port) {
     sockaddr_in at;
     if (!read_address(address, port, at))
-        return std::unexpected(Sentence{"\"", address, "\" is no IPv4 address; write it as 192.168.7.1"});
+        return std::unexpected(Sentence{"\"", address, "\" is not an IPv4 address; write it as 192.168.7.1"});
     make_anew();
     if (socket_ < 0 || ::bind(socket_, as_socket_address(at), sizeof at) != 0)
         return std::unexpected(Sentence{std::string_view{std::strerror(errno)},
@@ -33,7 +33,7 @@ std::expected<void, Sentence> Socket::open(std::string_view address, std::uint16
 
 std::expected<void, Sentence> Socket::ask(std::string_view address, std::uint16_t port) {
     if (!read_address(address, port, to_))
-        return std::unexpected(Sentence{"\"", address, "\" is no IPv4 address; write it as 192.168.7.1"});
+        return std::unexpected(Sentence{"\"", address, "\" is not an IPv4 address; write it as 192.168.7.1"});
     make_anew();
     if (socket_ < 0 || ::connect(socket_, as_socket_address(to_), sizeof to_) != 0)
         return std::unexpected(Sentence{"no way to ", address, ": ", std::string_view{std::strerror(errno)},

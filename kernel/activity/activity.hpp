@@ -55,7 +55,7 @@ public:
     /// Ends the thread of an activity that is stopped, or never started. Returns whether it ended.
     [[nodiscard]] bool end(int milliseconds) noexcept;
     /// Abandons an activity that does not stop. Its engine's stop runs nowhere; if its thread returns, it
-    /// ends. Whoever makes its outputs safe must end the process.
+    /// ends. The caller that makes its outputs safe must end the process.
     void give_up() noexcept {
         engine_stop_claimed_.store(true, std::memory_order_release);
         abandon();

@@ -54,26 +54,26 @@ struct ContractText {
 
 // clang-format off
 inline constexpr auto contract_texts = std::to_array<ContractText>({
-    {Contract::index_out_of_range,     "index-out-of-range",     "Element {} was asked of something that has {}."},
+    {Contract::index_out_of_range,     "index-out-of-range",     "Element {} was accessed, but there are only {}."},
     {Contract::precondition,           "precondition",           "A function was called with {}, which its declaration forbids."},
-    {Contract::not_a_number,           "not-a-number",           "Element {} of what a function was given is no number, or infinite: look at values where they come in."},
-    {Contract::refused_settings,       "refused-settings",       "Something was made of settings that its check refuses: call check(...) where they come in, and say its sentence."},
+    {Contract::not_a_number,           "not-a-number",           "Argument element {} is not a finite number: check values where they enter."},
+    {Contract::refused_settings,       "refused-settings",       "An object was created from settings that its check refuses: call check(...) on them first, and report its sentence."},
     {Contract::single_writer,          "single-writer",          "An output was written in activity {}: only its component writes it, in its own activity."},
     {Contract::single_reader,          "single-reader",          "An input was read in activity {}: only its component reads it, in its own activity."},
-    {Contract::command_sender,         "command-sender",         "A command that activity {} sends was sent in activity {}: write sent_by(...) in its row."},
-    {Contract::timer_unserved,         "timer-unserved",         "A timer that no engine serves was armed for {} ns in activity {}: name it by timer<...>(...) in its component's interface."},
-    {Contract::engine_runs,            "engine-runs",            "What is for an engine that stands was asked of activity {} while it ran."},
-    {Contract::wrong_phase,            "wrong-phase",            "What is for a machine that is not configured yet was asked of one that is; call it before configure()."},
-    {Contract::one_activity,           "one-activity",           "A device that activity {} uses was used in activity {}: let one component alone drive it."},
+    {Contract::command_sender,         "command-sender",         "A command of sending activity {} was sent in activity {}: write sent_by(...) in its row."},
+    {Contract::timer_unserved,         "timer-unserved",         "A timer that no engine serves was armed for {} ns in activity {}: declare it with timer<...>(...) in its component's interface."},
+    {Contract::engine_runs,            "engine-runs",            "A function for a stopped engine was called while activity {} ran."},
+    {Contract::wrong_phase,            "wrong-phase",            "A function for an unconfigured machine was called after configure(): call it before."},
+    {Contract::one_activity,           "one-activity",           "A device of activity {} was used in activity {}: let only one component drive it."},
     {Contract::allocation_after_seal,  "allocation-after-seal",  "{} bytes were allocated after arming by the code at address {}.", AfterViolation::thread_goes_on},
-    {Contract::mapping_after_seal,     "mapping-after-seal",     "{} bytes of address space were asked for after arming by the code at address {}; refused.", AfterViolation::thread_goes_on},
-    {Contract::heap_exhausted,         "heap-exhausted",         "{} bytes were asked of the arena, {} are free in it, {} in one piece: give TAPPET_HEAP_ARENA more.", AfterViolation::thread_goes_on},
+    {Contract::mapping_after_seal,     "mapping-after-seal",     "{} bytes of address space were requested after arming by the code at address {}; refused.", AfterViolation::thread_goes_on},
+    {Contract::heap_exhausted,         "heap-exhausted",         "{} bytes were requested from the arena, {} are free in it, {} in one piece: enlarge TAPPET_HEAP_ARENA.", AfterViolation::thread_goes_on},
     {Contract::heap_foreign_pointer,   "heap-foreign-pointer",   "Address {} was freed but never allocated."},
     {Contract::heap_double_free,       "heap-double-free",       "Address {} was freed twice."},
     {Contract::heap_damaged,           "heap-damaged",           "Memory before address {} was overwritten."},
     {Contract::heap_lock_failed,       "heap-lock-failed",       "The heap's lock was refused with error {}: malloc inside a signal handler, or a kernel without PI futexes."},
-    {Contract::memory_not_there,       "memory-not-there",       "{} bytes were not there for the code at address {}, which cannot go on without."},
-    {Contract::step_limit_exceeded,    "step-limit-exceeded",    "A bounded procedure of {} steps asked for step {}."},
+    {Contract::memory_not_there,       "memory-not-there",       "{} bytes could not be allocated for the code at address {}, which cannot continue without them."},
+    {Contract::step_limit_exceeded,    "step-limit-exceeded",    "A procedure limited to {} steps requested step {}."},
 });
 // clang-format on
 
@@ -99,8 +99,8 @@ struct ContractViolation {
     std::uint64_t address = 0; ///< address of the code that noticed; addr2line names it
 };
 
-/// Returns the sentence with its values: "contract 1 index-out-of-range: Element 8 was asked of something
-/// that has 4. [code at 0x...]".
+/// Returns the sentence with its values: "contract 1 index-out-of-range: Element 8 was accessed, but there
+/// are only 4. [code at 0x...]".
 Sentence describe(const ContractViolation& breach) noexcept;
 
 /// Brings the machine to its safe state. Called on the thread that broke the contract, possibly on several at

@@ -268,7 +268,7 @@ private:
                refuse("has ", count, " ", what, " instead of ", wanted, "; write all of them");
     }
     bool no_list() noexcept {
-        return refuse("\"", quotable(glance()), "\" is no list; write one in brackets, such as [1, 2]");
+        return refuse("\"", quotable(glance()), "\" is not a list; write one in brackets, such as [1, 2]");
     }
     bool read_sequence(const TypeTag& tag, std::byte* into) noexcept {
         clear(into, tag.size);
@@ -302,7 +302,7 @@ private:
 
     bool read_record(const TypeTag& tag, std::byte* into) noexcept {
         if (!take('{'))
-            return refuse("\"", quotable(glance()), "\" is no ", tag.name, "; write {", tag.fields[0].name,
+            return refuse("\"", quotable(glance()), "\" is not a ", tag.name, "; write {", tag.fields[0].name,
                           ": ...}");
         std::uint64_t seen = 0;
         for (bool more = !take('}'); more;) {

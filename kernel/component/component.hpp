@@ -40,12 +40,12 @@ namespace tappet {
         const double number = of.number(value, i);
         if (type.kind == ValueKind::enumeration && !(number >= 0 && number < double(type.names.size())))
             return text.add(decimal(number))
-                .add(" is none of its ")
+                .add(" is not one of its ")
                 .add(type.names.size())
-                .add(" values; propose one of those that have a name");
+                .add(" values; propose a named one");
         if (range.holds(number)) continue;
         if (of.is_list) text.add("element ").add(i).add(" ");
-        if (!is_number(number)) return text.add("is no number; propose a finite one");
+        if (!is_number(number)) return text.add("is not a finite number; propose a finite one");
         text.add(number < facet.range.low ? "is under its least value " : "is over its greatest value ");
         if (number < facet.range.low) text.add(decimal(facet.range.low));
         if (number > facet.range.high) text.add(decimal(facet.range.high));

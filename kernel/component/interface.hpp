@@ -156,7 +156,7 @@ constexpr Facet output(std::string_view name, std::string_view unit, std::string
     using M = detail::MemberOf<Member>;
     using T = typename M::Type::Value;
     static_assert(std::same_as<typename M::Type, Output<bool>> || sizeof...(Options) == 0,
-                  "while_stopped(..) is said of an Output<bool>; another output is written in stop()");
+                  "while_stopped(..) is for an Output<bool>; write other outputs in stop()");
     if constexpr (std::same_as<typename M::Type, BufferOutput<T>>)
         return {.name = name,
                 .unit = unit,

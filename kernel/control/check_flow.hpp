@@ -44,19 +44,19 @@ struct WrongPath {
 };
 inline constexpr WrongPath wrong_paths[] = {
     {ControlRole::sensor, ControlRole::effector,
-     "put a Controller between them, which makes outputs of inputs"},
+     "put a Controller between them, which turns inputs into outputs"},
     {ControlRole::estimator, ControlRole::effector,
-     "put a Controller between them, which makes outputs of the model"},
+     "put a Controller between them, which turns the model into outputs"},
     {ControlRole::generator, ControlRole::effector,
-     "put a Controller between them, be it one that passes set points on"},
+     "put a Controller between them, even if it only passes set points on"},
     {ControlRole::generator, ControlRole::generator,
-     "make one Generator of both, or let a Controller of the level above command it"},
+     "merge both into one Generator, or let a Controller of the level above command it"},
     {ControlRole::generator, ControlRole::estimator,
-     "an Estimator sees inputs and the outputs of the step before; read those"},
+     "an Estimator reads inputs and the outputs of the previous step; connect those"},
     {ControlRole::controller, ControlRole::controller,
      "make two levels of it: the outer Controller commands the inner Generator"},
     {ControlRole::controller, ControlRole::generator,
-     "a Controller commands the Generator of the level right below its own"},
+     "a Controller commands the Generator of the level below its own: connect that one"},
     {ControlRole::controller, ControlRole::effector,
      "a level has its own Controller; let the outer one command the inner Generator"},
     {ControlRole::generator, ControlRole::controller,
@@ -90,12 +90,12 @@ constexpr Sentence refuse_path(const ControlView& c, const ConnectionRow& row, c
                                const Seat& to) {
     Sentence text = checks::of_connection(row, ": ", a_role(from.role));
     if (from.level != to.level) text.add(" of level \"").add(c.levels[from.level].name).add("\"");
-    text.add(" does not write for ").add(a_role(to.role));
+    text.add(" must not write to ").add(a_role(to.role));
     if (from.level != to.level) text.add(" of level \"").add(c.levels[to.level].name).add("\"");
     text.add("; ");
     for (const WrongPath& each : wrong_paths)
         if (each.from == from.role && each.to == to.role) return text.add(each.cure);
-    return text.add("a Sensor reads hardware only");
+    return text.add("a Sensor reads hardware only; remove the row");
 }
 
 constexpr bool is_driver(const MachineView& m, std::size_t component) noexcept {
@@ -112,9 +112,9 @@ constexpr Sentence check_outside(const ConnectionRow& row, const MachineView& m,
                 (each.role == ControlRole::sensor || each.role == ControlRole::process))
                 return {};
         return checks::of_connection(
-            row, ": what comes from outside of the control kernel comes by a Sensor, and \"",
+            row, ": a value from outside of control(...) must enter through a Sensor, but \"",
             m.components[to].name, "\" is ", a_role(seat_of(seats, to).role), "; give \"",
-            m.components[from].name, "\" its role in control(...), or let a Sensor bring it");
+            m.components[from].name, "\" a role in control(...), or read the value with a Sensor");
     }
     if (to_seat) return {};
     for (const Seat& each : seats)
@@ -123,13 +123,12 @@ constexpr Sentence check_outside(const ConnectionRow& row, const MachineView& m,
             return {};
     if (is_driver(m, to))
         return checks::of_connection(row,
-                                     ": only an Effector reaches the hardware, within its limits, and \"",
+                                     ": only an Effector may write to hardware, within its limits, but \"",
                                      m.components[from].name, "\" is ", a_role(seat_of(seats, from).role),
-                                     "; let it write for an Effector");
-    return checks::of_connection(
-        row, ": \"", m.components[to].name,
-        "\" has no role in control(...), so that nobody sees where the value goes on to; "
-        "if it only looks add process(...)");
+                                     "; let it write to an Effector");
+    return checks::of_connection(row, ": \"", m.components[to].name,
+                                 "\" has no role in control(...), so that the value cannot be followed "
+                                 "further; if it only observes, add process(...)");
 }
 
 constexpr Sentence check_row(const ControlView& c, const MachineView& m, const TableIndexView& r,
@@ -144,29 +143,27 @@ constexpr Sentence check_row(const ControlView& c, const MachineView& m, const T
         return checks::of_connection(
             row, ": it leads from activity \"", m.activities[r.activity[from]].name, "\" to \"",
             m.activities[r.activity[to]].name,
-            "\" in a loop and does not say what holds when the writer falls silent; add "
+            "\" in a loop but does not say what to do when the writer falls silent; add "
             "stale_after(...) with hold, substitute(...) or stop_machine");
     if (!has_seat(seats, from) || !has_seat(seats, to)) return check_outside(row, m, seats, from, to);
     const Seat& writer = seat_of(seats, from);
     const Seat& reader = seat_of(seats, to);
     if (writer.role == ControlRole::process && reader.role != ControlRole::process)
         return checks::of_connection(
-            row,
-            ": a process component reads all of the data flow and writes none of it, so that "
-            "nobody looks for the writer of a value in two places; let \"",
-            m.components[from].name, "\" command \"", m.components[to].name, "\" by an operation");
+            row, ": a process component may read the data flow but must not write to it; let \"",
+            m.components[from].name, "\" command \"", m.components[to].name, "\" with an operation");
     if (writer.role == ControlRole::process || reader.role == ControlRole::process) return {};
     const DataPath* path = path_between(seats, from, to);
     if (path == nullptr) return refuse_path(c, row, writer, reader);
     if (path->of_last_step && !crosses && !row.delayed_step)
-        return checks::of_connection(row, ": ", path->what, " reach ", a_role(path->to),
-                                     " from the step before; add delayed");
+        return checks::of_connection(row, ": ", a_role(path->to), " reads ", path->what,
+                                     " only from the previous step; add delayed");
     if (writer.level != reader.level && path->from == ControlRole::controller &&
         path->to == ControlRole::generator && row.transition == RateTransition::unsaid &&
         m.activities[r.activity[from]].period != m.activities[r.activity[to]].period)
-        return checks::of_connection(
-            row, ": a command of a slower level reaches the faster one in steps or on a line; "
-                 "add in_steps, interpolated (later by a period) or extrapolated");
+        return checks::of_connection(row,
+                                     ": it does not say how the faster level reads a command of the slower "
+                                     "one; add in_steps, interpolated (one period later) or extrapolated");
     return {};
 }
 
@@ -181,14 +178,13 @@ constexpr Sentence check_calls(const MachineView& m, const TableIndexView& r, co
         const Seat& caller = seat_of(seats, from);
         const Seat& called = seat_of(seats, to);
         if (caller.role == ControlRole::process || called.role == ControlRole::process) continue;
-        return Sentence{
-            checks::of_use(row),
-            ": ",
-            a_role(caller.role),
-            " does not call ",
-            a_role(called.role),
-            ", so that each can be replaced alone; let a process component call it, or exchange the "
-            "value by ports"};
+        return Sentence{checks::of_use(row),
+                        ": ",
+                        a_role(caller.role),
+                        " must not call ",
+                        a_role(called.role),
+                        ", so that each can be replaced alone; call it from a process component, or exchange "
+                        "the value through ports"};
     }
     return {};
 }
@@ -206,11 +202,11 @@ constexpr Sentence check_seat(const ControlView& c, const MachineView& m, const 
          x = r.connections_from.next[x])
         writes = true;
     if (!reads && seat.role != ControlRole::sensor)
-        return of_level(level, "nothing leads to the ", to_text(seat.role), " \"", name,
-                        "\"; connect an input of it with what it makes its values of");
+        return of_level(level, "no connection leads to the ", to_text(seat.role), " \"", name,
+                        "\"; connect one of its inputs");
     if (!writes && (seat.role != ControlRole::effector || !is_driver(m, seat.component)))
-        return of_level(level, "nobody reads what the ", to_text(seat.role), " \"", name,
-                        "\" writes; connect an output of it, or leave it out");
+        return of_level(level, "no component reads the outputs of the ", to_text(seat.role), " \"", name,
+                        "\"; connect one of them, or leave it out");
     const ComponentType& type = *m.components[seat.component].type;
     const bool says_so =
         seat.role == ControlRole::sensor && std::ranges::any_of(type.facets, [](const Facet& each) {
@@ -219,8 +215,8 @@ constexpr Sentence check_seat(const ControlView& c, const MachineView& m, const 
     if (writes && type.stop == nullptr && !says_so && !is_driver(m, seat.component))
         return of_level(
             level, "the ", to_text(seat.role), " \"", name,
-            "\" has no stop(), so that others would go on with its last value when it has stopped; "
-            "write safe values there: void stop(const Cycle&) noexcept TAPPET_REALTIME");
+            "\" has no stop(), so that its readers would continue with its last value after it stopped; add "
+            "one that writes safe values: void stop(const Cycle&) noexcept TAPPET_REALTIME");
     return {};
 }
 

@@ -27,8 +27,7 @@ constexpr Sentence check_activity(const LevelRow& row, const MachineView& m, con
     const ActivityRow& activity = m.activities[own];
     if (activity.trigger != Trigger::every || !activity.real_time)
         return of_level(row, "its activity \"", activity.name,
-                        "\" does not run in real time with a period; a control action has one: "
-                        "write every(...)");
+                        "\" is not a periodic real-time activity, which control needs; write every(...)");
     return {};
 }
 
@@ -66,13 +65,13 @@ constexpr Sentence check_rates(const ControlView& c, const MachineView& m, const
             return of_level(c.levels[l], "it runs every ", checks::in_us(inner.count()),
                             ", slower than level \"", c.levels[l - 1].name, "\" above it, which runs every ",
                             checks::in_us(outer.count()),
-                            "; an inner loop is the faster one: exchange the levels, or their periods");
+                            "; an inner loop must be faster: exchange the levels, or their periods");
         if (outer % inner != Duration::zero())
             return of_level(c.levels[l], "its period of ", checks::in_us(inner.count()),
                             " does not divide that of level \"", c.levels[l - 1].name, "\" above it, ",
                             checks::in_us(outer.count()),
-                            ", so that not every command would hold for as many steps; choose periods "
-                            "of which one is a multiple of the other");
+                            ", so that commands would hold for different numbers of steps; choose periods of "
+                            "which one is a multiple of the other");
     }
     return {};
 }

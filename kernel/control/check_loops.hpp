@@ -29,7 +29,8 @@ constexpr Sentence find_value(const MachineView& m, std::string_view path, End& 
     if (Sentence fault = resolve(m, path, FacetKind::property, end); !fault.empty()) return fault;
     const Facet& facet = facet_at(m, end);
     if (facet.kind != FacetKind::property || facet.type->kind != ValueKind::real)
-        return Sentence{"\"", path, "\" is no property of a number; name the one that holds the gain"};
+        return Sentence{"\"", path,
+                        "\" is not a property that is a number; name the one that holds the gain"};
     for (const PropertyRow& each : m.components[end.component].settings)
         if (same_text(each.name, facet.name)) {
             value = each.setting.kind == PropertySetting::Kind::integer
@@ -37,9 +38,9 @@ constexpr Sentence find_value(const MachineView& m, std::string_view path, End& 
                         : each.setting.real;
             return {};
         }
-    return Sentence{"the table does not say what \"",
+    return Sentence{"the table does not set \"",
                     path,
-                    "\" is, and it decides whether the loop is stable; add set(\"",
+                    "\", which decides whether the loop is stable; add set(\"",
                     facet.name,
                     "\", ...) to the row of \"",
                     m.components[end.component].name,
@@ -114,10 +115,10 @@ constexpr Sentence check_by_hand(const LoopRow& row, Range by_hand, Range integr
             return of_loop(row, "people may set ", row.gain,
                            kp < std::numeric_limits<double>::infinity() ? " to " : " to anything",
                            kp < std::numeric_limits<double>::infinity() ? in_digits(kp) : Sentence{},
-                           row.integral.empty() ? "" : " beside ",
-                           row.integral.empty() ? Sentence{} : Sentence{in_digits(ki), " of ", row.integral},
+                           row.integral.empty() ? "" : " and ",
+                           row.integral.empty() ? Sentence{} : Sentence{row.integral, " to ", in_digits(ki)},
                            " while it runs, which is not stable; give ",
-                           row.integral.empty() ? "it a range" : "both a range", " of gains that are, below ",
+                           row.integral.empty() ? "it a range" : "both a range", " of stable gains, below ",
                            in_digits(bound / (row.factor * longest)));
         }
     return {};
@@ -138,20 +139,19 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
         is_controller |= each.component == component && each.role == ControlRole::controller;
     if (!is_controller)
         return of_loop(row, "\"", m.components[component].name,
-                       "\" is no Controller of a level; name the property of one");
+                       "\" is not a Controller of a level; name the property of one");
     if (!row.integral.empty()) {
         if (Sentence fault = find_value(m, row.integral, end, integral); !fault.empty())
             return of_loop(row, fault);
         integral_by_hand = facet_at(m, end).range;
         if (end.component != component)
-            return of_loop(row, "its two gains are of two components; name those of one");
+            return of_loop(row, "its two gains belong to different components; name two of one component");
     }
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (!(gain > 0.0 && gain < infinity && integral >= 0.0 && integral < infinity && row.factor > 0.0 &&
           row.factor < infinity && row.transport >= Duration::zero()))
-        return of_loop(
-            row, "its gains, stiffness and transport are to be positive; a loop that feeds back with the "
-                 "other sign turns it round in the Sensor");
+        return of_loop(row, "its gains, stiffness and transport must be positive; if the feedback has the "
+                            "other sign, invert it in the Sensor");
     const ActivityRow& activity = m.activities[r.activity[component]];
     const auto [dead, varying] = dead_samples(row, m, r, seats, component, activity.period);
     if (dead > max_dead_samples)

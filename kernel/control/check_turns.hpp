@@ -47,17 +47,16 @@ constexpr Sentence check_switch(const ExclusiveRow& row, const MachineView& m,
     const std::size_t by = find_component(m, row.by);
     if (by == nowhere) return of_exclusive(row, unknown_component(m, row.by));
     if (m.components[by].type != switch_type)
-        return of_exclusive(row, "\"", row.by,
-                            "\" cannot hand over between chains; make it a component<ChainSwitch>");
+        return of_exclusive(row, "\"", row.by, "\" cannot switch chains; make it a component<ChainSwitch>");
     if (row.too_many) return of_exclusive(row, too_many("chains", ExclusiveRow::max_chains));
     std::size_t fallbacks = 0;
     for (const ChainRow& each : row.chains) fallbacks += each.is_fallback ? 1 : 0;
     if (row.chains.size() < 2)
-        return of_exclusive(row, "it has no two chains between which to hand over; add one, or leave it out");
+        return of_exclusive(row, "it has fewer than two chains to switch between; add one, or leave it out");
     if (fallbacks != 1 || !row.chains[0].is_fallback)
         return of_exclusive(row,
-                            "what runs first, and when a part of a chain fails, is not said once; begin with "
-                            "fallback(\"...\", ...), and let the others be chain(...)");
+                            "it needs exactly one fallback(...), which runs first and when a chain fails; "
+                            "begin with fallback(\"...\", ...), and write chain(...) for the others");
     return {};
 }
 
@@ -79,23 +78,22 @@ constexpr Sentence check_member(const ControlView& c, const ExclusiveRow& row, c
                         row.by,
                         "\" in \"",
                         m.activities[r.activity[by]].name,
-                        "\"; one hands over in its own activity only, between two steps"};
+                        "\"; it can switch in its own activity only; run both in one activity"};
     if (r.position[component] < r.position[by])
         return Sentence{"\"", row.by, "\" runs after \"", name,
-                        "\" and would hand over in the midst of a step; name it first in runs(...)"};
+                        "\" and would switch in the middle of a step; name it first in runs(...)"};
     if (m.components[component].type->start == nullptr && !is_process)
-        return Sentence{
-            "\"", name, "\" of chain \"", chain.name,
-            "\" has no start(), so that it would go on where it was when it ran last; write its first "
-            "values there, made of what it reads: void start(const Cycle&) noexcept TAPPET_REALTIME"};
+        return Sentence{"\"", name, "\" of chain \"", chain.name,
+                        "\" has no start(), so that it would continue from its last run; add one that writes "
+                        "first values from its inputs: void start(const Cycle&) noexcept TAPPET_REALTIME"};
     for (const BehaviourRow& each : m.behaviours)
         if (same_text(each.component, name))
             return Sentence{"\"", name,
-                            "\" has a behaviour, which cannot end within a step; let the process "
-                            "component have it"};
+                            "\" has a behaviour, which cannot end within a step; give the behaviour to the "
+                            "process component"};
     for (const ExclusiveRow& other : c.exclusives)
         if (&other != &row && chains_of(other, name) != 0)
-            return Sentence{"\"", name, "\" is a part of exclusive \"", other.by, "\" too; keep it in one"};
+            return Sentence{"\"", name, "\" is also in exclusive \"", other.by, "\"; keep it in one"};
     return {};
 }
 
@@ -112,8 +110,8 @@ constexpr Sentence check_one_writer(const ExclusiveRow& row, const MachineView& 
         const unsigned reader = chains_of(row, m.components[link.to.component].name);
         const bool is_read = reader == 0 || (reader >> k & 1) != 0;
         if (writers != 1 && is_read)
-            return of_exclusive(row, "while chain \"", row.chains[k].name, "\" runs nobody writes \"",
-                                m.connections[x].to, "\"; add the component that does to the chain");
+            return of_exclusive(row, "while chain \"", row.chains[k].name, "\" runs, no component writes \"",
+                                m.connections[x].to, "\"; add one that does to the chain");
     }
     return {};
 }
@@ -134,13 +132,12 @@ constexpr Sentence check_shared_calls(const ExclusiveRow& row, const MachineView
         }
         for (std::size_t k = 0; k < row.chains.size(); ++k)
             if ((answered >> k & 1) == 0)
-                return of_exclusive(
-                    row, "while chain \"", row.chains[k].name, "\" runs nobody answers \"",
-                    m.reactions[x].event,
-                    "\"; add the component that does to the chain, and a row uses(...) to it");
+                return of_exclusive(row, "while chain \"", row.chains[k].name,
+                                    "\" runs, no component answers \"", m.reactions[x].event,
+                                    "\"; add one that does to the chain, and a row uses(...) to it");
         calls += is_first ? 1 : 0;
     }
-    if (calls > max_calls) return of_exclusive(row, too_many("calls answered by turns", max_calls));
+    if (calls > max_calls) return of_exclusive(row, too_many("calls answered by several chains", max_calls));
     return {};
 }
 
@@ -160,8 +157,9 @@ constexpr Sentence check_shared_inputs(const ExclusiveRow& row, const MachineVie
         if (!is_member(row, m, link.from.component) || own.buffered || !is_shared(r, x)) continue;
         if (r.activity[link.from.component] != r.activity[link.to.component])
             return checks::of_connection(
-                own, ": what is written by turns is read in the writers' activity \"",
-                m.activities[r.activity[link.from.component]].name, "\" only; read what comes of it there");
+                own, ": a value that several chains write can be read only in their activity \"",
+                m.activities[r.activity[link.from.component]].name,
+                "\"; connect a value derived from it there");
         if (Sentence fault = check_one_writer(row, m, r, x); !fault.empty()) return fault;
         bool is_first = true;
         for (std::size_t j = 0; j < x; ++j) {
@@ -172,14 +170,13 @@ constexpr Sentence check_shared_inputs(const ExclusiveRow& row, const MachineVie
                 !same_value(other.substitute, own.substitute) ||
                 !same_value(other.before_first, own.before_first) || other.delayed_step != own.delayed_step ||
                 is_scaled(own) || is_scaled(other))
-                return checks::of_connection(
-                    own, ": it and \"", other.from,
-                    "\" write by turns and say different things of the input; give both "
-                    "rows the same options, and no scale");
+                return checks::of_connection(own, ": this row and \"", other.from,
+                                             "\" write in different chains but have different options; give "
+                                             "both rows the same options, and no scale");
         }
         links += is_first ? 1 : 0;
     }
-    if (links > max_links) return of_exclusive(row, too_many("inputs written by turns", max_links));
+    if (links > max_links) return of_exclusive(row, too_many("inputs written by several chains", max_links));
     if (watched > max_watched)
         return of_exclusive(row, too_many("inputs from other activities", max_watched));
     return {};
@@ -219,21 +216,19 @@ constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const 
     if (seat.tracked.empty())
         return takes_turns
                    ? of_level(c.levels[seat.level], "the Controller \"", own.name,
-                              "\" runs by turns, or those who write for it do, and it does not see what "
-                              "was sent before, so that the axis would jump; connect an Effector's output to "
-                              "an input of it, "
-                              "delayed, and name that: controller(\"",
+                              "\" or one of its writers runs in a chain, but it does not know what was sent "
+                              "last, so that the axis would jump; connect an Effector's output to one of its "
+                              "inputs, delayed, and name that input: controller(\"",
                               own.name, "\", tracks(\"...\"))")
                    : Sentence{};
     if (takes_turns && own.type->start == nullptr)
-        return of_level(
-            c.levels[seat.level], "the Controller \"", own.name,
-            "\" tracks what was sent and has no start() in which it would begin there; write its first "
-            "output there: void start(const Cycle&) noexcept TAPPET_REALTIME");
+        return of_level(c.levels[seat.level], "the Controller \"", own.name,
+                        "\" tracks what was sent but has no start(); add one that writes the first output "
+                        "from it: void start(const Cycle&) noexcept TAPPET_REALTIME");
     const std::size_t facet = find_facet(own, seat.tracked);
     if (facet == nowhere || own.type->facets[facet].kind != FacetKind::input)
         return of_level(c.levels[seat.level], "\"", own.name, "\" has no input \"", seat.tracked,
-                        "\" by which to track; name the one that tells what was sent");
+                        "\" to track; name the one that receives what was sent");
     for (std::size_t x = r.connections_into.first[seat.component]; x != nowhere;
          x = r.connections_into.next[x]) {
         if (r.connections[x].to.facet != facet) continue;
@@ -241,9 +236,9 @@ constexpr Sentence check_tracking(const Seat& seat, const ControlView& c, const 
             if (each.component == r.connections[x].from.component && each.role == ControlRole::effector)
                 return check_tracked_unit(seat, c, own, facet);
     }
-    return of_level(
-        c.levels[seat.level], "what \"", own.name, ".", seat.tracked,
-        "\" tracks does not come from an Effector, which alone knows what was sent; connect it there");
+    return of_level(c.levels[seat.level], "\"", own.name, ".", seat.tracked,
+                    "\" tracks a value that does not come from an Effector, which alone knows what was sent; "
+                    "connect it to one");
 }
 
 constexpr Sentence check_turns(const ControlView& c, const MachineView& m, const TableIndexView& r,
@@ -273,8 +268,8 @@ constexpr Sentence check_turns(const ControlView& c, const MachineView& m, const
             for (const ExclusiveRow& row : c.exclusives) is_named |= same_text(row.by, each.name);
             if (!is_named)
                 return Sentence{"component \"", each.name,
-                                "\" hands over between chains, and no row says which; add exclusive(\"",
-                                each.name, "\", fallback(...), chain(...)) to control(...)"};
+                                "\" switches chains, but no row says which; add exclusive(\"", each.name,
+                                "\", fallback(...), chain(...)) to control(...)"};
         }
     return {};
 }

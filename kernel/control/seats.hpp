@@ -53,7 +53,7 @@ constexpr Sentence of_level(const LevelRow& row, const Pieces&... fault) {
 }
 
 constexpr Sentence too_many(std::string_view what, std::size_t most) {
-    return Sentence{"it has more than the ", most, " ", what, " that it may have; make two of it"};
+    return Sentence{"it has more than ", most, " ", what, "; split it in two"};
 }
 
 /// Fills the seats; returns the first unknown name as a fault.
@@ -69,9 +69,9 @@ constexpr Sentence take_seats(const ControlView& c, const MachineView& m, Seats&
             if (each.role == ControlRole::process || role.role == ControlRole::process)
                 return Sentence{
                     "\"", role.component,
-                    "\" writes the data flow and cannot be a process component too; name it once"};
+                    "\" is part of the data flow and cannot also be a process component; name it once"};
             if (each.level != level)
-                return Sentence{"\"", role.component, "\" sits in level \"", c.levels[each.level].name,
+                return Sentence{"\"", role.component, "\" is in level \"", c.levels[each.level].name,
                                 "\" already; a component runs in one level"};
         }
         if (!seats.push({component, role.role, level, role.tracked})) return too_many("roles", max_seats);
@@ -82,7 +82,7 @@ constexpr Sentence take_seats(const ControlView& c, const MachineView& m, Seats&
         if (row.too_many) return of_level(row, too_many("components", LevelRow::max_roles));
         for (std::size_t before = 0; before < l; ++before)
             if (same_text(c.levels[before].name, row.name))
-                return of_level(row, "there are two of that name; rename one");
+                return of_level(row, "another level has this name; rename one");
         for (const RoleRow& role : row.roles) {
             if (role.role == ControlRole::process)
                 return of_level(row, "\"", role.component,
@@ -94,7 +94,7 @@ constexpr Sentence take_seats(const ControlView& c, const MachineView& m, Seats&
     for (const RoleRow& role : c.processes) {
         if (role.role != ControlRole::process)
             return Sentence{"control: \"", role.component, "\" is ", a_role(role.role),
-                            " of no level; write it into a level(...)"};
+                            " outside of a level; move it into a level(...)"};
         if (Sentence fault = seat(role, no_level); !fault.empty()) return Sentence{"control: ", fault};
     }
     return {};

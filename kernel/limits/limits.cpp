@@ -112,9 +112,9 @@ void connect(std::span<const LimitRow> rows, MachineInstance& machine, std::size
 
 Sentence describe(const LimitRow& row) {
     if (row.is_rate)
-        return Sentence{"\"", row.output, "\" was to change by more than ", decimal(row.per_second),
+        return Sentence{"\"", row.output, "\" would have changed by more than ", decimal(row.per_second),
                         " per second"};
-    return Sentence{"\"",   row.output,       "\" was to leave its range from ", decimal(row.low),
+    return Sentence{"\"",   row.output,       "\" would have left its range from ", decimal(row.low),
                     " to ", decimal(row.high)};
 }
 

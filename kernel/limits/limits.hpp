@@ -109,20 +109,20 @@ constexpr Sentence check_row(const LimitRow& row, const MachineView& m, const Ta
     const ValueKind kind = facet.type->kind;
     const bool is_integer = kind == ValueKind::integer || kind == ValueKind::natural;
     if (!facet.type->arithmetic || !(kind == ValueKind::real || (is_integer && facet.type->size <= 4)))
-        return Sentence{"its type is ", facet.type->name,
-                        ", and only numbers that a double holds are limited; limit where one is written"};
+        return Sentence{"its type ", facet.type->name,
+                        " cannot be limited, only numbers that a double holds; limit where one is written"};
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (row.is_rate) {
         if (row.per_second > 0.0 && row.per_second < infinity) return {};
-        return Sentence{"its rate is not above zero or has no end; give one in its unit per second"};
+        return Sentence{"its rate is not a finite number above 0; give one in its unit per second"};
     }
     if (!(row.low < row.high))
         return Sentence{"its least value is not below its greatest; write the smaller one first"};
     if (row.low == -infinity && row.high == infinity)
-        return Sentence{"it allows everything; give it an end, or leave it out"};
+        return Sentence{"it limits nothing; give it a bound, or leave it out"};
     if ((row.low != -infinity && !holds(*facet.type, row.low)) ||
         (row.high != infinity && !holds(*facet.type, row.high)))
-        return Sentence{"an end of it is no value of ", facet.type->name,
+        return Sentence{"one of its bounds is not a value of ", facet.type->name,
                         "; give one that the port can have"};
     return {};
 }
@@ -144,7 +144,7 @@ struct Limits final : ExtraSection {
                 return said(fault);
             for (std::size_t j = 0; j < i; ++j)
                 if (same_text(rows[j].output, rows[i].output) && rows[j].is_rate == rows[i].is_rate)
-                    return said(Sentence{"it stands twice; keep one"});
+                    return said(Sentence{"it appears twice; keep one"});
         }
         return {};
     }

@@ -38,7 +38,7 @@ struct AlphaBetaGains {
 /// Returns the fault and its cure; empty: there is none.
 constexpr std::string_view check(const AlphaBetaGains& gains) noexcept TAPPET_REALTIME {
     if (gains.alpha > 0.0 && gains.beta > 0.0 && 2.0 * gains.alpha + gains.beta < 4.0) return {};
-    return "these gains never settle; let alpha and beta be positive and 2 alpha + beta below 4";
+    return "these gains are not stable; set alpha and beta positive and 2 alpha + beta below 4";
 }
 
 class AlphaBeta {

@@ -39,12 +39,12 @@ constexpr std::string_view check(const PidGains& gains) noexcept TAPPET_REALTIME
     for (const double value :
          {gains.proportional, gains.integral, gains.derivative, gains.derivative_filter_s,
           gains.set_point_weight, gains.derivative_weight, gains.tracking_s, gains.dead_band})
-        if (!is_number(value)) return "a gain is no number; write one";
+        if (!is_number(value)) return "a gain is not a finite number; write one";
     if (gains.derivative_filter_s < 0.0 || gains.tracking_s < 0.0)
-        return "a time constant is negative; write nought for none";
+        return "a time constant is negative; write 0 for none";
     if (!(gains.lowest < gains.highest))
-        return "the limits of the output hold nothing; let lowest be below highest";
-    if (gains.dead_band < 0.0) return "the dead band is negative; write nought for none";
+        return "the output limits are an empty range; set lowest below highest";
+    if (gains.dead_band < 0.0) return "the dead band is negative; write 0 for none";
     return {};
 }
 

@@ -26,21 +26,21 @@ enum class Refusal : std::uint8_t {
 /// Returns the reason and its cure. Real-time.
 constexpr std::string_view to_text(Refusal why) noexcept TAPPET_REALTIME {
     switch (why) {
-    case Refusal::not_a_number: return "a value is no number, or infinite; look at values where they come in";
-    case Refusal::limit_not_positive: return "a limit is not positive; give each one a value above nought";
+    case Refusal::not_a_number: return "a value is not a finite number; check values where they enter";
+    case Refusal::limit_not_positive: return "a limit is not positive; give each one a value above 0";
     case Refusal::out_of_reach:
-        return "no joints lead there; choose a target that is nearer, or further from the base";
+        return "no joint positions reach the target; choose one that is nearer, or further from the base";
     case Refusal::outside_limits:
         return "it lies outside the joint's limits; choose another target or branch";
-    case Refusal::not_converged: return "the steps that it has did not suffice; begin nearer to the target";
+    case Refusal::not_converged: return "it did not converge within its steps; begin nearer to the target";
     case Refusal::no_direction:
-        return "the points leave a direction open; choose three that are apart and on no line";
+        return "the points leave a direction open; choose three that are apart and not on one line";
     case Refusal::beyond_half_rate:
-        return "a frequency is not between nought and half of the sampling rate; sample faster";
+        return "a frequency is not between 0 and half of the sampling rate; sample faster";
     case Refusal::not_positive:
-        return "a covariance is not positive definite; give each measurement a variance above nought";
+        return "a covariance is not positive definite; give each measurement a variance above 0";
     case Refusal::outlier:
-        return "it lies further from what was expected than the gate allows; see whence it came";
+        return "it is further from the expected value than the gate allows; check its source";
     case Refusal::wrong_state:
         return "the axis does not take this command in its state; bring it to standstill, or reset it";
     }

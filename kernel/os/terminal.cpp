@@ -112,7 +112,7 @@ private:
     bool tell_dropped() noexcept {
         if (untold_ == 0) return true;
         const Sentence line{"(", untold_, untold_ == 1 ? " text was" : " texts were",
-                            " dropped here: nobody took them in time)\n"};
+                            " dropped here: they were not read in time)\n"};
         if (!write_new(line.view())) return false;
         untold_ = 0;
         return rest_length_ == 0;

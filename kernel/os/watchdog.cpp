@@ -24,9 +24,9 @@ std::expected<void, Sentence> Watchdog::open(const char* path, Duration within) 
                      "repair what keeps the guardian from making them safe"});
     descriptor_ = ::open(path, O_WRONLY | O_CLOEXEC); // dog.open
     if (descriptor_ < 0)
-        return std::unexpected(Sentence{"the watchdog \"", path, "\" cannot be opened (",
-                                        std::strerror(errno),
-                                        "); load its module, end who else has it, or correct the board"});
+        return std::unexpected(
+            Sentence{"the watchdog \"", path, "\" cannot be opened (", std::strerror(errno),
+                     "); load its module, end the process that uses it, or correct the board"});
     const auto refused = [&](const Sentence& why) {
         stand_down();
         return std::unexpected(Sentence{"the watchdog \"", path, "\" ", why});

@@ -140,9 +140,8 @@ private:
         Frame frame{.result = result};
         if (result != nullptr) {
             if (!on_command)
-                return fail(at, {"nobody asks \"", quoted(name),
-                                 "\" for its result; give it a list of "
-                                 "parameters, which may be empty"});
+                return fail(at, {"nothing asks \"", quoted(name),
+                                 "\" for its result; give it a list of parameters, which may be empty"});
             static_cast<void>(add_variable(result->size, frame.slot));
             add(variables_, VariableRow{keep({"return"}), result, frame.slot, VariableKind::result},
                 "variables");

@@ -13,7 +13,7 @@ constexpr void Statements::parse_set(const Token& at) {
         if (symbol->kind == SymbolKind::machine) return parse_set_in_machine(at, symbol->number);
         if (symbol->fixed || symbol->kind != SymbolKind::variable)
             return fail(name,
-                        {"\"", symbol->name, "\" is not to be assigned: it is ",
+                        {"\"", symbol->name, "\" cannot be assigned: it is ",
                          symbol->kind == SymbolKind::function   ? "a function"
                          : symbol->kind == SymbolKind::variable ? "the counter of a loop between constants"
                                                                 : "a constant or an argument"});
@@ -45,7 +45,7 @@ constexpr Statements::FacetPlace Statements::parse_facet_place(const Token& name
     place.action = find_write(facet);
     if (!place.action)
         fail(facet_name, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind),
-                          ", which is not to be assigned; outputs, properties and variables are"});
+                          ", which cannot be assigned; outputs, properties and variables can"});
     else if (facet.kind != FacetKind::property && place.component != 0)
         fail_foreign(facet_name, place.component, facet, "writes it");
     else
@@ -181,7 +181,7 @@ constexpr void Statements::parse_action(const Token& at, const Token& name, std:
     }
     default:
         return fail(name, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind),
-                           ", which is not to be done; methods, commands, operations and events are"});
+                           ", which cannot be executed; methods, commands, operations and events can"});
     }
     pending_ = add_arc(end_action(at));
 }
@@ -256,7 +256,7 @@ constexpr Statements::ResultPlace Statements::parse_result_place() {
         place.facet = parse_facet_place(result);
     else if (ok() && (place.variable->fixed || place.variable->kind != SymbolKind::variable))
         fail(result, {"\"", quoted(result.text),
-                      "\" is not to be assigned; a result of a command needs a variable or a property"});
+                      "\" cannot be assigned; a result of a command needs a variable or a property"});
     return place;
 }
 

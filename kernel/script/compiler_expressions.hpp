@@ -32,7 +32,7 @@ protected:
         const std::uint16_t before = instruction_count();
         const Operand value = parse_expression(expected);
         if (ok() && (instruction_count() != before || !(value.literal || value.constant)))
-            fail(at, {what, " is known before the machine runs; write numbers, texts or constants"});
+            fail(at, {what, " must be known before the machine runs; write numbers, texts or constants"});
         return value;
     }
     constexpr bool enter() {

@@ -242,7 +242,7 @@ private:
             advance();
             const Token outer = need_name("the name of the state around this one");
             if (ok() && !parent.empty())
-                fail(outer, {"this state stands inside of \"", parent, "\" already; leave out \"in\""});
+                fail(outer, {"this state is inside of \"", parent, "\" already; leave out \"in\""});
             row.parent = outer.text;
             if (take(Sign::k_region)) {
                 const Token named = need_name("the name of the region");

@@ -123,8 +123,8 @@ protected:
             return;
         }
         if (work_ == 0)
-            return fail(token_, {"the functions of this script multiply to more text than is read; call "
-                                 "fewer functions in functions"});
+            return fail(token_, {"the functions of this script expand to more text than the compiler reads; "
+                                 "call fewer functions in functions"});
         --work_;
         lexer_.next(token_);
     }

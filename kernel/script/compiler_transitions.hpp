@@ -47,7 +47,7 @@ constexpr void Machines::parse_transition(const Token& at, std::uint16_t state, 
         row.guard = ConditionRef{make_condition(where, first, value)};
         if (take(Sign::k_because)) {
             const Token reason = token_;
-            if (need(Sign::text, "what is told when the condition does not hold, in quotes"))
+            if (need(Sign::text, "the reason that is shown when the condition does not hold, in quotes"))
                 row.refusal.text = keep({reason.text});
             if (ok() && row.refusal.text.empty())
                 return fail(reason,

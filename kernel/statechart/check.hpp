@@ -50,7 +50,7 @@ private:
             return fail(who, " has programs of two component types; use those of one");
         if (part == "empty reason")
             return fail(who, " has a condition whose reason is empty; say what is missing then");
-        return fail(who, " is given ", part, " twice; keep one");
+        return fail(who, " has more than one ", part, "; keep one");
     }
     constexpr bool fail_foreign(const NamedRow& who, TypeId component) {
         return fail(who, " has a program of ", component->name, ", and the machine is one of ",

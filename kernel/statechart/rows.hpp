@@ -89,7 +89,7 @@ struct Asked : Bound<StateGuard> {
 
     constexpr void give(std::string_view text) {
         if (text.empty()) fault = "empty reason";
-        if (!refusal.text.empty()) fault = "the reason of its guard";
+        if (!refusal.text.empty()) fault = "reason of its guard";
         refusal.text = text;
     }
 };
@@ -170,14 +170,14 @@ inline constexpr statechart::Otherwise otherwise{statechart::bind<Function, void
 constexpr statechart::OtherwiseTo otherwise_to(std::string_view state) { return {state}; }
 /// The region of the composite that contains this state: one state of each region is active.
 constexpr RowOptionOnce<StateRow, std::string_view> region(std::string_view name) {
-    return {&StateRow::region, name, "region"};
+    return {&StateRow::region, name, "region(...)"};
 }
 /// Restores the states that were active when the composite target was last exited, see EntryKind.
 inline constexpr EntryKind shallow_history = EntryKind::shallow_history;
 inline constexpr EntryKind deep_history = EntryKind::deep_history;
 /// The enclosing composite state.
 constexpr RowOptionOnce<StateRow, std::string_view> in(std::string_view state) {
-    return {&StateRow::parent, state, "in"};
+    return {&StateRow::parent, state, "in(...)"};
 }
 /// An event transition: "component.event", or "event" of the own component.
 constexpr statechart::On on(std::string_view event) { return {event}; }
@@ -185,7 +185,7 @@ constexpr statechart::On on(std::string_view event) { return {event}; }
 constexpr statechart::After after(Duration time) { return {time}; }
 /// The reason shown to the operator when the transition is taken.
 constexpr RowOptionOnce<TransitionRow, std::string_view> because(std::string_view reason) {
-    return {&TransitionRow::because, reason, "because"};
+    return {&TransitionRow::because, reason, "because(...)"};
 }
 
 namespace statechart {
@@ -205,12 +205,12 @@ constexpr void apply(StateRow& row, const Precondition& part) {
 }
 
 constexpr void apply(TransitionRow& row, On part) {
-    give(row, "on", row.on_event);
+    give(row, "on(...)", row.on_event);
     row.on_event = true;
     row.event = part.event;
 }
 constexpr void apply(TransitionRow& row, After part) {
-    give(row, "after", row.timed);
+    give(row, "after(...)", row.timed);
     row.timed = true;
     row.after = part.time;
 }
@@ -221,7 +221,7 @@ constexpr void apply(TransitionRow& row, const Otherwise& part) {
     row.has_otherwise = true;
 }
 constexpr void apply(TransitionRow& row, OtherwiseTo part) {
-    give(row, "otherwise_to", !row.otherwise_to.empty());
+    give(row, "otherwise_to(...)", !row.otherwise_to.empty());
     row.otherwise_to = part.state;
     row.has_otherwise = true;
 }

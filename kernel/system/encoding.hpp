@@ -49,7 +49,7 @@ constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& 
                     .step = encoding.step};
     if (type->size > 56) {
         fault = Sentence{"a value of type ", type->name, " has ", type->size,
-                         " bytes, and no frame takes them; tell a part of it"};
+                         " bytes, more than a frame holds; send a part of it"};
         value.bits = 0;
     }
     if (encoding.bits == 0) {
@@ -62,8 +62,9 @@ constexpr WireValue wire_value(TypeId type, const Encoding& encoding, Sentence& 
                             type->kind == ValueKind::real) &&
                            type->size >= 4;
     if (!is_number) {
-        fault = Sentence{"a value of type ", type->name,
-                         " is no number of at least 4 bytes: remove in_bits(...), and it goes as it is"};
+        fault =
+            Sentence{"a value of type ", type->name,
+                     " is not a number of at least 4 bytes: remove in_bits(...), and it is sent as it is"};
         value.bits = 0;
     } else if (encoding.bits > 56 || !(encoding.step > 0 && tappet::is_number(encoding.step))) {
         fault = Sentence{"in_bits takes 1 to 56 bits and a finite step above 0"};

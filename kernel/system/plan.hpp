@@ -74,27 +74,26 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
         const std::uint16_t bits = plan.index[x].value.bits_in_frame();
         if (plan.shape.protection_bits + bits > plan.shape.most_bits)
             return of_crossing(
-                row, ": its value takes ", unsigned{bits}, " bits with the one that says whether it is valid",
-                row.with_time ? " and the time" : "", ", and a frame has ",
+                row, ": its value takes ", unsigned{bits}, " bits with its validity bit",
+                row.with_time ? " and the time" : "", ", but a frame has ",
                 plan.shape.most_bits - plan.shape.protection_bits,
-                " for values; tell it in fewer: in_bits(32, 0.001) of a number, or a part of a record");
+                " for values; send fewer: in_bits(32, 0.001) of a number, or a part of a record");
         CrossingPlace& place = plan.place[x];
         for (std::size_t before = 0; before < i && place.frame == nowhere; ++before) {
             const std::size_t b = by_width[before]; // the same value, for another reader
             if (s.crossings[b].data.from != row.data.from) continue;
             if (s.crossings[b].every != row.every || plan.index[b].value != plan.index[x].value)
-                return of_crossing(row, " is told otherwise than to \"", s.crossings[b].to(),
+                return of_crossing(row, " is encoded differently from the row to \"", s.crossings[b].to(),
                                    "\"; give all rows of one output the same every(...) and the same bits");
             place = plan.place[b];
         }
         const Duration left =
             row.within == Duration::zero() ? row.every : row.within - around_wire(s, row, plan.index[x]);
         if (left <= Duration::zero())
-            return of_crossing(
-                row, " is to be there within ", row.within.count() / 1000, " us, but ",
-                around_wire(s, row, plan.index[x]).count() / 1000,
-                " us of that are its every(...) and the deadline by which the wire is served; shorten "
-                "those, or say a longer within(...)");
+            return of_crossing(row, " must arrive within ", row.within.count() / 1000, " us, but ",
+                               around_wire(s, row, plan.index[x]).count() / 1000,
+                               " us of that are its every(...) and the deadline by which the wire is served; "
+                               "shorten those, or write a longer within(...)");
         if (place.frame != nowhere) {
             plan.frames[place.frame].deadline = std::min(plan.frames[place.frame].deadline, left);
             continue;
@@ -127,10 +126,10 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
     const Duration left = row.within - around_wire(s, row, index);
     if (left <= Duration::zero())
         return of_crossing(
-            row, " is to be served within ", row.within.count() / 1000, " us, but ",
+            row, " must be served within ", row.within.count() / 1000, " us, but ",
             around_wire(s, row, index).count() / 1000,
             " us of that are the deadlines of the activities that serve the wire and the operation; "
-            "shorten those, or say a longer within(...)");
+            "shorten those, or write a longer within(...)");
     const Duration again = row.within / 2;
     const std::size_t channel_bits = plan.shape.channel_bits(), most_wire_bits = plan.shape.most_bits;
     const auto frame = [&](std::size_t node, WireFrameKind kind, std::size_t bits) {
@@ -145,14 +144,14 @@ constexpr Sentence add_channels(const SystemView& s, SystemPlan<N, X>& plan, std
     if (channel_bits + index.value.bits > most_wire_bits)
         return of_crossing(row, ": its arguments take ", unsigned{index.value.bits},
                            " bits, and a frame has ", most_wire_bits - channel_bits,
-                           " for them; tell a number by in_bits(...), or the rest by data(...)");
+                           " for them; send numbers with in_bits(...), or the rest by data(...)");
     plan.place[x].frame =
         add_frame(plan, frame(index.from.node, WireFrameKind::message, channel_bits + index.value.bits));
     plan.place[x].answer = add_frame(plan, frame(index.to.node, WireFrameKind::answer, channel_bits + 8));
     if (row.kind != CrossingKind::command) return {};
     if (channel_bits + 8 + index.result.bits > most_wire_bits)
         return of_crossing(row, ": its results take ", unsigned{index.result.bits}, " bits, and a frame has ",
-                           most_wire_bits - channel_bits - 8, " for them; tell them by data(...)");
+                           most_wire_bits - channel_bits - 8, " for them; send them by data(...)");
     plan.place[x].reply =
         add_frame(plan, frame(index.to.node, WireFrameKind::reply, channel_bits + 8 + index.result.bits));
     plan.place[x].received =
@@ -190,16 +189,16 @@ constexpr Sentence check_clock_error(const SystemView& s, std::span<const WireFr
     return Sentence{
         "common_clock(\"",
         clock.node,
-        "\"): it is known to ",
+        "\"): its error may be ",
         error.count() / 1000,
-        " us, but promised within ",
+        " us, but it is promised within ",
         clock.within.count() / 1000,
         " us; most of it, ",
         std::max(clock.stamps_late, parted).count() / 1000,
         " us, is ",
         clock.stamps_late >= parted
-            ? Sentence{"how late frames are stamped; say stamps_late(...) of less where that is so"}
-            : Sentence{"what clocks part in ", age.count() / 1'000'000, " ms; tell it more often"},
+            ? Sentence{"how late frames are stamped; write a shorter stamps_late(...) if that is true"}
+            : Sentence{"the drift of the clocks in ", age.count() / 1'000'000, " ms; send it more often"},
         ", or promise less"};
 }
 
@@ -214,9 +213,9 @@ constexpr Sentence resolve_crossings(const SystemView& s, SystemPlan<N, X>& plan
         plan.index[x].name = folded(name);
         for (std::size_t other = 0; other < x; ++other)
             if (row.kind != CrossingKind::presence && plan.index[other].name == plan.index[x].name)
-                return of_crossing(row, " is told by the same number as \"", s.crossings[other].from(),
-                                   "\" -> \"", s.crossings[other].to(),
-                                   "\", or stands twice; remove it, or rename a node");
+                return of_crossing(row, " has the same number as \"", s.crossings[other].from(), "\" -> \"",
+                                   s.crossings[other].to(),
+                                   "\", or appears twice; remove it, or rename a node");
     }
     return {};
 }
@@ -244,8 +243,8 @@ constexpr Sentence add_frames(const SystemView& s, SystemPlan<N, X>& plan) {
                         plan.frames.size(),
                         " frames, more than ",
                         most_traffic_rows,
-                        " that are analysed: tell values of one node with one every(...), events seldom as "
-                        "values, or make two systems"};
+                        " that are analysed: send the values of a node with one every(...), send rare events "
+                        "as values, or make two systems"};
     return {};
 }
 
@@ -303,9 +302,8 @@ constexpr Sentence check_frames(const SystemView& s, const SystemPlan<N, X>& pla
         const Duration needed = 2 * s.wire.beats + frame.worst + s.wire.service.deadline;
         if (s.wire.silent_after < needed)
             return Sentence{"wire \"", s.wire.name,
-                            "\": one lost beat must not make a node silent, and with that the next "
-                            "one may come after ",
-                            needed.count() / 1000, " us; say silent_after(...) of more than that"};
+                            "\": a node must survive one lost beat, and the next one may then come after ",
+                            needed.count() / 1000, " us; write silent_after(...) of more than that"};
     }
     if (!s.wire.fixed_identifiers && s.wire.first_identifier + plan.frames.size() > 0x800)
         return Sentence{"wire \"",
@@ -337,16 +335,16 @@ constexpr Sentence late_fault(const SystemView& s, const SystemPlan<N, X>& plan,
     std::int64_t load_ppm = 0;
     for (const WireFrame& each : plan.frames)
         load_ppm += each.on_wire.count() * 1'000'000 / each.apart.count();
-    constexpr std::string_view cure = "; tell less, or less often, run the wire faster, or give it more time";
+    constexpr std::string_view cure = "; send less, or less often, run the wire faster, or give it more time";
     if (load_ppm >= 1'000'000)
         return Sentence{what,
-                        ": a frame of it may never come through wire \"",
+                        ": a frame of it may never be sent on wire \"",
                         s.wire.name,
                         "\", which all frames together load by ",
                         load_ppm / 10'000,
                         " % at ",
                         s.wire.rate.bits_per_second,
-                        " bit/s; tell less, or less often, or run the wire faster"};
+                        " bit/s; send less, or less often, or run the wire faster"};
     if (frame.worst == Duration::max())
         return Sentence{what,
                         ": a frame of it may still wait for wire \"",

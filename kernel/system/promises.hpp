@@ -141,7 +141,7 @@ constexpr ChainTime prove_stop(const SystemView& s, const Plan& plan, const Prom
                 on_wire = frame.worst;
         const bool is_presence = crossing.kind == CrossingKind::presence;
         if (!is_presence && crossing.data.max_age == Duration::zero()) {
-            time.fault = of_crossing(crossing, " never grows stale; add stale_after(...)");
+            time.fault = of_crossing(crossing, " has no maximum age; add stale_after(...)");
             return time;
         }
         time.add(on_wire, of_crossing(crossing, ": the last frame on the wire"));

@@ -70,7 +70,7 @@ constexpr Sentence of_crossing(const Crossing& row, const Pieces&... fault) {
 constexpr Sentence resolve_data(const SystemView& s, const Crossing& row, CrossingIndex& found) {
     if (row.data.buffered)
         return Sentence{": a buffer does not cross a wire: emit an event for each value, which crosses with "
-                        "when(\"...\", tell(\"...\")), or tell the last one by data(...)"};
+                        "when(\"...\", tell(\"...\")), or send the last one by data(...)"};
     if (Sentence fault = resolve_end(s, row.data.from, FacetKind::output, found.from); !fault.empty())
         return Sentence{": ", fault};
     if (Sentence fault = resolve_end(s, row.data.to, FacetKind::input, found.to); !fault.empty())
@@ -78,17 +78,17 @@ constexpr Sentence resolve_data(const SystemView& s, const Crossing& row, Crossi
     if (Sentence fault = checks::check_direction(row.data, *found.from.facet, *found.to.facet);
         !fault.empty())
         return Sentence{": ", fault};
-    if (row.every <= Duration::zero()) return Sentence{" does not say how often it is told; add every(10ms)"};
+    if (row.every <= Duration::zero()) return Sentence{" does not say how often it is sent; add every(10ms)"};
     if (row.at_most_per != Duration::zero())
-        return Sentence{" is told every(...); at_most(...) is for events and commands, remove it"};
+        return Sentence{" is sent every(...); at_most(...) is for events and commands, remove it"};
     if (row.with_time) {
         if (!s.wire.has_clock())
-            return Sentence{" is told with_time, but wire \"", s.wire.name,
+            return Sentence{" is sent with_time, but wire \"", s.wire.name,
                             "\" has no common time; add common_clock(\"node\", every(100ms), within(200us))"};
         const Duration oldest = oldest_told - row.every - longest_under_way;
         if (row.data.max_age <= Duration::zero() || row.data.max_age > oldest)
-            return Sentence{" is told with_time, which holds for ", oldest.count() / 1'000'000,
-                            " ms; say stale_after(...) of at most that"};
+            return Sentence{" is sent with_time, which holds for ", oldest.count() / 1'000'000,
+                            " ms; write stale_after(...) of at most that"};
     }
     Sentence fault;
     found.value = wire_value(found.from.facet->type, row.encoding, fault);
@@ -97,9 +97,9 @@ constexpr Sentence resolve_data(const SystemView& s, const Crossing& row, Crossi
 }
 
 constexpr Sentence check_pace(const Crossing& row) {
-    if (row.with_time) return Sentence{" is told when it happens; with_time is for data, remove it"};
+    if (row.with_time) return Sentence{" is sent when it happens; with_time is for data, remove it"};
     if (row.every > Duration::zero())
-        return Sentence{" is told when it happens; every(...) is for data, remove it"};
+        return Sentence{" is sent when it happens; every(...) is for data, remove it"};
     if (row.at_most_per <= Duration::zero())
         return Sentence{" does not say how often it may happen; add at_most(1, 100ms)"};
     if (row.at_most_n != 1)
@@ -112,7 +112,7 @@ constexpr Sentence check_pace(const Crossing& row) {
         return Sentence{" may follow after ", row.at_most_per.count() / 1000,
                         " us, while the one before it may "
                         "still be under way for ",
-                        row.within.count() / 1000, " us; say within(...) no longer than at_most(1, ...)"};
+                        row.within.count() / 1000, " us; write within(...) no longer than at_most(1, ...)"};
     return {};
 }
 
@@ -168,10 +168,9 @@ constexpr Sentence resolve_presence(const SystemView& s, const Crossing& row, Cr
     if (Sentence fault = resolve_end(s, row.to(), FacetKind::input, found.to); !fault.empty())
         return Sentence{": ", fault};
     if (found.to.facet->kind != FacetKind::input || found.to.facet->type != type_id<bool>)
-        return Sentence{": \"", row.to(), "\" is no input of type bool; name one"};
+        return Sentence{": \"", row.to(), "\" is not an input of type bool; name one"};
     if (row.data.max_age != Duration::zero())
-        return Sentence{
-            " says stale_after(...): it is written on change and grows false, not old; remove that"};
+        return Sentence{" has stale_after(...), but it becomes false instead of stale; remove that"};
     return {};
 }
 
@@ -218,7 +217,7 @@ constexpr Sentence check_nodes(const SystemView& s) {
         const std::string_view name = s.nodes[n].name;
         if (name.empty() || find_character(name, '.') != std::string_view::npos)
             return Sentence{"node \"", name, "\": a node's name is not empty and has no dot; rename it"};
-        if (find_node(s, name) != n) return Sentence{"node \"", name, "\" stands twice; rename one of them"};
+        if (find_node(s, name) != n) return Sentence{"node \"", name, "\" appears twice; rename one of them"};
     }
     if (s.wire.name.empty()) return Sentence{"the wire has no name; write wire(\"name\", ...)"};
     for (const SystemNode& row : s.nodes)
@@ -227,7 +226,7 @@ constexpr Sentence check_nodes(const SystemView& s) {
                             "\", which is the wire's name; rename one of them"};
     if (!s.wire.foreign.empty())
         return Sentence{"wire \"", s.wire.name, "\": ", s.wire.foreign,
-                        "(...) says nothing of a wire; remove it"};
+                        "(...) does not apply to a wire; remove it"};
     if (s.wire.rate.bits_per_second == 0)
         return Sentence{"wire \"", s.wire.name, "\" has no bit rate; add bit_rate(500'000)"};
     if (s.wire.is_fd() && s.wire.rate.in_data_phase < s.wire.rate.bits_per_second)
@@ -239,24 +238,22 @@ constexpr Sentence check_nodes(const SystemView& s) {
                         s.wire.rate.bits_per_second,
                         "; write the faster one behind the other"};
     if (s.wire.fixed_identifiers && s.wire.states_first)
-        return Sentence{
-            "wire \"", s.wire.name,
-            "\" says identifiers_from(...) and fixed_identifiers, which are made of what a frame is; "
-            "remove one of them"};
+        return Sentence{"wire \"", s.wire.name,
+                        "\" has both identifiers_from(...) and fixed_identifiers; remove one of them"};
     if (const CommonClock& clock = s.wire.clock; s.wire.has_clock()) {
         if (clock.told > 1)
             return Sentence{"wire \"", s.wire.name, "\" has ", clock.told,
-                            " common_clock(...); one node tells the time, remove the others"};
+                            " common_clock(...); one node sends the time, remove the others"};
         if (find_node(s, clock.node) == nowhere)
             return Sentence{"common_clock(\"", clock.node,
                             "\"): there is no such node; name one of nodes(...)"};
         if (clock.every < 10ms || clock.every > 10s)
-            return Sentence{"common_clock(\"", clock.node, "\") is told every ",
+            return Sentence{"common_clock(\"", clock.node, "\") is sent every ",
                             clock.every.count() / 1'000'000, " ms; write every(...) from 10 ms to 10 s"};
         if (const Duration least = 8 * (s.wire.service.deadline + 1ms); clock.every < least)
             return Sentence{"common_clock(\"",
                             clock.node,
-                            "\") is told every ",
+                            "\") is sent every ",
                             clock.every.count() / 1'000'000,
                             " ms, of which a quarter must do for a frame and served_within(...) twice; write "
                             "every(...) of ",
@@ -265,21 +262,18 @@ constexpr Sentence check_nodes(const SystemView& s) {
         if (clock.stamps_late <= Duration::zero() || !(clock.drift >= 0 && clock.drift <= 1e-2))
             return Sentence{
                 "common_clock(\"", clock.node,
-                "\"): stamps are late by more than nothing, and clocks part by at most 1e-2; correct "
-                "stamps_late(...) or drift(...)"};
+                "\"): stamps_late(...) must be above 0 and drift(...) from 0 to 1e-2; correct them"};
         if (clock.within <= Duration::zero())
-            return Sentence{"common_clock(\"", clock.node,
-                            "\") does not say how well it is to be known; add within(200us)"};
+            return Sentence{"common_clock(\"", clock.node, "\") has no permitted error; add within(200us)"};
     }
     if (s.wire.beats <= Duration::zero() || s.wire.silent_after < 2 * s.wire.beats)
         return Sentence{"wire \"",
                         s.wire.name,
                         "\": a node is silent after ",
                         s.wire.silent_after.count() / 1000,
-                        " us, but one lost beat must not make it so, and "
-                        "beats come every ",
+                        " us, but must survive one lost beat, and beats come every ",
                         s.wire.beats.count() / 1000,
-                        " us; say silent_after(...) of more than twice that"};
+                        " us; write silent_after(...) of more than twice that"};
     return {};
 }
 

@@ -32,7 +32,7 @@ private:
         if (in_.at_end())
             fail(in_.at(), "the file ends, expected ", what, "; is it whole?");
         else if (in_.next() == '"')
-            fail(in_.at(), "a text without its end, or one that is out of place, expected ", what,
+            fail(in_.at(), "a text is unclosed or out of place, expected ", what,
                  "; close the quotes in the same line");
         else
             fail(in_.at(), "found \"", in_.found(), "\", expected ", what, "; correct it");
@@ -72,7 +72,7 @@ private:
         if (in_.at_end())
             fail(in_.at(), "the file ends, expected \";\", the end of a statement; is it whole?");
         else
-            fail(in_.at(), "a text without its end; close its quotes");
+            fail(in_.at(), "a text is unclosed; close its quotes");
     }
 
     // ---- look-up: an unknown message, or one in Vector's container, is nullptr
@@ -91,7 +91,7 @@ private:
         MessageRow* const found = ok() ? message_of(id) : nullptr;
         if (ok() && found == nullptr && id != independent_id)
             fail(at, "no message has the identifier ", std::uint64_t{id},
-                 "; define it by BO_ before it is spoken of");
+                 "; define it by BO_ before it is used");
         return found;
     }
     constexpr SignalRow* known_signal(const MessageRow* message) {
@@ -214,7 +214,7 @@ private:
             }
         }
         if (net_.used.messages == net_.messages.size())
-            return fail(statement_at, "BO_ stands in the middle of a line; begin a new one");
+            return fail(statement_at, "BO_ is in the middle of a line; begin a new one");
         net_.messages[net_.used.messages++] = row;
         takes_signals_ = true;
     }
@@ -258,13 +258,12 @@ private:
         row.receivers = node_list();
         if (owner.is_independent) return;
         if (!takes_signals_)
-            return fail(row.at, "signal \"", s.name,
-                        "\" stands behind another statement; put it under its BO_");
+            return fail(row.at, "signal \"", s.name, "\" is not in its message; put it under its BO_");
         check_nodes(row.receivers);
         if (net_.find(owner, s.name) != nullptr)
             fail(row.at, "message \"", owner.name, "\" has two signals \"", s.name, "\"; rename one of them");
         if (net_.used.signals == net_.signals.size())
-            return fail(row.at, "SG_ stands in the middle of a line; begin a new one");
+            return fail(row.at, "SG_ is in the middle of a line; begin a new one");
         net_.signals[net_.used.signals++] = row;
         ++owner.signals;
     }
@@ -345,7 +344,7 @@ private:
         const SignalRow* const multiplexor = known_signal(message);
         if (ok() && multiplexor != nullptr && !multiplexor->is_multiplexor)
             return fail(at, "signal \"", multiplexor->shape.name,
-                        "\" selects others but is no multiplexor; write M behind its name");
+                        "\" selects others but is not a multiplexor; write M behind its name");
         if (ok() && signal != nullptr && !signal->is_multiplexed)
             return fail(signal_at, "signal \"", signal->shape.name,
                         "\" is selected but not multiplexed; write m and a number behind its name");
@@ -354,7 +353,7 @@ private:
             const std::uint32_t from = whole(0xffff'ffff, "the first value of a range");
             expect('-', "\"-\" between the ends of a range");
             const std::uint32_t to = whole(0xffff'ffff, "the last value of a range");
-            if (ok() && to < from) fail(from_at, "a range that ends before it begins; turn it round");
+            if (ok() && to < from) fail(from_at, "an empty range; exchange its bounds");
             if (ok() && signal != nullptr) select(*signal, {from, to});
         } while (ok() && in_.take(','));
         end_of_statement();

@@ -101,7 +101,7 @@ private:
                                  "\"; keep one");
             if (row.length != 0 || row.identifier.id != 0)
                 return net_.fail(each.at, "the row of message \"", name,
-                                 "\" says what its file says; leave identifier and length out");
+                                 "\" repeats its file; leave identifier and length out");
             each.row = &row;
             for (const Signal& signal : node_.signals.subspan(row.first, row.signals))
                 find_signal(each, signal);
@@ -122,9 +122,8 @@ private:
         }
         if (row.bits != 0 || row.start != 0 || row.factor != 1 || row.offset != 0 || row.has_range ||
             row.order != Order::intel || row.kind != Kind::unsigned_integer || !row.multiplexor.empty())
-            return net_.fail(found->at, "the row of signal \"", name,
-                             "\" says what its file says; write signal(\"", name,
-                             "\"), its safe value and unit");
+            return net_.fail(found->at, "the row of signal \"", name, "\" repeats its file; write signal(\"",
+                             name, "\"), its safe value and unit");
         if (found->row != nullptr)
             return net_.fail(found->at, "the row of message \"", message.name, "\" names \"", name,
                              "\" twice; keep one");
@@ -138,7 +137,7 @@ private:
         const bool sends = message.row != nullptr && message.row->direction == Direction::transmit;
         if (is_ours && message.row == nullptr)
             return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", node_.name,
-                             "\", which does not say how it becomes safe; write transmit(\"", message.name,
+                             "\" but has no safe values; write transmit(\"", message.name,
                              "\", signal(\"..\").safe(..)) into its node, or .safe_by_silence() behind that");
         if (message.row != nullptr && is_ours != sends && (is_ours || message.sender != nobody))
             return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", message.sender,

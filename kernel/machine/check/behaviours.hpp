@@ -45,32 +45,32 @@ inline constexpr std::uint32_t most_in_slot = 1 << 24;
 constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
     const Slot& slot = row.slot;
     if (slot.nodes == 0 || slot.data_bytes == 0 || slot.depth == 0)
-        return of_behaviour(row, " reserves no nodes, data or depth; state all three");
+        return of_behaviour(row, " does not reserve nodes, data and depth; state all three");
     if (std::max({slot.nodes, slot.data_bytes, slot.depth, slot.command_slots, slot.timers,
                   slot.text_bytes}) > most_in_slot)
         return of_behaviour(row, " reserves more than ", most_in_slot,
-                            " of something; write smaller numbers");
+                            " of one resource; write smaller numbers");
     for (const auto& peer : slot.peers)
         if (find_component(m, peer) == nowhere)
-            return of_behaviour(row, ": among its peers, ", unknown_component(m, peer));
+            return of_behaviour(row, ": peers(...): ", unknown_component(m, peer));
     End found;
     for (const auto& name : slot.operations) {
         if (Sentence fault = resolve(m, name, FacetKind::operation, found); !fault.empty())
-            return of_behaviour(row, ": among its operations, ", fault);
+            return of_behaviour(row, ": operations(...): ", fault);
         const FacetKind kind = facet_at(m, found).kind;
         if (kind != FacetKind::operation && kind != FacetKind::method && kind != FacetKind::command)
-            return of_behaviour(row, ": among its operations, \"", name, "\" is ", to_text(kind),
+            return of_behaviour(row, ": operations(...): \"", name, "\" is ", to_text(kind),
                                 ", not an operation; name an operation");
     }
     for (const auto& name : slot.events) {
         if (Sentence fault = resolve(m, name, FacetKind::event, found); !fault.empty())
-            return of_behaviour(row, ": among its events, ", fault);
+            return of_behaviour(row, ": events(...): ", fault);
         const Facet& event = facet_at(m, found);
         if (event.kind != FacetKind::event)
-            return of_behaviour(row, ": among its events, \"", name, "\" is ", to_text(event.kind),
+            return of_behaviour(row, ": events(...): \"", name, "\" is ", to_text(event.kind),
                                 ", not an event; name an event");
         if (event.type->size > most_trigger_bytes)
-            return of_behaviour(row, ": among its events, \"", name, "\" has ", event.type->size,
+            return of_behaviour(row, ": events(...): \"", name, "\" has ", event.type->size,
                                 " bytes of arguments, more than the ", most_trigger_bytes,
                                 " that a state machine keeps; read its component's ports instead");
     }
@@ -84,13 +84,13 @@ constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, con
     }
     if (slot.angle.empty()) return {};
     if (Sentence fault = resolve(m, r.by_name, slot.angle, FacetKind::output, found); !fault.empty())
-        return of_behaviour(row, ": its angle: ", fault);
+        return of_behaviour(row, ": angle_of(...): ", fault);
     if (facet_at(m, found).kind != FacetKind::output || facet_at(m, found).type != type_id<double>)
-        return of_behaviour(row, ": its angle \"", slot.angle, "\" is ", to_text(facet_at(m, found).kind),
+        return of_behaviour(row, ": angle_of(\"", slot.angle, "\") is ", to_text(facet_at(m, found).kind),
                             " of ", facet_at(m, found).type->name, "; name an output of double, in degrees");
     if (r.activity[found.component] != r.activity[find_component(m, row.component)])
-        return of_behaviour(row, ": its angle \"", slot.angle,
-                            "\" is written in another activity; name an output of activity \"",
+        return of_behaviour(row, ": angle_of(\"", slot.angle,
+                            "\") is written in another activity; name an output of activity \"",
                             m.activities[r.activity[find_component(m, row.component)]].name, "\"");
     return {};
 }
@@ -104,15 +104,15 @@ constexpr Sentence check_unit_reach(const MachineView& m, const TableIndexView& 
         const Reachable& peer = unit.reach[i];
         const std::size_t c = component_of(m, row.component, unit, i);
         if (c == nowhere)
-            return of_behaviour(row, ": script \"", unit.name, "\": among its peers, ",
-                                unknown_component(m, peer.name));
+            return of_behaviour(row, ": script \"", unit.name,
+                                "\": its reach: ", unknown_component(m, peer.name));
         if (peer.type->tag != m.components[c].type->tag)
             return of_behaviour(row, ": script \"", unit.name, "\" was compiled for ", peer.type->tag->name,
                                 " but \"", m.components[c].name, "\" is a ", m.components[c].type->tag->name,
                                 "; give its reach that type");
         if (peer.same_activity && r.activity[c] != r.activity[driven])
-            return of_behaviour(row, ": script \"", unit.name, "\" touches \"", peer.name,
-                                "\" as one of its own activity, but activity \"",
+            return of_behaviour(row, ": script \"", unit.name, "\" uses \"", peer.name,
+                                "\" as a component of its own activity, but activity \"",
                                 m.activities[r.activity[c]].name,
                                 "\" runs it; compile it with a reach that says so, or run both in one "
                                 "activity");
@@ -130,11 +130,11 @@ constexpr Sentence check_unit_links(const MachineView& m, const TableIndexView& 
             if (link.facet == LinkRow::component_itself) continue;
             if (link.facet >= m.components[c].type->facets.size())
                 return of_behaviour(row, ": script \"", unit.name, "\" names facet ", link.facet, " of \"",
-                                    m.components[c].name, "\", which has fewer; compile it anew");
+                                    m.components[c].name, "\", which has fewer; compile the script again");
             const Facet& facet = m.components[c].type->facets[link.facet];
             if (r.activity[c] == here || facet.any_thread) continue;
             if (facet.kind == FacetKind::command && link.needs_slot) continue;
-            return of_behaviour(row, ": script \"", unit.name, "\" touches \"", m.components[c].name, ".",
+            return of_behaviour(row, ": script \"", unit.name, "\" uses \"", m.components[c].name, ".",
                                 facet.name, "\" (", to_text(facet.kind), ") of activity \"",
                                 m.activities[r.activity[c]].name,
                                 "\"; send it a command, or declare the operation any_thread if it is safe "
@@ -190,9 +190,9 @@ constexpr Sentence check_slot_reach(const BehaviourRow& row) {
         return true;
     };
     const auto fault = [&](std::string_view what, std::string_view peer, std::string_view name) {
-        return of_behaviour(row, ": script \"", unit.name, "\", with which it begins, reaches \"", peer,
-                            name.empty() ? "" : ".", name, "\", and what is loaded does not; add it to ",
-                            what, "(...) of the slot");
+        return of_behaviour(row, ": its first script \"", unit.name, "\" reaches \"", peer,
+                            name.empty() ? "" : ".", name, "\", but loaded scripts cannot; add it to ", what,
+                            "(...) of the slot");
     };
     for (std::size_t i = 1; i < unit.reach.size(); ++i)
         if (misses(unit.reach[i].name, {}, row.slot.peers)) return fault("peers", unit.reach[i].name, {});
@@ -225,7 +225,7 @@ constexpr Sentence check_behaviours(const MachineView& m, const TableIndexView& 
             return of_behaviour(row, ": ", unknown_component(m, row.component));
         for (std::size_t j = 0; j < b; ++j)
             if (m.behaviours[j].component == row.component && (m.behaviours[j].is_slot() == row.is_slot()))
-                return of_behaviour(row, " stands in behaviours(...) twice; a component has one ",
+                return of_behaviour(row, " appears twice in behaviours(...); a component has one ",
                                     row.is_slot() ? "slot" : "behaviour", ": remove one");
         if (row.is_slot())
             if (Sentence fault = check_slot(m, r, row); !fault.empty()) return fault;

@@ -35,7 +35,7 @@ constexpr Sentence check_words(std::span<const Fact> facts, std::string_view kin
             return Sentence{said, " is for a ",        word.kind, " device, and this is a ",
                             kind, " device; remove it"};
         for (std::size_t j = 0; j < i && !word.is_of_parts; ++j)
-            if (facts[j].word == &word) return Sentence{said, " stands there twice; remove one"};
+            if (facts[j].word == &word) return Sentence{said, " appears twice; remove one"};
     }
     return {};
 }
@@ -77,8 +77,8 @@ constexpr Sentence check_proof(const MachineView& m, const Board& board, const P
         return fault(wrong);
     const Facet& facet = facet_at(m, found);
     if (facet.kind != FacetKind::output || facet.type != type_id<std::int64_t>)
-        return fault("it is no output of whole numbers; name one that counts what the machine makes");
-    if (proof.count <= 0) return fault("it is shown by nothing; name a count above 0");
+        return fault("it is not an integer output; name one that counts what the machine makes");
+    if (proof.count <= 0) return fault("its count is not above 0; write a count above 0");
     return {};
 }
 
@@ -106,7 +106,7 @@ constexpr Sentence check_each_device(const MachineView& m, const Board& board, c
             Nearest nearest{row.device};
             for (const auto& each : binding.devices) nearest.consider(each.name);
             Sentence text = of_component(row.name, ": the binding to board \"", board.name,
-                                         "\" does not say where device \"", row.device, "\" stands");
+                                         "\" has no wired(...) for device \"", row.device, "\"");
             detail::add_suggestion(text, nearest, "add wired(\"...\", \"a device of the board\") to it");
             return text;
         }

@@ -42,7 +42,7 @@ constexpr Sentence check(const MachineView& m, const Board& board, const Binding
             const std::string_view once = m.extras->at(e)->stands_once();
             for (std::size_t other = 0; other < e && !once.empty(); ++other)
                 if (same_text(m.extras->at(other)->stands_once(), once))
-                    return Sentence{once, "(...) stands twice; write all of its rows into one"};
+                    return Sentence{once, "(...) appears twice; write all of its rows into one"};
             if (Sentence fault = m.extras->at(e)->check(m, r); !fault.empty()) return fault;
         }
         return {};

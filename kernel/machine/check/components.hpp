@@ -33,9 +33,8 @@ constexpr Sentence check_interface(const ComponentRow& row) {
         return of_component(row.name, ": its interface has a facet without a name; name it in ",
                             row.type->tag->name);
     if (facet.doc.empty())
-        return of_component(row.name, ": its facet \"", facet.name,
-                            "\" has no text, by which people know it; say in ", row.type->tag->name,
-                            " what it is");
+        return of_component(row.name, ": its facet \"", facet.name, "\" has no description; add one in ",
+                            row.type->tag->name);
     return of_component(row.name, ": its interface names \"", facet.name, "\" twice; rename one in ",
                         row.type->tag->name);
 }
@@ -43,10 +42,9 @@ constexpr Sentence check_interface(const ComponentRow& row) {
 constexpr Sentence check_life(const ComponentRow& row) {
     const NeverRun& found = row.type->never_run;
     if (found.member.empty()) return {};
-    return of_component(
-        row.name, ": ", row.type->tag->name, "::", found.member,
-        " looks like a function of its life but would never run; that is public and spelled \"",
-        found.spelling, "\": spell it so, or rename it");
+    return of_component(row.name, ": ", row.type->tag->name, "::", found.member,
+                        " looks like a life-cycle function but would never run; declare it public as \"",
+                        found.spelling, "\", or rename it");
 }
 
 /// Checks that at most one component records cycles: a tape has one reader, and the worst cycles have one
@@ -69,9 +67,9 @@ constexpr Sentence check_says_at_rest(const ComponentRow& row) {
     if (row.type->device_kind == nullptr) return {};
     for (const Facet& each : row.type->facets)
         if (each.kind == FacetKind::output && each.type == type_id<bool> && each.at_rest == AtRest::unsaid)
-            return of_component(row.name, " is a driver, and its output \"", each.name,
-                                "\" does not say what it is while the driver is stopped; write "
-                                "while_stopped(false), while_stopped(true) or as_it_was behind its doc");
+            return of_component(row.name, " is a driver, but its output \"", each.name,
+                                "\" has no value for a stopped driver; add while_stopped(false), "
+                                "while_stopped(true) or as_it_was after its description");
     return {};
 }
 
@@ -81,8 +79,8 @@ constexpr Sentence check_says_stopped_safely(const ComponentRow& row) {
     if (row.type->device_map == nullptr || row.type->stop == nullptr || row.type->stopped_safely != nullptr)
         return {};
     return of_component(row.name, " drives a ", row.type->device_kind->name,
-                        " device and does not say whether its stop() reached it; write bool stopped_safely() "
-                        "const noexcept TAPPET_REALTIME, true where nothing is driven");
+                        " device but does not say whether stop() reached it; write bool stopped_safely() "
+                        "const noexcept TAPPET_REALTIME, which returns true if nothing is driven");
 }
 
 /// Checks each component; fills the list by name.
@@ -113,8 +111,8 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
     for (std::size_t i = 1; i < r.by_name.size(); ++i)
         if (const std::string_view name = m.components[r.by_name[i]].name;
             name == m.components[r.by_name[i - 1]].name)
-            return of_component(name, " stands in components(...) twice (rows ", r.by_name[i - 1] + 1,
-                                " and ", r.by_name[i] + 1, "); rename or remove one");
+            return of_component(name, " appears twice in components(...), rows ", r.by_name[i - 1] + 1,
+                                " and ", r.by_name[i] + 1, "; rename or remove one");
     return {};
 }
 
@@ -142,8 +140,8 @@ constexpr Sentence unknown_to_activity(const MachineView& m, const ActivityRow& 
         if (count_uses(m, each.name) == 0) nearest.consider(each.name);
     const std::size_t uses = count_uses(m, name);
     if (nearest.best().empty() || uses < 2) return of_activity(row.name, ": ", unknown_component(m, name));
-    return of_component(nearest.best(), " is named by no other row, but ", uses, " rows name \"", name,
-                        "\", which components(...) has not; rename it to that");
+    return of_component(nearest.best(), " is named in no other row, but ", uses, " rows name \"", name,
+                        "\", which is not in components(...); rename it to that");
 }
 
 /// Checks the times of an activity, even of one that is not real-time, whose times no analysis uses.
@@ -163,7 +161,7 @@ constexpr Sentence check_times(const ActivityRow& row) {
 }
 
 constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
-    if (!row.twice.empty()) return of_activity(row.name, " is given ", row.twice, " twice; keep one");
+    if (!row.twice.empty()) return of_activity(row.name, " has more than one ", row.twice, "; keep one");
     if (!row.has_trigger)
         return of_activity(row.name, ": nothing wakes it; add every(...), on_work() or on_device(\"...\")");
     if (row.too_many_runs)
@@ -228,8 +226,8 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
         const ActivityRow& row = m.activities[a];
         for (std::size_t j = 0; j < a; ++j)
             if (m.activities[j].name == row.name)
-                return of_activity(row.name, " stands in activities(...) twice (rows ", j + 1, " and ", a + 1,
-                                   "); rename or remove one");
+                return of_activity(row.name, " appears twice in activities(...), rows ", j + 1, " and ",
+                                   a + 1, "; rename or remove one");
         if (Sentence fault = check_trigger(m, row); !fault.empty()) return fault;
         for (const auto& name : row.runs) {
             const std::size_t c = find_component(m, r.by_name, name);

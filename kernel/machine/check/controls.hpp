@@ -64,8 +64,8 @@ constexpr Sentence check_controls(const MachineView& m, const TableIndexView& r)
         const ComponentRow& row = m.components[c];
         if (row.type->controls == Controls::nothing) {
             if (!row.controlled.empty())
-                return of_component(row.name, " is nothing that controls; remove controls(\"", row.controlled,
-                                    "\"), or make it a BehaviourTask or a ComponentLife");
+                return of_component(row.name, " cannot control another component; remove controls(\"",
+                                    row.controlled, "\"), or make it a BehaviourTask or a ComponentLife");
             continue;
         }
         if (row.controlled.empty())
@@ -77,8 +77,9 @@ constexpr Sentence check_controls(const MachineView& m, const TableIndexView& r)
         if (controlled == c) return of_component(row.name, " controls itself; name another component");
         if (row.type->controls == Controls::life) {
             if (const ActivityRow& own = m.activities[r.activity[c]]; !own.periodic())
-                return of_component(row.name, " looks once in each cycle for the answer, but activity \"",
-                                    own.name, "\" may sleep for ever; run it in one that is every(...)");
+                return of_component(row.name, " polls for the answer once in each cycle, but activity \"",
+                                    own.name,
+                                    "\" may never be woken; run it in a periodic activity, every(...)");
             continue;
         }
         if (Sentence fault = check_task(m, r, c); !fault.empty()) return fault;

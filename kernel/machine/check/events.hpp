@@ -24,9 +24,9 @@ constexpr Sentence check_heard_events(const MachineView& m, const TableIndexView
             for (std::size_t i = 0; i < m.reactions.size(); ++i)
                 heard += r.reactions[i].from == End{c, f} && m.reactions[i].handle.empty() ? 1u : 0u;
             if (heard < facet.least_reactions)
-                return of_component(m.components[c].name, ": its event \"", facet.name, "\" is heard by ",
-                                    heard, " of at least ", std::size_t{facet.least_reactions},
-                                    " reactions; add when(\"", m.components[c].name, ".", facet.name,
+                return of_component(m.components[c].name, ": its event \"", facet.name, "\" has ", heard,
+                                    " reactions but needs at least ", std::size_t{facet.least_reactions},
+                                    "; add when(\"", m.components[c].name, ".", facet.name,
                                     "\", ...) to reactions(...)");
         }
     }
@@ -48,9 +48,9 @@ constexpr Sentence check_handle(const MachineView& m, const TableIndexView& r, s
                            "; name a handle in handled_by(...)");
     for (std::size_t j = 0; j < i; ++j)
         if (m.reactions[j].handle == row.handle)
-            return of_reaction(row, ": its handle \"", row.handle, "\" is the one of reaction \"",
+            return of_reaction(row, ": its handle \"", row.handle, "\" is already used by reaction \"",
                                m.reactions[j].event, "\" -> \"", m.reactions[j].target.operation,
-                               "\" too; give each row a handle of its own");
+                               "\"; give each row its own handle");
     return {};
 }
 

@@ -43,21 +43,23 @@ constexpr Sentence check_direction(const ConnectionRow& row, const Facet& from, 
 constexpr Sentence check_scale(const ConnectionRow& row, const Facet& from, const Facet& to) {
     if (row.buffered || to.type->kind != ValueKind::real || !to.type->arithmetic)
         return of_connection(row, ": ", row.buffered ? "a buffer" : to.type->name,
-                             " is not scaled, a port of double or float is; convert it in a component");
+                             " cannot be scaled, only a port of double or float; convert it in a component");
     if (row.says_scale && !(is_number(row.scale) && row.scale != 0))
-        return of_connection(row, ": the factor in scaled is nought or no number; write another");
-    if (row.scale != 0 && row.converted) return of_connection(row, " says scaled and converted; keep one");
+        return of_connection(row,
+                             ": the factor in scaled is not a finite number other than 0; write another");
+    if (row.scale != 0 && row.converted)
+        return of_connection(row, " has both scaled and converted; keep one");
     const Unit source = parse_unit(from.unit), target = parse_unit(to.unit);
     if (!converts(source, target) || (row.converted && (from.unit.empty() || to.unit.empty())))
         return row.converted
-                   ? of_connection(row, ": no factor leads from ", in_unit(from), " to ", in_unit(to),
+                   ? of_connection(row, ": there is no conversion from ", in_unit(from), " to ", in_unit(to),
                                    "; write scaled(factor) if you know one, or correct a unit")
                    : Sentence{};
     if (row.converted) return {};
     const double ratio = row.scale * target.size / source.size;
     if (from.unit.empty() || to.unit.empty() || (ratio > 1 - 1e-6 && ratio < 1 + 1e-6)) return {};
-    return of_connection(row, ": its factor does not lead from ", in_unit(from), " to ", in_unit(to),
-                         "; write converted, and the compiler knows it");
+    return of_connection(row, ": its factor does not convert ", in_unit(from), " to ", in_unit(to),
+                         "; write converted, and the compiler computes it");
 }
 
 /// Checks the units. An end without a unit accepts any: a generic component and a raw signal cannot know it;
@@ -70,14 +72,14 @@ constexpr Sentence check_units(const ConnectionRow& row, const Facet& from, cons
     if (one_kind && source.same(target)) return {};
     return of_connection(
         row, ": \"", row.from, "\" is in ", from.unit, " but \"", row.to, "\" in ", to.unit,
-        !one_kind ? "; connect what is of one unit, or correct the unit of one of them"
+        !one_kind ? "; connect ports of one unit, or correct the unit of one of them"
         : !row.buffered && to.type->kind == ValueKind::real && to.type->arithmetic
-            ? ", of the same kind and another size; add converted to the row"
-            : ", of the same kind and another size; convert it in one of the two components");
+            ? ", another unit of the same quantity; add converted to the row"
+            : ", another unit of the same quantity; convert it in one of the two components");
 }
 
 constexpr Sentence no_number_in(const ConnectionRow& row, std::string_view option) {
-    return of_connection(row, ": the value in ", option, " is no number; write a finite one");
+    return of_connection(row, ": the value in ", option, " is not a finite number; write a finite one");
 }
 
 constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view option, const RowValue& value,
@@ -90,7 +92,7 @@ constexpr Sentence check_row_value(const ConnectionRow& row, std::string_view op
                                                      value.type->name, ", but \"", row.to, "\" is of type ",
                                                      to.type->name, "; name a constant of the port's type");
     if (!to.type->arithmetic)
-        return of_connection(row, ": a value of type ", to.type->name, " is no number; write ", option,
+        return of_connection(row, ": a value of type ", to.type->name, " is not a number; write ", option,
                              "<constant>() with a constant of that type");
     if (!holds(*to.type, value.number))
         return of_connection(row, ": the number in ", option, " does not fit \"", row.to, "\" of type ",
@@ -106,14 +108,14 @@ constexpr Sentence check_transition(const MachineView& m, const ConnectionRow& r
     const ActivityRow& into = m.activities[reader];
     if (from.trigger != Trigger::every || into.trigger != Trigger::every || into.period >= from.period ||
         from.period % into.period != Duration::zero())
-        return of_connection(
-            row,
-            ": in_steps, interpolated and extrapolated are for a reader whose period divides "
-            "the longer one of the writer; activity \"",
-            from.name, "\" and activity \"", into.name, "\" are not such; remove it, or change a period");
+        return of_connection(row,
+                             ": in_steps, interpolated and extrapolated need a writer whose period is a "
+                             "larger multiple of the reader's; this is not the case from activity \"",
+                             from.name, "\" to activity \"", into.name,
+                             "\"; remove the option, or change a period");
     if (has_values_between(row) && (row.buffered || to.type->kind != ValueKind::real || !to.type->arithmetic))
-        return of_connection(row, ": between two values of ", row.buffered ? "a buffer" : to.type->name,
-                             " lie none; write in_steps, or connect a floating number");
+        return of_connection(row, ": ", row.buffered ? "a buffer" : to.type->name,
+                             " cannot be interpolated; write in_steps, or connect a floating-point value");
     return {};
 }
 
@@ -130,20 +132,19 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
                              "age, or leave it out");
     if (row.buffered && (row.max_age != Duration::zero() || row.stale_answers != 0 || row.before_first.given))
         return of_connection(
-            row, ": values in a buffer have no age and no initial value; remove what says so from the row");
+            row, ": values in a buffer have no age and no initial value; remove the option from the row");
     if (Sentence fault = check_transition(m, row, to, writer, reader); !fault.empty()) return fault;
     if (Sentence fault = check_row_value(row, "substitute", row.substitute, to); !fault.empty()) return fault;
     if (Sentence fault = check_row_value(row, "initially", row.before_first, to); !fault.empty())
         return fault;
     if (row.stale_answers > 1)
-        return of_connection(row, " says more than once what a stale value means; keep one of hold, "
-                                  "substitute and stop_machine");
+        return of_connection(row, " has more than one of hold, substitute and stop_machine; keep one");
     if (row.when_stale == WhenStale::stop && row.max_age == Duration::zero())
-        return of_connection(row,
-                             " says what a stale value means but not when it is stale; add stale_after(...)");
+        return of_connection(
+            row, " says what to do with a stale value but not when it is stale; add stale_after(...)");
     if (to.grows_stale && row.max_age == Duration::zero())
-        return of_connection(row, " never grows stale, but \"", row.to,
-                             "\" tells a silence by it; add stale_after(...) and hold");
+        return of_connection(row, " has no maximum age, but \"", row.to,
+                             "\" needs staleness to detect silence; add stale_after(...) and hold");
     if (row.wakes_reader && m.activities[reader].periodic())
         return of_connection(row, " wakes activity \"", m.activities[reader].name,
                              "\", which is periodic; remove wakes");
@@ -167,8 +168,8 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
          j = r.connections_into.next[j]) {
         if (!(r.connections[j].to == link.to)) continue;
         if (r.connections[j].from == link.from)
-            return of_connection(row, " stands in connections(...) twice (rows ", j + 1, " and ", x + 1,
-                                 "); remove one");
+            return of_connection(row, " appears twice in connections(...), rows ", j + 1, " and ", x + 1,
+                                 "; remove one");
         if (!row.buffered && take_turns(m, r.connections[j].from.component, link.from.component)) continue;
         if (!row.buffered)
             return of_connection(row, ": \"", row.to, "\" is written by \"", m.connections[j].from,
@@ -181,8 +182,8 @@ constexpr Sentence check_writers(const MachineView& m, const TableIndexView& r, 
          j = r.connections_from.next[j])
         if (m.connections[j].buffered && r.connections[j].from == link.from) ++rows_here;
     if (rows_here >= max_buffer_rows || rows_there >= max_buffer_rows)
-        return of_connection(row, " is one more than the ", max_buffer_rows,
-                             " buffer rows a port may have; merge some");
+        return of_connection(row, " exceeds the ", max_buffer_rows,
+                             " buffer rows that a port may have; merge some");
     return {};
 }
 
@@ -331,7 +332,7 @@ private:
         } while (at != after(last));
         return of_connection(m_.connections[last], " closes a data-flow cycle inside activity \"",
                              m_.activities[activity_].name, "\" (", way,
-                             "); add delayed to the row whose reader shall see the last cycle's value");
+                             "); add delayed to the row whose reader may use the last cycle's value");
     }
     /// Returns a row by which the component waits for another waiting one.
     [[nodiscard]] constexpr std::size_t row_into(std::size_t component) const noexcept {

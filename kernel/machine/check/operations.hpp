@@ -30,8 +30,8 @@ constexpr Sentence check_interpreter(const MachineView& m, const TableIndexView&
             return of_component(row.name, " executes lines that name at most ", max_line_components,
                                 " components, and the machine has ", m.components.size(), "; leave it out");
         if (m.activities.size() == max_activities)
-            return of_component(row.name, " needs a mailbox into each engine, and ", max_activities,
-                                " activities have all of them; merge two activities");
+            return of_component(row.name, " needs a mailbox to each engine, but ", max_activities,
+                                " activities use all mailboxes; merge two activities");
     }
     return {};
 }
@@ -124,11 +124,11 @@ constexpr Sentence check_sent_by(const MachineView& m, const TableIndexView& r, 
                                  const Link& link) {
     if (row.sent_by.empty()) return {};
     if (facet_at(m, link.from).kind != FacetKind::command_call)
-        return of_use(row, ": sent_by(\"", row.sent_by, "\") is of commands; remove it");
+        return of_use(row, ": sent_by(\"", row.sent_by, "\") is for commands only; remove it");
     const std::size_t sender = find_component(m, r.by_name, row.sent_by);
     if (sender == nowhere) return of_use(row, ": in sent_by(...), ", unknown_component(m, row.sent_by));
     if (sender == link.from.component)
-        return of_use(row, ": sent_by(...) names the component whose command it is; remove it");
+        return of_use(row, ": sent_by(...) names the component that has the command; remove it");
     return {};
 }
 
@@ -158,12 +158,13 @@ constexpr Sentence check_uses(const MachineView& m, TableIndexView r) {
         for (std::size_t j = 0; j < i; ++j) {
             if (m.reactions[j].kind != ReactionKind::uses || r.reactions[j].from != link.from) continue;
             if (r.reactions[j].to == link.to)
-                return of_use(row, " stands in reactions(...) twice (rows ", j + 1, " and ", i + 1,
-                              "); remove one");
+                return of_use(row, " appears twice in reactions(...), rows ", j + 1, " and ", i + 1,
+                              "; remove one");
             if (to.kind == FacetKind::method && take_turns(m, r.reactions[j].to.component, link.to.component))
                 continue;
-            return of_use(row, ": row ", j + 1, " gives \"", row.event, "\" another goal already, \"",
-                          m.reactions[j].target.operation, "\"; a call has one: remove a row, or give \"",
+            return of_use(row, ": row ", j + 1, " already connects \"", row.event, "\" to \"",
+                          m.reactions[j].target.operation,
+                          "\"; a call has one target: remove a row, or give \"",
                           m.components[link.from.component].name, "\" a second call");
         }
     }
@@ -177,10 +178,10 @@ constexpr Sentence check_uses(const MachineView& m, TableIndexView r) {
             for (std::size_t i = 0; i < m.reactions.size() && !connected; ++i)
                 connected = m.reactions[i].kind == ReactionKind::uses && r.reactions[i].from == End{c, f};
             if (!connected)
-                return of_component(m.components[c].name, ": no row says what its ",
+                return of_component(m.components[c].name, ": nothing is connected to its ",
                                     facets[f].kind == FacetKind::method_call ? "method call \""
                                                                              : "command call \"",
-                                    facets[f].name, "\" reaches; add uses(\"", m.components[c].name, ".",
+                                    facets[f].name, "\"; add uses(\"", m.components[c].name, ".",
                                     facets[f].name, "\", \"...\") to reactions(...), or declare it optional");
         }
     }

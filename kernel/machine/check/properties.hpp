@@ -78,7 +78,7 @@ constexpr Sentence wanted_text(const PropertyOperations& wanted) {
         if (wanted.least_size == wanted.most_size) text.add(" of ").add(wanted.most_size);
         return text.add(", each ")
             .add(kind_text(wanted.kind))
-            .add("; write set<values>(...) with an array of such, constant at namespace scope");
+            .add("; write set<values>(...) with a constant array of them at namespace scope");
     }
     Sentence text{kind_text(wanted.kind)};
     switch (wanted.kind) {
@@ -139,13 +139,13 @@ constexpr Sentence check_value(const ComponentRow& row, std::string_view name, c
         wanted.kind == Kind::enumeration && names != 0)
         if (setting.integer < 0 || static_cast<std::uint64_t>(setting.integer) >= names)
             return sets()
-                .add("none of the ")
+                .add("not one of the ")
                 .add(names)
-                .add(" values of ")
+                .add(" named values of ")
                 .add(wanted.element->name)
-                .add(" that have a name; set one of them");
+                .add("; set one of them");
     double value = value_of(setting);
-    if (!is_number(value)) return sets().add("no number; set a finite one");
+    if (!is_number(value)) return sets().add("not a finite number; set a finite one");
     if (wanted.kind == Kind::real && !holds(*wanted.element, value))
         return sets().add("more than ").add(wanted.element->name).add(" holds; set a value it can hold");
     if (wanted.kind == Kind::real && wanted.element->size == sizeof(float)) value = static_cast<float>(value);
@@ -166,7 +166,7 @@ constexpr Sentence check_setting(const ComponentRow& row, const PropertyRow& set
     const Facet& facet = row.type->facets[found];
     if (facet.kind == FacetKind::bag)
         return of_component(row.name, " sets \"", setting.name,
-                            "\", which is a bag; set the properties in it, each by its whole name");
+                            "\", which is a bag; set its properties, each by its full name");
     if (facet.kind != FacetKind::property)
         return of_component(row.name, " sets \"", setting.name, "\", which is ", to_text(facet.kind),
                             ", not a property; set one of its properties");
@@ -179,7 +179,7 @@ constexpr Sentence check_setting(const ComponentRow& row, const PropertyRow& set
     if (list.size < wanted.least_size || list.size > wanted.most_size)
         return of_component(row.name, " sets property \"", setting.name, "\" to a list of ", list.size,
                             wanted.least_size == wanted.most_size ? ", but it has " : ", but it has at most ",
-                            wanted.most_size, "; give it so many");
+                            wanted.most_size, "; correct the number of elements");
     for (std::size_t i = 0; i < list.size; ++i)
         if (Sentence fault = check_value(row, setting.name, facet, list.at(i)); !fault.empty()) return fault;
     return {};
@@ -211,18 +211,20 @@ constexpr Sentence check_setters(const ComponentRow& row) {
         if (facet.kind == FacetKind::property)
             for (std::size_t other = 0; other < f; ++other)
                 if (is_of(other, facet.at, facet.index))
-                    return of_component(
-                        row.name, ": its properties \"", facets[other].name, "\" and \"", facet.name,
-                        "\" are one member; remove one of them from the interface of ", row.type->tag->name);
+                    return of_component(row.name, ": its properties \"", facets[other].name, "\" and \"",
+                                        facet.name,
+                                        "\" use the same member; remove one of them from the interface of ",
+                                        row.type->tag->name);
         if (facet.kind != FacetKind::command || facet.command->property == nullptr) continue;
         bool found = false;
         for (std::size_t other = 0; other < facets.size(); ++other)
             found = found || is_of(other, facet.command->property, 0);
         if (!found)
-            return of_component(row.name, ": its command \"", facet.name,
-                                "\" sets or gets a member that is no property of it; add property<..>(..) to "
-                                "the interface of ",
-                                row.type->tag->name);
+            return of_component(
+                row.name, ": its command \"", facet.name,
+                "\" sets or gets a member that is not one of its properties; add property<..>(..) to "
+                "the interface of ",
+                row.type->tag->name);
     }
     return {};
 }
@@ -260,9 +262,9 @@ constexpr Sentence check_properties_file(const MachineView& m, const ComponentRo
     if (!row.has_properties_file) return {};
     const std::string_view name = row.properties.name;
     if (name.empty() || name.find('/') != std::string_view::npos || name == "." || name == "..")
-        return of_component(row.name, ": its properties file \"", name,
-                            "\" is not the plain name of a file; the board's properties_directory says where "
-                            "it lies");
+        return of_component(
+            row.name, ": its properties file \"", name,
+            "\" is not a plain file name; remove the directory, which is the board's properties_directory");
     bool has_properties = false;
     for (const Facet& facet : row.type->facets) has_properties |= facet.kind == FacetKind::property;
     if (!has_properties)

@@ -48,15 +48,16 @@ constexpr Sentence check_reaction(const MachineView& m, TableIndexView r, std::s
         return of_reaction(row, ": component \"", m.components[link.to.component].name,
                            "\" may block; use tell(...)");
     if (!row.target.synchronous && row.target.quota == 0)
-        return of_reaction(row, ": no emission may wait; write queue(n) with n of at least 1");
+        return of_reaction(row,
+                           ": queue(0) has no room for an emission; write queue(n) with n of at least 1");
     if (row.target.quota > most_waiting)
-        return of_reaction(row, ": ", row.target.quota, " emissions may wait, more than the ", most_waiting,
-                           " of a row; write a smaller queue(n)");
+        return of_reaction(row, ": queue(", row.target.quota, ") is larger than the limit of ", most_waiting,
+                           "; write a smaller queue(n)");
     for (std::size_t j = r.reactions_into.first[link.to.component]; j != nowhere;
          j = r.reactions_into.next[j])
         if (r.reactions[j].from == link.from && r.reactions[j].to == link.to)
-            return of_reaction(row, " stands in reactions(...) twice (rows ", j + 1, " and ", i + 1,
-                               "); remove one");
+            return of_reaction(row, " appears twice in reactions(...), rows ", j + 1, " and ", i + 1,
+                               "; remove one");
     r.reactions_into.add(i, link.to.component);
     return {};
 }

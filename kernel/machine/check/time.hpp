@@ -111,7 +111,7 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
         for (const Placement& other : binding.placement)
             if (&other != &place && other.activity == place.activity)
                 return Sentence{"binding to board \"", board.name, "\": place(\"", place.activity,
-                                "\") stands there twice; remove one"};
+                                "\") appears twice; remove one"};
         if (place.processor < 0 || place.processor >= board.processors)
             return of_activity(place.activity, ": its binding to board \"", board.name,
                                "\" places it on processor ", place.processor,
@@ -142,7 +142,7 @@ constexpr Sentence check_schedulability(const MachineView& m, const Board& board
         if (!response.bounded)
             return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",
                                board.name,
-                               "\": the activities there take more than all of its time; lower budgets, "
+                               "\": the activities there need more than all of its time; lower budgets, "
                                "lengthen periods, or place it elsewhere");
         if (!response.within(row.deadline().count()))
             return of_activity(row.name, " is not schedulable on processor ", processors[a], " of board \"",

@@ -38,7 +38,7 @@ constexpr Sentence check_watched_output(const MachineView& m, TableIndexView r, 
         if (r.connections[x].from == output && r.activity[r.connections[x].to.component] != writer) return {};
     return of_component(
         row.name, " watches \"", row.watched,
-        "\", which no connection leads to another activity; connect it there, or watch activity \"",
+        "\", which no connection carries to another activity; connect it there, or watch activity \"",
         m.activities[writer].name, "\"");
 }
 
@@ -47,7 +47,7 @@ constexpr Sentence check_watches(const MachineView& m, TableIndexView r) {
         const ComponentRow& row = m.components[c];
         if (!row.type->watches_life) {
             if (!row.watched.empty())
-                return of_component(row.name, " is no watchdog; remove watches(\"", row.watched, "\")");
+                return of_component(row.name, " is not a watchdog; remove watches(\"", row.watched, "\")");
             continue;
         }
         if (row.watched.empty())
@@ -55,8 +55,8 @@ constexpr Sentence check_watches(const MachineView& m, TableIndexView r) {
                                 " watches nothing; add watches(\"...\") with an activity or an output");
         const ActivityRow& own = m.activities[r.activity[c]];
         if (!own.periodic())
-            return of_component(row.name, " looks once in each cycle, but activity \"", own.name,
-                                "\" may sleep for ever; run it in one that is every(...)");
+            return of_component(row.name, " checks once in each cycle, but activity \"", own.name,
+                                "\" may never be woken; run it in a periodic activity, every(...)");
         std::size_t watched = find_activity(m, row.watched);
         if (watched != nowhere) {
             if (Sentence fault = check_watched_activity(m, row, watched); !fault.empty()) return fault;
@@ -64,7 +64,7 @@ constexpr Sentence check_watches(const MachineView& m, TableIndexView r) {
             Nearest nearest{row.watched};
             for (const auto& each : m.activities) nearest.consider(each.name);
             Sentence text =
-                of_component(row.name, " watches \"", row.watched, "\", which no activity is called");
+                of_component(row.name, " watches \"", row.watched, "\", but no activity has this name");
             detail::add_suggestion(text, nearest, "name an activity, or an output as component.output");
             return text;
         } else {
@@ -76,8 +76,9 @@ constexpr Sentence check_watches(const MachineView& m, TableIndexView r) {
             watched = r.activity[output.component];
         }
         if (watched == r.activity[c])
-            return of_component(row.name, " runs in activity \"", own.name,
-                                "\", which it watches: when that is silent, so is it; run it in another one");
+            return of_component(
+                row.name, " runs in activity \"", own.name,
+                "\", which it watches, and would fall silent with it; run it in another activity");
     }
     return {};
 }

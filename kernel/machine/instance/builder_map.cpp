@@ -1,5 +1,6 @@
 // Places a machine's map, with the places of all live values, at the beginning of the memory that other
 // processes may map.
+#include "kernel/base/version.hpp"
 #include "kernel/machine/instance/builder.hpp"
 #include "kernel/machine/map/types.hpp"
 #include "kernel/os/box.hpp"
@@ -55,6 +56,7 @@ void MachineBuilder::place_map() {
     const os::BuildId build = os::build_id();
     static_assert(sizeof build.digits < sizeof header.build_id);
     std::memcpy(header.build_id.data(), build.digits.data(), build.length);
+    framework_version.copy(header.framework.data(), header.framework.size() - 1);
     const auto components = records<map::Component>(memory, header.components);
     const auto facets = records<map::Facet>(memory, header.facets);
     for (std::size_t c = 0; c < components.size(); ++c) {

@@ -52,8 +52,8 @@ Sentence MachineLife::describe(std::size_t activity, LifeAnswer answer) const {
                         "real-time work, and restart the machine"};
     case LifeRefusal::waits_for_its_turn:
         return Sentence{"component \"", part.name,
-                        "\" is not started: it runs by turns with others of activity \"", plan.name,
-                        "\", and one of those runs; ask the component that hands over between them"};
+                        "\" is not started: it alternates with other components of activity \"", plan.name,
+                        "\", and one of them runs; ask the component that switches between them"};
     case LifeRefusal::left_unsafe:
         return Sentence{"component \"", part.name,
                         "\" has stopped, but its safe values did not reach its device; see that the device "

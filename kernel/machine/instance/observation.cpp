@@ -124,8 +124,8 @@ Sentence MachineObservation::describe_end(std::size_t activity) const {
                     text.add(level == 0 ? "" : "/").add(part.machine->path()[level]);
         return text.add("\": ")
             .add(Engine::end_limit / 1ms)
-            .add(" ms after it was asked to end it had not come to its end, which it does first when it is "
-                 "started again; shorten what leads there");
+            .add(" ms after the request to end it had not ended; it ends first when it is started again; "
+                 "shorten its way to the end");
     }
     return {};
 }

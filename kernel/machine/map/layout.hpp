@@ -18,7 +18,7 @@
 namespace tappet::map {
 
 inline constexpr std::array<char, 8> magic{'T', 'A', 'P', 'P', 'E', 'T', 'M', 'P'};
-inline constexpr std::uint32_t layout_version = 4;
+inline constexpr std::uint32_t layout_version = 5;
 /// An index that refers to nothing.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
@@ -64,6 +64,7 @@ struct Header {
     std::uint64_t scope_at = 0;
     /// recorded::Directory of kernel/services/reporting/layout.hpp: records of the machine's values.
     std::uint64_t report_at = 0;
+    std::array<char, 16> framework{}; ///< Tappet's version, as "0.15"
 };
 
 struct Component {
@@ -246,7 +247,7 @@ inline constexpr bool is_plain =
 static_assert(is_plain<Header> && is_plain<Component> && is_plain<Facet> && is_plain<Activity> &&
               is_plain<Connection> && is_plain<Reaction> && is_plain<Times> && is_plain<Behaviour> &&
               is_plain<Type> && is_plain<Field> && is_plain<Enumerator> && is_plain<Figure>);
-static_assert(sizeof(Header) == 320 && sizeof(Component) == 56 && sizeof(Facet) == 112 &&
+static_assert(sizeof(Header) == 336 && sizeof(Component) == 56 && sizeof(Facet) == 112 &&
                   sizeof(Activity) == 80 && sizeof(Connection) == 48 && sizeof(Reaction) == 40 &&
                   sizeof(Times) == 88 && sizeof(Behaviour) == 24 && sizeof(Type) == 56 &&
                   sizeof(Field) == 24 && sizeof(Enumerator) == 16 && sizeof(Figure) == 48,

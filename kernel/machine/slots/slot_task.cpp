@@ -55,7 +55,7 @@ Sentence SlotTask::fit(const ScriptUnit& unit, std::size_t bank) {
                         kind,
                         ", and \"",
                         wanted,
-                        "\" is none; write it so, or rename it"};
+                        "\" is not one; write it so, or rename it"};
     if (is_program && type.parameters() != shape_.type->parameters())
         return Sentence{"task \"",
                         name_,

@@ -93,7 +93,7 @@ constexpr Budget budget(Duration each) noexcept { return {each}; }
 /// Time from the release to the end of the cycle. Default: the period, or the window of at_most. A shorter
 /// deadline gives a higher priority.
 constexpr RowOptionOnce<ActivityRow, Duration> deadline(Duration after) noexcept {
-    return {&ActivityRow::deadline_after, after, "a deadline"};
+    return {&ActivityRow::deadline_after, after, "deadline"};
 }
 struct NotRealTime {};
 /// May block; runs below every real-time activity, without budget or deadline.
@@ -121,7 +121,7 @@ constexpr Runs runs(const Names&... names) {
 namespace detail {
 
 constexpr void apply(ActivityRow& row, const TriggerOption& option) noexcept {
-    give(row, "a trigger", row.has_trigger);
+    give(row, "trigger", row.has_trigger);
     row.trigger = option.trigger == Trigger::every && !row.real_time ? Trigger::background : option.trigger;
     row.period = option.period;
     row.phase = option.phase;
@@ -129,12 +129,12 @@ constexpr void apply(ActivityRow& row, const TriggerOption& option) noexcept {
     row.has_trigger = true;
 }
 constexpr void apply(ActivityRow& row, AtMost option) noexcept {
-    give(row, "at_most", row.at_most_per != Duration::zero());
+    give(row, "at_most(...)", row.at_most_per != Duration::zero());
     row.at_most_n = option.n;
     row.at_most_per = option.per;
 }
 constexpr void apply(ActivityRow& row, Budget option) noexcept {
-    give(row, "a budget", row.budget_each != Duration::zero());
+    give(row, "budget", row.budget_each != Duration::zero());
     row.budget_each = option.each;
 }
 constexpr void apply(ActivityRow& row, NotRealTime) noexcept {
@@ -142,7 +142,7 @@ constexpr void apply(ActivityRow& row, NotRealTime) noexcept {
     if (row.trigger == Trigger::every) row.trigger = Trigger::background;
 }
 constexpr void apply(ActivityRow& row, const Runs& option) noexcept {
-    give(row, "runs", !row.runs.empty());
+    give(row, "runs(...)", !row.runs.empty());
     row.runs = option.names;
     row.too_many_runs = option.too_many;
 }

@@ -72,7 +72,7 @@ void RealWorld::keep(const ContractViolation& breach) noexcept TAPPET_REALTIME {
 
 Sentence RealWorld::describe_breach(std::size_t index) const noexcept {
     if (index >= max_breaches || !kept_breaches_[index].complete.load(std::memory_order_acquire))
-        return Sentence{"a contract was broken, of which no more is known"};
+        return Sentence{"a contract was broken; the details are lost"};
     return describe(kept_breaches_[index].breach);
 }
 

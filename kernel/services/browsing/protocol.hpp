@@ -65,7 +65,7 @@ using tappet::to_text;
 /// (Takes of commands.hpp), its help, and its usage where people spell it differently.
 #define TAPPET_REQUESTS(X) \
     X(hello,       observer,         0, 0,         "", \
-      R"("protocol": 1, "machine": "...", "board": "...", "world": "...", "role": "...", "build_id": "...", "time_ns": T)") \
+      R"("protocol": 1, "machine": "...", "board": "...", "world": "...", "role": "...", "build_id": "...", "framework": "0.15", "time_ns": T)") \
     X(map,         observer,         0, 0,         "", \
       R"("bytes": n, and one file descriptor (SCM_RIGHTS), to be mapped read-only: kernel/machine/map/layout.hpp)") \
     X(get,         observer,         1, browsing::max_words, " NAME...", \

@@ -119,7 +119,7 @@ bool BrowserService::look_at_life(Pending& place) {
     case LifeOutcome::done: break;
     case LifeOutcome::superseded:
         return answer_bad(place, Refusal::not_now,
-                          Sentence{"somebody asked for something else meanwhile; look at its state"});
+                          Sentence{"another request replaced it; look at its state"});
     case LifeOutcome::refused:
         if (answer.refusal == LifeRefusal::left_unsafe) break;
         return answer_bad(place, Refusal::not_now, machine_->life().describe(call.activity, answer));

@@ -27,7 +27,8 @@ BrowserService::Verdict BrowserService::serve_execute(Client& client, const Requ
     const FollowedLine line = find_interpreter_of_lines();
     if (line.functions == nullptr) return no_interpreter();
     if (for_nobody_.data() != nullptr)
-        return {Refusal::unsupported, Sentence{"a machine that runs no more executes nothing; read it"}};
+        return {Refusal::unsupported,
+                Sentence{"the machine no longer runs and executes nothing; only read it"}};
     Pending* place = free_place(client.role);
     if (place == nullptr) return no_place();
     std::array<char, browsing::max_packet_bytes> text;

@@ -48,7 +48,8 @@ void BrowserService::follow_pending() {
             // it.
             answer_bad(each, Refusal::not_now,
                        each.call.withdraw()
-                           ? Sentence{"its engine did not come to it; nothing was done: look at its activity"}
+                           ? Sentence{"its engine did not execute it in time; nothing was done: look at its "
+                                      "activity"}
                            : Sentence{"it has not happened yet and may still happen: look at its activity"});
             each.is_told = true;
         }

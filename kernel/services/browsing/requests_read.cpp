@@ -18,6 +18,7 @@ BrowserService::Verdict BrowserService::serve_hello(Client& client, const Reques
         .field("world", machine.board->world)
         .field("role", to_text(client.role))
         .field("build_id", std::string_view{header.build_id.data()})
+        .field("framework", std::string_view{header.framework.data()})
         .field("time_ns", to_ns(now_));
     return finish(client, reply);
 }

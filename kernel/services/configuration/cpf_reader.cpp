@@ -69,7 +69,7 @@ public:
 
     Sentence read() noexcept {
         if (const auto zero = text_.find('\0'); zero != text_.npos)
-            return at(line_at(zero), "holds a zero byte; it is no text, write the file anew");
+            return at(line_at(zero), "holds a zero byte; it is not text; write the file again");
         if (const cpf::XmlFault fault = cpf::find_foreign_entity(text_); fault.what != nullptr)
             return at(line_at(fault.at), fault.what);
         pugi::xml_document document;
@@ -84,7 +84,7 @@ public:
             if (is_blank(node)) continue;
             if (node.type() != pugi::node_element || view(node.name()) != "properties" || properties)
                 return at(node,
-                          "stands beside <properties>; the file is one <properties> element, keep that");
+                          "is outside of <properties>; the file is one <properties> element, keep that");
             properties = node;
         }
         if (!properties) return at(1, "has no <properties> element; begin it with <properties>");
@@ -103,7 +103,7 @@ private:
             const std::string_view tag = view(node.name());
             if (tag == "description" && !described) {
                 if (!description_.take(node))
-                    return at(node, "has a <description> that is no plain text; shorten it");
+                    return at(node, "has a <description> that is not plain text; shorten it");
                 described = true;
                 continue;
             }
@@ -118,9 +118,9 @@ private:
     Sentence read_property(const pugi::xml_node& node, Path path) noexcept {
         const std::string_view tag = view(node.name());
         if (tag != "simple" && tag != "struct" && tag != "sequence")
-            return at(
-                node,
-                Sentence{"has <", tag, ">, which is no <simple>, <struct> or <sequence>; remove it"}.view());
+            return at(node,
+                      Sentence{"has <", tag, ">, which is not a <simple>, <struct> or <sequence>; remove it"}
+                          .view());
         if (Sentence fault = check_attributes(node, true); !fault.empty()) return fault;
         const std::string_view name = view(node.attribute("name").value());
         if (name.find('.') != name.npos)
@@ -189,7 +189,7 @@ private:
             }
             if (view(each.name()) != "simple")
                 return at(each, Sentence{"has something in sequence \"", facet.name,
-                                         "\" that is no <simple>; remove it"}
+                                         "\" that is not a <simple>; remove it"}
                                     .view());
             if (Sentence fault = check_attributes(each, false); !fault.empty()) return fault;
             if (Sentence fault =
@@ -225,7 +225,7 @@ private:
         if (!text_of_value_.take(value))
             return at(
                 value,
-                Sentence{"gives \"", facet.name, "\" a value that is no plain text; correct it"}.view());
+                Sentence{"gives \"", facet.name, "\" a value that is not plain text; correct it"}.view());
         if (type.kind == ValueKind::text) {
             if (put_text(type, text_of_value_.whole(), place)) return {};
             return at(value, Sentence{"gives \"", facet.name, "\" more than its ", type.columns,
@@ -276,7 +276,7 @@ private:
         for (const Facet& each : facets_)
             if (each.kind == kind) nearest.consider(each.name);
         Sentence text{"names ", kind == FacetKind::bag ? "bag" : "property", " \"", name,
-                      "\", which the component has not"};
+                      "\", which the component does not have"};
         if (nearest.best().empty())
             text.add("; remove it");
         else
@@ -346,7 +346,7 @@ Sentence read_cpf(std::string_view text, std::string_view file, PropertyTransact
     if (text.size() > max_cpf_bytes)
         return Sentence{file,          ": component \"",
                         into.name(),   "\": the file has more than ",
-                        max_cpf_bytes, " bytes; it is no properties file, or shorten it"};
+                        max_cpf_bytes, " bytes; check that it is a properties file, or shorten it"};
     return Reader{text, file, into, left_out}.read();
 }
 

@@ -75,7 +75,8 @@ std::expected<bool, Sentence> PropertyFiles::load_from(std::string_view director
     case os::FileRead::missing: return false;
     case os::FileRead::too_large:
         return std::unexpected(Sentence{path, ": component \"", row.name, "\": the file has more than ",
-                                        max_cpf_bytes, " bytes; it is no properties file, or shorten it"});
+                                        max_cpf_bytes,
+                                        " bytes; check that it is a properties file, or shorten it"});
     case os::FileRead::unreadable: break;
     }
     return std::unexpected(Sentence{path, ": component \"", row.name,
@@ -94,14 +95,14 @@ Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction&
                         row.name,
                         "\": ",
                         refused,
-                        "; its properties are not saved and the old file stands"};
+                        "; its properties are not saved and the old file remains"};
     Sentence fault;
     const std::size_t length = write_cpf(from, text_, fault);
     if (!fault.empty()) return fault;
     if (os::replace_file(path_.data(), {text_.data(), length})) return {};
     return Sentence{
         std::string_view{path_.data()}, ": component \"", row.name,
-        "\": its properties cannot be saved and the old file stands; look at the directory's permissions "
+        "\": its properties cannot be saved and the old file remains; look at the directory's permissions "
         "and its free space"};
 }
 

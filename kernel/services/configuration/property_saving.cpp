@@ -69,11 +69,11 @@ void PropertySaving::give_up() noexcept {
     const AcceptedMachine& machine = machine_->machine();
     gave_up_ = true;
     if (fault_.empty())
-        fault_ =
-            Sentence{"component \"", machine.table.components[next_].name,
-                     "\": its properties are not saved, since its engine did not come to it: look at "
-                     "activity \"",
-                     machine.table.activities[machine.index.activity[next_]].name, "\"; the old file stands"};
+        fault_ = Sentence{
+            "component \"", machine.table.components[next_].name,
+            "\": its properties are not saved, since its engine did not execute it in time: look at "
+            "activity \"",
+            machine.table.activities[machine.index.activity[next_]].name, "\"; the old file remains"};
 }
 
 void PropertySaving::write() noexcept {

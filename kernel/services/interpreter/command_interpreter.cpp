@@ -247,7 +247,7 @@ void CommandInterpreter::work(const Cycle& cycle) {
     if (!bank_->call.is_over()) {
         if (cycle.now - posted_ > patience)
             finish(CommandState::failed,
-                   Sentence{"its engine did not come to it: look at activity \"",
+                   Sentence{"its engine did not execute it in time: look at activity \"",
                             machine_->machine()
                                 .table.activities[machine_->machine().index.activity[bank_->home]]
                                 .name,

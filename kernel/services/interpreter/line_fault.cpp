@@ -44,7 +44,7 @@ Sentence why_of(const Instruction& in, const UnitPart& part, std::string_view na
     if (is_call && !part.links[in.link].component->admits(Entry::at_once))
         return Sentence{"\"", name, "\" was not called: its component does not run; start it first"};
     if (in.run == &primitive::call_checked)
-        return Sentence{"\"", name, "\" says no, or its arguments could not be reckoned"};
+        return Sentence{"\"", name, "\" says no, or its arguments could not be computed"};
     return {};
 }
 
@@ -66,7 +66,7 @@ Sentence describe_fault(const Bank& bank, std::span<const Reachable> reach) {
         if (const Sentence why = why_of(in, part, name.view()); !why.empty()) return text.add(why);
     }
     if (node.count == 0) return text.add("what it waited for did not come in time");
-    return text.add("its value could not be reckoned: a division by zero, a number too large, or an index "
+    return text.add("its value could not be computed: a division by zero, a number too large, or an index "
                     "outside");
 }
 

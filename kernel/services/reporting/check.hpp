@@ -37,13 +37,13 @@ constexpr bool is_number(const TypeTag& type) noexcept {
 /// Says what keeps a facet from being recorded, with the cure; empty: nothing does.
 constexpr Sentence hindrance(const Facet& facet) {
     if (facet.kind != FacetKind::output && facet.kind != FacetKind::property)
-        return Sentence{to_text(facet.kind), " has no value that stands; name an output or a property"};
+        return Sentence{to_text(facet.kind), " has no current value; name an output or a property"};
     if (!can_be_told(facet.type))
-        return Sentence{"its type is ", facet.type->name,
-                        ", of which nobody knows what its bytes say; name its fields with fields_of"};
+        return Sentence{"its type ", facet.type->name, " has unknown fields; name its fields with fields_of"};
     if (facet.type->size > recorded::most_value_bytes)
-        return Sentence{"its value has ", facet.type->size, " bytes, and ", recorded::most_value_bytes,
-                        " are recorded at most; write what is of interest to an output of its own"};
+        return Sentence{"its value has ", facet.type->size, " bytes, more than the ",
+                        recorded::most_value_bytes,
+                        " that are recorded; write the interesting part to its own output"};
     return {};
 }
 
@@ -158,17 +158,16 @@ constexpr Sentence check_window(const ReportRow& row, const MachineView& m, cons
     const bool is_empty = row.before == Duration::zero() && row.after == Duration::zero();
     if (row.trigger.empty())
         return is_empty ? Sentence{}
-                        : Sentence{"before and after are around an event, and it names none; add "
-                                   "trigger(\"component.event\")"};
+                        : Sentence{"before and after need an event; add trigger(\"component.event\")"};
     End event;
     if (Sentence fault = resolve(m, r.by_name, row.trigger, FacetKind::event, event); !fault.empty())
         return fault;
     if (facet_at(m, event).kind != FacetKind::event)
         return Sentence{"\"", row.trigger, "\" is ", to_text(facet_at(m, event).kind),
-                        ", and a window is around an event; name one"};
+                        ", but a window needs an event; name one"};
     if (is_empty)
-        return Sentence{"nothing is kept around \"", row.trigger,
-                        "\", since its window is empty; add before(...), after(...) or both"};
+        return Sentence{"its window around \"", row.trigger,
+                        "\" is empty; add before(...), after(...) or both"};
     return {};
 }
 
@@ -178,13 +177,13 @@ constexpr Sentence check_row(const ReportRow& row, const MachineView& m, const T
     if (row.every <= 0)
         return Sentence{"every(", row.every, ") records nothing; write every(1) for each step, or more"};
     if (row.every > std::numeric_limits<std::int32_t>::max())
-        return Sentence{"every(", row.every, ") is never again; write fewer steps"};
+        return Sentence{"every(", row.every, ") is more steps than are counted; write fewer"};
     if (!(row.band >= 0.0 && row.band < std::numeric_limits<double>::infinity()))
-        return Sentence{"its band is negative or no number; give the largest change that is none, or leave "
-                        "it out for any"};
+        return Sentence{"its band is negative or not a finite number; give the largest change to ignore, or "
+                        "leave it out to record every change"};
     if (m.components[end.component].type->loop != nullptr)
         return Sentence{"\"", m.components[end.component].name,
-                        "\" has a loop() and no steps, after which it could be recorded; give it a step()"};
+                        "\" has a loop() but no step(), after which it could be recorded; give it a step()"};
     if (Sentence fault = check_window(row, m, r); !fault.empty()) return fault;
     if (end.facet == all_outputs) {
         std::size_t outputs = 0;
@@ -193,7 +192,7 @@ constexpr Sentence check_row(const ReportRow& row, const MachineView& m, const T
             return Sentence{"\"", m.components[end.component].name,
                             "\" has no output that can be recorded; leave it out"};
         if (row.band != 0.0)
-            return Sentence{"a band is of one value's unit, and these are several; name the one"};
+            return Sentence{"a band has the unit of one value, but this row names several; name one value"};
         return {};
     }
     if (Sentence fault = hindrance(facet_at(m, end)); !fault.empty()) return fault;
@@ -205,8 +204,8 @@ constexpr Sentence check_row(const ReportRow& row, const MachineView& m, const T
 
 constexpr Sentence check(std::span<const ReportRow> rows, const MachineView& m, const TableIndexView& r) {
     if (find_observer(m) == nowhere)
-        return Sentence{"reporting: nobody could read what is recorded, since no component sees the machine; "
-                        "add component<BrowserService>(\"browser\")"};
+        return Sentence{
+            "reporting: no component can read what is recorded; add component<BrowserService>(\"browser\")"};
     std::size_t channels = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto said = [&](const Sentence& fault) {
@@ -227,10 +226,10 @@ constexpr Sentence check(std::span<const ReportRow> rows, const MachineView& m, 
     }
     if (!trigger_of(rows, recorded::most_triggers).empty())
         return Sentence{"reporting: its windows are around more than ", recorded::most_triggers,
-                        " events; let some have one in common"};
+                        " events; use one event for several windows"};
     if (channels > recorded::most_channels)
-        return Sentence{"reporting: it records ", channels, " values, and ", recorded::most_channels,
-                        " are the most; leave out what nobody looks at"};
+        return Sentence{"reporting: it records ", channels, " values, more than the limit of ",
+                        recorded::most_channels, "; leave some out"};
     return {};
 }
 
