@@ -26,5 +26,5 @@ foreach(tool IN ITEMS AR RANLIB STRIP OBJCOPY OBJDUMP)
 endforeach()
 set(CMAKE_LINKER /usr/bin/aarch64-linux-gnu-ld)
 
-# What is built here runs here in user mode: one instruction set, emulated, on the host's own kernel.
+# Programs built here run here in user mode: one instruction set, emulated, on the host's own kernel.
 set(CMAKE_CROSSCOMPILING_EMULATOR /usr/bin/qemu-aarch64-static)

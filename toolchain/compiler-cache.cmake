@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What was compiled once is not compiled again, in this clone or another: ccache, with paths taken relative to the clone. It keeps
+# ccache: a source is compiled once, in this clone or another, with paths taken relative to the clone. It keeps
 # its objects beside the rest that ci/setup made; -DCMAKE_CXX_COMPILER_LAUNCHER= switches it off.
 include_guard(GLOBAL)
 include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")

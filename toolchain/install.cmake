@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What a machine of one's own needs: the framework's sources, which are compiled with each machine, the foreign sources
+# Installs what a machine of your own needs: the framework's sources, which are compiled with each machine, the foreign sources
 # that no package has, and the programs beside a machine. Found by find_package(Tappet), or by add_subdirectory(<clone>).
 set(CMAKE_INSTALL_LIBDIR lib) # not an architecture's own: the programs find each other and the sources from here
 include(GNUInstallDirs)
@@ -25,7 +25,7 @@ endforeach()
 file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/libgpiod")
 execute_process(COMMAND dpkg-query -W -f "\${Version}\\n" libgpiod-dev OUTPUT_FILE "${PROJECT_BINARY_DIR}/libgpiod/VERSION" ERROR_QUIET)
 install(FILES "${TAPPET_GPIOD_INCLUDE}/gpiod.h" "${TAPPET_GPIOD_ARCHIVE}" "${PROJECT_BINARY_DIR}/libgpiod/VERSION" DESTINATION "${tappet_share}/foreign/libgpiod")
-# What to read first: the framework's page, the guide and the smallest whole machine.
+# Pages to read first: the framework's page, the guide and the smallest whole machine.
 install(FILES README.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY toolchain/guide "${PROJECT_BINARY_DIR}/guide" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet")
 install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tappet/examples")
@@ -55,7 +55,7 @@ set(CPACK_PACKAGE_NAME tappet)
 set(CPACK_PACKAGE_CONTACT "the developers of Tappet <tappet@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "machine controllers on real-time Linux: one table, one static binary")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-# What compiles a machine, and what boots it on the bench.
+# Scripts that compile a machine and boot it on the bench.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "g++, cmake, ninja-build, libeigen3-dev, libdouble-conversion-dev, libedit-dev, libbsd-dev, musl-dev, libgtest-dev, libgmock-dev")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "qemu-system-x86, graphviz, plantuml, efibootguard, gdisk, dosfstools, mtools, e2fsprogs, zstd")

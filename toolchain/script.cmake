@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Text files as constants of C++. Who is linked with the target includes "<path in the tree>/<file>.hpp".
+# Text files as constants of C++. A program that links the target includes "<path in the tree>/<file>.hpp".
 #   tappet_script(<target> <file>.osd)   tappet::scripts::<file>, for compiled_script of kernel/script/compiled.hpp
 #   tappet_file(<target> <file>)         tappet::files::<file_extension>, for from_dbc of drivers/can/from_dbc.hpp
 #                                        and dictionary of drivers/canopen/eds.hpp

@@ -55,7 +55,7 @@ add_library(tappet::double_conversion ALIAS tappet_double_conversion)
 
 # --- mathematics --------------------------------------------------------------------------------------------------
 # glibc takes another routine on a processor with fused multiply-add, so that one seed gave one run on one kind of box
-# only; and a static binary holds four of each. Of musl's, all of what one routine needs becomes one object that shows
+# only; and a static binary holds four of each. All that one routine of musl needs becomes one object that shows
 # the routines alone: its tables bear names that glibc uses too.
 # g++ makes one sincos of a sine and a cosine, and both compilers an exp2 of a power of two.
 set(tappet_routines sin cos sincos tan asin acos atan atan2 exp exp2 log log2 log10 pow sqrt hypot fabs floor ceil round trunc nearbyint rint fmod)

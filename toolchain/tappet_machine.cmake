@@ -70,7 +70,7 @@ function(tappet_machine name)
         set(machine_NAMESPACE "${name}")
     endif()
 
-    # What its table stands on, for tests and for programs of its own.
+    # The code below its table, for tests and for programs of its own.
     add_library(${name}_table INTERFACE)
     target_link_libraries(${name}_table INTERFACE tappet_framework ${machine_LIBRARIES})
     set(definitions TAPPET_NAMESPACE=${machine_NAMESPACE}) # of each program: one that looks at two machines links two tables
@@ -85,7 +85,7 @@ function(tappet_machine name)
         endif()
     endforeach()
 
-    # What all of its programs link: nothing of it depends on the board.
+    # The code that all of its programs link: none of it depends on the board.
     add_library(${name}_code STATIC "${mains}/code.cpp")
     target_compile_definitions(${name}_code PRIVATE ${definitions})
     target_compile_options(${name}_code PRIVATE -ffunction-sections -fdata-sections)
@@ -153,7 +153,7 @@ function(tappet_machine name)
             add_executable(${firmware} "${mains}/firmware_main.cpp")
             target_compile_options(${firmware} PRIVATE -ffunction-sections -fdata-sections)
             target_link_libraries(${firmware} PRIVATE tappet_sealed_heap)
-            # What the linker took is the image's bill of materials.
+            # The files that the linker took are the image's bill of materials.
             target_link_options(${firmware} PRIVATE -static -Wl,--gc-sections "LINKER:--dependency-file=${CMAKE_CURRENT_BINARY_DIR}/${firmware}.inputs")
             set(stripped "$<TARGET_FILE:${firmware}>.stripped")
             add_custom_command(

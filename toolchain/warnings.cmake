@@ -15,6 +15,6 @@ target_compile_options(
         -Wcast-align
         -Werror
         "$<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor;-Wold-style-cast;-Woverloaded-virtual>"
-        # What a real-time function calls must be declared real-time safe itself. The extension is wanted: a check of
+        # A function that a real-time function calls must be declared real-time safe itself. The extension is wanted: a check of
         # the machine table computes its sentence and hands it to static_assert, which clang accepts in any mode.
         "$<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wfunction-effects;-Werror=function-effects;-Wno-c++26-extensions>")

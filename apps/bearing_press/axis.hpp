@@ -99,24 +99,25 @@ struct Axis {
     }
 
     static constexpr auto interface() {
-        return facets(input<&Axis::statusword>("statusword", "", "of the drive (CiA 402)"),
-                      input<&Axis::position>("position", "m", "of the slide"),
-                      input<&Axis::velocity>("velocity", "m/s", "of the slide"),
-                      input<&Axis::home>("home", "", "the slide is above zero"),
-                      input<&Axis::upper_end>("upper_end", "", "the slide is at that end"),
-                      input<&Axis::lower_end>("lower_end", "", "the slide is at that end"),
-                      input<&Axis::stop_held>("stop_held", "", "the button is held"),
-                      input<&Axis::up>("up", "", "the button is held"),
-                      input<&Axis::down>("down", "", "the button is held"),
-                      input<&Axis::lines_faulted>("lines_faulted", "", "nobody knows what the switches say"),
-                      input<&Axis::bus_faulted>("bus_faulted", "", "the drive is not heard"),
-                      output<&Axis::controlword>("controlword", "", "of the drive (CiA 402)"),
-                      output<&Axis::seated>("seated", "", "bearings, since the start"),
-                      output<&Axis::lamp>("lamp", "", "the axis has power"),
-                      output<&Axis::is_homed>("is_homed", "", "zero is known"),
-                      event<&Axis::jog_at>("jog_at", "m/s: the speed of jogging"),
-                      event<&Axis::aim>("aim", "m: where the next path leads"),
-                      sends<&Axis::run>("run", "the chain that shall run"));
+        return facets(
+            input<&Axis::statusword>("statusword", "", "of the drive (CiA 402)"),
+            input<&Axis::position>("position", "m", "of the slide"),
+            input<&Axis::velocity>("velocity", "m/s", "of the slide"),
+            input<&Axis::home>("home", "", "the slide is above zero"),
+            input<&Axis::upper_end>("upper_end", "", "the slide is at that end"),
+            input<&Axis::lower_end>("lower_end", "", "the slide is at that end"),
+            input<&Axis::stop_held>("stop_held", "", "the button is held"),
+            input<&Axis::up>("up", "", "the button is held"),
+            input<&Axis::down>("down", "", "the button is held"),
+            input<&Axis::lines_faulted>("lines_faulted", "", "the levels of the switches are unknown"),
+            input<&Axis::bus_faulted>("bus_faulted", "", "the drive is not heard"),
+            output<&Axis::controlword>("controlword", "", "of the drive (CiA 402)"),
+            output<&Axis::seated>("seated", "", "bearings, since the start"),
+            output<&Axis::lamp>("lamp", "", "the axis has power"),
+            output<&Axis::is_homed>("is_homed", "", "zero is known"),
+            event<&Axis::jog_at>("jog_at", "m/s: the speed of jogging"),
+            event<&Axis::aim>("aim", "m: where the next path leads"),
+            sends<&Axis::run>("run", "selects the chain that runs"));
     }
 
 private:

@@ -60,8 +60,8 @@ struct Idle {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { speed.write(0.0); }
     static constexpr auto interface() {
         return facets(input<&Idle::position>("position", "m", "of the slide"),
-                      output<&Idle::target>("target", "m", "the same"),
-                      output<&Idle::speed>("speed", "m/s", "none"));
+                      output<&Idle::target>("target", "m", "equal to the position"),
+                      output<&Idle::speed>("speed", "m/s", "always 0"));
     }
 };
 
@@ -118,7 +118,7 @@ struct Jogging {
                       input<&Jogging::sent>("sent", "m/s", "to the drive in the step before"),
                       output<&Jogging::target>("target", "m", "the next place"),
                       output<&Jogging::speed>("speed", "m/s", "there"),
-                      operation<&Jogging::at>("at", "so fast, m/s"));
+                      operation<&Jogging::at>("at", "speed, m/s"));
     }
 
 private:
@@ -213,7 +213,7 @@ struct Approach {
     static constexpr auto interface() {
         return facets(
             input<&Approach::position>("position", "m", "of the slide"),
-            output<&Approach::target>("target", "N", "with which it shall press"),
+            output<&Approach::target>("target", "N", "to press with"),
             property<&Approach::force>("force", "N", "of a bearing that is seated", range(100.0, 5000.0)));
     }
 };
@@ -241,12 +241,12 @@ struct Press {
     void stop(const Cycle&) noexcept TAPPET_REALTIME { velocity.write(0.0); }
     static constexpr auto interface() {
         return facets(
-            input<&Press::target>("target", "N", "with which it shall press"),
-            input<&Press::force>("force", "N", "with which it does"),
+            input<&Press::target>("target", "N", "to press with"),
+            input<&Press::force>("force", "N", "measured"),
             input<&Press::sent>("sent", "m/s", "to the drive in the step before"),
             output<&Press::velocity>("velocity", "m/s", "wanted"),
             event<&Press::seated>("seated", "the force is within 2 % for 100 ms"),
-            property<&Press::kf>("kf", "m/s/N", "speed for a newton that lacks", range(1e-7, 2e-5)));
+            property<&Press::kf>("kf", "m/s/N", "speed for one newton of missing force", range(1e-7, 2e-5)));
     }
 
 private:
@@ -295,11 +295,12 @@ struct Trim {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { wanted.write(0.0); }
     static constexpr auto interface() {
-        return facets(input<&Trim::target>("target", "m/s", "the next speed"),
-                      input<&Trim::velocity>("velocity", "m/s", "of the slide"),
-                      input<&Trim::sent>("sent", "m/s", "to the drive in the step before"),
-                      output<&Trim::wanted>("wanted", "m/s", "of the drive"),
-                      property<&Trim::ki>("ki", "1/s", "of what the drive lacks", range(0.0, 10.0)));
+        return facets(
+            input<&Trim::target>("target", "m/s", "the next speed"),
+            input<&Trim::velocity>("velocity", "m/s", "of the slide"),
+            input<&Trim::sent>("sent", "m/s", "to the drive in the step before"),
+            output<&Trim::wanted>("wanted", "m/s", "of the drive"),
+            property<&Trim::ki>("ki", "1/s", "gain on the drive's missing speed", range(0.0, 10.0)));
     }
 
 private:

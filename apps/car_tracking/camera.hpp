@@ -120,7 +120,7 @@ struct Camera {
             output<&Camera::image>("image", "", "the last image"),
             output<&Camera::aim>("aim", "", "where it looks, as far as it knows"),
             output<&Camera::lens>("lens", "", "nominal until it is calibrated; written on change"),
-            output<&Camera::calibration_error_px>("calibration_error_px", "px", "what the last calibration left unexplained"),
+            output<&Camera::calibration_error_px>("calibration_error_px", "px", "residual error of the last calibration"),
             event<&Camera::image_ready>("image_ready", "a new image is there"),
             command<&Camera::switch_on>("start", "power on"),
             command<&Camera::switch_off>("stop", "motors and sensor off"),

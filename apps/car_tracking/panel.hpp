@@ -49,7 +49,7 @@ struct Panel {
         return facets(event<&Panel::move_camera>("move_camera", "aim the camera by hand"),
                       event<&Panel::start_calibration>("start_calibration", "learn axes and lens"),
                       event<&Panel::start_localisation>("start_localisation", "follow the car"),
-                      event<&Panel::stop_localisation>("stop_localisation", "follow it no longer"));
+                      event<&Panel::stop_localisation>("stop_localisation", "stops following the car"));
     }
 
 private:

@@ -32,9 +32,10 @@ struct LastResort {
             event<&LastResort::close_valve>("close_valve", "valve closed, and no weft let go", heard_by(2)),
             event<&LastResort::quick_stop>("quick_stop", "drives to a stand at once", heard_by(2)),
             event<&LastResort::rest_cutter>("rest_cutter", "yarn cutter off", heard_by(1)),
-            operation<&LastResort::let_cutter_rest>("let_cutter_rest", "the shaft is silent: for how long",
+            operation<&LastResort::let_cutter_rest>("let_cutter_rest", "the shaft is silent, for this time",
                                                     required),
-            operation<&LastResort::act>("act", "nobody else can: how long it was silent", required));
+            operation<&LastResort::act>(
+                "act", "makes the machine safe when the logic hangs; silent for this time", required));
     }
 };
 

@@ -163,7 +163,8 @@ struct MainShaft {
             property<&MainShaft::learning_rate>("learning_rate", "", "of the last stop, into the brake angle",
                                                 range(0, 1)),
             property<&MainShaft::late_deg>(
-                "late_deg", "deg", "so far after the brake angle it still brakes in this turn", range(0, 90)),
+                "late_deg", "deg", "up to this far after the brake angle it still brakes in this turn",
+                range(0, 90)),
             property<&MainShaft::stamp_latency>("stamp_latency", "s", "of the encoder's frame on the wire",
                                                 range(0, 0.01)));
     }

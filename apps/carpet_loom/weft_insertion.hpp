@@ -125,8 +125,8 @@ struct WeftInsertion {
             method<&WeftInsertion::weave_carpet>("weave_carpet", "the carpet's patterns again"),
             operation<&WeftInsertion::allow>("allow", "wefts may be released", required),
             operation<&WeftInsertion::hold>("hold", "no weft in the turns to come", required),
-            operation<&WeftInsertion::lose_lines>("lose_lines", "inhibit, since nobody knows the lines",
-                                                  required),
+            operation<&WeftInsertion::lose_lines>(
+                "lose_lines", "like inhibit, because the lines' levels are unknown", required),
             operation<&WeftInsertion::inhibit>("inhibit", "no weft; the valve closes", required),
             operation<&WeftInsertion::on_beat_up>("on_beat_up", "a pick begins", required),
             operation<&WeftInsertion::on_offer_pattern>("on_offer_pattern", "offers the next pattern",

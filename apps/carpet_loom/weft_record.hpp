@@ -55,7 +55,7 @@ struct WeftRecord {
             output<&WeftRecord::latest_deg>("latest_deg", "deg", "latest arrival"),
             output<&WeftRecord::stop_error_deg>("stop_error_deg", "deg", "of the last stop"),
             operation<&WeftRecord::on_stop>("on_stop", "the shaft stands; error in degrees", required),
-            event<&WeftRecord::begun>("begun", "the first shift begins; so long it lasts", heard_by(1)),
+            event<&WeftRecord::begun>("begun", "the first shift begins; its length", heard_by(1)),
             operation<&WeftRecord::forget>("forget", "begins the record anew", required),
             property<&WeftRecord::shift>("shift", "s", "length of a shift", range(60, 86400)));
     }

@@ -50,9 +50,9 @@ struct Line {
     static constexpr auto interface() {
         return facets(input<&Line::statusword>("statusword", "", "of the feed drive (CiA 402)"),
                       input<&Line::emergency_stop>("emergency_stop", "", "it is pressed"),
-                      input<&Line::lines_faulted>("lines_faulted", "", "nobody knows whether it is"),
+                      input<&Line::lines_faulted>("lines_faulted", "", "whether it is pressed is unknown"),
                       input<&Line::bus_faulted>("bus_faulted", "", "the drive is not heard"),
-                      input<&Line::wheel_valid>("wheel_valid", "", "it is known where the web is"),
+                      input<&Line::wheel_valid>("wheel_valid", "", "the position of the web is known"),
                       output<&Line::controlword>("controlword", "", "of the feed drive (CiA 402)"),
                       output<&Line::target>("target", "m/s", "speed of the web"),
                       output<&Line::lamp>("lamp", "", "the line runs"),

@@ -40,14 +40,14 @@ public:
     }
 
     [[nodiscard]] std::string_view usage() const override {
-        return "  --pieces N          stops the line when so many are cut (60)\n";
+        return "  --pieces N          stops the line after N pieces (default 60)\n";
     }
     bool take_option(std::string_view option, std::string_view value, Sentence& fault) override {
         if (option != "--pieces") return false;
         if (!parse_value(*type_id<std::int64_t>, value, std::as_writable_bytes(std::span{&wanted_, 1}).data())
                  .empty() ||
             wanted_ < 1)
-            fault = Sentence{"\"", value, "\" is no number of pieces; write for example --pieces 60"};
+            fault = Sentence{"\"", value, "\" is not a number of pieces; write for example --pieces 60"};
         return true;
     }
     [[nodiscard]] bool is_done() const override { return pieces_ >= wanted_ && web_stands(); }

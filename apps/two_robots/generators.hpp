@@ -81,7 +81,7 @@ struct Turning : JointGenerator {
         return joint_facets<Turning>(
             property<&Turning::acceleration>("acceleration", "rad/s^2", "from rate to rate",
                                              range(0.05, 4.0)),
-            method<&Turning::turn>("turn", "joint 1 to 6, at so many rad/s from now on"));
+            method<&Turning::turn>("turn", "turns joint 1 to 6 at this rate from now on, rad/s"));
     }
 
 private:
@@ -176,7 +176,7 @@ protected:
     static constexpr auto frame_facets(const Facets&... more) {
         return joint_facets<Own>(
             calls<&Own::posture>("posture", "of the flange for some joints"),
-            property<&Own::gain>("gain", "1/s", "on what is missing of the frame", range(0.0, 50.0)),
+            property<&Own::gain>("gain", "1/s", "on the error of the frame", range(0.0, 50.0)),
             property<&Own::most_rate>("most_rate", "rad/s", "of each joint", range(0.01, 0.4)),
             property<&Own::most_acceleration>("most_acceleration", "rad/s^2", "of each joint",
                                               range(0.05, 10.0)),
@@ -220,7 +220,7 @@ struct Twisting : FrameGenerator {
     }
     static constexpr auto interface() {
         return frame_facets<Twisting>(method<&Twisting::twist>(
-            "twist", "of the flange from now on: m/s, rad/s, along the base's axes"));
+            "twist", "twist of the flange from now on: m/s, rad/s, along the base's axes"));
     }
 
 private:
@@ -264,7 +264,7 @@ struct BodySimulation : FrameGenerator {
     Sentence accepts(const Proposal& proposal) const noexcept TAPPET_REALTIME {
         const Eigen::Vector3d& wanted = proposal.of(direction);
         if (wanted.dot(wanted) > 0.01) return {};
-        return Sentence{"a body that moves goes somewhere; write a direction that is not nought"};
+        return Sentence{"a moving body needs a direction; write one that is not 0"};
     }
 
 private:

@@ -67,14 +67,14 @@ struct Homing {
             input<&Homing::switch_5>("switch_5", "", "active from its angle on"), input<&Homing::switch_6>("switch_6", "", "active from its angle on"),
             output<&Homing::homed>("homed", "", "all joints know their zero"),
             calls<&Homing::turn>("turn", "one joint at a rate"),
-            calls<&Homing::calibrate>("calibrate", "which angle a joint has"),
+            calls<&Homing::calibrate>("calibrate", "sets the angle of a joint"),
             command<&Homing::home, &Homing::has_homed>("home", "joint 1 to 6: finds its switch, then zero; fails when it does not move", for_people(Role::machine_operator)),
             method<&Homing::all_homed>("all_homed", "each joint knows its zero"),
-            method<&Homing::forget>("forget", "no joint knows its zero, none is looked for"),
+            method<&Homing::forget>("forget", "forgets the zero of every joint and stops homing"),
             property<&Homing::switch_angles>("switch_angles", "rad", "at which the switches become active", range(-3.2, 3.2)),
             property<&Homing::rate>("rate", "rad/s", "to the switch and to zero", range(0.02, 0.4)),
             property<&Homing::creep>("creep", "rad/s", "over the edge of the switch", range(0.005, 0.1)),
-            property<&Homing::moves_within>("moves_within", "s", "or it has failed", range(0.05, 5.0)));
+            property<&Homing::moves_within>("moves_within", "s", "a joint that does not move within this time fails", range(0.05, 5.0)));
     }
     // clang-format on
 

@@ -80,7 +80,7 @@ struct JointSensor {
             output<&JointSensor::rates>("rates", "rad/s", "of the joints"),
             output<&JointSensor::calibrated>("calibrated", "", "the positions are angles of the arm"),
             method<&JointSensor::calibrate>("calibrate", "joint 1 to 6, and its angle in rad; heard within 10000"),
-            method<&JointSensor::is_calibrated>("is_calibrated", "that joint, 1 to 6"),
+            method<&JointSensor::is_calibrated>("is_calibrated", "whether joint 1 to 6 is calibrated"),
             property<&JointSensor::counts_per_rad>("counts_per_rad", "1/rad", "negative: it counts the other way", range(-1e9, 1e9)),
             property<&JointSensor::absolute>("absolute", "", "the encoders know their zero"));
     }

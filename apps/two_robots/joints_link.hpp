@@ -45,7 +45,7 @@ private:
         std::uint16_t number = 0;
         const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
         if (error != std::errc{} || end != port.data() + port.size() || number == 0)
-            return Sentence{"\"", port, "\" is no port; write one from 1 to 65535"};
+            return Sentence{"\"", port, "\" is not a port; write one from 1 to 65535"};
         const auto opened = open(number);
         return opened ? Sentence{} : opened.error();
     }

@@ -93,21 +93,21 @@ struct Station {
     void not_handed_on() noexcept TAPPET_REALTIME { boards_missed.write(++missed_); }
 
     static constexpr auto interface() {
-        return facets(
-            input<&Station::belt_position>("belt_position", "mm", "so far the belt has gone"),
-            input<&Station::belt_is_there>("belt_is_there", "", "the conveyor is heard"),
-            output<&Station::tool>("tool", "", "it works"),
-            output<&Station::phase>("phase", "", "what it is about; written on change"),
-            output<&Station::boards_done>("boards_done", "", "written on change"),
-            output<&Station::boards_missed>("boards_missed", "", "that nobody worked on; written on change"),
-            event<&Station::board_out>("board_out", "a board goes on"),
-            event<&Station::done>("done", "the belt may run, of this station's"),
-            sends<&Station::stop_belt>("stop_belt", "the belt stands there, mm"),
-            operation<&Station::board_comes>("board_comes", "a board is on its way"),
-            operation<&Station::board_seen>("board_seen", "the light barrier sees it"),
-            operation<&Station::not_handed_on>("not_handed_on", "a board's ticket was lost"),
-            property<&Station::number>("number", "", "in the boards' programmes", range(0, 7)),
-            property<&Station::takes>("takes", "s", "on one board"));
+        return facets(input<&Station::belt_position>("belt_position", "mm", "how far the belt has moved"),
+                      input<&Station::belt_is_there>("belt_is_there", "", "the conveyor is heard"),
+                      output<&Station::tool>("tool", "", "it works"),
+                      output<&Station::phase>("phase", "", "the station's current step; written on change"),
+                      output<&Station::boards_done>("boards_done", "", "written on change"),
+                      output<&Station::boards_missed>("boards_missed", "",
+                                                      "boards that passed without work; written on change"),
+                      event<&Station::board_out>("board_out", "a board goes on"),
+                      event<&Station::done>("done", "this station lets the belt run"),
+                      sends<&Station::stop_belt>("stop_belt", "the belt stands there, mm"),
+                      operation<&Station::board_comes>("board_comes", "a board is on its way"),
+                      operation<&Station::board_seen>("board_seen", "the light barrier sees it"),
+                      operation<&Station::not_handed_on>("not_handed_on", "a board's ticket was lost"),
+                      property<&Station::number>("number", "", "in the boards' programmes", range(0, 7)),
+                      property<&Station::takes>("takes", "s", "on one board"));
     }
 
 private:

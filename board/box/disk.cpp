@@ -167,7 +167,7 @@ std::expected<std::string, std::string> mount_data(const std::string& device, co
         is_mounted = checked.code <= mended && mount_it(device, folder);
     }
     if (is_mounted)
-        return checked.code == mended ? "the data partition is mended: " + checked.said : std::string{};
+        return checked.code == mended ? "the data partition is repaired: " + checked.said : std::string{};
     if (checked.code <= mended) return init::failed("mount " + device + " at " + folder);
     if (checked.code >= not_begun) return std::unexpected("e2fsck does not run: " + checked.said);
     if (checked.code >= failed && !has_no_file_system(device))
@@ -175,9 +175,11 @@ std::expected<std::string, std::string> mount_data(const std::string& device, co
             device + " has a file system that could not be checked; look at the disk: e2fsck said \"" +
             checked.said + "\"");
     if (const auto made = make_anew(device, meanwhile); !made)
-        return std::unexpected(device + " is damaged, and takes no new file system: " + made.error());
+        return std::unexpected(device +
+                               " is damaged, and a new file system cannot be written: " + made.error());
     if (!mount_it(device, folder)) return init::failed("mount " + device + " at " + folder);
-    return "the data partition was beyond mending, and is made anew: SETTINGS AND LEARNED VALUES ARE GONE; "
+    return "the data partition could not be repaired, and was created anew: SETTINGS AND LEARNED VALUES ARE "
+           "GONE; "
            "e2fsck said \"" +
            checked.said + "\"";
 }

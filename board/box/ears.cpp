@@ -41,7 +41,7 @@ init::Done Ears::open() {
     int ends[2] = {-1, -1};
     if (notices_ < 0 || ::setsockopt(notices_, SOL_SOCKET, SO_PASSCRED, &yes, sizeof yes) != 0 ||
         ::bind(notices_, reinterpret_cast<sockaddr*>(&address), length) != 0 || ::pipe2(ends, O_CLOEXEC) != 0)
-        return init::failed("nothing of the firmware will be heard");
+        return init::failed("the firmware's messages cannot be received");
     prints_ = ends[0];
     mouth_ = ends[1];
     ::fcntl(prints_, F_SETFL, O_NONBLOCK);

@@ -74,8 +74,8 @@ private:
         if (facts_.one("build") == "debug") voice_.say("A DEBUG BUILD, which is not for production");
         if (!facts_.all("plant").empty()) voice_.say("A TEST IMAGE: it carries a plant, and touches no wire");
         is_locked_down_ = box::is_locked_down();
-        voice_.say(is_locked_down_ ? "Secure Boot is on: nothing but signed code runs"
-                                   : "Secure Boot is off: who has the disk can change what runs");
+        voice_.say(is_locked_down_ ? "Secure Boot is on: only signed code runs"
+                                   : "Secure Boot is off: anyone with the disk can change the software");
         ::setenv("PATH", "/bin", 1);
         ::reboot(RB_DISABLE_CAD); // Ctrl-Alt-Del arrives as SIGINT, and causes an orderly end
         if (const auto opened = ears_.open(); !opened) voice_.say(opened.error());
@@ -114,7 +114,7 @@ private:
     /// Reads the slots: the running version must be known before it changes anything.
     void look_at_slots() {
         custody_.kick();
-        if (const auto looked = slots_.look(); !looked) voice_.say("a slot is of no use: " + looked.error());
+        if (const auto looked = slots_.look(); !looked) voice_.say("a slot is unusable: " + looked.error());
         const Verdict verdict = judge_fallback(slots_);
         if (!verdict.said.empty()) voice_.say(verdict.said);
         if (verdict.starts_anew) restart();
@@ -122,9 +122,9 @@ private:
             voice_.say("revision " + std::to_string(slots_.running().state.revision) + " is on trial");
         if (verdict.said.empty() && slots_.other().state.state == init::SlotState::failed)
             voice_.say(slots_.other().record.standing == Standing::untried
-                           ? "what lies in the other slot failed its trial; what it said last stands in " +
+                           ? "the version in the other slot failed its trial; its last messages are in " +
                                  log_file
-                           : "what lies in the other slot is " + standing_of(slots_.other()));
+                           : "the version in the other slot is " + standing_of(slots_.other()));
         stage("the slots");
     }
 
@@ -143,7 +143,7 @@ private:
         nonce_ = new_nonce(); // waits until the kernel has gathered enough entropy
         start_service();
         if (!slots_.on_trial()) compare_slots();
-        voice_.say("networks, buttons and service, for which no machine waits: " +
+        voice_.say("networks, buttons and service, for which the machine does not wait: " +
                    text_of_seconds(uptime_s() - before_s));
     }
 
@@ -165,7 +165,7 @@ private:
         data_device_ = *device;
         std::error_code error;
         if (std::filesystem::space(data_folder, error).free < least_free_bytes)
-            voice_.say("the data partition is full: no setting can be saved and no black box be kept; "
+            voice_.say("the data partition is full: settings and black boxes cannot be saved; "
                        "tappet box BOX factory-reset empties it");
         may_start_ = true;
         if (const auto kept = voice_.keep_in(log_file); !kept) voice_.say(kept.error());
@@ -199,7 +199,7 @@ private:
                  : is_armed_               ? "is armed"
                                            : "has not armed") +
                 (last_ending_.empty() ? "" : "; before: " + last_ending_) + "\n" +
-                init::read_text(std::string{data_folder} + "/" + measured_file) + "what was said last:\n";
+                init::read_text(std::string{data_folder} + "/" + measured_file) + "last messages:\n";
         const std::string log = init::read_text(log_file);
         text += log.substr(log.size() - std::min(log.size(), told_of_log));
         const std::string file = std::string{service_folder} + "/" + status_file;
@@ -342,14 +342,14 @@ private:
         if (is_ending_) return;
         if (custody_.outputs_are_safe()) bring_up_rest(); // otherwise nothing may delay the reset
         last_ending_ = "the firmware ended with code " + std::to_string(code) + " after " +
-                       text_of_seconds(uptime_s() - start_s_) + "; it said last: " + last_words_;
+                       text_of_seconds(uptime_s() - start_s_) + "; its last message: " + last_words_;
         voice_.say(last_ending_);
         if (!custody_.outputs_are_safe()) {
             is_ending_ = true;
             tell_status();
             custody_.await_reset();
         } else if (code == 0) {
-            voice_.say("it was asked to end; the power may go");
+            voice_.say("it was asked to end; the power may be switched off");
         } else if (slots_.on_trial()) {
             voice_.say("it was on trial: the box goes back to the other slot");
             again_at_s_ = uptime_s() + tell_trial_s;
@@ -358,7 +358,7 @@ private:
             again_at_s_ = uptime_s() + again_after_s;
         } else {
             voice_.say("it ended " + facts_.one("restarts") + " times within " + facts_.one("restarts", 1) +
-                       " s and is left; repair what it names, then switch the box off and on");
+                       " s and is not started again; repair what it names, then switch the box off and on");
         }
         tell_status();
     }

@@ -55,7 +55,7 @@ std::string take_order(const Words& words, const ServiceFacts& facts) {
     if (words.size() != 3 || std::ranges::find(order_verbs, words[1]) == order_verbs.end())
         return refused("there are the orders roll-back, factory-reset and measure");
     if (!is_signed({words[1], facts.own.machine, facts.own.board, facts.nonce}, words[2], *facts.key))
-        return refused("its signature does not fit this box's key, or it is of another day");
+        return refused("its signature does not fit this box's key, or was made on another day");
     if (!keep(offered_order, words[1] + "\n" + words[2] + "\n")) return refused("the box has no memory left");
     return "ok\n" + words[1] + accepted;
 }
@@ -120,9 +120,10 @@ void Reception::take_from(Client& client, Time now) {
         client.said.append(piece.data(), static_cast<std::size_t>(n));
         advance(client, now);
     } else if (n == 0 && client.stage == Stage::header) {
-        answer(client, refused("it is no update; send the update.tap beside an image"), now);
+        answer(client, refused("it is not an update; send the update.tap that was written with an image"),
+               now);
     } else if (n == 0 && client.stage == Stage::kernel) {
-        answer(client, refused("it is not whole"), now);
+        answer(client, refused("it is incomplete"), now);
     } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
         client.stage = Stage::gone;
     }
@@ -179,8 +180,8 @@ void Reception::take_header(Client& client, Time now) {
 
 std::string Reception::refusal_of_header(const Client& client) const {
     const std::uint64_t claimed = claimed_bytes(client.said);
-    if (claimed == 0) return "it is no update; send the update.tap beside an image";
-    if (claimed > most_update_bytes) return "it says that it has more bytes than a slot";
+    if (claimed == 0) return "it is not an update; send the update.tap that was written with an image";
+    if (claimed > most_update_bytes) return "it is larger than a slot";
     const Manifest offered = manifest_of(client.said);
     if (std::string why = refusal_of(offered, facts_.own); !why.empty()) return why;
     if (!has_signed_header(client.said, *facts_.key))
@@ -200,7 +201,8 @@ std::string Reception::judge_update(const Client& client) const {
     std::string text =
         "ok\nversion " + std::to_string(update->manifest.version) + " is here and its signature fits";
     if (update->manifest.layout != facts_.own.layout)
-        text += "; its properties are others: what it does not know is kept for the version that does";
+        text +=
+            "; its properties differ: values that it does not know are kept for the version that knows them";
     return text + accepted;
 }
 

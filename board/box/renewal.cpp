@@ -67,7 +67,7 @@ private:
     }
 
     bool refuse(const std::string& what, const std::string& why) {
-        voice_.say(what + " is not taken: " + why);
+        voice_.say(what + " is refused: " + why);
         return false;
     }
 
@@ -99,7 +99,7 @@ private:
                                                     : std::unexpected("this version does not know it");
         if (!done) return refuse("the order \"" + verb + "\"", done.error());
         voice_.say(verb == "roll-back" ? "the version of the other slot goes on trial"
-                   : verb == "measure" ? "it is measured; tappet box shows the figures"
+                   : verb == "measure" ? "the box is measured; tappet box shows the figures"
                                        : "all settings and learned values are gone; the machine begins anew");
         return true;
     }

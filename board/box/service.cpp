@@ -50,7 +50,7 @@ void give_up_rights() {
     if (::chdir(service_folder) != 0 || ::chroot(".") != 0 || ::setgroups(0, nullptr) != 0 ||
         ::setresgid(nobody, nobody, nobody) != 0 || ::setresuid(nobody, nobody, nobody) != 0 ||
         ::setrlimit(RLIMIT_NPROC, &none) != 0 || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
-        fail("cannot give up its rights");
+        fail("cannot drop its privileges");
 }
 
 } // namespace
@@ -62,7 +62,8 @@ init::Done make_service_folder() {
         0)
         return init::failed(std::string{"mount "} + service_folder);
     init::make_folder(offers);
-    if (::chown(offers.c_str(), nobody, nobody) != 0) return init::failed("give nobody " + offers);
+    if (::chown(offers.c_str(), nobody, nobody) != 0)
+        return init::failed("make user nobody the owner of " + offers);
     return {};
 }
 

@@ -43,8 +43,7 @@ bool Slot::is_on_trial() const {
 std::string standing_of(const Slot& slot) {
     if (slot.record.standing == Standing::harmed) return "given up: its kernel is not what was written there";
     if (slot.record.standing == Standing::silent)
-        return "given up: " + std::to_string(slot.record.cut_short + 1) +
-               " starts in a row did not come to their end";
+        return "given up: " + std::to_string(slot.record.cut_short + 1) + " starts in a row did not finish";
     // A proven version is on trial at each start, which matters only to the loader.
     if (slot.record.standing == Standing::proven && slot.state.state != init::SlotState::failed)
         return std::string{init::name_of(init::SlotState::good)};

@@ -28,14 +28,15 @@ bool is_of_use(const Slot& slot) {
 }
 
 const char* found(int code, bool gives_up) {
-    if (code >= not_looked) return "the slots were not compared with what was written there";
+    if (code >= not_looked) return "the slots were not compared with their checksums";
     if (code == 0) return "both slots hold what was written there: the start is over";
     if (code == other_is_harmed)
-        return "the kernel in the other slot is not what was written there: it is of no use; bring an update";
+        return "the kernel in the other slot is not what was written there: that slot is unusable; install "
+               "an update";
     return gives_up ? "the kernel in the slot that runs is not what was written there: a byte changed on the "
                       "disk; from the next start on the other slot is used"
                     : "the kernel in the slot that runs is not what was written there, and the other slot is "
-                      "of no use; bring an update before the box is switched off";
+                      "unusable; install an update before the box is switched off";
 }
 
 } // namespace
@@ -43,21 +44,21 @@ const char* found(int code, bool gives_up) {
 Verdict judge_fallback(Slots& slots) {
     if (!is_fallback(slots.running(), slots.other())) return {};
     const std::string begin = "the last start of " + version_in(slots.other()) +
-                              " in the other slot did not come to its end, ",
-                      end = ": it is given up, and what runs stays; bring an update";
+                              " in the other slot did not finish, ",
+                      end = ": it is given up, and the running version stays; install an update";
     if (const auto judged = slots.judge_other(); !judged)
         return {begin + "and it cannot be judged: " + judged.error()};
     if (slots.other().record.standing == Standing::harmed)
         return {begin + "and its kernel is not what was written there, a byte changed on the disk" + end};
     if (slots.other().record.standing == Standing::silent)
-        return {begin + "as those before it, though its kernel is whole" + end};
-    return {begin + "by a power cut, or it hung; its kernel is whole: the box goes back to it", true};
+        return {begin + "like those before it, though its kernel is intact" + end};
+    return {begin + "by a power cut, or it hung; its kernel is intact: the box goes back to it", true};
 }
 
 init::Done SlotCheck::begin(const Slots& slots) {
     if (child_ > 0) return {}; // it is already running
     child_ = ::fork();
-    if (child_ < 0) return init::failed("the slots are not compared with their sums");
+    if (child_ < 0) return init::failed("the slots cannot be compared with their checksums");
     if (child_ != 0) return {};
     sched_param idle{};
     ::sched_setscheduler(0, SCHED_IDLE, &idle);
@@ -74,7 +75,7 @@ std::string SlotCheck::end(pid_t pid, int code, Slots& slots) {
     const int harm = code < not_looked ? code : 0; // else the child was killed: no result
     const bool gives_up = harm == running_is_harmed && slots.other().is_good();
     const auto done = gives_up ? slots.give_up_running() : slots.end_start((harm & other_is_harmed) == 0);
-    return found(code, gives_up) + (done ? "" : "; what follows of it is not written: " + done.error());
+    return found(code, gives_up) + (done ? "" : "; the result cannot be saved: " + done.error());
 }
 
 } // namespace tappet::box

@@ -218,7 +218,7 @@ init::Done Slots::install(std::string_view kernel, std::string_view header) {
 init::Done Slots::roll_back() {
     if (auto there = need_other(); !there) return there;
     if (!other().is_good())
-        return std::unexpected("the other slot holds a version that failed, or none; bring an update");
+        return std::unexpected("the other slot holds a version that failed, or none; install an update");
     if (auto relied = rely_on_running(); !relied) return relied;
     if (auto kept = write(slots_[1 - running_], Record{}); !kept) return kept;
     return boot_other_next();

@@ -44,7 +44,7 @@ bool has_usb_storage() {
 
 std::expected<Update, std::string> read_update(const std::string& disk, const PublicKey& key) {
     const std::uint64_t claimed = claimed_bytes(read_head(disk, update_header_bytes));
-    if (claimed > most_update_bytes) return std::unexpected("it says that it has more bytes than a slot");
+    if (claimed > most_update_bytes) return std::unexpected("it is larger than a slot");
     return decode(read_head(disk, claimed), key);
 }
 

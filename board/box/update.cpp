@@ -79,7 +79,7 @@ std::expected<PublicKey, std::string> key_of(std::string_view digits) {
     if (sodium_hex2bin(key.data(), key.size(), digits.data(), digits.size(), nullptr, &length, nullptr) !=
             0 ||
         length != key.size() || digits.size() != 2 * key.size())
-        return std::unexpected("\"" + std::string{digits} + "\" is no key of 64 hexadecimal digits");
+        return std::unexpected("\"" + std::string{digits} + "\" is not a key of 64 hexadecimal digits");
     return key;
 }
 
@@ -142,8 +142,8 @@ std::string encode(const Update& update, const SecretKey& key) {
 
 std::expected<Update, std::string> decode(std::string_view bytes, const PublicKey& key) {
     const std::uint64_t claimed = claimed_bytes(bytes);
-    if (claimed == 0) return std::unexpected("it is no update");
-    if (claimed != bytes.size()) return std::unexpected("it is not whole");
+    if (claimed == 0) return std::unexpected("it is not an update");
+    if (claimed != bytes.size()) return std::unexpected("it is incomplete");
     const std::string_view kernel = bytes.substr(update_header_bytes);
     crypto_sign_state state;
     take_in(state, bytes, kernel);

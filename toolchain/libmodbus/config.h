@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What libmodbus's configure script would find out about Debian on x86-64, and one decision of ours. */
+/* The findings of libmodbus's configure script for Debian on x86-64, and one decision of ours. */
 #ifndef TAPPET_LIBMODBUS_CONFIG_H
 #define TAPPET_LIBMODBUS_CONFIG_H
 

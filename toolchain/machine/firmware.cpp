@@ -12,6 +12,7 @@
 #include "toolchain/machine/measure.hpp"
 #include "toolchain/machine/reasons.hpp"
 #include "toolchain/machine/summary.hpp"
+#include "toolchain/version.hpp"
 
 #include <algorithm>
 #include <array>
@@ -51,20 +52,21 @@ struct Options {
 };
 
 constexpr std::string_view usage =
-    "  --summary FILE     writes what it counted there when it ends, as JSON\n"
-    "  --properties DIR   reads the components' properties there and saves them at the end, instead of in "
-    "the "
-    "board's directory\n"
-    "  --take-over DIR    and takes over from there what another version of the machine saved later, as far "
-    "as it fits\n"
-    "  --browse DIR       opens the browsers' socket there instead of in the board's directory\n"
-    "  --black-box DIR    keeps there what is left of an ending that nobody asked for, instead of in the "
-    "board's directory\n"
-    "  --for SECONDS      ends by itself after so long\n"
-    "  --no-guardian      for tests: what a crash leaves on the outputs stays there\n"
-    "  --plan             what the compiler derived from the table: priorities, order, mailboxes, memory\n"
-    "  --board            what the box must bring up for it, for its image\n"
-    "  --measure SECONDS  whether this box can hold what the table claims; the machine does not run\n"
+    "  --summary FILE     writes its counters to FILE as JSON when it ends\n"
+    "  --properties DIR   reads saved properties in DIR and saves them there at the end (default: the "
+    "board's directory)\n"
+    "  --take-over DIR    takes over newer properties that another version of the machine saved in DIR, "
+    "where they fit\n"
+    "  --browse DIR       opens the browsers' socket in DIR (default: the board's directory)\n"
+    "  --black-box DIR    writes the black box of a crash or another unrequested end to DIR (default: the "
+    "board's directory)\n"
+    "  --for SECONDS      ends by itself after SECONDS\n"
+    "  --no-guardian      for tests: no guardian; after a crash the outputs keep their levels\n"
+    "  --plan             prints what the compiler derived from the table: priorities, order, mailboxes, "
+    "memory\n"
+    "  --board            prints what the box's image must bring up for the machine\n"
+    "  --measure SECONDS  measures whether this box can hold the table's claims; the machine does not run\n"
+    "  --version          prints the version of Tappet that it was built from\n"
     "  --help             this text\n";
 
 void read_seconds(std::string_view option, const char* given, Duration& into, Sentence& error) {
@@ -73,7 +75,7 @@ void read_seconds(std::string_view option, const char* given, Duration& into, Se
     std::uint32_t seconds = 0;
     const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
     if (fault != std::errc{} || end != digits.data() + digits.size() || seconds == 0)
-        error = Sentence{"option ", option, ": \"", digits, "\" is no time; write whole seconds, as in ",
+        error = Sentence{"option ", option, ": \"", digits, "\" is not a time; write whole seconds, as in ",
                          option,    " 60"};
     else
         into = std::chrono::seconds{seconds};
@@ -107,7 +109,7 @@ Options parse(int count, char** words, bool has_own) {
                 "DIRECTORY, --black-box DIRECTORY, --for SECONDS, --measure SECONDS, --no-guardian, --plan, "
                 "--board and --help"};
         else if (place != nullptr && i + 1 == count)
-            options.error = Sentence{"option ", word, " needs a name after it"};
+            options.error = Sentence{"option ", word, " needs a value after it"};
         else if (place != nullptr)
             *place = words[++i];
     }
@@ -365,6 +367,7 @@ private:
 
 int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int count, char** words,
                  const FirmwareHooks& hooks) {
+    if (prints_version(count, words, machine.table.name)) return 0;
     const Time begun = machine_clock.now() - os::own_processor_time(); // when the kernel began to load it
     const Options options = parse(count, words, hooks.take != nullptr);
     Run run{machine, devices, hooks, options};

@@ -52,8 +52,8 @@ public:
     bool get_ready() {
         const auto kept = devices_.kept_by_guardian();
         if (!guard_.become_guardian({kept.begin(), kept.size()}))
-            return refuse(
-                Sentence{"it may not stand above the machine's threads; run as root or grant CAP_SYS_NICE"});
+            return refuse(Sentence{
+                "it cannot get a priority above the machine's threads; run as root or grant CAP_SYS_NICE"});
         if (auto prepared = devices_.prepare_safe_ending(); !prepared) return refuse(prepared.error());
         static_cast<void>(watch_.look(os::Clock::monotonic()));
         const Board& board = *instance_.machine().board;
@@ -129,7 +129,7 @@ private:
             const Time asked = std::max(instance_.stop_asked_at(), moves_since_);
             if (now > asked + board.stop_within)
                 return {true, false,
-                        Sentence{"its stop did not come to its end within ", board.stop_within / 1ms, " ms"}};
+                        Sentence{"its stop did not end within ", board.stop_within / 1ms, " ms"}};
             if (runs() && now > asked + board.stop_begins_within())
                 return {true, false,
                         Sentence{"its stop did not begin within ", board.stop_begins_within() / 1ms, " ms"}};
@@ -172,8 +172,8 @@ private:
                       done.confirmed.count() / 1000,
                       " us"};
         if (!done.ended) said.add("; the process does not end");
-        if (done.chips != 0) said.add("; chips that took nothing: ").add(done.chips);
-        if (done.frames != 0) said.add("; frames that nobody confirmed: ").add(done.frames);
+        if (done.chips != 0) said.add("; GPIO chips that refused their safe values: ").add(done.chips);
+        if (done.frames != 0) said.add("; frames without confirmation: ").add(done.frames);
         if (done.servers != 0) said.add("; servers that did not answer: ").add(done.servers);
         static_cast<void>(os::write_all(2, Sentence{said, "\n"}.view()));
         keep(reason, said);

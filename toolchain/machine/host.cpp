@@ -8,6 +8,7 @@
 #include "toolchain/machine/host_options.hpp"
 #include "toolchain/machine/reasons.hpp"
 #include "toolchain/machine/summary.hpp"
+#include "toolchain/version.hpp"
 
 #include <cstdio>
 #include <string>
@@ -48,8 +49,8 @@ public:
             if (!fault.empty()) return fail(Sentence{"option ", option, ": ", fault});
         }
         if (!is_virtual_ && hooks_.look != nullptr && !hooks_.in_real_time)
-            return fail(Sentence{"option --real: this program looks into its machine, which has to wait "
-                                 "meanwhile; leave it out"});
+            return fail(Sentence{"option --real: this program stops its machine to look into it, which needs "
+                                 "virtual time; leave it out"});
         return is_virtual_ ? run_virtual() : run_real();
     }
 
@@ -214,6 +215,7 @@ private:
 int run_host(const AcceptedMachine& machine,
              const std::function<std::unique_ptr<Plant>(std::uint64_t seed)>& make_plant, int count,
              char** words, const HostHooks& hooks) {
+    if (prints_version(count, words, machine.table.name)) return ended_well;
     const std::vector<std::string_view> all(words + 1, words + count);
     const auto options = read_command_line(host_options, all, Others::options);
     if (!options) {

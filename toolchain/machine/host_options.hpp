@@ -13,24 +13,25 @@ inline constexpr std::array host_options{
     Option{"--real", "", "real time, with SCHED_FIFO threads"},
     Option{.name = "--seed",
            .value = "N",
-           .help = "of the plant and of the faults of its wires (default 1)",
+           .help = "seed of the plant and of the faults of its wires (default 1)",
            .is_number = true},
     Option{.name = "--for",
            .value = "SECONDS",
-           .help = "ends after so long, unless the plant is done before (default: what the plant says)",
+           .help = "ends after SECONDS, or earlier when the plant is done (default: the plant's time)",
            .is_number = true,
            .least = 1,
            .most = 1'000'000'000}, // some thirty years
     Option{"--summary", "FILE", "writes what machine and plant counted, as JSON"},
     Option{"--properties", "DIR", "reads the components' properties there and saves them at the end"},
     Option{"--browse", "DIR",
-           "opens a socket for tappet-browse there (with --real: virtual time does not wait for it)"},
-    Option{"--record-can", "DIR", "writes what is on each CAN bus there, as candump -L does"},
+           "opens a socket for tappet-browse in DIR (use --real: virtual time does not wait for browsers)"},
+    Option{"--record-can", "DIR", "records each CAN bus in DIR, in the format of candump -L"},
     Option{"--replay-can", "BUS=FILE",
-           "plays that candump log in place of what the plant sends on the bus, up to its end; FILE@SECONDS: "
-           "it begins so late"},
-    Option{"--quiet", "", "what the machine's components print is not shown; faults are"},
-    Option{"--plan", "", "what the compiler derived from the table: priorities, order, mailboxes, memory"},
+           "replaces the plant's frames on BUS by this candump log until the log ends; FILE@SECONDS: starts "
+           "it after SECONDS"},
+    Option{"--quiet", "", "hides what the machine's components print, but not faults"},
+    Option{"--plan", "",
+           "prints what the compiler derived from the table: priorities, order, mailboxes, memory"},
     Option{"--help", "", "this text"}};
 
 } // namespace tappet

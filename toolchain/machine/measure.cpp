@@ -134,7 +134,7 @@ bool choose(const AcceptedMachine& machine, const Claims& claims, Processors& wa
         if (!machine.table.activities[a].real_time) continue;
         const auto processor = static_cast<std::size_t>(claims.processors[a]);
         if (processor >= most_processors) {
-            say(Sentence{"processor ", processor, " is none of the first 16, which can be measured"});
+            say(Sentence{"processor ", processor, " cannot be measured, only 0 to 15 can"});
             return false;
         }
         wanted[processor] = true;
@@ -188,9 +188,9 @@ bool judge(const AcceptedMachine& machine, const Claims& claims, const Probes& p
         const Duration latest = probes[static_cast<std::size_t>(claims.processors[a])].latest;
         const bool fits = latest <= room;
         holds = holds && fits;
-        say(Sentence{"activity ", row.name, ": may begin ", in_us(room),
-                     " late beside its worst response of ", in_us(Duration{claims.worst_response_ns[a]}),
-                     fits ? ": holds" : ": DOES NOT HOLD"});
+        say(Sentence{"activity ", row.name, ": may start ", in_us(room),
+                     " late in addition to its worst response of ",
+                     in_us(Duration{claims.worst_response_ns[a]}), fits ? ": holds" : ": DOES NOT HOLD"});
     }
     return holds;
 }
@@ -202,7 +202,7 @@ int measure_box(const AcceptedMachine& machine, Duration time) {
     auto* const probes = pages_for<Probes>();
     auto* const claims = pages_for<Claims>();
     if (memory == nullptr || probes == nullptr || claims == nullptr) {
-        say(Sentence{"no memory is left to measure with; stop what else runs"});
+        say(Sentence{"not enough memory to measure; stop other programs"});
         return 2;
     }
     claims->take(machine);
@@ -217,8 +217,7 @@ int measure_box(const AcceptedMachine& machine, Duration time) {
                          (*probes)[p].wakes, " times"});
     const bool holds = judge(machine, *claims, *probes);
     say(Sentence{holds ? "the box can hold the table's claims"
-                       : "the box cannot hold the table's claims; take a "
-                         "quicker one, or longer deadlines"});
+                       : "the box cannot hold the table's claims; use a faster box, or longer deadlines"});
     return holds ? 0 : 1;
 }
 

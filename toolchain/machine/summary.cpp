@@ -201,8 +201,8 @@ void tell_overruns(MachineInstance& instance, std::string_view speaker) {
             os::print(Sentence{speaker, ": frame \"", component, ".", row.name, "\" took ",
                                longest.count() / 1000, " us to its confirmation, the analysis says ",
                                row.worst.count() / 1000,
-                               " us at most: its map or the board says too little of the bus, or the box is "
-                               "slower than the table claims\n"}
+                               " us at most: the map or the board states too little about the bus, or the "
+                               "box is slower than the table claims\n"}
                           .view());
     });
     for (const Engine& engine : instance.engines()) {

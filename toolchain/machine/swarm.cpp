@@ -109,7 +109,7 @@ SwarmVerdict SwarmRun::go() {
             verdict_.broken = Sentence{"it did not begin to work, though nothing was wrong"};
         storm(run_.now() + Duration{random_.between(5'000'000'000, 60'000'000'000)});
         const Time peace = run_.now();
-        say("everything is mended");
+        say("everything is repaired");
         if (mend(rules_->works_within())) judge_forces();
         if (!run_until_works(rules_->works_within()) && verdict_.broken.empty()) {
             verdict_.waited_for = rules_->waits_for();

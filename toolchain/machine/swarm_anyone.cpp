@@ -136,11 +136,10 @@ void SwarmRun::anyone_asks(SwarmBrowser& by, std::string request, const SwarmBro
     by.ask(std::move(request), run_.now(), [this, name, state, is_alone, then](std::string_view answer) {
         if (then) then(answer);
         if (!state.empty() && is_good(answer) && !field_of(answer, "wanted").ends_with(state))
-            deny(Sentence{"who asked why \"", state, "\" is not reached is told of \"",
+            deny(Sentence{"a question why \"", state, "\" is not reached was answered about \"",
                           field_of(answer, "wanted"), "\""});
         if (is_alone && field_of(answer, "error").starts_with("too many requests"))
-            deny(Sentence{
-                "an engineer who asks for one thing is not served: people of lower roles have every place"});
+            deny(Sentence{"an engineer's request is not served: lower roles occupy every place"});
         if (!name.empty() && is_good(answer)) judge_shown(name, answer);
     });
 }
@@ -155,7 +154,7 @@ void SwarmRun::judge_shown(const std::string& name, std::string_view answer) {
             oldest = std::max(oldest, table.connections[x].max_age);
     const Time stamp{Duration{std::strtoll(field_of(answer, "time_ns").c_str(), nullptr, 10)}};
     if (oldest > Duration{} && run_.now() - stamp > oldest + told_late)
-        deny(Sentence{"input \"", name, "\" is shown as fresh, and was written ", (run_.now() - stamp) / 1ms,
+        deny(Sentence{"input \"", name, "\" is shown as fresh, but was written ", (run_.now() - stamp) / 1ms,
                       " ms ago"});
 }
 
@@ -178,11 +177,11 @@ void SwarmRun::execute(const std::string& line, std::optional<unsigned> begun_be
             lines_.left_commands |= sends_command(line);
         }
         if (why.starts_with("commands of earlier lines") && !lines_.left_commands && !lines_.of_peers)
-            deny(Sentence{"an engineer's line finds no place: commands of operators' lines have every one"});
+            deny(Sentence{"an engineer's line is refused: commands of operators' lines occupy every place"});
         if (!why.starts_with("another line is at work") || lines_.at_work > 0 || lines_.of_peers) return;
         if (begun_before && *begun_before == lines_.begun) // else the engineers broke off their own line
-            return deny(
-                Sentence{"an engineer who broke a line off finds the next one of a lower role at work"});
+            return deny(Sentence{"an engineer stopped a line, but the next line of a lower role runs instead "
+                                 "of the engineer's"});
         if (begun_before) return;
         // Not immediately: somebody else may be faster.
         anyone_asks(browser_, "break_off", [this, line, begun = lines_.begun](std::string_view broken_off) {

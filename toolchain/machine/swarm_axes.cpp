@@ -73,7 +73,7 @@ void SwarmWires::hear_homing(Axis& axis, std::string_view device, const can::Fra
                           struck_.whole_for(axis.driver, frame.stamp) >= Duration{} &&
                           frame.stamp >= axis.excused;
     if (state == "Standstill" && std::exchange(axis.goes_home, false) && !axis.goes_anew)
-        heard_ = Sentence{"axis \"", axis.name, "\" is home, and its drive said so of the homing before"};
+        heard_ = Sentence{"axis \"", axis.name, "\" is home, but its drive reported the previous homing"};
     axis.goes_anew = state == "Homing" &&
                      (axis.goes_anew || !is_whole ||
                       (axis.shows_homing && (can::extract(frame.data, *axis.word.signal) & ended) == 0));
@@ -112,7 +112,7 @@ void SwarmWires::hear_axis(Axis& axis, std::string_view device, const can::Frame
         if (axis.sent_to && std::abs(place - *axis.sent_to) > far * axis.stands_below)
             heard_ = Sentence{"axis \"",
                               axis.name,
-                              "\" follows positions, and is sent from ",
+                              "\" follows positions, but its target jumps from ",
                               std::int64_t{std::llround(*axis.sent_to)},
                               " to ",
                               std::int64_t{std::llround(place)},
@@ -144,7 +144,7 @@ void SwarmWires::judge_place(Axis& axis, std::string_view device, const can::Fra
                           "\" is in \"",
                           state,
                           "\", and its drive ",
-                          state == "ErrorStop" ? "is told to be enabled" : "follows positions"};
+                          state == "ErrorStop" ? "has the order to enable" : "follows positions"};
     if (!axis.is_enabled || frame.stamp < axis.excused || axis.rests_since == never ||
         frame.stamp - axis.rests_since < comes_to_rest) {
         axis.rests_at = {};

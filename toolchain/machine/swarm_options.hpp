@@ -7,7 +7,7 @@ namespace tappet::swarm_options {
 
 inline constexpr Option findings{.name = "--findings",
                                  .value = "N",
-                                 .help = "ends after so many broken seeds (default 10)",
+                                 .help = "ends after N broken seeds (default 10)",
                                  .is_number = true,
                                  .least = 1};
 inline constexpr std::uint64_t usual_findings = 10; // more findings would repeat themselves
@@ -15,7 +15,7 @@ inline constexpr Option from{
     .name = "--from", .value = "SEED", .help = "the first seed (default 1)", .is_number = true};
 inline constexpr Option step{.name = "--step",
                              .value = "N",
-                             .help = "from one seed to the next (default 1)",
+                             .help = "step from one seed to the next (default 1)",
                              .is_number = true,
                              .least = 1};
 inline constexpr Option help{"--help", "", "this text"};

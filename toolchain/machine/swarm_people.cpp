@@ -117,18 +117,18 @@ void SwarmRun::judge_watched() {
         watched_.owed = 0;
     }
     if (watched_.before + watched_.told > came)
-        deny(Sentence{"a browser was told of more emissions than there were"});
+        deny(Sentence{"a browser received more emissions than there were"});
     if (std::exchange(watched_.was_told, false) && watched_.lost < watched_.known_lost)
-        deny(Sentence{"emissions were lost, and who watched them was told of fewer"});
+        deny(Sentence{"emissions were lost, but their watcher was told of fewer"});
     const std::uint64_t lost = counts.lost + counts.dropped - watched_.lost_before,
                         unseen = watched_.lost - std::min(watched_.lost, lost);
     if (watched_.lost > counts.lost + counts.dropped - watched_.lost_when_asked)
         deny(Sentence{
-            "an engineer's only event is lost in the service: those of lower roles have every place"});
+            "an engineer's only event is lost in the service: events of lower roles occupy every place"});
     watched_.known_lost = lost;
     if (run_.now() - watched_.looked < told_within) return;
     if (watched_.before + watched_.told + unseen < watched_.owed)
-        deny(Sentence{"an emission was lost, and who watched it was not told"});
+        deny(Sentence{"an emission was lost, but its watcher was not told"});
     watched_.looked = run_.now();
     watched_.owed = came;
 }
@@ -290,7 +290,7 @@ void SwarmRun::strike_slot() {
                              (random_.one_in(2) ? " now" : " " + std::to_string(random_.below(360)));
     const auto judge_load = [this, &script](std::string_view answer) {
         if (is_good(answer) && !script.compiles)
-            deny(Sentence{"\"", script.name, "\" was taken, which does not compile"});
+            deny(Sentence{"\"", script.name, "\" was accepted, but does not compile"});
         if (field_of(answer, "code") == "bad_value" && script.compiles)
             deny(Sentence{"\"", script.name, "\" was refused: ", field_of(answer, "error")});
     };
@@ -346,7 +346,7 @@ void SwarmRun::judge_saved(bool with_values) {
         PropertyTransaction saved;
         saved.begin(row.name, *row.type, run_.instance().component(c));
         if (const Sentence refused = files_->load(row, saved); !refused.empty())
-            return deny(Sentence{"what is saved is refused: ", refused});
+            return deny(Sentence{"the saved properties are refused: ", refused});
         for (const auto& [name, set] : set_values_) {
             End end;
             static_cast<void>(resolve(table, name, FacetKind::property, end));

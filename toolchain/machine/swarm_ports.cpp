@@ -56,7 +56,7 @@ Sentence SwarmPorts::misleads(const AtRest& each) const {
     std::memcpy(&says, places.value, sizeof says);
     if (*places.forced || says == each.says) return {};
     return Sentence{"\"", name_of(each.end), "\" says ", says ? "true" : "false",
-                    " though its component stands"};
+                    " though its component is stopped"};
 }
 
 /// Any other port must return to a number, whatever it received.
@@ -72,7 +72,7 @@ Sentence SwarmPorts::is_none(Real& each, Time now) const {
     }
     const bool is_number_now = is_number(value);
     if (!is_number_now && each.is_judged)
-        return Sentence{"\"", name_of(each.end), "\" is no number, though limits or a driver judge it"};
+        return Sentence{"\"", name_of(each.end), "\" is not a number, though limits or a driver check it"};
     const bool runs = instance_->life().state_of(each.end.component) == ComponentState::running;
     if (is_number_now || !runs) {
         each.none_since = never;
@@ -83,7 +83,7 @@ Sentence SwarmPorts::is_none(Real& each, Time now) const {
     if (each.none_since == never || now - each.none_since < forgets_within ||
         *places.writes - each.written_then < forgets_in)
         return {};
-    return Sentence{"\"", name_of(each.end), "\" stays no number"};
+    return Sentence{"\"", name_of(each.end), "\" does not become a number again"};
 }
 
 Sentence SwarmPorts::broken(Time now) {

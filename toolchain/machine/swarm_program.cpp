@@ -4,6 +4,7 @@
 #include "kernel/os/terminal.hpp"
 #include "toolchain/machine/swarm.hpp"
 #include "toolchain/machine/swarm_options.hpp"
+#include "toolchain/version.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,39 +21,44 @@ namespace {
 constexpr std::array options{
     Option{.name = "--hours",
            .value = "N",
-           .help = "so many hours of the machine (default 1)",
+           .help = "N hours of the machine's time (default 1)",
            .is_number = true,
            .least = 1,
            .most = 1'000'000},
-    Option{
-        .name = "--minutes", .value = "N", .help = "so many minutes instead", .is_number = true, .least = 1},
+    Option{.name = "--minutes",
+           .value = "N",
+           .help = "N minutes of the machine's time instead",
+           .is_number = true,
+           .least = 1},
     Option{.name = "--working",
            .value = "N",
-           .help = "so many seconds of this processor instead",
+           .help = "N seconds of processor time instead",
            .is_number = true,
            .least = 1},
     swarm_options::findings,
     swarm_options::from,
     swarm_options::step,
-    Option{.name = "--bit-rate",
-           .value = "N",
-           .help = "cycles take times drawn up to their budgets, frames theirs at so many bit/s (no time)",
-           .is_number = true,
-           .least = 1,
-           .most = 1'000'000},
+    Option{
+        .name = "--bit-rate",
+        .value = "N",
+        .help =
+            "cycles take random times up to their budgets, frames their times at N bit/s (default: no time)",
+        .is_number = true,
+        .least = 1,
+        .most = 1'000'000},
     Option{.name = "--data-bit-rate",
            .value = "N",
-           .help = "of CAN FD's data phase (as --bit-rate)",
+           .help = "bit rate of CAN FD's data phase (default: --bit-rate)",
            .is_number = true,
            .least = 1,
            .most = 10'000'000},
     Option{"--anyone", "",
-           "people may do anything, and only what holds of every machine is judged; so it is of a machine "
-           "without a SWARM"},
-    Option{"--calm", "", "nothing fails: for the responses of a machine that works"},
+           "people may do anything; checks only the rules of every machine (default for a machine without a "
+           "SWARM)"},
+    Option{"--calm", "", "nothing fails: measures the responses of a working machine"},
     Option{.name = "--seed",
            .value = "SEED",
-           .help = "this one only, and tells what happens",
+           .help = "runs only SEED, and prints what happens",
            .is_number = true},
     swarm_options::help};
 enum Ending : int { none_broken = 0, one_broken = 1, wrong_words = 2 };
@@ -121,7 +127,7 @@ struct Totals {
             print(Sentence{"activity ", machine.table.activities[a].name, ": longest response ",
                            usual[a] / 1us, " us of ", analysed[a] / 1us, " us analysed, ",
                            100 * usual[a] / analysed[a], " %; ", responses[a] / 1us,
-                           " us where some came more often than their rows say\n"}
+                           " us where some were woken more often than their rows say\n"}
                       .view());
         }
     }
@@ -139,7 +145,7 @@ struct Totals {
                       .view());
         }
         for (const auto& [what, by] : waited_for)
-            print(Sentence{"worked again after a restart only, ", by.size(), " times, as with seed ",
+            print(Sentence{"worked again only after a restart, ", by.size(), " times, for example with seed ",
                            by.front(), ": waited for ", what, "\n"}
                       .view());
     }
@@ -149,6 +155,7 @@ struct Totals {
 
 int run_swarm(SwarmOf of, int count, char** words) {
     const std::string_view name = of.machine.table.name;
+    if (prints_version(count, words, name)) return none_broken;
     const std::vector<std::string_view> all(words + 1, words + count);
     const auto given = read_command_line(options, all, Others::refused);
     if (!given) {

@@ -113,12 +113,12 @@ Sentence SwarmWires::told_otherwise(Output& output, const std::optional<std::uin
     const Numbers& numbers = output.numbers;
     const double nearest = std::clamp(wanted, numbers.least, numbers.most);
     Sentence text{"output \"", output.name, "\" "};
-    if (!value) return text.add("is not said any more, though its driver runs");
+    if (!value) return text.add("is no longer sent, though its driver runs");
     const bool is_safe = output.safe && *value == *output.safe;
     if (is_safe ||
         std::abs(output.physical(*value) - nearest) <= std::max(numbers.step, 1e-6 * std::abs(nearest)))
         return {};
-    return told(output, *value).add(", and its driver is told ").add(std::int64_t{std::llround(nearest)});
+    return told(output, *value).add(", but its driver's input is ").add(std::int64_t{std::llround(nearest)});
 }
 
 } // namespace tappet

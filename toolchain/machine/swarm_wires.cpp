@@ -204,8 +204,8 @@ void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
             const bool named = can::is_integer(signal) && signal.has_name(can::to_integer(signal, raw));
             const bool is_safe = signal.says_safe && raw == can::to_raw(signal, signal.safe_value).bits;
             if (!std::isfinite(value))
-                heard_ =
-                    Sentence{"\"", device, "\": ", row.name, ".", signal.name, " goes out and is no number"};
+                heard_ = Sentence{
+                    "\"", device, "\": ", row.name, ".", signal.name, " is sent and is not a number"};
             else if (signal.has_range && !named && !is_safe &&
                      (value < signal.least - rounding || value > signal.most + rounding))
                 heard_ = Sentence{"\"",
@@ -214,9 +214,9 @@ void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
                                   row.name,
                                   ".",
                                   signal.name,
-                                  " goes out as ",
+                                  " is sent as ",
                                   std::int64_t{std::llround(value)},
-                                  ", outside of its range"};
+                                  ", outside its range"};
         }
     }
 }
@@ -274,17 +274,17 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
         if (left_ != nullptr && known != left_->end() && !known->second.holds) {
             if (!is_safe && std::ranges::find(known->second.values, *value) == known->second.values.end())
                 return told(output, *value)
-                    .add(", though nothing that drives it runs, and that is not what its stop leaves there");
+                    .add(", though no component that drives it runs; its stop leaves another value");
         } else if (!is_safe && output.is_switch && output.before && *output.before != *value) {
             return told(output, *value)
-                .add(", though nothing that drives it runs: it was switched by what is stopped");
+                .add(", though no component that drives it runs: a stopped component switched it");
         }
     } else if (*output.left != *value) {
         if (!is_safe)
             return told(output, *value)
-                .add(", though nothing that drives it runs: it was ")
+                .add(", though no component that drives it runs: it was ")
                 .add(*output.left)
-                .add(" when the last of it had stopped");
+                .add(" when the last of them stopped");
         output.left = value;
     }
     return {};
@@ -310,9 +310,8 @@ Sentence SwarmWires::broken_at_rest(bool by_guardian) const {
         if (!each.safe || struck_.whole_for(each.driver, never) < Duration{}) continue;
         if (const auto value = each.read(); value && *value != *each.safe)
             return told(each, *value)
-                .add(by_guardian ? ", though its guardian has left it safe"
-                                 : ", though the machine has stopped, and says of no device that it was not "
-                                   "reached");
+                .add(by_guardian ? ", though its guardian made it safe"
+                                 : ", though the machine has stopped and reports every device as reached");
     }
     return {};
 }

@@ -4,6 +4,7 @@
 #include "apps/carpet_loom/demo/verdict.hpp"
 #include "apps/carpet_loom/demo/view.hpp"
 #include "toolchain/tools/bench/folders.hpp"
+#include "toolchain/version.hpp"
 
 #include <csignal>
 #include <cstdio>
@@ -40,7 +41,7 @@ std::string contents_of(const std::filesystem::path& path) {
 int complain(const Story& story, bool already_shown, const std::string& what) {
     if (!already_shown)
         for (const std::string& message : story.messages()) std::fprintf(stdout, "  %s\n", message.c_str());
-    std::printf("the run did not come to its end: %s\n", what.c_str());
+    std::printf("the run did not finish: %s\n", what.c_str());
     return did_not_end;
 }
 
@@ -121,6 +122,7 @@ int weave(const CommandLine& options) {
 } // namespace
 
 int main(int count, const char* const* arguments) {
+    if (prints_version(count, arguments, "carpet-loom-demo")) return all_well;
     const std::vector<std::string_view> words(arguments + 1, arguments + count);
     const auto options = read_options(words);
     if (!options) {

@@ -169,7 +169,7 @@ std::expected<Verdict, std::string> judge(std::string_view machine, std::string_
         const Json run = merged(machine, plant);
         return Verdict{run.dump(2) + "\n", table_of(run), faults_of(run, picks_wanted)};
     } catch (const Json::exception& error) {
-        return std::unexpected(std::string{"what firmware and plant counted is not as it should be: "} +
+        return std::unexpected(std::string{"the summary of the firmware or of the plant is invalid: "} +
                                error.what());
     }
 }

@@ -20,7 +20,7 @@ browser::WatchPicture picture_of(const Story& story, std::int64_t picks_wanted, 
     browser::WatchPicture picture;
     picture.title = "carpet loom on the bench  pick " + std::to_string(story.number("picks")) + " of " +
                     std::to_string(picks_wanted) + "  " + std::to_string(static_cast<int>(wall_s)) +
-                    " s of ours";
+                    " s of wall time";
     picture.status = !story.messages().empty() ? story.messages().back()
                      : story.status().empty()  ? "booting the emulated box"
                                                : "^C ends";

@@ -95,10 +95,10 @@ bool read_option(std::string_view word, std::string_view value, Settings& to, bo
 }
 
 std::string_view usage() {
-    return "  --picks N               ends when N picks are woven and the loom stands (not)\n"
-           "  --picks-after-usr1 N    ends not before USR1 came, and N picks later at least (nobody sends "
-           "it)\n"
-           "  --operator-reaction T   from standstill to the repair (1s)\n"
+    return "  --picks N               ends when N picks are woven and the loom stands (default: never)\n"
+           "  --picks-after-usr1 N    ends at the earliest N picks after the signal USR1 (default: waits for "
+           "no signal)\n"
+           "  --operator-reaction T   time from standstill to the repair (default 1s)\n"
            "chances per pick, one in N: --weft-break-one-in --warp-break-one-in --operator-stop-one-in\n"
            "  --emergency-stop-one-in\n"
            "faults, WHEN[/DURATION], WHEN = picks (40) or time (20s, 500ms); without duration until "

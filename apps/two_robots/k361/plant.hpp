@@ -88,8 +88,8 @@ public:
 
     [[nodiscard]] std::string_view usage() const override {
         return "  --picture FILE      draws the run as SVG: tip, shaft in the hole, body, states\n"
-               "  --body-at PORT      the body's robot runs elsewhere on this box; its plant tells its "
-               "joints there\n";
+               "  --body-at PORT      another program on this box runs the body's robot; its plant sends the "
+               "joints to PORT\n";
     }
     bool take_option(std::string_view option, std::string_view value, Sentence& fault) override {
         if (option == "--picture") picture = value;

@@ -78,11 +78,11 @@ protected:
     static constexpr auto estimator_facets(const Facets&... more) {
         return facets(
             input<&Own::leds>("leds", "m", "at the time of their exposure"),
-            input<&Own::before>("before", "", "the model of the one whose place it takes", optional),
+            input<&Own::before>("before", "", "the model of the estimator that it replaces", optional),
             output<&Own::model>("model", "", "where the body is now, and its twist; while it is known"),
             output<&Own::good>("good", "", "the body is known"),
             property<&Own::predicts>("predicts", "",
-                                     "false: the last exposure as it is, to see what that costs"),
+                                     "false: uses the last exposure without prediction, for comparison"),
             more...);
     }
 

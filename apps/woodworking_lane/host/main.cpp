@@ -2,6 +2,7 @@
 #include "apps/woodworking_lane/host/lane_run.hpp"
 #include "kernel/system/resolve.hpp"
 #include "toolchain/command_line.hpp"
+#include "toolchain/version.hpp"
 
 #include <cstdio>
 #include <fstream>
@@ -13,17 +14,17 @@ using namespace woodworking;
 constexpr std::array options{
     Option{.name = "--seed",
            .value = "N",
-           .help = "of the boards, the clocks and the wire (default 1)",
+           .help = "seed of the boards, the clocks and the wire (default 1)",
            .is_number = true},
     Option{.name = "--boards",
            .value = "N",
-           .help = "are laid on (default 12)",
+           .help = "number of boards (default 12)",
            .is_number = true,
            .least = 1,
            .most = 1000},
     Option{"--silence", "NODE", "that machine is killed after 40 s and started again after 50 s"},
     Option{"--browse", "DIR",
-           "each machine has a socket for tappet-browse there; time then goes at the pace of this host's"},
+           "opens a socket of each machine for tappet-browse in DIR; time then passes at this host's pace"},
     Option{"--picture", "FILE", "draws boards over time and position, as SVG"},
     Option{"--help", "", "this text"}};
 
@@ -69,6 +70,7 @@ int run_lane(const CommandLine& given) {
 } // namespace
 
 int main(int count, char** words) {
+    if (prints_version(count, words, "woodworking_lane")) return 0;
     const std::vector<std::string_view> given{words + 1, words + count};
     const auto line = read_command_line(options, given, Others::refused);
     if (!line) return fail(line.error());

@@ -7,6 +7,7 @@
 #include "kernel/machine/check/board.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/notify.hpp"
+#include "toolchain/version.hpp"
 
 #include <charconv>
 #include <csignal>
@@ -51,9 +52,9 @@ struct Options {
 };
 
 constexpr const char* usage =
-    "  --seed N                which plant (1)\n"
-    "  --report FILE           where the JSON of what it measured goes (standard output)\n"
-    "  --period T              of looking at the wires, 50us to 10ms (200us)\n"
+    "  --seed N                seed of the plant (default 1)\n"
+    "  --report FILE           writes its measurements to FILE as JSON (default: standard output)\n"
+    "  --period T              polls the wires with this period, 50us..10ms (default 200us)\n"
     "  --help                  this text\n"
     "the wires themselves: --stop-servers-at T/DURATION --bus-off-at T --die-at T\n";
 
@@ -86,7 +87,7 @@ Sentence parse(int count, char** words, Options& to) {
             to.help = true;
             continue;
         }
-        if (i + 1 == count) return Sentence{"option ", word, " is unknown, or wants a value; see --help"};
+        if (i + 1 == count) return Sentence{"option ", word, " is unknown, or needs a value; see --help"};
         const std::string_view value = words[++i];
         bool right = true;
         if (word == "--seed")
@@ -227,7 +228,8 @@ void become_real_time(const char* name) {
     sched_param parameter{};
     parameter.sched_priority = plant_priority;
     if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0 || mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
-        std::fprintf(stderr, "%s: SCHED_FIFO %d: %s; it will be late when others compute; start it as root\n",
+        std::fprintf(stderr,
+                     "%s: SCHED_FIFO %d: %s; it will be late when other programs compute; start it as root\n",
                      name, plant_priority, std::strerror(errno));
 }
 
@@ -259,6 +261,7 @@ int run_plant(const MachineView& machine, const Board& board, const Binding& bin
               const std::function<std::unique_ptr<Plant>(std::uint64_t seed)>& make_plant, int count,
               char** words) {
     const std::string name = std::string{machine.name} + "-plant";
+    if (prints_version(count, words, name)) return ended_well;
     const auto fail = [&name](const Sentence& why) {
         std::fprintf(stderr, "%s: %s\n", name.c_str(), std::string{why.view()}.c_str());
         return wrong_set_up;
@@ -268,7 +271,7 @@ int run_plant(const MachineView& machine, const Board& board, const Binding& bin
     const std::unique_ptr<Plant> plant = make_plant(options.seed);
     if (options.help) {
         std::fprintf(
-            stdout, "%s: the plant of the machine at the other end of the wires of board \"%s\"\n%s%s",
+            stdout, "%s: simulates the machine's plant at the other end of the wires of board \"%s\"\n%s%s",
             name.c_str(), std::string{board.name}.c_str(), usage, std::string{plant->usage()}.c_str());
         return ended_well;
     }

@@ -41,9 +41,10 @@ std::uint16_t elf_machine_of(const std::filesystem::path& file) {
 const Architecture& architecture_of(std::uint16_t elf, const std::filesystem::path& program) {
     const auto found = std::ranges::find(architectures(), elf, &Architecture::elf);
     if (found == architectures().end())
-        throw BenchError("'" + program.string() +
-                         "' is a program for a processor of which the bench has no box; build it for x86-64 "
-                         "or aarch64");
+        throw BenchError(
+            "'" + program.string() +
+            "' is a program for a processor that the bench does not emulate; build it for x86-64 "
+            "or aarch64");
     return *found;
 }
 

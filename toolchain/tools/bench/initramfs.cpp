@@ -135,7 +135,7 @@ void Initramfs::add_file(const fs::path& host, const std::string& guest) {
     if (elf != 0 && elf != architecture_.elf) {
         throw BenchError("'" + host.string() + "' is a program for " + architecture_of(elf, host).name +
                          ", and the first one given makes this box an " + architecture_.name +
-                         "; give programs of one architecture, and of the host's tools none to another");
+                         "; give programs of one architecture, and no tools of the host to a box of another");
     }
     present_.insert(guest);
     // Not the file's own mode, which depends on its builder: the same files must give the same archive.
@@ -163,7 +163,7 @@ void Initramfs::add_libraries(const fs::path& program) {
 void Initramfs::add(const fs::path& host, const std::string& guest) {
     if (guest.empty() || guest.front() != '/') {
         throw BenchError("'" + guest +
-                         "' is no place in the guest; give an absolute path, as in --file HOST=/GUEST");
+                         "' is not a path in the guest; give an absolute path, as in --file HOST=/GUEST");
     }
     if (!fs::exists(host)) {
         throw BenchError("'" + host.string() +

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "toolchain/tools/bench/bench.hpp"
+#include "toolchain/version.hpp"
 
 namespace tappet::bench {
 namespace {
@@ -117,6 +118,7 @@ bool take(Request& request, const std::string& option, const std::string& value)
 }
 
 Request parse(int count, char** arguments) {
+    if (prints_version(count, arguments, "tappet-bench")) std::exit(0);
     Request request;
     for (int i = 1; i < count; ++i) {
         const std::string option = arguments[i];

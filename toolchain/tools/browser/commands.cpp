@@ -41,25 +41,25 @@ constexpr Command asks(std::string_view name, Run* run, Names names = Names::fir
 // clang-format off
 constexpr auto own = std::to_array<Command>({
     {"list",    "list [COMPONENT]",                        "components, or the facets of one with type, unit and meaning", Takes::component, 0, 1, run_list, Among::each},
-    {"get",     "get NAME...",                             "values, those of one activity of one moment; a component's name: all of its values", Takes::value, 1, any, run_get, Among::values},
-    {"watch",   "watch NAME... [--every TIME] [--count N]", "values again and again; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch, Among::values},
+    {"get",     "get NAME...",                             "values; those of one activity are of one moment; a component's name stands for all of its values", Takes::value, 1, any, run_get, Among::values},
+    {"watch",   "watch NAME... [--every TIME] [--count N]", "values repeatedly; on a terminal a view that refreshes, q ends it", Takes::value, 1, any, run_watch, Among::values},
     {"tree",    "tree [COMPONENT]",                        "components, facets and what is connected to them", Takes::component, 0, 1, run_tree, Among::each},
     {"info",    "info [NAME]",                             "the machine and its activities, or everything about one name", Takes::anything, 0, 1, run_info, Among::each},
     {"manifest", "manifest",                               "the machine's table as it is in effect: properties, derived priorities, all rows", Takes::nothing, 0, 0, run_manifest, Among::each},
-    {"reactions", "reactions",                             "how long each row took, from the edge or the frame that set it off to the end of what it led to", Takes::nothing, 0, 0, run_reactions, Among::each},
+    {"reactions", "reactions",                             "how long each row took, from the edge or frame that triggered it to the end of its last effect", Takes::nothing, 0, 0, run_reactions, Among::each},
     {"forced",  "forced",                                  "the ports that are forced now", Takes::nothing, 0, 0, run_forced, Among::each},
-    {"events",  "events EVENT... [--count N]",             "tells each emission with its arguments", Takes::event, 1, any, run_events, Among::values},
+    {"events",  "events EVENT... [--count N]",             "prints each emission with its arguments", Takes::event, 1, any, run_events, Among::values},
     asks("set", run_set, Names::every_other), asks("call", run_call), asks("send", run_send),
-    {"execute", "execute LINE... [--stop]",                "a line of the script language: an expression, whose value is told, or statements such as do, set, wait, until they end (operator); --stop: ends the one at work", Takes::anything, 0, any, run_execute, Among::one, Names::none},
+    {"execute", "execute LINE... [--stop]",                "runs a line of the script language to its end: an expression, whose value is printed, or statements such as do, set, wait (operator); --stop: ends the running line", Takes::anything, 0, any, run_execute, Among::one, Names::none},
     asks("force", run_force), asks("release", run_force),
     {"behaviour", "behaviour [list [NAME] | watch [NAME] [--every TIME] [--count N] | start|stop|pause|step|reset|deactivate|reactive NAME | request NAME STATE | load FILE SLOT [--at EVENT|DEGREES] | unload SLOT | rollback SLOT]",
                                                            "state machines and programs: their states and variables, commands to them, scripts into a slot (engineer)", Takes::nothing, 0, 3, run_behaviour, Among::each, Names::behind_action},
     asks("why", run_why),
-    {"post-mortem", "post-mortem FILE [COMMAND...] [--to FILE] [--count N]",       "what a guardian kept of a machine that ended otherwise than asked: why, where each activity stood; or a command that reads, as of a machine that lives", Takes::nothing, 1, any, run_post_mortem, Among::one, Names::none},
+    {"post-mortem", "post-mortem FILE [COMMAND...] [--to FILE] [--count N]",       "the guardian's black box of a machine that ended unexpectedly: the reason, and where each activity stood; or a reading command, as for a running machine", Takes::nothing, 1, any, run_post_mortem, Among::one, Names::none},
     {"scope", "scope [worst [ACTIVITY] [--count N] | record [--for TIME]] [--to FILE.vcd|FILE.json]",
                                                            "the worst cycles and what ran in and around them; record: everything that runs from now on; as text, and as a file for GTKWave or ui.perfetto.dev", Takes::nothing, 0, 2, run_scope, Among::one, Names::second},
     {"report", "report [list | start FILE.mcap [--for TIME] | stop FILE.mcap | convert FILE.mcap FILE.csv]",
-                                                           "the values that the machine's table says are recorded; start: into a file, until ^C, stop or TIME; convert: such a file as a table", Takes::nothing, 0, 3, run_report, Among::each, Names::none},
+                                                           "the values that the machine's table selects for recording; start: records them into a file, until ^C, stop or TIME; convert: writes such a file as a table", Takes::nothing, 0, 3, run_report, Among::each, Names::none},
 });
 // clang-format on
 
@@ -156,7 +156,7 @@ Result<void> check_options(const Command* command, const Line& line) {
         if (std::ranges::find(options(), option, &Option::name)->of_all ||
             (command != nullptr && takes(*command, option)))
             continue;
-        std::string sentence = (command == nullptr ? "without a command nothing takes "
+        std::string sentence = (command == nullptr ? "only a command takes "
                                                    : "'" + std::string{command->name} + "' takes no ") +
                                option + "; ";
         for (const Command& each : commands())
@@ -173,7 +173,7 @@ Result<void> run_command(Work& work) {
     const std::size_t count = work.arguments().size();
     if (count < command->fewest || count > command->most)
         return wrong("'" + std::string{command->name} + "' was given " + std::to_string(count) +
-                     " arguments; it is spelled: " + std::string{command->usage});
+                     " arguments; usage: " + std::string{command->usage});
     return command->run(work);
 }
 
@@ -262,17 +262,17 @@ std::string usage() {
     }
     text +=
         "\n"
-        "  --socket [NAME=]FILE  of the machine, once for each; else of all that are in the directory\n"
+        "  --socket [NAME=]FILE  socket of a machine, once for each (default: all in the directory)\n"
         "  --directory DIR       where machines have their sockets (/run/tappet)\n"
         "  --json                one JSON object a line\n"
         "  --timeout TIME        how long an answer may take (3s)\n\n"
-        "Where several machines are, list tells who is there, and names begin with the machine's, as in "
+        "With several machines, list shows them, and names begin with the machine's name, as in "
         "saw.station.number;\n"
-        "any command may be given a machine first, as in manifest saw. Who does not answer is told, and the "
-        "others go on.\n\n"
+        "any command may name a machine first, as in manifest saw. A machine that does not answer is "
+        "reported; the others continue.\n\n"
         "Values are written as they are shown: 4ms, 0.25, true, \"text\", [1, 2, 3]; --json shows all "
         "digits.\n"
-        "Negative numbers need no care; after -- everything is a word.\n\n"
+        "Negative numbers need no quotes; after -- each word is an argument.\n\n"
         "Exit codes: 0 done; 1 refused by the machine; 2 a wrong command line or a name that it does not "
         "have;\n"
         "3 no machine; 4 the command was rejected or failed; 5 no answer in time, or a value always busy.\n";

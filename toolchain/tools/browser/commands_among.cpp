@@ -266,11 +266,10 @@ void AtMachines::run() {
     if (!parts) return fail(parts);
     if (command->among == Among::values && !parts->empty()) return at_parts(*parts);
     if (parts->size() > 1)
-        return fail(wrong("'" + std::string{command->name} +
-                          "' is about one machine at a time; these are of " + (*parts)[0].first->name +
-                          " and " + (*parts)[1].first->name));
+        return fail(wrong("'" + std::string{command->name} + "' takes names of one machine; these are of " +
+                          (*parts)[0].first->name + " and " + (*parts)[1].first->name));
     if (parts->empty())
-        return fail(wrong("say of which machine, as in '" + std::string{command->name} + " " +
+        return fail(wrong("name one machine, as in '" + std::string{command->name} + " " +
                           machines.all().front().name + "'; there are " + machines.names()));
     at(*parts->front().first, line);
 }

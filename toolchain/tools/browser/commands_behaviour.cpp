@@ -120,7 +120,7 @@ void print_way(std::ostream& out, const ordered_json& way) {
     else if (answer == "failed")
         out << link << "its guard fails";
     else
-        out << link << "the machine went on meanwhile: ask again";
+        out << link << "the machine's state changed meanwhile: ask again";
     out << "\n";
 }
 
@@ -181,7 +181,7 @@ Result<void> run_behaviour(Work& work) {
         if (const std::string nearest = MapReader::nearest_of(action, actions); !nearest.empty())
             return wrong("there is no 'behaviour " + action + "'" + nearest);
     return wrong("'behaviour " + action +
-                 "' is not spelled so; it is: " + std::string{find_command("behaviour")->usage});
+                 "' has the wrong arguments; usage: " + std::string{find_command("behaviour")->usage});
 }
 
 } // namespace tappet::browser

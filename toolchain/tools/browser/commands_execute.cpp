@@ -53,8 +53,7 @@ Result<ordered_json> await_end(Work& work, std::uint32_t number) {
 
 Result<void> run_execute(Work& work) {
     if (work.line.stop != work.arguments().empty())
-        return wrong("execute takes a line or --stop; it is spelled: " +
-                     std::string{find_command("execute")->usage});
+        return wrong("execute takes a line or --stop; usage: " + std::string{find_command("execute")->usage});
     if (work.line.stop) return break_off(work);
     std::string line;
     for (const std::string& word : work.arguments()) line += (line.empty() ? "" : " ") + word;

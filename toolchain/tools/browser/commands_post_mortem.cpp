@@ -71,7 +71,7 @@ Result<void> tell(Work& work) {
 
 Result<void> run_post_mortem(Work& work) {
     if (work.session.black_box() == nullptr)
-        return wrong("this machine lives; begin with tappet-browse post-mortem FILE");
+        return wrong("this machine is running; start with tappet-browse post-mortem FILE");
     if (work.arguments().size() == 1) return tell(work);
     Line line = work.line;
     line.words.erase(line.words.begin(), line.words.begin() + 2);

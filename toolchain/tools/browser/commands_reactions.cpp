@@ -71,7 +71,7 @@ Result<void> run_reactions(Work& work) {
                      << moment_text(t.longest_ns) << "\n    " << histogram_text(t) << "\n";
         }
     }
-    if (!any_shown && !work.line.json) work.out << "no row was set off by an edge or a frame yet\n";
+    if (!any_shown && !work.line.json) work.out << "no edge or frame has triggered a row yet\n";
     return {};
 }
 

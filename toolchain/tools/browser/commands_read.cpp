@@ -177,8 +177,8 @@ void tell_machine(Work& work) {
     if (work.line.json) {
         work.out << "{\"machine\": " << in_quotes(map.text(header.machine))
                  << json_text("board", map.text(header.board)) << json_text("world", map.text(header.world))
-                 << json_text("build_id", build) << json_text("role", work.session.role())
-                 << ", \"process\": " << header.process
+                 << json_text("build_id", build) << json_text("framework", header.framework.data())
+                 << json_text("role", work.session.role()) << ", \"process\": " << header.process
                  << ", \"forced\": " << work.session.observer().forced()
                  << ", \"components\": " << map.components().size()
                  << ", \"facets\": " << map.facets().size();
@@ -187,7 +187,7 @@ void tell_machine(Work& work) {
     } else {
         work.out << "machine " << map.text(header.machine) << " on board " << map.text(header.board)
                  << ", process " << header.process << ", build " << (build.empty() ? "without an id" : build)
-                 << "\n"
+                 << ", Tappet " << header.framework.data() << "\n"
                  << map.components().size() << " components, " << map.facets().size() << " facets, "
                  << map.connections().size() << " connections, " << map.reactions().size() << " reactions; "
                  << work.session.observer().forced() << " forced\n"

@@ -108,18 +108,19 @@ Result<void> convert(const Line& line, std::ostream& out) {
     std::ofstream file{to, std::ios::binary};
     file << as_csv(*contents);
     file.close();
-    if (!file) return wrong("'" + to + "' could not be written; is its folder there, and yours?");
+    if (!file)
+        return wrong("'" + to +
+                     "' could not be written; check that its folder exists and that you may write there");
     if (!contents->damage.empty())
         return wrong("'" + from + "' is damaged, " + contents->damage + "; the " +
-                     std::to_string(contents->messages.size()) + " messages that are whole stand in '" + to +
-                     "'");
+                     std::to_string(contents->messages.size()) + " undamaged messages are in '" + to + "'");
     if (line.json)
         out << "{\"messages\": " << contents->messages.size()
             << ", \"whole\": " << (contents->has_end ? "true" : "false") << "}\n";
     else
         out << "written to " << to << ": " << contents->messages.size() << " messages of "
             << contents->channels.size() << " channels"
-            << (contents->has_end ? "" : "; the recording was cut off, and is good up to there") << "\n";
+            << (contents->has_end ? "" : "; the recording was cut off, and is good up to that point") << "\n";
     return {};
 }
 
@@ -145,7 +146,7 @@ Result<void> run_report(Work& work) {
     const std::size_t count = work.line.words.size();
     if (count == 1 || (count == 2 && work.line.words[1] == "list")) return list(work, *reader);
     if (count == 3 && work.line.words[1] == "start") return start(work, std::move(*reader));
-    return wrong("'report' is spelled: " + std::string{find_command("report")->usage});
+    return wrong("'report' has the wrong arguments; usage: " + std::string{find_command("report")->usage});
 }
 
 } // namespace tappet::browser

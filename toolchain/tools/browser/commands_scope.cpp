@@ -41,7 +41,9 @@ Result<void> write_file(Work& work, const Waves& waves) {
     std::ofstream file{name, std::ios::binary};
     file << (vcd ? as_vcd(waves) : as_trace(waves));
     file.close();
-    if (!file) return wrong("'" + name + "' could not be written; is its folder there, and yours?");
+    if (!file)
+        return wrong("'" + name +
+                     "' could not be written; check that its folder exists and that you may write there");
     if (!work.line.json)
         work.out << "written to " << name << ": " << waves.cycles.size() << " cycles in "
                  << us(waves.to - waves.from)
@@ -52,7 +54,7 @@ Result<void> write_file(Work& work, const Waves& waves) {
 /// Returns the cycles within the span, and of one activity when one is named, the worst first.
 Result<std::vector<Kept>> worst_of(const ScopeReader& scope, const std::string& activity) {
     auto kept = scope.worst();
-    if (!kept) return failure(Fault::too_late, "the machine was busy keeping cycles at each look; try again");
+    if (!kept) return failure(Fault::too_late, "the machine was recording cycles at each attempt; try again");
     const scope::Directory directory = scope.directory();
     const Waves names = scope.empty();
     if (!activity.empty() &&
@@ -148,7 +150,7 @@ Result<void> show_worst(Work& work, const ScopeReader& scope, const std::string&
     if (!kept) return std::unexpected(kept.error());
     if (kept->empty())
         return wrong("no cycle " + (activity.empty() ? std::string{} : "of '" + activity + "' ") +
-                     "is kept yet; those of real-time activities are, some ms after they ended");
+                     "is kept yet; cycles of real-time activities are kept some ms after their end");
     const std::size_t count = work.line.count > 0 ? static_cast<std::size_t>(work.line.count) : 1;
     for (std::size_t i = 0; i < std::min(count, kept->size()); ++i)
         (work.line.json ? tell_worst_json : tell_worst)(work.out, scope, (*kept)[i]);
@@ -234,8 +236,7 @@ Result<void> run_scope(Work& work) {
                           words.size() > 1 ? std::string{work.session.map().own_name(words[1])}
                                            : std::string{});
     if (words[0] == "record" && words.size() == 1) return record(work, *scope);
-    return wrong("scope has no '" + words[0] +
-                 "'; it is spelled: scope, scope worst [ACTIVITY], scope record");
+    return wrong("scope has no '" + words[0] + "'; usage: scope, scope worst [ACTIVITY], scope record");
 }
 
 } // namespace tappet::browser

@@ -29,8 +29,8 @@ Result<void> ended(std::span<const Seen> all, const std::vector<bool>& has_ended
         if (has_ended[i]) names += (names.empty() ? "" : ", ") + name_of(all[i]);
     if (names.empty()) return {};
     return failure(Fault::no_machine, all.size() == 1
-                                          ? "the machine has ended; what was shown last is its last"
-                                          : names + " ended; what was shown last is the last");
+                                          ? "the machine has ended; the last values shown are its last"
+                                          : names + " ended; the last values shown are the last");
 }
 
 /// Updates which machines have ended. Returns true when all have.

@@ -38,10 +38,10 @@ std::string why_not_connected(const std::string& path, int error) {
     case EACCES:
     case EPERM:
         return "you may not open " + socket +
-               "; its file mode and group say who may: ask whoever runs the box";
+               "; its file mode and group do not allow it: ask the box's administrator";
     case EAGAIN:
-        return "the machine let nobody in for 5 s; look whether its browser's activity runs, or end other "
-               "browsers";
+        return "the machine accepted no connection for 5 s; check that its browser's activity runs, or end "
+               "other browsers";
     case EPROTOTYPE: return socket + " is a socket of another kind; name the machine's with --socket";
     default: return "cannot connect to " + socket + ": " + std::strerror(error);
     }
@@ -52,7 +52,7 @@ std::string why_not_connected(const std::string& path, int error) {
 Result<SharedBlock> SharedBlock::map(int descriptor, std::size_t at_byte) {
     struct stat state{};
     if (::fstat(descriptor, &state) != 0 || state.st_size <= static_cast<off_t>(at_byte))
-        return failure(Fault::no_machine, "what the machine handed over is no memory");
+        return failure(Fault::no_machine, "the machine did not pass its memory");
     const auto size = static_cast<std::size_t>(state.st_size) - at_byte;
     void* const at = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, static_cast<off_t>(at_byte));
     if (at == MAP_FAILED)
@@ -180,7 +180,7 @@ Result<ordered_json> Link::request(std::string_view line, std::uint32_t& number)
         if (const auto kept = answers_.find(line); kept != answers_.end())
             return ordered_json::parse(kept->second, nullptr, false);
         return failure(Fault::bad_request,
-                       "'" + path_ + "' is a black box: it can be read, and does not answer that");
+                       "'" + path_ + "' is a black box: it can be read, but it answers no requests");
     }
     number = ++last_number_;
     const std::string packet = std::to_string(number) + " " + std::string{line};
@@ -195,7 +195,7 @@ Result<ordered_json> Link::request(std::string_view line, std::uint32_t& number)
         const auto left = std::chrono::duration_cast<Milliseconds>(end - Steady::now());
         if (left.count() <= 0)
             return failure(Fault::too_late,
-                           "the machine takes no request; it is flooded by others: try again");
+                           "the machine accepts no request because others flood it: try again");
         ::poll(&room, 1, static_cast<int>(left.count()));
     }
     for (;;) {

@@ -1,6 +1,7 @@
 // tappet-browse: inspects a running machine on the same box, and requests changes (thesis 4.8).
 #include "toolchain/tools/browser/program.hpp"
 #include "toolchain/tools/browser/screen.hpp"
+#include "toolchain/version.hpp"
 
 #include <csignal>
 #include <cstdlib>
@@ -16,6 +17,7 @@ volatile std::sig_atomic_t last_signal = 0;
 
 int main(int count, char** words) {
     using namespace tappet::browser;
+    if (tappet::prints_version(count, words, "tappet-browse")) return 0;
     struct sigaction action{};
     action.sa_handler = [](int signal) { last_signal = signal; };
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);

@@ -154,14 +154,14 @@ std::expected<void, std::string> take_chunk(std::string_view fields, std::size_t
         return {};
     }
     if (is_packed)
-        return std::unexpected(
-            std::string{"is in chunks that are packed, which are not read here; write it anew without"});
+        return std::unexpected(std::string{
+            "has compressed chunks, which tappet-browse cannot read; write it without compression"});
     const auto before = static_cast<std::ptrdiff_t>(into.messages.size());
     const auto taken = take_records(records, at + head_bytes + fields.size() - size, true, into);
     const std::span messages{into.messages.begin() + before, into.messages.end()};
     const auto [first, last] = std::ranges::minmax_element(messages, {}, &Message::log_ns);
     if (!messages.empty() && (first->log_ns != first_ns || last->log_ns != last_ns))
-        tell_damage(into, "a chunk says other times than its messages", at);
+        tell_damage(into, "a chunk states other times than its messages", at);
     return taken;
 }
 
@@ -265,7 +265,7 @@ void put_end(std::string& file) {
 
 std::expected<Contents, std::string> read(std::string_view file) {
     if (!file.starts_with(magic.substr(0, file.size())))
-        return std::unexpected(std::string{"is no MCAP file; 'report start' writes such"});
+        return std::unexpected(std::string{"is not an MCAP file; 'report start' writes one"});
     Contents contents;
     if (file.size() < magic.size()) return contents;
     contents.whole_bytes = magic.size();

@@ -152,12 +152,11 @@ int run_program(std::span<const std::string> words, Surroundings& surroundings) 
     try {
         return run(words, surroundings);
     } catch (const nlohmann::json::exception& wrong) {
-        return tell(
-            surroundings,
-            {Fault::no_machine,
-             std::string{"an answer is not as the protocol says; is another program at this socket? "} +
-                 wrong.what()},
-            false);
+        return tell(surroundings,
+                    {Fault::no_machine,
+                     std::string{"an answer violates the protocol; is another program at this socket? "} +
+                         wrong.what()},
+                    false);
     }
 }
 

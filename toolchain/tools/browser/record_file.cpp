@@ -38,7 +38,7 @@ Result<std::unique_ptr<RecordFile>> RecordFile::create(const std::string& name) 
     if (descriptor < 0 && errno == EEXIST) return wrong("'" + name + "' is there already; name another file");
     if (descriptor < 0)
         return wrong("'" + name + "' cannot be made: " + std::strerror(errno) +
-                     "; is its folder there, and yours?");
+                     "; check that its folder exists and that you may write there");
     struct flock lock = whole_file();
     static_cast<void>(::fcntl(descriptor, F_SETLK, &lock)); // without it the writer cannot be found: no harm
     sync_folder_of(name);
@@ -103,7 +103,7 @@ std::string RecordFile::put(const std::string& bytes) const {
         if (written < 0 && errno == EINTR) continue;
         if (written < 0)
             return "'" + name_ + "' cannot be written: " + std::strerror(errno) +
-                   "; what stands in it up to there is good";
+                   "; its contents up to that point are good";
         done += static_cast<std::size_t>(written);
     }
     if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) // a pipe has no disk

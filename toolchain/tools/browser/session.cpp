@@ -52,7 +52,7 @@ Result<std::unique_ptr<Session>> Session::open_black_box(const std::string& file
     auto block = is_one ? SharedBlock::map(descriptor, map::black_box::memory_at)
                         : Result<SharedBlock>{std::unexpected(Failure{})};
     ::close(descriptor);
-    if (!is_one) return wrong("is no black box; a guardian names the one it kept when it has acted");
+    if (!is_one) return wrong("is not a black box; a guardian prints the file's name when it writes one");
     if (record->version != map::black_box::version)
         return wrong("is a black box of version " + std::to_string(record->version) +
                      "; use the browser that was built with the firmware");
@@ -61,8 +61,7 @@ Result<std::unique_ptr<Session>> Session::open_black_box(const std::string& file
         text.back() = 0;
     record->reason.back() = record->done.back() = record->thread_name.back() = 0;
     if (record->memory_bytes == 0)
-        return wrong("holds nothing of the machine, in which no component saw it (a BrowserService does); "
-                     "what is known: " +
+        return wrong("holds no memory of the machine, which had no BrowserService; what is known: " +
                      std::string{record->reason.data()} + "; " + record->done.data());
     if (!block || block->bytes().size() < record->memory_bytes)
         return wrong("is cut off: its machine had " + std::to_string(record->memory_bytes) + " bytes");

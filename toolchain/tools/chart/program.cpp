@@ -10,6 +10,7 @@
 #include "toolchain/tools/chart/promela.hpp"
 #include "toolchain/tools/chart/scxml.hpp"
 #include "toolchain/tools/chart/spin.hpp"
+#include "toolchain/version.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -32,7 +33,7 @@ bool write(const std::string& path, const std::string& text) {
     if (file)
         std::cout << path << "\n";
     else
-        std::cerr << path << " cannot be written; see to the folder's rights and the disk\n";
+        std::cerr << path << " cannot be written; check the folder's rights and the disk\n";
     return static_cast<bool>(file);
 }
 
@@ -164,6 +165,7 @@ private:
 } // namespace
 
 int run_chart(const AcceptedMachine& machine, std::span<const ModelRow> model, int count, char** words) {
+    if (prints_version(count, words, machine.table.name)) return 0;
     const std::vector<std::string_view> all(words + 1, words + count);
     auto line = read_command_line(chart_options, all, Others::words, chart_words);
     if (!line) {

@@ -7,6 +7,7 @@
 #include "toolchain/tools/front/figures.hpp"
 #include "toolchain/tools/front/project.hpp"
 #include "toolchain/tools/image/options.hpp"
+#include "toolchain/version.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -129,9 +130,9 @@ int run_host(const Given& given) {
         if (!has_option(".", option)) {
             std::vector<std::string_view> names;
             for (const Option& each : host_options) names.push_back(each.name);
-            return fail("run: option " + std::string{option} + " is unknown, and no source here names it" +
-                        did_you_mean(option, names, "; see --help;") +
-                        " what stands after -- goes to the machine unread");
+            return fail(
+                "run: option " + std::string{option} + " is unknown, and no source file here names it" +
+                did_you_mean(option, names, "; see --help;") + " words after -- go to the machine unchecked");
         }
         program = with(program, {std::string{option}, std::string{value}});
     }
@@ -178,7 +179,7 @@ int image(const Given& given) {
     if (board == "host" || std::ranges::find(boards, board) == boards.end()) {
         const std::vector<std::string_view> names(boards.begin(), boards.end());
         return fail("image: " + machine + " has no firmware for board \"" + board + "\"" +
-                    did_you_mean(board, names, "; name it behind BOARDS in CMakeLists.txt"));
+                    did_you_mean(board, names, "; add it to BOARDS in CMakeLists.txt"));
     }
     const std::string firmware = machine + "-" + board;
     Words targets{firmware};
@@ -235,7 +236,7 @@ int scope(const Given& given) {
     return become(with({(beside_us() / "tappet-browse").string(), "scope"}, given.words));
 }
 
-constexpr Option machine_option{"--machine", "NAME", "of several in this folder; else the first"};
+constexpr Option machine_option{"--machine", "NAME", "one of several in this folder (default: the first)"};
 constexpr Option time_option{.name = "--for",
                              .value = "SECONDS",
                              .help = "how long (default 10)",
@@ -250,11 +251,11 @@ constexpr std::array<Option, n + 1> for_a_machine(const std::array<Option, n>& o
     return all;
 }
 constexpr std::array new_options{Option{"--can", "", "a drive on a CAN bus"},
-                                 Option{"--gpio", "", "digital lines, which every machine has"},
+                                 Option{"--gpio", "", "digital lines, in every machine"},
                                  Option{"--modbus", "", "a unit behind Modbus TCP"},
-                                 Option{"--cam", "", "a shaft with its encoder on CAN, and a cam of it"}};
+                                 Option{"--cam", "", "a shaft with its encoder on CAN, and a cam"}};
 constexpr auto run_options = for_a_machine(host_options);
-constexpr std::array test_options{Option{"--only", "REGEX", "tests whose names fit"}};
+constexpr std::array test_options{Option{"--only", "REGEX", "tests whose names match"}};
 constexpr auto timed_options = for_a_machine(std::array{time_option});
 constexpr auto box_image_options = for_a_machine(image::image_options);
 constexpr auto chart_options = for_a_machine(chart::chart_options);
@@ -279,7 +280,7 @@ constexpr Command commands[] = {
      .run = &run_host},
     {.name = "test",
      .takes = "[-- OPTION...]",
-     .help = "builds and runs the machine's tests; what stands after -- is for ctest",
+     .help = "builds and runs the machine's tests; words after -- go to ctest",
      .options = test_options,
      .run = &test},
     {.name = "chart",
@@ -291,17 +292,18 @@ constexpr Command commands[] = {
      .run = &chart},
     {.name = "figures",
      .takes = "",
-     .help = "what each activity takes in real time on this host; in a clone of Tappet: ci/figures",
+     .help =
+         "measures each activity's times on this host in real time; in a clone of Tappet: runs ci/figures",
      .options = timed_options,
      .run = &figures},
     {.name = "bench",
      .takes = "",
-     .help = "boots the firmware on an emulated box with a real-time kernel, for so long of its own time",
+     .help = "runs the firmware on an emulated box with a real-time kernel",
      .options = timed_options,
      .run = &bench},
     {.name = "image",
      .takes = "BOARD",
-     .help = "writes what is flashed onto a box into build/image",
+     .help = "writes the disk image of a box into build/image",
      .options = box_image_options,
      .others = Others::words,
      .run = &image},
@@ -313,12 +315,12 @@ constexpr Command commands[] = {
      .run = &hand_to_image<flash_word>},
     {.name = "update",
      .takes = "BOX FILE",
-     .help = "sends a signed new version to a box, for who stands there to consent",
+     .help = "sends a signed new version to a box; a person there must consent",
      .others = Others::words,
      .run = &hand_to_image<update_word>},
     {.name = "box",
      .takes = "BOX [ORDER]",
-     .help = "tells what runs on a box; or orders: roll-back, factory-reset, measure",
+     .help = "shows what runs on a box, or sends an order: roll-back, factory-reset, measure",
      .options = image::box_options,
      .others = Others::words,
      .run = &hand_to_image<box_word>},
@@ -329,7 +331,7 @@ constexpr Command commands[] = {
      .run = &browse},
     {.name = "scope",
      .takes = "[WORD...]",
-     .help = "which cycles of a running machine were the worst, and why",
+     .help = "shows the worst cycles of a running machine, and why",
      .passes_on = true,
      .run = &scope},
 };
@@ -343,7 +345,7 @@ std::string usage_line(const Command& command, std::size_t column) {
 }
 
 int help() {
-    std::cout << "tappet: machine controllers on real-time Linux; --help after a word tells its options\n";
+    std::cout << "tappet: machine controllers on real-time Linux; --help after a command lists its options\n";
     for (const Command& each : commands) std::cout << "  " << usage_line(each, 36);
     return 0;
 }
@@ -390,6 +392,7 @@ int obey(const Command& command, Words words) {
 } // namespace
 
 int main(int count, char** words) {
+    if (prints_version(count, words, "tappet")) return 0;
     const Words all(words + 1, words + count);
     if (all.empty() || all[0] == "--help" || all[0] == "help") return help();
     if (all[0] == "--complete") {
@@ -401,7 +404,7 @@ int main(int count, char** words) {
     if (command != std::end(commands)) return obey(*command, {all.begin() + 1, all.end()});
     std::vector<std::string_view> names;
     for (const Command& each : commands) names.push_back(each.name);
-    return fail("\"" + all[0] + "\" is no command" + did_you_mean(all[0], names) +
+    return fail("\"" + all[0] + "\" is not a command" + did_you_mean(all[0], names) +
                 "; tappet --help lists them");
 }
 

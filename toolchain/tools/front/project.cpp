@@ -68,11 +68,12 @@ std::string write_project(const fs::path& templates, const Choice& choice) {
     if (choice.name.empty()) return "the machine needs a name: tappet new bottle_filler";
     if (!is_name(choice.name))
         return "\"" + choice.name +
-               "\" is no name for C++ and CMake; write small letters, digits and single underscores, as in "
+               "\" is not a name for C++ and CMake; write small letters, digits and single underscores, as "
+               "in "
                "bottle_filler";
-    if (choice.name == "tappet") return "\"tappet\" is the framework's own name; take another";
+    if (choice.name == "tappet") return "\"tappet\" is the framework's own name; choose another";
     if (fs::exists(choice.name))
-        return "\"" + choice.name + "\" is there already; take another name, or remove it";
+        return "\"" + choice.name + "\" exists already; choose another name, or remove it";
     if (!fs::is_directory(templates))
         return "the templates are not at " + templates.string() + "; install Tappet anew";
     std::error_code error;

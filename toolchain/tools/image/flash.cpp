@@ -126,8 +126,8 @@ std::string refusal_to_flash(const fs::path& image, const fs::path& device, bool
         return device.string() + " has " + std::to_string(disk.bytes() / 1'000'000) +
                " MB, and the image needs " + std::to_string(needed / 1'000'000) + "; take a larger disk";
     if (!erase && !is_empty(disk))
-        return device.string() + " is not empty, and all that is on it would be lost, a machine's settings "
-                                 "too; say --erase if it may";
+        return device.string() + " is not empty: its contents would be lost, a machine's settings too; add "
+                                 "--erase to overwrite it";
     return {};
 }
 

@@ -39,7 +39,7 @@ std::string bill_of(const Request& request, const box::Facts& facts, const std::
     parts.push_back({"linux-image-" + release, version, "operating-system"});
     parts.push_back(debian_package("efibootguard", "firmware"));
     parts.push_back(debian_package("e2fsck-static", "application"));
-    parts.push_back({"tappet", TAPPET_VERSION, "framework", false});
+    parts.push_back({"tappet", std::string{framework_version}, "framework", false});
     return bill_of_materials(facts.one("machine"), facts.one("board"), request.version, std::move(parts));
 }
 
@@ -108,10 +108,10 @@ std::string lines_of(const Request& request) {
     const box::Facts facts{lines};
     if (facts.one("board").empty())
         throw Fault(request.firmware.string() +
-                    " does not say its board; it is no firmware of Tappet, or an old one");
+                    " does not name its board; it is not a firmware of Tappet, or an old one");
     if (facts.all("console").empty())
         throw Fault("board \"" + facts.one("board") +
-                    "\" says nothing of an image; give it .image with modules and consoles");
+                    "\" has no image settings; add .image with modules and consoles");
     lines += "image " + std::to_string(request.version) + "\n";
     if (!request.keys.empty())
         lines += "key " + public_key(request.next_keys.empty() ? request.keys : request.next_keys) + "\n";

@@ -60,7 +60,7 @@ box::SecretKey secret_key(const fs::path& folder) {
     box::SecretKey key{};
     const std::string bytes = read_file(folder / "secret");
     if (bytes.size() != key.size())
-        throw Fault((folder / "secret").string() + " is no secret key; write keys anew");
+        throw Fault((folder / "secret").string() + " is not a secret key; make new keys");
     std::ranges::copy(bytes, key.begin());
     return key;
 }

@@ -7,6 +7,7 @@
 #include "toolchain/tools/image/options.hpp"
 #include "toolchain/tools/image/remote.hpp"
 #include "toolchain/tools/image/slots.hpp"
+#include "toolchain/version.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,14 +21,15 @@ namespace tappet::image {
 namespace {
 
 constexpr std::array write_options{
-    Option{"--firmware", "FILE", "of one machine on one board, stripped"},
+    Option{"--firmware", "FILE", "firmware of one machine for one board, stripped"},
     Option{"--to", "DIR", "where disk.img, tappet.efi and their parts go"},
-    Option{"--plant", "FILE", "of a test board: at the other end of the wires; its end is the box's"},
-    Option{"--plant-options", "TEXT", "of the plant, in one word"},
+    Option{"--plant", "FILE",
+           "for a test board: the plant at the other end of the wires; when it ends, the box ends"},
+    Option{"--plant-options", "TEXT", "options of the plant, as one argument"},
     Option{"--init", "FILE", "PID 1 (default: box-init beside this program)"},
     Option{.name = "--least",
            .value = "N",
-           .help = "version that a box must have to take this as an update (default 1)",
+           .help = "oldest version that accepts this as an update (default 1)",
            .is_number = true,
            .least = 1,
            .most = 4'000'000'000},
@@ -119,7 +121,7 @@ int make_keys(const CommandLine& line) {
 
 int sign(const CommandLine& line) {
     if (!line.has("--key") || line.words.size() != 1)
-        return fail("say sign --key DIR FOLDER; the folder is what write --to named");
+        return fail("usage: sign --key DIR FOLDER; FOLDER is the one that write --to named");
     const std::filesystem::path folder = line.words[0];
     image::sign(folder, line.text("--key"));
     std::printf("%s: loader, kernel, disk and update are signed\n", folder.c_str());
@@ -132,7 +134,7 @@ int show(const Answer& answer) {
 }
 
 int update(const CommandLine& line) {
-    if (line.words.size() != 2) return fail("say update BOX update.tap; BOX is its address");
+    if (line.words.size() != 2) return fail("usage: update BOX update.tap; BOX is its address");
     const Answer answer = send_update(std::string{line.words[0]}, line.words[1], Tenths{});
     std::printf("\n%s", answer.is_accepted ? "" : "the box refuses it: ");
     return show(answer);
@@ -140,20 +142,20 @@ int update(const CommandLine& line) {
 
 int box(const CommandLine& line) {
     if (line.words.empty() || line.words.size() > 2)
-        return fail("say box BOX, or box BOX roll-back --key DIR; BOX is its address");
+        return fail("usage: box BOX, or box BOX roll-back --key DIR; BOX is its address");
     const std::string address{line.words[0]};
     if (line.words.size() == 1) return show(ask_status(address));
     if (std::ranges::find(box::order_verbs, line.words[1]) == box::order_verbs.end())
-        return fail("\"" + std::string{line.words[1]} + "\" is no order" +
+        return fail("\"" + std::string{line.words[1]} + "\" is not an order" +
                     did_you_mean(line.words[1], box::order_verbs,
                                  "; there are roll-back, factory-reset and measure"));
-    if (!line.has("--key")) return fail("an order is signed: say --key DIR");
+    if (!line.has("--key")) return fail("an order must be signed: add --key DIR");
     return show(send_order(address, std::string{line.words[1]}, secret_key(line.text("--key"))));
 }
 
 int install(const CommandLine& line) {
     if (!line.has("--kernel") || line.words.size() != 1)
-        return fail("say install --kernel tappet.efi DISK; the disk is a box's, or its image");
+        return fail("usage: install --kernel tappet.efi DISK; DISK is a box's disk, or its image");
     const std::uint32_t revision =
         image::install(std::filesystem::path{line.words[0]}, line.text("--kernel"));
     std::printf("revision %u goes on trial at the next boot\n", revision);
@@ -168,19 +170,21 @@ struct Word {
 };
 constexpr std::array words_known{
     Word{"write", write_options, &write, "write --firmware FILE --to DIR: a disk image for a box"},
-    Word{"flash", flash_options, &flash, "flash --image FILE [--erase] DEVICE: onto a disk, and read back"},
+    Word{"flash", flash_options, &flash,
+         "flash --image FILE [--erase] DEVICE: writes an image onto a disk, and reads it back"},
     Word{"install", install_options, &install,
-         "install --kernel FILE DISK: a new version into the slot that is not in use, for one trial"},
-    Word{"key", key_options, &make_keys, "key --to DIR: new keys, for updates and for Secure Boot"},
+         "install --kernel FILE DISK: writes a new version into the unused slot, for one trial"},
+    Word{"key", key_options, &make_keys, "key --to DIR: makes new keys, for updates and for Secure Boot"},
     Word{"sign", sign_options, &sign,
-         "sign --key DIR FOLDER: what write left unsigned, on a machine without a network"},
-    Word{"update", no_options, &update, "update BOX update.tap: to a box, for who stands there to consent"},
+         "sign --key DIR FOLDER: signs what write left unsigned, on a machine without a network"},
+    Word{"update", no_options, &update,
+         "update BOX update.tap: sends an update to a box; a person there must consent"},
     Word{"box", box_options, &box,
-         "box BOX [roll-back | factory-reset | measure --key DIR]: what runs there, or an order that waits "
-         "for "
-         "consent"}};
+         "box BOX [roll-back | factory-reset | measure --key DIR]: shows what runs there, or sends an order "
+         "that waits for consent"}};
 
 int main(int count, char** words) {
+    if (prints_version(count, words, "tappet-image")) return 0;
     const std::vector<std::string_view> all(words + 1, words + count);
     if (all.empty() || all[0] == "--help") {
         for (const Word& each : words_known)
@@ -190,7 +194,7 @@ int main(int count, char** words) {
     const auto word = std::ranges::find(words_known, all[0], &Word::name);
     if (word == words_known.end())
         return fail("\"" + std::string{all[0]} +
-                    "\" is no word of it; there are write, flash, install, key, sign, update and box");
+                    "\" is not a command; there are write, flash, install, key, sign, update and box");
     const auto line = read_command_line(word->options, std::span{all}.subspan(1), Others::words);
     if (!line) return fail(line.error());
     try {

@@ -11,7 +11,7 @@ namespace tappet::image {
 inline constexpr std::array image_options{
     Option{.name = "--version",
            .value = "N",
-           .help = "of the image (default 1)",
+           .help = "version of the image (default 1)",
            .is_number = true,
            .least = 1,
            .most = 4'000'000'000},
@@ -27,9 +27,10 @@ inline constexpr std::array image_options{
         "one is written"},
     Option{"--next-key", "DIR", "the box's later updates are signed with these instead"}};
 
-inline constexpr std::array box_options{Option{"--key", "DIR", "of tappet-image key, for an order"}};
+inline constexpr std::array box_options{
+    Option{"--key", "DIR", "folder of tappet-image key, to sign an order"}};
 
 inline constexpr std::array flash_options{Option{"--image", "FILE", "a disk.img"},
-                                          Option{"--erase", "", "what is on the disk may be lost"}};
+                                          Option{"--erase", "", "overwrites a disk that is not empty"}};
 
 } // namespace tappet::image

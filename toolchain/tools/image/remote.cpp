@@ -54,7 +54,7 @@ public:
         wanted.ai_socktype = SOCK_STREAM;
         addrinfo* found = nullptr;
         if (const int code = ::getaddrinfo(host.c_str(), port.c_str(), &wanted, &found); code != 0)
-            throw Fault("\"" + box + "\" is no address of a box: " + ::gai_strerror(code));
+            throw Fault("\"" + box + "\" is not the address of a box: " + ::gai_strerror(code));
         const std::unique_ptr<addrinfo, void (*)(addrinfo*)> addresses{found, ::freeaddrinfo};
         for (const addrinfo* each = found; each != nullptr && socket_.number < 0; each = each->ai_next) {
             socket_.number = ::socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, each->ai_protocol);
@@ -68,7 +68,8 @@ public:
             throw Fault("no box answers at " + box + ": " + std::strerror(errno) +
                         "; check the address, and that its board has a service_port");
         const std::string hello = read_until('\n');
-        if (!hello.starts_with(box::service_greeting)) throw Fault("what answers at " + box + " is no box");
+        if (!hello.starts_with(box::service_greeting))
+            throw Fault("the program that answers at " + box + " is not a box");
         const box::Facts facts{hello.substr(box::service_greeting.size())};
         if (facts.lines().empty() || facts.lines().front().size() != 3)
             throw Fault("the box at " + box + " speaks another version of the protocol");
@@ -90,7 +91,7 @@ public:
         const std::size_t line = all.find('\n');
         if (line == std::string::npos)
             throw Fault("the box at " + box_ +
-                        " hung up without an answer; ask for its status by tappet box " + box_);
+                        " closed the connection without an answer; ask for its status by tappet box " + box_);
         return {all.substr(0, line) == "ok", only_text(all.substr(line + 1))};
     }
     /// Returns the order; the caller adds a verb.
@@ -124,8 +125,9 @@ Answer send_update(const std::string& box, const std::filesystem::path& file,
                    const std::function<void(std::uint64_t, std::uint64_t)>& done) {
     const std::string bytes = read_file(file);
     if (box::claimed_bytes(bytes) != bytes.size())
-        throw Fault(file.string() +
-                    " is no whole update; name the update.tap beside an image written with --key");
+        throw Fault(
+            file.string() +
+            " is not a complete update; name the update.tap that was written with an image and --key");
     Connection connection{box};
     connection.send("update\n");
     constexpr std::size_t piece = 256 * 1024;

@@ -50,7 +50,7 @@ std::string run_tool(const std::vector<std::string>& words, Trouble trouble) {
     int status = 0;
     ::waitpid(pid, &status, 0);
     if (trouble == Trouble::is_a_fault && (!WIFEXITED(status) || WEXITSTATUS(status) != 0))
-        throw Fault(words[0] + " failed: " + (said.empty() ? "without a word" : said) +
+        throw Fault(words[0] + " failed: " + (said.empty() ? "without a message" : said) +
                     (WIFEXITED(status) && WEXITSTATUS(status) == 127 ? "; run ci/setup once as root" : ""));
     return said;
 }

@@ -47,7 +47,7 @@ void draw_together(std::string& unified) {
     const std::size_t header = image.number(at_header), optional = header + optional_header,
                       rows = optional + image.number(header + optional_bytes, 2);
     if (image.text(header, 4) != std::string_view{"PE\0\0", 4})
-        throw Fault("the unified kernel image is no portable executable");
+        throw Fault("the unified kernel image is not a portable executable");
     const std::uint32_t alignment = image.number(optional + section_alignment);
     if (alignment == 0) throw Fault("the unified kernel image has no alignment of its sections");
     const auto aligned = [&](std::uint32_t address) {

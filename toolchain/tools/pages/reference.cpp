@@ -233,7 +233,7 @@ std::vector<std::string> drivers_with_words(const std::filesystem::path& tree) {
 std::expected<std::string, std::string> reference_page(const std::filesystem::path& tree) {
     std::ostringstream page;
     page << "# Reference\n\nMade from the code: interfaces, headers and the browser's table.\n\n"
-            "## Components\n\nOf a driver the facets of a sample map, in which `in_frame`, `sensor` or "
+            "## Components\n\nA driver's facets are those of a sample map, in which `in_frame`, `sensor` or "
             "`in_row` stands for a name of yours.\n";
     for (const Described& each : components) {
         const std::string text = text_of(contents_of(tree / each.header), each.type);

@@ -114,8 +114,8 @@ std::expected<std::string, std::string> refusals_page(const fs::path& tree) {
     const std::vector<Refusal> all = refusals(tree);
     if (all.empty()) return std::unexpected("no refusal was found below " + tree.string());
     std::ostringstream page;
-    page << "# Every refusal\n\nWhat the compiler says of a machine that cannot work, as " << all.size()
-         << " tests hold it word by word. A sentence begins with the machine's name and the row; `#` "
+    page << "# Every refusal\n\nThe compiler's messages for machines that cannot work; " << all.size()
+         << " tests check them to the character. A message begins with the machine's name and the row; `#` "
             "stands for a number.\n";
     std::string topic;
     for (const Refusal& each : all) {
@@ -125,7 +125,7 @@ std::expected<std::string, std::string> refusals_page(const fs::path& tree) {
         }
         const std::size_t cure = cure_of(each.sentence);
         if (cure == std::string::npos)
-            return std::unexpected(each.name + ": its sentence says no cure: " + each.sentence);
+            return std::unexpected(each.name + ": the message states no cure: " + each.sentence);
         page << "| " << code(std::string_view{each.sentence}.substr(0, cure)) << " | "
              << code(std::string_view{each.sentence}.substr(cure + 2)) << " |\n";
     }
