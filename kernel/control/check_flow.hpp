@@ -95,7 +95,8 @@ constexpr Sentence refuse_path(const ControlView& c, const ConnectionRow& row, c
     text.add("; ");
     for (const WrongPath& each : wrong_paths)
         if (each.from == from.role && each.to == to.role) return text.add(each.cure);
-    return text.add("a Sensor reads hardware only; remove the row");
+    if (to.role == ControlRole::sensor) text.add("a Sensor reads hardware only; ");
+    return text.add("remove the row");
 }
 
 constexpr bool is_driver(const MachineView& m, std::size_t component) noexcept {

@@ -102,12 +102,7 @@ Options parse(int count, char** words, bool has_own) {
         else if (word == "--no-guardian")
             options.guarded = false;
         else if (place == nullptr && !(has_own && options.own.push(words[i])))
-            options.error = Sentence{
-                "option ", word,
-                " is unknown; there are --summary FILE, --properties DIRECTORY, --take-over DIRECTORY, "
-                "--browse "
-                "DIRECTORY, --black-box DIRECTORY, --for SECONDS, --measure SECONDS, --no-guardian, --plan, "
-                "--board and --help"};
+            options.error = Sentence{"option ", word, " is unknown; --help lists the options"};
         else if (place != nullptr && i + 1 == count)
             options.error = Sentence{"option ", word, " needs a value after it"};
         else if (place != nullptr)

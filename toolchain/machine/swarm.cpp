@@ -57,11 +57,11 @@ Board with_visitors(Board board) {
     return board;
 }
 
-bool is_driver(const ComponentRow& row) {
-    return drives(row, "can") || drives(row, "gpio") || drives(row, "modbus");
-}
-
 } // namespace
+
+bool is_judged(const ComponentRow& driver) {
+    return drives(driver, "can") || drives(driver, "gpio") || drives(driver, "modbus");
+}
 
 std::vector<Duration> analysed_responses(const AcceptedMachine& machine) {
     const auto worst =
@@ -94,7 +94,7 @@ SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
     if (service_ != nowhere) run_.browse_in(directory_);
     const auto rows = of.machine.table.components;
     for (std::size_t c = 0; c < rows.size(); ++c)
-        if (is_driver(rows[c])) drivers_.push_back(c);
+        if (is_judged(rows[c])) drivers_.push_back(c);
     run_.judge_by([this](Time now) { judge(now); });
 }
 

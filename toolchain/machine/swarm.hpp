@@ -216,6 +216,9 @@ private:
     SwarmVerdict verdict_{};
 };
 
+/// Returns whether the swarm disturbs this component's device and judges its outputs.
+[[nodiscard]] bool is_judged(const ComponentRow& driver);
+
 /// Returns each activity's worst response by the table's analysis; zero for those that are not real-time.
 [[nodiscard]] std::vector<Duration> analysed_responses(const AcceptedMachine& machine);
 

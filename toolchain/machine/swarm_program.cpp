@@ -151,6 +151,21 @@ struct Totals {
     }
 };
 
+void print_timed(Time now, std::string_view text) {
+    print(Sentence{to_ns(now) / 1000, " us: ", text, "\n"}.view());
+}
+
+/// Prints the devices that the swarm neither disturbs nor judges.
+void tell_unjudged(const MachineView& table) {
+    for (const ComponentRow& row : table.components)
+        if (const DeviceKind* const kind = row.type->device_kind;
+            kind != nullptr && !row.type->shares_device && !is_judged(row))
+            print(Sentence{table.name, ": the ", kind->name, " device \"", row.device, "\" of component \"",
+                           row.name,
+                           "\" is neither disturbed nor judged: the swarm knows can, gpio, modbus\n"}
+                      .view());
+}
+
 } // namespace
 
 int run_swarm(SwarmOf of, int count, char** words) {
@@ -167,13 +182,10 @@ int run_swarm(SwarmOf of, int count, char** words) {
         os::print(usage_of(options));
         return none_broken;
     }
+    tell_unjudged(of.machine.table);
     silence_machine();
     install_contract_handler(tell_contract);
-    SwarmRun::Tell tell;
-    if (given->has("--seed"))
-        tell = [](Time now, std::string_view text) {
-            print(Sentence{to_ns(now) / 1000, " us: ", text, "\n"}.view());
-        };
+    const SwarmRun::Tell tell = given->has("--seed") ? print_timed : SwarmRun::Tell{};
     const Duration wanted = given->has("--minutes") ? given->number("--minutes", 0) * Duration{1min}
                                                     : given->number("--hours", 1) * Duration{1h};
     std::uint64_t seed = given->number(given->has("--seed") ? "--seed" : "--from", 1);

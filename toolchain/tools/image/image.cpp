@@ -5,6 +5,7 @@
 #include "board/box/disk.hpp"
 #include "board/box/facts.hpp"
 #include "board/box/update.hpp"
+#include "kernel/base/version.hpp"
 #include "toolchain/tools/bench/folders.hpp"
 #include "toolchain/tools/bench/initramfs.hpp"
 #include "toolchain/tools/image/disk.hpp"
