@@ -50,7 +50,28 @@ Findings untried(const Tree& files) {
     return found;
 }
 
+/// Programs that answer --help, but not --version.
+Findings without_version(const Tree& files) {
+    Findings found;
+    for (const File& file : files) {
+        if (!file.is_cpp() || file.is_under("tests")) continue;
+        const auto says = [&](std::string_view text) {
+            return std::ranges::find_if(file.lines,
+                                        [&](const std::string& line) { return line.contains(text); });
+        };
+        auto help = says("has(\"--help\")) {");
+        if (help == file.lines.end()) help = says("== \"--help\"");
+        if (help != file.lines.end() && says("prints_version(") == file.lines.end())
+            found.push_back({file.path, static_cast<std::size_t>(help - file.lines.begin()) + 1,
+                             "a program without --version",
+                             "call prints_version of toolchain/version.hpp first"});
+    }
+    return found;
+}
+
 TEST(Commands, are_tried_when_people_are_told_to_type_them) { expect_none(untried(tree())); }
+
+TEST(Commands, print_their_version) { expect_none(without_version(tree())); }
 
 TEST(CommandsRule, finds_printed_or_existing_commands_that_are_never_run) {
     const File test = file("ci/test", "commands=(\n    \"ci/demo --plain\"\n)\n");
@@ -61,6 +82,15 @@ TEST(CommandsRule, finds_printed_or_existing_commands_that_are_never_run) {
     EXPECT_EQ(untried({test, file("a.md", "Type `ci/demos --fast`.\n")}).size(), 1u);
     EXPECT_EQ(untried({test, file("b/README.md", "    ci/own --keep\n")}).size(), 1u);
     EXPECT_TRUE(untried({test, file("a.md", "The folder `ci/` holds them.\n")}).empty());
+}
+
+TEST(CommandsRule, finds_programs_that_do_not_print_their_version) {
+    const std::string help = "if (word == \"--help\") return usage();\n";
+    EXPECT_EQ(without_version({file("toolchain/a.cpp", help)}).size(), 1u);
+    EXPECT_EQ(without_version({file("apps/a.cpp", "\nif (line->has(\"--help\")) {\n")})[0].line, 2u);
+    EXPECT_TRUE(
+        without_version({file("a.cpp", help + "if (prints_version(count, words, \"a\")) return 0;\n")})
+            .empty());
 }
 
 } // namespace
