@@ -33,7 +33,7 @@ public:
     [[nodiscard]] bool arrived() const noexcept TAPPET_REALTIME {
         return std::abs(target_ - angle()) < 2.0 * close_enough && steps_standing_ >= 3;
     }
-    /// Returns the speed to turn at, in deg/s; the axis can still brake in time.
+    /// Returns the speed at which to turn, in deg/s, low enough to brake before the target.
     [[nodiscard]] double speed() const noexcept TAPPET_REALTIME {
         const double way = target_ - angle();
         const double far = std::abs(way);

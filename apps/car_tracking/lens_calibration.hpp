@@ -27,8 +27,8 @@ public:
     void begin() noexcept TAPPET_REALTIME { views_.clear(); }
     void add(const MarkView& view) noexcept TAPPET_REALTIME { static_cast<void>(views_.push(view)); }
 
-    /// Fits the lens, starting from `guess`, which may be wrong by 5 degrees and 15 % at most. Returns
-    /// nothing when there are too few views, or when they do not determine the lens.
+    /// Fits the lens from `guess`, wrong by 15 % at most, and from `mark`, wrong by 5 degrees at most.
+    /// Returns nothing when there are too few views, or when they do not determine the lens.
     [[nodiscard]] std::optional<LensFit> fit(const Lens& guess, const Aim& mark) const noexcept
         TAPPET_REALTIME {
         if (views_.size() < least_views) return std::nullopt;
@@ -67,7 +67,7 @@ private:
         if (!pixel) return std::nullopt;
         return Eigen::Vector2d{*pixel - view.pixel};
     }
-    /// Adds one view's part of the normal equations; slopes are differences.
+    /// Adds one view's part of the normal equations; the Jacobian is computed by finite differences.
     [[nodiscard]] static bool add_view(const MarkView& view, const Parameters& at, Eigen::Matrix4d& normal,
                                        Parameters& slope) noexcept TAPPET_REALTIME {
         const auto left = residual(view, at);

@@ -1,4 +1,4 @@
-// The result of searching the car in one image.
+// The result of searching for the car in one image.
 #pragma once
 
 #include "apps/car_tracking/geometry.hpp"

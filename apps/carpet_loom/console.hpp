@@ -1,5 +1,5 @@
-// The loom's console: shows the machine's status on the box's terminal, one line at a time. The summary reads
-// the same lines.
+// The loom's console: shows the machine's status on the box's terminal, one line at a time. The demo
+// parses these lines.
 #pragma once
 
 #include "apps/carpet_loom/loom_state.hpp"

@@ -132,7 +132,7 @@ void Plant::exchange_registers() {
 bool Plant::take_option(std::string_view option, std::string_view value, Sentence& fault) {
     bool known = false;
     if (!loom::read_option(option, value, settings_, known) && known)
-        fault = Sentence{"\"", value, "\" is not what it takes; see --help"};
+        fault = Sentence{"\"", value, "\" is not a valid value of this option; see --help"};
     return known;
 }
 

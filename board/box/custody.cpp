@@ -93,7 +93,7 @@ std::optional<int> Custody::await_worker(pid_t worker, Duration within) {
         return worker_code_.has_value();
     };
     if (await(within, has_ended)) return worker_code_;
-    processes_.say("it takes too long, and is killed; the previous version starts again");
+    processes_.say("it takes too long, and is killed; the version that ran before starts again");
     processes_.kill(worker); // init.kill_worker
     if (!await(gone_patience, has_ended)) {
         processes_.say("it waits for a disk that does not answer, and cannot be ended; check that disk");

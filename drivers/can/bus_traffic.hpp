@@ -20,7 +20,7 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
     switch (found.largest) {
     case Part::jitter:
         return Sentence{most, "is how late it may enter its queue; shorten the response of the activity that "
-                              "drives the bus, or the jitter of its node"};
+                              "drives the bus, or the jitter in its every(...)"};
     case Part::own_time:
         return Sentence{most, "is its own time on the wire; lengthen its period, or run the bus faster than ",
                         bit_rate, " bit/s"};

@@ -27,14 +27,14 @@ public:
     [[nodiscard]] virtual WireCounters counters() const noexcept = 0;
 };
 
-/// Devices with real wires, made safe by the guardian when the machine's process has ended. All calls belong
-/// to the guardian, whose process is a copy of the machine's from before it armed. Not real-time.
+/// Devices with real wires, made safe by the guardian when the machine's process has ended. Only the
+/// guardian makes these calls: its process was forked from the machine's before arming. Not real-time.
 class GuardedDevices : public Devices {
 public:
     /// Returns the descriptors of opened devices that the guardian needs.
     [[nodiscard]] virtual Bounded<int, 16> kept_by_guardian() const noexcept = 0;
-    /// Opens the guardian's own connections, and rehearses: nothing moves, and every line already has its
-    /// safe value. Sends no frame and no request. The error names the device and the cure.
+    /// Opens the guardian's own connections and tries the safe ending without effect: nothing moves yet,
+    /// and every line has its safe value. Sends no frame and no request. The error names device and cure.
     virtual std::expected<void, Sentence> prepare_safe_ending() = 0;
     /// Writes the safe values of all output lines. Returns the number of chips that refused.
     virtual std::size_t write_safe_lines() noexcept = 0;
@@ -47,7 +47,7 @@ public:
 };
 
 /// Returns whether a row's driver has a map by which its device can be opened. A component that shares
-/// another's device has none, nor has a driver of the machine's own kind.
+/// another one's device has no map; nor has the driver of a device kind that the machine itself defines.
 constexpr bool drives(const ComponentRow& row, std::string_view kind) noexcept {
     return row.type->device_kind != nullptr && row.type->device_kind->name == kind &&
            row.type->device_map != nullptr;

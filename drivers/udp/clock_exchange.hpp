@@ -22,7 +22,7 @@ struct ClockTimes {
 /// they widen by the possible drift of the two clocks. Real-time.
 class ClockExchange : public ClockBounds {
 public:
-    /// `drift`: between the two clocks, in seconds per second.
+    /// `drift`: the largest drift of one clock against the other, in seconds per second.
     void take(const ClockTimes& times, double drift) noexcept TAPPET_REALTIME {
         age(times.got, drift);
         narrow(times.answered - times.got,

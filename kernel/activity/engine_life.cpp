@@ -1,12 +1,12 @@
-// The lives of an engine's components (thesis 3.1.3): all of them with their activity, or one while the
-// others run on. A component starts with valid inputs and leaves safe values.
+// The life cycle of an engine's components (thesis 3.1.3): all start and stop with their activity, or one
+// starts or stops while the others run. A component starts with valid inputs and leaves safe values.
 #include "kernel/activity/engine.hpp"
 
 namespace tappet {
 
 namespace {
 
-/// Returns why the component may not start because of this input; none: it may.
+/// Returns the reason why this input prevents the start of its component, or `none` if it does not.
 LifeRefusal refusal_by(const NeededInput& input) noexcept TAPPET_REALTIME {
     if (input.circle != nullptr && !is_running(*input.circle)) return LifeRefusal::none;
     const Flow flow = input.flow(input.input);
@@ -53,7 +53,7 @@ void close(const ComponentType& type, void* component, DroppedWrites* counter) n
 
 Sentence Engine::initialise() {
     expect_standing();
-    const RunsActivity here{plan_.activity, &cycle_.now}; // it does not run: its share of every event is free
+    const RunsActivity here{plan_.activity, &cycle_.now}; // activity not running: this thread may emit for it
     for (std::size_t i = 0; i < plan_.parts.size(); ++i) {
         EnginePart& part = plan_.parts[i];
         if (part.type->initialise != nullptr)
@@ -85,14 +85,14 @@ void Engine::start(Time now) noexcept TAPPET_REALTIME {
     cycle_.now = cycle_.release = lap_ = ended_ = now;
     next_release_ = plan_.periodic ? next_on_grid(now, plan_.period, plan_.phase) : never;
     if (was_stopped_) {
-        static_cast<void>(run_messages()); // messages since the stop reached nobody: each row counts its own
+        static_cast<void>(run_messages()); // drops messages posted since the stop; each row counts its own
         commands_.reject_sent();
     }
     asked_.store(true, std::memory_order_relaxed);
-    serve_requests(); // and refuse them, as they were answered before
+    serve_requests(); // refuses all: not active yet, and answer_to() has already reported them as refused
     active_.store(true, std::memory_order_release);
     awaiting_ = 0;
-    // All states first: what the first one sends in its start() reaches later ones that are sure to start.
+    // First set all states, so that a message sent in one start() reaches components that start later.
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i)
         if (plan_.parts[i].state.load(std::memory_order_relaxed) != ComponentState::failed)
             plan_.parts[i].state.store(may_wait(i) ? ComponentState::waiting : ComponentState::starting,
@@ -153,9 +153,9 @@ void Engine::stop(Time now) noexcept TAPPET_REALTIME {
     const RunsActivity here{plan_.activity, &cycle_.now};
     stamps_.renew();
     cycle_.now = cycle_.release = lap_ = now;
-    // Messages sent before the stop are handled, and those that its own behaviours send at their end: a valve
-    // that was told to close closes. If a contract broke in the cycle, the mailbox itself may be broken, so
-    // it is left alone.
+    // Messages that were sent before the stop are handled, and also those that the engine's own behaviours
+    // send when they end: so a requested closing of a valve is still done. If a contract broke in the cycle,
+    // the mailbox itself may be broken, so it is left alone.
     const bool broke = generation == is_changing;
     if (!broke) static_cast<void>(run_messages());
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
@@ -186,7 +186,7 @@ void Engine::start_part(std::uint32_t i) noexcept TAPPET_REALTIME {
     open_outputs(part);
     for_ports(*part.type, part.component_, FacetKind::input,
               [](const Facet& facet, void* port) noexcept TAPPET_REALTIME { facet.port->resume(port); });
-    cancel_timers(i); // armed while it was stopped: by changed()
+    cancel_timers(i); // those that changed() armed while the component was stopped
     if (part.type->start != nullptr) part.type->start(part.component_, cycle_);
     part.state.store(ComponentState::running, std::memory_order_release);
 }
@@ -212,7 +212,7 @@ void Engine::tell_resting() noexcept TAPPET_REALTIME {
         plan_.parts[i].waits_for_its_turn.store(rests(i), std::memory_order_relaxed);
 }
 
-// In one place, so that no driver's stop() can forget it.
+// The engine writes these values, so that no driver's stop() has to.
 void Engine::say_at_rest(const EnginePart& part) noexcept TAPPET_REALTIME {
     for_ports(*part.type, part.component_, FacetKind::output,
               [](const Facet& facet, void* port) noexcept TAPPET_REALTIME {
@@ -226,7 +226,7 @@ void Engine::open_outputs(EnginePart& part) noexcept TAPPET_REALTIME {
     close(*part.type, part.component_, nullptr);
 }
 
-// The count first, so that a forced reader woken by the closing finds that its force has ended.
+// Counts first: close() wakes readers, and a forced reader must then see that its force has ended.
 void Engine::close_outputs(EnginePart& part, std::uint64_t stop) noexcept TAPPET_REALTIME {
     part.stops.count.fetch_add(stop, std::memory_order_seq_cst);
     close(*part.type, part.component_, &part.dropped_writes);
@@ -346,7 +346,7 @@ void Engine::carry_out(std::uint32_t i, LifeTicket ticket, LifeChange wanted) no
     plan_.parts[i].requests.answer(ticket, answer);
 }
 
-// Its activity stops with it, so its pending request is refused.
+// The whole activity stops now, so the pending request of this component is refused.
 void Engine::refuse_ending(std::uint32_t i) noexcept TAPPET_REALTIME {
     EnginePart& part = plan_.parts[i];
     if (part.ends_at == never) return;
@@ -420,7 +420,7 @@ void Engine::leave(Parts leaving) noexcept TAPPET_REALTIME {
     resting_ |= leaving;
     for (std::uint32_t i = 0; i < plan_.parts.size(); ++i) {
         if ((leaving >> i & 1) == 0) continue;
-        static_cast<void>(change(i, LifeChange::stop)); // refused only by a failed one, which does not run
+        static_cast<void>(change(i, LifeChange::stop)); // refused: failed before, or stopped but left_unsafe
         note(life_note << 32 | std::uint64_t{i} << 8 | static_cast<std::uint64_t>(LifeChange::stop),
              cycle_.now);
     }

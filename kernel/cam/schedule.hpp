@@ -132,7 +132,7 @@ private:
     // After a crossing, crossing back counts only once the shaft has turned `hysteresis` away from it.
     enum class Closed : std::uint8_t { none, below, above };
 
-    // One angle of one row. The shaft is between `below` and one turn above it; both are at `angle`.
+    // One angle of one row. The shaft is between `below` and `below` + one turn; both are at `angle`.
     struct Edge {
         Angle angle;
         std::size_t row = 0;
@@ -146,8 +146,8 @@ private:
         ShaftPosition below{};
         Closed closed = Closed::none;
         ShaftPosition
-            furthest{}; // since the crossing, but not beyond the angle: turning back is measured from here
-        std::int8_t side = 1; // the planned crossing: 1 forward over the turn's end, -1 backward over `below`
+            furthest{}; // position since the crossing, at most the angle: hysteresis is measured from here
+        std::int8_t side = 1; // planned crossing: 1 forward at `below` + one turn, -1 backward at `below`
         bool must_leave = false;
         Time due = never;
     };
@@ -186,7 +186,7 @@ private:
     static constexpr Duration dead(const Edge& e) noexcept TAPPET_REALTIME {
         return e.side > 0 ? e.forward_dead : e.backward_dead;
     }
-    // Returns whether the edge is the one of two by which an open window is left without its angle.
+    // Returns true for the end edge of an open window: of its two edges, this one performs a forced leave.
     [[nodiscard]] constexpr bool is_open_end(const Edge& e) const noexcept TAPPET_REALTIME {
         return e.end == End::end && inside_[e.row];
     }
@@ -269,7 +269,7 @@ private:
             e.due = now;
         } else {
             const Time crossing = motion_.when(target);
-            // A crossing that is still closed fires when the shaft is there, not ahead.
+            // Within its hysteresis, a crossing fires at `target`, without dead-time compensation.
             e.due = crossing == never || !open_ahead(e) ? crossing : crossing - dead(e);
         }
     }

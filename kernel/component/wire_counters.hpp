@@ -9,7 +9,7 @@
 
 namespace tappet {
 
-/// A count of losses or of wrong receptions on the wires, for all devices of a kind together.
+/// The number of lost or wrongly received items (frames, edges, ..), summed over all devices of one kind.
 struct WireCounter {
     std::string_view name{}; ///< "can_frames_lost": the name in the summary of a run
     std::uint64_t count = 0;

@@ -56,7 +56,8 @@ inline constexpr WrongPath wrong_paths[] = {
     {ControlRole::controller, ControlRole::controller,
      "make two levels of it: the outer Controller commands the inner Generator"},
     {ControlRole::controller, ControlRole::generator,
-     "a Controller commands the Generator of the level below its own: connect that one"},
+     "a Controller commands the Generator of the level directly below its own; connect that one, if there is "
+     "one"},
     {ControlRole::controller, ControlRole::effector,
      "a level has its own Controller; let the outer one command the inner Generator"},
     {ControlRole::generator, ControlRole::controller,
@@ -95,8 +96,10 @@ constexpr Sentence refuse_path(const ControlView& c, const ConnectionRow& row, c
     text.add("; ");
     for (const WrongPath& each : wrong_paths)
         if (each.from == from.role && each.to == to.role) return text.add(each.cure);
-    if (to.role == ControlRole::sensor) text.add("a Sensor reads hardware only; ");
-    return text.add("remove the row");
+    if (to.role == ControlRole::sensor)
+        return text.add(
+            "a Sensor reads hardware only; connect its input to a driver, or leave it out if it is optional");
+    return text.add("let a Controller write the value");
 }
 
 constexpr bool is_driver(const MachineView& m, std::size_t component) noexcept {

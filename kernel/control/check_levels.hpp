@@ -65,7 +65,7 @@ constexpr Sentence check_rates(const ControlView& c, const MachineView& m, const
             return of_level(c.levels[l], "it runs every ", checks::in_us(inner.count()),
                             ", slower than level \"", c.levels[l - 1].name, "\" above it, which runs every ",
                             checks::in_us(outer.count()),
-                            "; an inner loop must be faster: exchange the levels, or their periods");
+                            "; an inner loop must not be slower: exchange the levels, or their periods");
         if (outer % inner != Duration::zero())
             return of_level(c.levels[l], "its period of ", checks::in_us(inner.count()),
                             " does not divide that of level \"", c.levels[l - 1].name, "\" above it, ",

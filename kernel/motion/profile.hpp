@@ -51,7 +51,7 @@ public:
     }
     /// Ends at rest, exactly at `position`. Returns false when the pieces do not lead there, or overflow.
     [[nodiscard]] bool rest_at(double position) noexcept TAPPET_REALTIME {
-        constexpr double rounding = 1e-6, nothing = 1e-150; // smaller ones lose all digits when squared
+        constexpr double rounding = 1e-6, nothing = 1e-150; // smaller numbers underflow when squared
         const bool leads_there = is_number(duration_s_ + farthest_ + fastest_) &&
                                  std::fabs(end_.position - position) <= rounding * farthest_ + nothing &&
                                  std::fabs(end_.velocity) <= rounding * fastest_ + nothing;
@@ -90,7 +90,7 @@ private:
     Bounded<Piece, most_pieces> pieces_;
     AxisState end_;
     double duration_s_ = 0.0;
-    double farthest_ = 0.0; ///< from zero, if all its motion had one direction
+    double farthest_ = 0.0; ///< upper bound of |position|: its value if all motion went away from zero
     double fastest_ = 0.0;
 };
 

@@ -83,7 +83,7 @@ constexpr Sentence pack_data(const SystemView& s, SystemPlan<N, X>& plan) {
             const std::size_t b = by_width[before]; // the same value, for another reader
             if (s.crossings[b].data.from != row.data.from) continue;
             if (s.crossings[b].every != row.every || plan.index[b].value != plan.index[x].value)
-                return of_crossing(row, " is encoded differently from the row to \"", s.crossings[b].to(),
+                return of_crossing(row, " is sent differently from the row to \"", s.crossings[b].to(),
                                    "\"; give all rows of one output the same every(...) and the same bits");
             place = plan.place[b];
         }

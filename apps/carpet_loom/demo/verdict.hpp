@@ -12,8 +12,8 @@ namespace tappet::demo {
 /// The largest distance of a stop from the stop angle.
 inline constexpr double most_stop_error_deg = 10.0;
 
-/// A run of at least this many picks shows how its weave is changed; below: the script that is woven then,
-/// and the first pattern that it lifts.
+/// In a run of at least this many picks, the demo changes the weave. The next two constants: the script that
+/// it loads, and the first pattern that this script lifts.
 inline constexpr std::int64_t least_picks_for_weaves = 60;
 inline constexpr const char* new_weave = "twill.osd";
 inline constexpr std::uint64_t pattern_of_new_weave = 4369;

@@ -45,7 +45,7 @@ inline constexpr std::uint32_t most_in_slot = 1 << 24;
 constexpr Sentence check_slot(const MachineView& m, const TableIndexView& r, const BehaviourRow& row) {
     const Slot& slot = row.slot;
     if (slot.nodes == 0 || slot.data_bytes == 0 || slot.depth == 0)
-        return of_behaviour(row, " does not reserve nodes, data and depth; state all three");
+        return of_behaviour(row, " does not reserve all of nodes, data and depth; state all three");
     if (std::max({slot.nodes, slot.data_bytes, slot.depth, slot.command_slots, slot.timers,
                   slot.text_bytes}) > most_in_slot)
         return of_behaviour(row, " reserves more than ", most_in_slot,

@@ -262,9 +262,9 @@ constexpr Sentence check_properties_file(const MachineView& m, const ComponentRo
     if (!row.has_properties_file) return {};
     const std::string_view name = row.properties.name;
     if (name.empty() || name.find('/') != std::string_view::npos || name == "." || name == "..")
-        return of_component(
-            row.name, ": its properties file \"", name,
-            "\" is not a plain file name; remove the directory, which is the board's properties_directory");
+        return of_component(row.name, ": its properties file \"", name,
+                            "\" is not a plain file name; write one without a directory, which is the "
+                            "board's properties_directory");
     bool has_properties = false;
     for (const Facet& facet : row.type->facets) has_properties |= facet.kind == FacetKind::property;
     if (!has_properties)

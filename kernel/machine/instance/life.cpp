@@ -71,7 +71,7 @@ Sentence MachineLife::describe(std::size_t activity, LifeAnswer answer) const {
     for (std::size_t x = 0; x < machine_.table.connections.size(); ++x) {
         const Link& link = machine_.index.connections[x];
         if (link.to.facet == answer.facet && machine_.table.components[link.to.component].name == part.name)
-            text.add("; see that \"")
+            text.add("; check that \"")
                 .add(machine_.table.components[link.from.component].name)
                 .add("\" runs and writes \"")
                 .add(machine_.table.connections[x].from)
@@ -79,7 +79,8 @@ Sentence MachineLife::describe(std::size_t activity, LifeAnswer answer) const {
     }
     for (const NeededInput& each : plan.inputs)
         if (each.part == answer.part && each.facet == answer.facet && each.circle != nullptr)
-            text.add(", which may wait for this one in turn: if it does not come, restart the machine");
+            text.add(
+                "; the writer may itself wait for this component: if no value arrives, restart the machine");
     return text;
 }
 

@@ -160,7 +160,7 @@ Sentence BehaviourSlot::describe_roll_back() const {
         return text.add(": its statements of one step did not come to an end within their number and the "
                         "deadline of its activity; let it wait, or allow it more");
     if (why_ == RollBack::late)
-        return text.add(": its activity missed a deadline by it; let it do less in one step");
+        return text.add(": it made its activity miss a deadline; let the script do less in one step");
     if (why_ == RollBack::too_much)
         return text.add(
             ": its activity used more of its processor than its row claims; let it do less in one step, or "

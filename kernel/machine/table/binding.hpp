@@ -1,5 +1,5 @@
 // A binding: the board devices and lines that one machine uses, and the processors that run its activities.
-// The machine's table names only devices and the board only has them: the binding connects the two.
+// The machine's table names its devices, the board lists those of the box: the binding connects the two.
 #pragma once
 
 #include "kernel/base/bounded.hpp"

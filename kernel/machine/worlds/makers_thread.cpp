@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs its work at each wake.
+// Runs its function each time it is woken.
 #include "kernel/machine/worlds/makers_thread.hpp"
 
 #include "kernel/os/memory.hpp"

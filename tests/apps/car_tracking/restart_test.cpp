@@ -110,7 +110,7 @@ TEST_F(Restarted, a_recognition_without_an_image_is_refused_with_the_reason) {
     EXPECT_TRUE(run.run_for(to_wait));
     stop("recognition");
     EXPECT_THAT(change("recognition", LifeChange::start),
-                HasSubstr("\"image\" was never written; see that \"camera\" runs"));
+                HasSubstr("\"image\" was never written; check that \"camera\" runs"));
     EXPECT_EQ(state_of("recognition"), ComponentState::stopped);
     EXPECT_EQ(run.state(), "Waiting");
 }

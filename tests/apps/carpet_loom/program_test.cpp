@@ -34,7 +34,8 @@ TEST(Program, refuses_a_value_that_is_not_a_whole_number) {
         EXPECT_THAT(refusal({"--picks", word}), StartsWith("carpet-loom: option --picks: \""));
     }
     EXPECT_THAT(refusal({"--for", "0"}), HasSubstr("option --for: \"0\" is not from 1 to 1000000000"));
-    EXPECT_THAT(refusal({"--picks", "0"}), HasSubstr("\"0\" is not what it takes; see --help"));
+    EXPECT_THAT(refusal({"--picks", "0"}),
+                HasSubstr("\"0\" is not a valid value of this option; see --help"));
 }
 
 TEST(Program, ends_with_2_when_the_summary_cannot_be_written) {

@@ -1,5 +1,5 @@
-// A flashed image on an emulated box with UEFI: it boots and works, a new version stays once it has proven
-// itself, and any other one is gone at the next boot, whatever it did instead.
+// A flashed image on an emulated box with UEFI: it boots and works; a new version stays once it has proven
+// itself; a version that fails in any way is rolled back at the next boot.
 #include "board/box/update.hpp"
 #include "tests/bench/image/data_partition.hpp"
 #include "tests/bench/image/written_images.hpp"
@@ -58,7 +58,7 @@ TEST(Box, arms_and_works_when_started_at_its_kernel) {
     SCOPED_TRACE(said);
     EXPECT_THAT(said, HasSubstr("data partition at /var/lib/tappet is up"));
     EXPECT_THAT(said, HasSubstr("armed on board \"bench\", 0 warnings"));
-    EXPECT_THAT(said, HasSubstr(" picks=1")) << "it weaves: 1, or 10 to 19";
+    EXPECT_THAT(said, HasSubstr(" picks=1")) << "it weaves: the number of picks is 1 or begins with 1";
 }
 
 TEST(Box, rolls_back_and_names_missing_hardware_when_an_update_cannot_arm) {
@@ -101,7 +101,7 @@ TEST(Box, is_reset_by_its_watchdog_when_machine_and_guardian_die_at_once) {
 }
 
 TEST(Box, rolls_back_and_reports_why_when_an_update_crashes) {
-    EmulatedBox box{image("lonely") / "disk.img"}; // its old version does not end while it is asked
+    EmulatedBox box{image("lonely") / "disk.img"}; // its old version does not end, so `tappet box` can ask it
     image::install(box.disk(), image("crashing") / "tappet.efi");
     box.switch_on();
     const std::string said = box.await("the version in the other slot failed its trial");
@@ -113,7 +113,7 @@ TEST(Box, rolls_back_and_reports_why_when_an_update_crashes) {
     EXPECT_THAT(status, HasSubstr("runs: version 1, revision 2, good"));
     EXPECT_THAT(status, HasSubstr("other: version unknown, revision 0, failed"));
     EXPECT_THAT(status, HasSubstr("the firmware ended with code"))
-        << "what the version that is gone said last";
+        << "the last message of the version that failed";
 }
 
 TEST(Box, rolls_back_when_an_update_misses_a_deadline) {
@@ -199,7 +199,7 @@ TEST(Box, is_measured_when_its_power_button_is_pressed) {
     EXPECT_THAT(status, HasSubstr("processor 0: woke at most "));
     EXPECT_THAT(status, HasSubstr("in addition to its worst response of "));
     EXPECT_THAT(status, HasSubstr("hold the table's claims"))
-        << "it can, or it cannot: here time is emulated";
+        << "can or cannot: the time of the emulated box means nothing";
 }
 
 TEST(Box, boots_only_software_of_its_owner_under_secure_boot) {
@@ -250,7 +250,8 @@ TEST(Box, does_not_repeat_a_failed_trial_after_a_shutdown) {
     const std::string said = box.await_end();
     SCOPED_TRACE(said);
     EXPECT_THAT(said, HasSubstr("the power button ends it"));
-    EXPECT_EQ(slot(box, 2).state, SlotState::testing) << "the loader goes back from there";
+    EXPECT_EQ(slot(box, 2).state, SlotState::testing)
+        << "the loader rolls back a slot in this state at the next boot";
 }
 
 // A stick is a disk that was plugged in later. Since its plant does not end, the machine works until the
@@ -276,7 +277,7 @@ TEST(Box, boots_with_a_damaged_data_partition) {
     EmulatedBox box{image("lonely") / "disk.img"};
     const DataPartition data{box.disk(), box / "data"};
     const std::string there = "box " + box.address() + " ", keys = " --key " + image("keys").string();
-    { // the superblock and its table of groups, of which there are copies
+    { // the superblock and the group descriptor table, which have backup copies
         data.write("/kept", "whole");
         data.damage(0, 3 * 1024);
         box.switch_on();
@@ -348,7 +349,7 @@ TEST(Box, keeps_the_settings_of_each_layout_of_properties) {
     after_the_button(box, is_complete);
     const std::string updated = box.await("has proven itself and stays");
     SCOPED_TRACE(updated);
-    EXPECT_THAT(updated, HasSubstr("\"flutes\"")) << "left out, and said";
+    EXPECT_THAT(updated, HasSubstr("\"flutes\"")) << "the dropped property is reported";
     EXPECT_THAT(asked("box " + box.address() + " roll-back" + keys), HasSubstr("press the power button"));
     const std::string back = after_the_button(box, "has proven itself and stays");
     SCOPED_TRACE(back);

@@ -109,7 +109,7 @@ constexpr Fault slot_faults[] = {
     {"slot_angle_of_another_activity", [](Table& m) { reserve(m, angle_of("encoder.angle")); },
      R"(loom: slot of "shaft": angle_of("encoder.angle") is written in another activity; name an output of activity "motion")"},
     {"slot_without_room", [](Table& m) { m.add(behaviour("shaft", Slot{})); },
-     R"(loom: slot of "shaft" does not reserve nodes, data and depth; state all three)"},
+     R"(loom: slot of "shaft" does not reserve all of nodes, data and depth; state all three)"},
     {"slot_of_all",
      [](Table& m) { m.add(behaviour("shaft", slot(nodes(0xffff'ffff), data_bytes(64), depth(4)))); },
      R"(loom: slot of "shaft" reserves more than 16777216 of one resource; write smaller numbers)"},

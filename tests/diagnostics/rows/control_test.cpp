@@ -63,7 +63,7 @@ constexpr Fault cascade_faults[] = {
          m.put(activity("slow", every(500us), budget(50us), runs("path", "outer")));
          m.put(data("outer.velocity", "ramp.measured", scaled(1.0), stale_after(20ms), stop_machine));
      },
-     R"(cascade: level "inside": it runs every 1000 us, slower than level "outside" above it, which runs every 500 us; an inner loop must be faster: exchange the levels, or their periods)"},
+     R"(cascade: level "inside": it runs every 1000 us, slower than level "outside" above it, which runs every 500 us; an inner loop must not be slower: exchange the levels, or their periods)"},
 
     {"one_chain",
      [](Table& m) {
@@ -126,7 +126,7 @@ constexpr Fault cascade_faults[] = {
      [](Table& m) {
          m.put(data("inner.velocity", "path.measured", scaled(1.0), stale_after(20ms), stop_machine));
      },
-     R"(cascade: connection "inner.velocity" -> "path.measured": a Controller of level "inside" must not write to a Generator of level "outside"; a Controller commands the Generator of the level below its own: connect that one)"},
+     R"(cascade: connection "inner.velocity" -> "path.measured": a Controller of level "inside" must not write to a Generator of level "outside"; a Controller commands the Generator of the level directly below its own; connect that one, if there is one)"},
 };
 INSTANTIATE_TEST_SUITE_P(control_cascades, Refusal, planted_into(cascade, cascade_faults), name_of);
 
@@ -173,7 +173,7 @@ constexpr Fault flow_faults[] = {
      R"(axis: connection "position.velocity" -> "model.sent": an Estimator reads outputs only from the previous step; add delayed)"},
     {"sensor_reads_the_kernel",
      [](Table& m) { m.put(data("limiter.sent", "encoder.counted", scaled(1.0), delayed)); },
-     R"(axis: connection "limiter.sent" -> "encoder.counted": an Effector must not write to a Sensor; a Sensor reads hardware only; remove the row)"},
+     R"(axis: connection "limiter.sent" -> "encoder.counted": an Effector must not write to a Sensor; a Sensor reads hardware only; connect its input to a driver, or leave it out if it is optional)"},
     {"process_writes_the_data_flow",
      [](Table& m) {
          seat(m, component<Mover>("path"), generator("path"),

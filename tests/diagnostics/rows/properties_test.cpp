@@ -151,7 +151,7 @@ constexpr Fault file_faults[] = {
      R"(loom: component "weft" has no properties but a properties file "weft.cpf"; remove properties_file(...))"},
     {"properties_file_path",
      [](Table& m) { m.put(component<Shaft>("shaft", properties_file("/etc/shaft.cpf"))); },
-     R"(loom: component "shaft": its properties file "/etc/shaft.cpf" is not a plain file name; remove the directory, which is the board's properties_directory)"},
+     R"(loom: component "shaft": its properties file "/etc/shaft.cpf" is not a plain file name; write one without a directory, which is the board's properties_directory)"},
     {"properties_file_shared",
      [](Table& m) {
          m.put(component<Shaft>("shaft", properties_file("shaft.cpf")));

@@ -69,7 +69,7 @@ std::expected<std::chrono::milliseconds, std::string> parse_time(std::string_vie
     const double milliseconds = value * factor;
     if (error != std::errc{} || factor == 0.0 || !(milliseconds >= 1.0) || milliseconds > 86'400'000.0)
         return std::unexpected("'" + std::string{text} +
-                               " ' is not a time from 1ms to 86400s; write 200ms or 2s");
+                               "' is not a time from 1ms to 86400s; write 200ms or 2s");
     return std::chrono::milliseconds{static_cast<std::int64_t>(milliseconds)};
 }
 

@@ -17,18 +17,19 @@ inline constexpr std::array image_options{
            .most = 4'000'000'000},
     Option{.name = "--watchdog",
            .value = "SECONDS",
-           .help = "armed by the loader before the kernel (default 30); 0: the box has none",
+           .help = "the loader starts the watchdog with this time-out before it starts the kernel (default "
+                   "30); 0: the box has no watchdog",
            .is_number = true,
            .least = 0,
            .most = 255},
-    Option{
-        "--key", "DIR",
-        "of tappet-image key: the image is signed for Secure Boot, the box takes updates signed with it, and "
-        "one is written"},
-    Option{"--next-key", "DIR", "the box's later updates are signed with these instead"}};
+    Option{"--key", "DIR",
+           "folder of keys that `tappet-image key` made: signs the image for Secure Boot and writes a signed "
+           "update; the box accepts only updates that are signed with these keys"},
+    Option{"--next-key", "DIR",
+           "folder of the new keys: the box accepts later updates only if they are signed with these keys"}};
 
 inline constexpr std::array box_options{
-    Option{"--key", "DIR", "folder of tappet-image key, to sign an order"}};
+    Option{"--key", "DIR", "folder of keys that `tappet-image key` made; signs the order"}};
 
 inline constexpr std::array flash_options{Option{"--image", "FILE", "a disk.img"},
                                           Option{"--erase", "", "overwrites a disk that is not empty"}};

@@ -76,8 +76,9 @@ TEST_F(Circle, refuses_a_start_while_its_other_part_runs_but_is_silent) {
     EXPECT_EQ(answer.refusal, LifeRefusal::input_stale);
     EXPECT_EQ(
         std::string{instance.life().describe(motion, answer).view()},
-        "component \"drive\" is not started: its input \"in\" is stale; see that \"bus\" runs and writes "
-        "\"bus.out\", which may wait for this one in turn: if it does not come, restart the machine");
+        "component \"drive\" is not started: its input \"in\" is stale; check that \"bus\" runs and writes "
+        "\"bus.out\"; the writer may itself wait for this component: if no value arrives, restart the "
+        "machine");
 }
 
 TEST_F(Circle, delays_the_start_of_a_reader_outside_it) {

@@ -24,7 +24,7 @@ Profile profile_of(std::int64_t turn) noexcept TAPPET_REALTIME {
     return made;
 }
 
-/// Emits on demand, and in each step the emissions that a test left there.
+/// Emits on demand; each step emits what a test has put into `to_emit` and `profiles`.
 struct Shaft {
     Event<double> beat_up;
     Event<> standing;
@@ -159,7 +159,7 @@ using AnEvent = AReactionRow;
 using AWait = AReactionRow;
 using TheObserver = AReactionRow;
 
-TEST_F(AReactionRow, runs_from_the_connection_by_its_handle_when_it_starts_disconnected) {
+TEST_F(AReactionRow, that_starts_disconnected_runs_once_its_handle_connects_it) {
     ASSERT_TRUE(console.beat.valid());
     EXPECT_FALSE(console.beat.connected());
     shaft.to_emit = {1.0};
@@ -299,7 +299,7 @@ TEST_F(TheObserver, counts_its_lost_emissions_and_causes_no_loss_elsewhere) {
     EXPECT_EQ(instance.observation().counts_of(instance.observation().observed_index(beat_up)).lost,
               2 * observer_quota);
     pass(20ms);
-    EXPECT_EQ(console.beats.size(), 4u) << "its own queue";
+    EXPECT_EQ(console.beats.size(), 4u) << "the console's row has a queue of its own, of four";
 }
 
 TEST_F(TheObserver, refuses_facets_that_are_too_large_or_not_events) {

@@ -215,7 +215,7 @@ TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_and_names_it) 
     EXPECT_EQ(answer.refusal, LifeRefusal::input_never_written);
     EXPECT_EQ(words(axis, answer),
               "component \"axis\" is not started: its input \"angle\" was never written; "
-              "see that \"sensor\" runs and writes \"sensor.angle\"");
+              "check that \"sensor\" runs and writes \"sensor.angle\"");
     EXPECT_EQ(state(axis), ComponentState::stopped);
     the<Sensor>("sensor").silent = false;
     pass(2ms);
@@ -230,7 +230,7 @@ TEST_F(LifeOfAComponent, is_refused_with_a_stale_input_and_a_restart_then_leaves
     EXPECT_EQ(answer.outcome, LifeOutcome::refused);
     EXPECT_EQ(answer.refusal, LifeRefusal::input_stale);
     EXPECT_THAT(words(axis, answer),
-                testing::HasSubstr("its input \"angle\" is stale; see that \"sensor\" runs"));
+                testing::HasSubstr("its input \"angle\" is stale; check that \"sensor\" runs"));
     EXPECT_EQ(state(axis), ComponentState::stopped);
     EXPECT_EQ(the<Axis>("axis").drive.last(), 0.0);
 }

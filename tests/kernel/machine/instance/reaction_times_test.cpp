@@ -117,7 +117,8 @@ TEST_F(Reactions, are_counted_only_when_an_edge_caused_them) {
     lines.no_edge = true;
     pass(5ms);
     EXPECT_EQ(brake.set_times, 3);
-    EXPECT_EQ(brake_told().count, 1u) << "a cause ends with what it caused";
+    EXPECT_EQ(brake_told().count, 1u)
+        << "a later emission without an edge does not inherit the cause of an earlier one";
     EXPECT_EQ(logic_woken().count, 1u);
 }
 

@@ -77,7 +77,7 @@ TEST_F(BehaviourSlotTest, no_other_script_is_loaded_during_a_trial) {
     EXPECT_THAT(compile(numbered(3)), HasSubstr("another change of behaviour"));
 }
 
-/// Uses so many microseconds for a tick.
+/// Returns a script that takes `us` microseconds for every second tick.
 std::string takes(int us) {
     return "StateMachine Slow { initial state A { transition oven.tick() select B }\n"
            "state B { entry { do oven.bake(" +
@@ -91,8 +91,9 @@ TEST_F(BehaviourSlotTest, a_script_that_delays_its_activity_on_trial_is_rolled_b
     ASSERT_EQ(slot.phase(), SlotPhase::trial);
     tick(5ms);
     EXPECT_EQ(slot.last_roll_back(), RollBack::late);
-    EXPECT_EQ(slot.describe_roll_back().view(),
-              "taken back: test.osd: its activity missed a deadline by it; let it do less in one step");
+    EXPECT_EQ(
+        slot.describe_roll_back().view(),
+        "taken back: test.osd: it made its activity miss a deadline; let the script do less in one step");
     EXPECT_EQ(state_now(), "Begin") << "the first is at work";
 }
 
@@ -100,7 +101,7 @@ TEST_F(BehaviourSlotTest, a_script_that_exceeds_the_claim_on_trial_is_rolled_bac
     load_and_settle(numbered(1));
     EXPECT_EQ(load(takes(200)), "");
     run(3ms);
-    for (int i = 0; i < 3; ++i) { // an engine measures its processor time after a busy time above its budget
+    for (int i = 0; i < 3; ++i) { // an engine measures processor time from a cycle over its budget on
         tick();
     }
     run(2ms);
