@@ -43,7 +43,7 @@ const std::vector<Size> sizes{
     {"toolchain/tools",       13355},
     {"tests/kernel",         32198},
     {"tests/drivers",         16874},
-    {"tests/apps",            6082},
+    {"tests/apps",            6088},
     {"tests/toolchain",       6229},
     {"tests/bench",           4654},
     {"tests/diagnostics",     4257},

@@ -262,7 +262,7 @@ private:
 } // namespace
 
 std::vector<Instruction> of_aarch64(std::uint64_t address, std::string_view text) {
-    text = trimmed(text.substr(0, text.find("// the rest is objdump's own computation
+    text = trimmed(text.substr(0, text.find("//"))); // the rest is objdump's own computation
     const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
     return Saying{address, std::string{text.substr(0, end)}, parts_of(text.substr(end))}.said();
 }

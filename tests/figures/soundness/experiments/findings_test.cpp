@@ -61,19 +61,16 @@ TEST(Evaluate, measures_periods_between_starts_without_the_warm_up) {
     EXPECT_EQ(result.executions, 3u);
 }
 
-TEST(Evaluate, counts_a_command_once_although_it_is_timed_twice) {
-    const Execution records[] = {{.begin = 0, .served = 2, .serving = 700},
-                                 {.begin = 10, .served = 4, .serving = 900},
+TEST(Evaluate, separates_cycles_by_the_number_of_commands_served) {
+    const Execution records[] = {{.begin = 0, .served = 1, .serving = 700},
+                                 {.begin = 10, .served = 2, .serving = 900},
                                  {.begin = 20, .served = 0},
                                  {.begin = 30}};
-    TaskResult commands, events;
+    TaskResult commands;
     evaluate(records, Setting::commands, 1.0, 0, commands);
     EXPECT_THAT(commands.one_served.values(), ElementsAre(700));
     EXPECT_THAT(commands.two_served.values(), ElementsAre(900));
     EXPECT_THAT(commands.served.values(), ElementsAre(700, 900));
-    evaluate(records, Setting::events, 1.0, 0, events);
-    EXPECT_THAT(events.two_served.values(), ElementsAre(700));
-    EXPECT_TRUE(events.one_served.empty());
 }
 
 TEST(Figures, put_the_mutex_and_the_bare_copies_beside_the_connectors) {
