@@ -274,7 +274,7 @@ private:
         }
         const Angle edge = Angle::degrees(wanted_deg_ - distance_at(speed));
         double ahead = forward_way(state.position.angle(), edge).in_degrees();
-        if (ahead > 360.0 - late_deg.get()) ahead = 0.0; // just behind: as soon as possible
+        if (ahead > 360.0 - late_deg.get()) ahead = 0.0; // the brake angle was just passed: brake at once
         const Time when =
             ahead == 0.0 ? now : estimator_.when(state.position + Rotation::degrees(ahead), now);
         if (when <= now)

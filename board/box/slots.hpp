@@ -5,7 +5,6 @@
 // `installed` again after its start, so that an interrupted start leads to the other slot. Meanwhile the
 // other slot is `good`, so the loader can use it as often as needed. One loader file is written only while
 // the other one boots a complete version.
-// one is written only while the other one boots a whole version.
 #pragma once
 
 #include "board/box/slot.hpp"

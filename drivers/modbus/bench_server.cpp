@@ -16,7 +16,7 @@ namespace tappet::modbus {
 
 namespace {
 
-constexpr int poll_ms = 20; // reaction time to power and to the end
+constexpr int poll_ms = 20; // longest delay until set_power() or the destructor takes effect
 
 unsigned word_at(const std::uint8_t* bytes, int offset) {
     return (static_cast<unsigned>(bytes[offset]) << 8) | bytes[offset + 1];
@@ -137,7 +137,7 @@ void BenchServer::answer(int client) {
     if (unit != unit_ && unit != MODBUS_TCP_SLAVE) return; // meant for another unit behind the same address
     const auto all = whole();
     to_mapping();
-    // It would answer these and change a copy only.
+    // libmodbus would answer these two functions, but change only its own copy of the registers.
     if (const int function = query[header];
         function == MODBUS_FC_MASK_WRITE_REGISTER || function == MODBUS_FC_WRITE_AND_READ_REGISTERS) {
         modbus_reply_exception(context_.get(), query, MODBUS_EXCEPTION_ILLEGAL_FUNCTION);

@@ -1,12 +1,14 @@
-// Methods (thesis 4.5): an algorithm of a component that a peer runs in its own thread, with typed arguments
-// and a result. The peer holds a MethodCall; a row of the table says whose method it calls.
+// Methods (thesis 4.5): an algorithm of a component; a peer calls it, and it runs in the peer's thread, with
+// typed arguments and a result. The peer holds a MethodCall; a row of the table says whose method it calls.
 //
-//     struct Restarter {                                       struct Bus {
-//         MethodCall<bool(int)> restart;                           bool restart(int tries) noexcept
-//         TAPPET_REALTIME;
-//         ... calls<&Restarter::restart>("restart", "the bus")     ... method<&Bus::restart>("restart",
-//         "...", any_thread)
-//     };                                                       };
+//     struct Restarter {
+//         MethodCall<bool(int)> restart;
+//         ... calls<&Restarter::restart>("restart", "the bus")
+//     };
+//     struct Bus {
+//         bool restart(int tries) noexcept TAPPET_REALTIME;
+//         ... method<&Bus::restart>("restart", "...", any_thread)
+//     };
 //     uses("restarter.restart", "bus.restart")
 #pragma once
 
@@ -69,8 +71,8 @@ struct MethodGoal {
 struct MethodCallOperations {
     TypeId result = nullptr;
     void (*bind)(void* method_call, const MethodGoal& goal) = nullptr;
-    /// Redirects later calls; a call in progress ends at the old goal. `goal` must stay valid. Real-time, any
-    /// thread.
+    /// Redirects later calls; a call in progress ends in the old component. `goal` must stay valid.
+    /// Real-time, any thread.
     void (*aim)(void* method_call, const MethodGoal* goal) noexcept TAPPET_REALTIME = nullptr;
 };
 

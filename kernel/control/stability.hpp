@@ -16,7 +16,7 @@ struct SampledLoop {
     double proportional = 0.0;
     double integral = 0.0;
     std::size_t dead_samples = 0;    ///< upper bound
-    std::size_t varying_samples = 0; ///< part of them that varies, in any order
+    std::size_t varying_samples = 0; ///< part of them that may change arbitrarily from step to step
 };
 
 namespace stability_detail {
@@ -83,7 +83,8 @@ constexpr bool is_stable(const SampledLoop& loop) noexcept {
         a[1] += loop.proportional + loop.integral;
         a[0] -= loop.proportional;
     }
-    // Each round removes the highest power; the rest has its roots inside only if this one had.
+    // Each round reduces the degree by one; after the check, the reduced polynomial has all roots inside the
+    // unit circle exactly if the previous one has.
     for (; degree > 0; --degree) {
         const double top = a[degree], bottom = a[0];
         if (!(bottom < top && bottom > -top)) return false;

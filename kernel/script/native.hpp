@@ -1,4 +1,5 @@
-// Native code of a script compiled with the firmware: each of its types as code, nothing interpreted.
+// Native code of a script compiled with the firmware: each of its programs and state machines is machine
+// code; nothing is interpreted.
 #pragma once
 
 #include "kernel/script/unit.hpp"

@@ -25,7 +25,7 @@ public:
     [[nodiscard]] bool expose(Duration exposure) noexcept TAPPET_REALTIME override;
     [[nodiscard]] bool take(Image& into, Time& taken) noexcept TAPPET_REALTIME override;
 
-    // For the world and for the machine's judges.
+    // For the world, and for the code that compares the machine with the truth.
     /// Returns the next moment at which something moves.
     [[nodiscard]] Time next() const { return now_ + step; }
     void advance(Time now);

@@ -17,7 +17,7 @@ enum class SubscriberKind : std::uint8_t {
     operation, ///< of a reaction row
     wait,      ///< of a reaction row: an EventWait
     trigger,   ///< of a behaviour
-    counter,   ///< of a section of another folder
+    counter,   ///< of a section of the table that another folder adds (limits, control, reporting, ..)
     observer   ///< the component that sees the machine
 };
 
@@ -51,7 +51,7 @@ struct ActivityPlan {
     PlacesOf<NeededInput> inputs; ///< inputs that its components need before they start
     PlacesOf<Mailbox> mailboxes;  ///< one for each sender
     PlacesOf<CommandMailbox> command_mailboxes;
-    PlacesOf<CommandSlot*> followed; ///< commands that may run at once
+    PlacesOf<CommandSlot*> followed; ///< commands that may run at the same time
     std::size_t tape_at = nowhere;   ///< CycleTape, if a component records the machine's cycles
     std::size_t tape_words = 0;
     std::size_t stack_at = 0;
@@ -106,7 +106,7 @@ struct PlanOfAll {
     std::size_t recordings_at = 0;
     std::size_t recordings = 0;
     std::size_t shared_bytes = 0; ///< whole pages from the beginning on, without the stacks
-    std::size_t bytes = 0;        ///< of everything below this line
+    std::size_t bytes = 0;        ///< of the whole block: the machine's memory
     std::size_t stack_bytes = 0;  ///< of these, stacks
 };
 
@@ -137,7 +137,7 @@ struct TriggerBinding {
     std::size_t event; ///< its number in the unit or slot
 };
 
-/// The most bytes of an event's arguments that the component that sees the machine receives.
+/// The observer receives the arguments of an event up to this number of bytes.
 inline constexpr std::size_t most_observed_bytes = 512;
 
 /// The function that is called at each emission to which an observer is connected.

@@ -17,7 +17,7 @@ struct Stretch {
 };
 
 struct Instant {
-    std::size_t entry = 0; ///< the power goes before this entry
+    std::size_t entry = 0; ///< the power fails before this entry is written
     Allowed allowed{};
 };
 

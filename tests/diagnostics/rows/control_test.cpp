@@ -174,6 +174,11 @@ constexpr Fault flow_faults[] = {
     {"sensor_reads_the_kernel",
      [](Table& m) { m.put(data("limiter.sent", "encoder.counted", scaled(1.0), delayed)); },
      R"(axis: connection "limiter.sent" -> "encoder.counted": an Effector must not write to a Sensor; a Sensor reads hardware only; connect its input to a driver, or leave it out if it is optional)"},
+    {"effector_to_effector",
+     [](Table& m) {
+         seat(m, component<Limiter>("second"), effector("second"), data("limiter.sent", "second.velocity"));
+     },
+     R"(axis: connection "limiter.sent" -> "second.velocity": an Effector must not write to an Effector; let a Controller write the value)"},
     {"process_writes_the_data_flow",
      [](Table& m) {
          seat(m, component<Mover>("path"), generator("path"),

@@ -66,7 +66,7 @@ TEST(BusTraffic, is_refused_with_the_largest_part_of_the_response) {
     EXPECT_EQ(refusal(at(500'000), heard(0x100, "late", 8, 2ms, 1900us)),
               "frame \"late\" may take 2170 us but is due within 2000 us; most of it, 1900 us, is how late "
               "it may enter its queue; shorten the response of the activity that drives the bus, or the "
-              "jitter of its node");
+              "jitter in its every(...)");
     EXPECT_EQ(
         refusal(at(500'000, 3), heard(0x100, "a", 8, 1ms)),
         "frame \"a\" may take 1266 us but is due within 1000 us; most of it, 996 us, are errors on the wire; "

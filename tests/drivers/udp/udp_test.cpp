@@ -96,7 +96,7 @@ TEST(Socket, receives_the_answer_to_its_request) {
     }
     const auto wrong = Socket{}.ask("the clock", port);
     ASSERT_FALSE(wrong);
-    EXPECT_THAT(std::string{wrong.error().view()}, HasSubstr("\"the clock\" is no IPv4 address"));
+    EXPECT_THAT(std::string{wrong.error().view()}, HasSubstr("\"the clock\" is not an IPv4 address"));
 }
 
 TEST(Socket, reports_why_it_cannot_be_opened) {

@@ -139,10 +139,10 @@ TEST_F(Chains, carry_a_load_at_their_end_by_the_transposed_jacobian) {
 TEST(ChainsDeathTest, refuse_values_that_are_not_numbers) {
     Joints<6> q = zero;
     q[4] = no_number;
-    EXPECT_DEATH(static_cast<void>(forward(folded<k361>, q)), "contract 4 not-a-number: Element 4 ");
+    EXPECT_DEATH(static_cast<void>(forward(folded<k361>, q)), "contract 4 not-a-number: Argument element 4 ");
     q[4] = infinite;
     EXPECT_DEATH(static_cast<void>(inverse_dynamics(folded<puma_560>, zero, q, zero)),
-                 "contract 4 not-a-number: Element 4 ");
+                 "contract 4 not-a-number: Argument element 4 ");
 }
 
 } // namespace

@@ -51,7 +51,7 @@ static_assert(protection_fault({.form = Form::id_both, .most_steps = 15}, 8).vie
               "most_steps is 15: write one from 1 to 14");
 static_assert(!protection_fault({.most_steps = 0}, 8).empty());
 
-/// The first byte is not the header's, where there is room.
+/// Each form at least once; two of the headers lie behind data.
 constexpr std::array forms{
     Protection{.form = Form::id_both, .id = 0x123}, Protection{.form = Form::id_nibble, .id = 0xABC, .at = 3},
     Protection{.form = Form::id_low, .id = 0x7F}, Protection{.form = Form::wide, .id = 0x1234},
@@ -220,7 +220,7 @@ TEST(ProtectionCheck, rejects_truncated_payloads_and_invalid_counters) {
     EXPECT_EQ(ProtectionCheck{by}.check(payload).kind, Kind::wrong_crc);
 }
 
-// -- The effects of a channel on payloads, against their known numbers
+// -- A faulty channel: each verdict is compared with the true number of the payload
 
 using Check = std::function<ProtectionVerdict(std::span<const std::uint8_t>, bool begins_anew)>;
 
@@ -340,7 +340,7 @@ int wrong_verdicts(const Protection& by, std::uint64_t seed, const Check& check)
             truth.last = -1;
             receive(now, true);
             break;
-        case 7: // a right sum over what is no header
+        case 7: // a correct checksum over an invalid header
             if (!by.is_wide()) {
                 auto odd = sent.back();
                 std::uint8_t& beside = odd[by.at + 1];

@@ -35,7 +35,7 @@ TEST(Command, refuses_an_option_without_its_value) {
 TEST(Command, refuses_an_option_of_another_command) {
     const Ended ended = demo("--runs 3");
     EXPECT_EQ(ended.exit_code, 2);
-    EXPECT_EQ(ended.text, "ci/demo: '--runs' is no option; --help lists the options\n");
+    EXPECT_EQ(ended.text, "ci/demo: '--runs' is not an option; --help lists the options\n");
 }
 
 } // namespace

@@ -143,7 +143,7 @@ constexpr std::size_t field = 0, motion = 1, slow = 2, office = 3;
 
 struct Machine : testing::Test, ConfiguredRig<table> {
     Machine() { notes().clear(); }
-    /// Also runs it for so long.
+    /// Starts the machine, then runs it for this time.
     void start(Duration then = {}) {
         ASSERT_EQ(world.start().view(), "");
         pass(then);

@@ -101,7 +101,8 @@ TEST_F(BehaviourSlotTest, a_script_that_exceeds_the_claim_on_trial_is_rolled_bac
     load_and_settle(numbered(1));
     EXPECT_EQ(load(takes(200)), "");
     run(3ms);
-    for (int i = 0; i < 3; ++i) { // an engine measures processor time from a cycle over its budget on
+    // An engine measures processor time only from the first cycle on that exceeds its budget.
+    for (int i = 0; i < 3; ++i) {
         tick();
     }
     run(2ms);
