@@ -25,8 +25,6 @@ using Exists = std::function<bool(const std::string& path)>;
 
 bool is_there(const std::string& path) { return fs::exists(fs::path{TAPPET_TREE} / path); }
 
-bool is_page(const File& file) { return file.path.ends_with(".md"); }
-
 /// A page without its fenced examples, in one line, since sentences may continue in the next line.
 struct Prose {
     std::string text;
@@ -38,13 +36,9 @@ struct Prose {
 
 Prose prose(const File& page) {
     Prose found;
-    bool fenced = false;
-    for (const std::string& line : page.lines) {
+    for (const std::string& line : page.prose) {
         found.starts.push_back(found.text.size());
-        const bool is_fence = line.starts_with("```");
-        if (!fenced && !is_fence) found.text += line;
-        found.text += ' ';
-        fenced ^= is_fence;
+        found.text += line + ' ';
     }
     return found;
 }
@@ -97,7 +91,7 @@ Findings missing_files(const Tree& files, const Exists& exists) {
     static const std::regex link("\\]\\(([^)#\\s]+)[^)]*\\)");
     Findings found;
     for (const File& page : files) {
-        if (!is_page(page)) continue;
+        if (!page.is_page()) continue;
         for (const Match& each : matches(page, code))
             if (const std::string name = file_in(each.groups[0]);
                 !name.empty() && !leads_somewhere(page, name, exists))
@@ -137,7 +131,7 @@ Findings missing_functions(const Tree& files) {
     static const std::regex part("\\w+");
     Findings found;
     for (const File& page : files) {
-        if (!is_page(page)) continue;
+        if (!page.is_page()) continue;
         for (const Hop& hop : hops(page)) {
             const auto beside = (fs::path{page.folder()} / hop.file).lexically_normal().generic_string();
             const auto file = std::ranges::find_if(

@@ -79,13 +79,12 @@ TEST(Spelling, is_known) {
             if (file.is_under("tests/fuzz/corpus")) continue;
             const bool comments_only =
                 file.is_cpp() && (file.is_under("tests") || is_about_misspelling(file));
-            const std::vector<std::string>& lines = comments_only ? file.comments : file.lines;
-            bool is_fenced = false;
+            const std::vector<std::string>& lines = comments_only    ? file.comments
+                                                    : file.is_page() ? file.prose
+                                                                     : file.lines;
             for (std::size_t i = 0; i < lines.size(); ++i) {
                 places.push_back(file.path + ":" + std::to_string(i + 1));
-                is_fenced ^= file.path.ends_with(".md") && lines[i].starts_with("```");
-                const bool is_example = file.path.ends_with(".md") && lines[i].starts_with("    ");
-                prose << (is_fenced || is_example ? "" : lines[i]) << '\n';
+                prose << (file.is_page() && lines[i].starts_with("    ") ? "" : lines[i]) << '\n';
             }
         }
     }

@@ -123,12 +123,24 @@ Tree read(const fs::path& root) {
     return files;
 }
 
+std::vector<std::string> without_examples(const std::vector<std::string>& lines) {
+    std::vector<std::string> prose;
+    bool is_fenced = false;
+    for (const std::string& line : lines) {
+        const bool is_fence = line.starts_with("```");
+        prose.push_back(is_fenced || is_fence ? "" : line);
+        is_fenced ^= is_fence;
+    }
+    return prose;
+}
+
 } // namespace
 
 bool File::is_cpp() const {
     static constexpr std::array extensions{".hpp", ".cpp", ".h", ".c"};
     return std::ranges::any_of(extensions, [&](std::string_view end) { return path.ends_with(end); });
 }
+bool File::is_page() const { return path.ends_with(".md"); }
 bool File::is_cmake() const { return path.ends_with(".cmake") || path.ends_with("CMakeLists.txt"); }
 std::string File::name() const { return path.substr(path.rfind('/') + 1); }
 std::string File::folder() const {
@@ -140,8 +152,9 @@ bool File::is_under(std::string_view folder) const {
 }
 
 File file(std::string path, std::string_view text) {
-    File made{.path = std::move(path), .lines = split(text), .code = {}, .comments = {}};
+    File made{.path = std::move(path), .lines = split(text), .code = {}, .comments = {}, .prose = {}};
     if (made.is_cpp()) Scanner(text, made).scan();
+    if (made.is_page()) made.prose = without_examples(made.lines);
     return made;
 }
 

@@ -16,7 +16,10 @@ struct File {
         code; ///< for C and C++: the same lines without comments and without the contents of literals
     std::vector<std::string> comments; ///< for C and C++: the comments of each line, with their marks
 
-    [[nodiscard]] bool is_cpp() const; ///< C++ or C
+    std::vector<std::string> prose; ///< of pages: the same lines, fenced examples left out
+
+    [[nodiscard]] bool is_cpp() const;  ///< C++ or C
+    [[nodiscard]] bool is_page() const; ///< Markdown
     [[nodiscard]] bool is_cmake() const;
     [[nodiscard]] std::string name() const;   ///< without its folder
     [[nodiscard]] std::string folder() const; ///< without the last slash; empty at the root

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <regex>
 
 namespace tappet::house {
@@ -69,14 +71,12 @@ Findings code_in_comments(const Tree& files) {
 
 /// Returns the text of a line that people read as sentences: a comment without its marks, or a line of a page
 /// outside of its examples and headings.
-std::string prose_of(const File& file, std::size_t at, bool& is_fenced) {
-    const std::string& line = file.lines[at];
-    if (file.path.ends_with(".md")) {
-        const bool is_fence = line.starts_with("```");
-        is_fenced ^= is_fence;
-        return is_fenced || is_fence || line.starts_with('#') || line.starts_with("    ") ? "" : line;
+std::string prose_of(const File& file, std::size_t at) {
+    if (file.is_page()) {
+        const std::string& line = file.prose[at];
+        return line.starts_with('#') || line.starts_with("    ") ? "" : line;
     }
-    const std::string comment = file.is_cpp() ? file.comments[at] : line;
+    const std::string& comment = file.is_cpp() ? file.comments[at] : file.lines[at];
     const std::size_t mark = comment.find_first_not_of(file.is_cpp() ? "/<!*" : " ");
     if (mark == comment.npos || (!file.is_cpp() && comment[mark] != '#')) return {};
     return comment.substr(mark + (file.is_cpp() ? 0 : 1));
@@ -90,9 +90,8 @@ Findings sentences_turned_round(const Tree& files) {
     Findings found;
     for (const File& file : files) {
         if (file.is_under("tests/fuzz/corpus")) continue;
-        bool is_fenced = false;
         for (std::size_t i = 0; i < file.lines.size(); ++i) {
-            const std::string prose = prose_of(file, i, is_fenced);
+            const std::string prose = prose_of(file, i);
             for (std::sregex_iterator at(prose.begin(), prose.end(), opening), end; at != end; ++at)
                 if (!at->str().ends_with('?'))
                     found.push_back({file.path, i + 1, "a sentence begins with \"" + at->str(1) + "\"",
@@ -102,7 +101,24 @@ Findings sentences_turned_round(const Tree& files) {
     return found;
 }
 
-TEST(Words, begin_no_sentence_with_its_object) { expect_none(sentences_turned_round(tree())); }
+/// The texts before the diffs of planted faults, as pages.
+Tree headers_of_planted() {
+    Tree headers;
+    for (const auto& entry : std::filesystem::directory_iterator{TAPPET_TREE "/tests/planted"}) {
+        if (entry.path().extension() != ".patch") continue;
+        std::ifstream patch{entry.path()};
+        std::string header;
+        for (std::string line; std::getline(patch, line) && !line.starts_with("diff ");)
+            header += line + "\n";
+        headers.push_back(file("tests/planted/" + entry.path().filename().string() + ".md", header));
+    }
+    return headers;
+}
+
+TEST(Words, begin_no_sentence_with_its_object) {
+    expect_none(sentences_turned_round(tree()));
+    expect_none(sentences_turned_round(headers_of_planted()));
+}
 TEST(Words, hold_no_note_to_oneself_and_no_place_outside) { expect_none(banned_words(tree())); }
 TEST(Words, of_comments_are_not_code) { expect_none(code_in_comments(tree())); }
 
