@@ -123,6 +123,12 @@ constexpr Fault work_faults[] = {
 INSTANTIATE_TEST_SUITE_P(work, Refusal, planted_into(small_loom, work_faults), name_of);
 
 constexpr Fault schedule_faults[] = {
+    {"activities_more_than_a_processor",
+     [](Table& m) {
+         m.activities[1] =
+             activity("motion", every(1ms), deadline(5ms), budget(990us), runs("shaft", "tension"));
+     },
+     R"(loom: activity "motion" is not schedulable on processor 1 of board "bench": the activities there need more than all of its time; lower budgets, lengthen periods, or place it elsewhere)"},
     {"activity_budget_over_deadline",
      [](Table& m) { field(m, on_device("encoder"), deadline(20us), budget(30us)); },
      R"(loom: activity "field": its budget is 30 us but its deadline 20 us; lower the budget or lengthen the deadline or the period)"},

@@ -54,6 +54,8 @@ Table loom_with_a_cycle() {
 void begin_on(Table& m, std::string_view event) { m.transitions[0].event = event; }
 
 constexpr Fault cycle_faults[] = {
+    {"behaviour_event_misspelt", [](Table& m) { m.transitions[1].event = "brokn"; },
+     R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 2 ("weaving" to "safe" on "brokn"): component "weft" has no event "brokn"; did you mean "broken"?)"},
     {"behaviour_event_is_an_operation", [](Table& m) { begin_on(m, "shaft.clear"); },
      R"(loom: behaviour of "weft": state machine "faulty_cycle": transition 1 ("idle" to "weaving" on "shaft.clear"): "shaft.clear" is an operation, not an event; name an event in on(...))"},
     {"behaviour_foreign_event_unknown", [](Table& m) { begin_on(m, "shaft.windw"); },

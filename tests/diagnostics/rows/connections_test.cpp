@@ -52,6 +52,8 @@ constexpr Fault end_faults[] = {
      R"(loom: component "tension": its required input "speed" is not connected; add data("...", "tension.speed"))"},
     {"connection_twice", [](Table& m) { m.connections[2] = m.connections[1]; },
      R"(loom: connection "shaft.speed" -> "tension.speed" appears twice in connections(...), rows 2 and 3; remove one)"},
+    {"connection_ring", [](Table& m) { m.connections[2] = data("tension.torque", "shaft.reference"); },
+     R"(loom: connection "tension.torque" -> "shaft.reference" closes a data-flow cycle inside activity "motion" (shaft -> tension -> shaft); add delayed to the row whose reader may use the last cycle's value)"},
     {"connection_component_unknown", [](Table& m) { m.put(data("encodr.angle", "shaft.measured")); },
      R"(loom: connection "encodr.angle" -> "shaft.measured": there is no component "encodr"; did you mean "encoder"?)"},
     {"connection_component_missing", [](Table& m) { m.put(data("gearbox.angle", "shaft.measured")); },

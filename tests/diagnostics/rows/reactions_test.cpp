@@ -54,6 +54,8 @@ constexpr Fault end_faults[] = {
      R"(loom: reaction "shaft.window" -> "weft.broken": "weft.broken" is an event, not an operation; name an operation second)"},
     {"reaction_signature_empty", [](Table& m) { m.add(when("weft.broken", tell("shaft.on_index"))); },
      R"(loom: reaction "weft.broken" -> "shaft.on_index": the event carries () but the operation takes (double); give both the same arguments)"},
+    {"reaction_signature", [](Table& m) { m.put(when("encoder.index", tell("shaft.clear"))); },
+     R"(loom: reaction "encoder.index" -> "shaft.clear": the event carries (double) but the operation takes (); give both the same arguments)"},
     {"reaction_queue_of_nothing", [](Table& m) { m.put(when("weft.broken", tell("shaft.clear", queue(0)))); },
      R"(loom: reaction "weft.broken" -> "shaft.clear": queue(0) has no room for an emission; write queue(n) with n of at least 1)"},
     {"reaction_queue_of_all",
