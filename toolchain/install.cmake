@@ -33,7 +33,7 @@ install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/t
 install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign" PATTERN "*-aarch64" EXCLUDE)
 
 # They find each other beside themselves.
-install(TARGETS tappet tappet-bench tappet-browse tappet-image bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
+install(TARGETS tappet tappet-bench tappet-browse tappet-effects tappet-image bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
 install(FILES "${CMAKE_BINARY_DIR}/tools/box-init.inputs" DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet") # for bills of materials
 install(CODE "
     set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
@@ -58,5 +58,5 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 # Scripts that compile a machine and boot it on the bench.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "g++, cmake, ninja-build, libeigen3-dev, libdouble-conversion-dev, libedit-dev, libbsd-dev, musl-dev, libgtest-dev, libgmock-dev")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "qemu-system-x86, graphviz, plantuml, efibootguard, gdisk, dosfstools, mtools, e2fsprogs, zstd")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "clang-22, qemu-system-x86, graphviz, plantuml, efibootguard, gdisk, dosfstools, mtools, e2fsprogs, zstd")
 include(CPack)

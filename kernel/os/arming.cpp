@@ -29,6 +29,10 @@ void ArmingReport::fault(std::string_view name, const Sentence& finding, const S
     add({name, only_warns ? Severity::warning : Severity::refused, finding, cure});
 }
 
+void ArmingReport::refuse(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept {
+    add({name, Severity::refused, finding, cure});
+}
+
 void ArmingReport::warning(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept {
     add({name, Severity::warning, finding, cure});
 }

@@ -34,6 +34,8 @@ public:
     void passed(std::string_view name, const Sentence& finding) noexcept;
     /// Adds a fault. It refuses, unless `name` is downgraded.
     void fault(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept;
+    /// Adds a fault that no board downgrades.
+    void refuse(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept;
     /// Adds a fault with which the machine can run.
     void warning(std::string_view name, const Sentence& finding, const Sentence& cure) noexcept;
 

@@ -5,6 +5,12 @@
 
 namespace TAPPET_NAMESPACE {
 
-tappet::MachineView view() { return table.view(); }
+tappet::MachineView view() {
+    tappet::MachineView machine = table.view();
+#ifdef TAPPET_EFFECTS_CHECKED
+    machine.effects_checked = true;
+#endif
+    return machine;
+}
 
 } // namespace TAPPET_NAMESPACE

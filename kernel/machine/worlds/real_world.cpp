@@ -20,6 +20,22 @@ namespace {
 std::atomic<RealWorld*> current_world{nullptr};
 thread_local bool supervises = false;
 
+// A lock or an allocation in a component's step shows as a late cycle at some hour only: a machine that moves
+// steel does not run on luck.
+void check_effects(const AcceptedMachine& machine, os::ArmingReport& report) {
+    const Sentence found{"nothing checked that the real-time functions of \"", machine.table.name,
+                         "\" do not block when this firmware was built"};
+    const Sentence cure{
+        "install clang-22 where it is built, configure with TAPPET_EFFECTS=ON, and build again"};
+    const std::string_view world = machine.board->world;
+    if (machine.table.effects_checked)
+        report.passed("effects", Sentence{"clang followed what real-time functions do"});
+    else if (world == "host" || world == "bench")
+        report.warning("effects", found, cure);
+    else
+        report.refuse("effects", found, cure);
+}
+
 } // namespace
 
 RealWorld::RealWorld(MachineInstance& instance) noexcept : instance_{instance} {
@@ -103,6 +119,7 @@ std::optional<Armed> RealWorld::arm(os::ArmingReport& report, int file) {
               "loop-breaker", breakers_stack_,
               [](void* self) { static_cast<RealWorld*>(self)->break_loops(); }, this)})
         if (!created) report.fault("threads", created.error(), Sentence{"see the reason"});
+    check_effects(machine, report);
     if (const auto locked = os::lock_memory(); !locked)
         report.fault("memory-lock", locked.error(), Sentence{"see the reason"});
     if (auto held = os::hold_cpu_dma_latency(); held) latency_ = std::move(*held);

@@ -33,6 +33,38 @@ TEST_F(InRealTime, the_machine_arms_runs_and_stops_the_last_row_first) {
     EXPECT_FALSE(rig.instance.stop_asked());
 }
 
+// Nobody may run luck: a lock in a step shows as a late cycle at some hour only.
+constexpr Board board_of_box = [] {
+    Board board = real_board;
+    board.world = "box";
+    static_cast<void>(board.only_warned.push("effects"));
+    return board;
+}();
+
+TEST_F(InRealTime, a_machine_whose_effects_nobody_checked_arms_on_host_and_bench_only) {
+    const auto finding = [](const os::ArmingReport& report) {
+        return *std::ranges::find(report.findings(), "effects", &os::Finding::name);
+    };
+    Rig<watched::table> on_host;
+    ASSERT_TRUE(on_host.arm());
+    EXPECT_EQ(finding(on_host.report).severity, os::Severity::warning);
+    RealRig<watched::table, board_of_box> on_box;
+    EXPECT_FALSE(on_box.arm());
+    EXPECT_EQ(finding(on_box.report).severity, os::Severity::refused) << "no board downgrades it";
+    EXPECT_THAT(finding(on_box.report).cure.view(), testing::HasSubstr("install clang-22"));
+}
+
+TEST_F(InRealTime, a_machine_whose_effects_are_checked_arms_on_a_box) {
+    static AcceptedMachine machine = AtRunTime<watched::table, board_of_box>::machine();
+    machine.table.effects_checked = true;
+    os::Clock clock{os::Clock::Kind::real};
+    MachineInstance instance{machine, clock};
+    RealWorld world{instance};
+    os::ArmingReport report{{board_of_box.only_warned.begin(), board_of_box.only_warned.end()}};
+    ASSERT_TRUE(instance.configure({}));
+    EXPECT_TRUE(world.arm(report, 2));
+}
+
 TEST_F(InRealTime, a_real_time_thread_has_no_page_faults) {
     if constexpr (os::heap::sanitizer_owns_malloc)
         GTEST_SKIP() << "a sanitizer's shadow is mapped as it is used";
