@@ -28,6 +28,7 @@ Sentence unknown(std::string_view option) {
 
 struct Outcome {
     Sentence reason{};
+    Sentence unsaved{}; ///< why properties were not saved
     bool well = false;
     std::uint64_t page_faults = 0;
     std::uint64_t contracts_broken = 0;
@@ -108,6 +109,7 @@ private:
         run.stop();
         look();
         Outcome outcome;
+        outcome.unsaved = run.unsaved();
         judge(run.instance(), run.devices(), runs, outcome);
         return finish(run.instance(), run.devices(), outcome);
     }
@@ -123,6 +125,7 @@ private:
         }
         const int hung = run.stop();
         Outcome outcome;
+        outcome.unsaved = run.unsaved();
         judge(run.instance(), run.devices(), runs, outcome);
         outcome.page_faults = run.world().page_faults_in_real_time_threads();
         outcome.contracts_broken = run.world().breaches();
@@ -149,9 +152,7 @@ private:
         const bool has_logs = devices.close_logs([this](const Sentence& what, bool good) {
             static_cast<void>(os::write_all(good ? 1 : 2, Sentence{name_, ": ", what, "\n"}.view()));
         });
-        if (options_.has("--properties"))
-            if (const Sentence fault = instance.save_properties(instance.standing()); !fault.empty())
-                return fail(fault);
+        if (!outcome.unsaved.empty()) return fail(outcome.unsaved);
         std::string text(256 * 1024, '\0');
         const std::size_t length = write(instance, devices, outcome, text);
         if (length == 0) return fail(Sentence{"the summary does not fit its buffer"});

@@ -8,6 +8,7 @@
 #include "kernel/services/configuration/property_files.hpp"
 #include "toolchain/machine/host_hooks.hpp"
 
+#include <array>
 #include <atomic>
 #include <expected>
 #include <functional>
@@ -47,7 +48,11 @@ public:
     bool run_for(Duration time) { return machine_->world.run_until(clock_.now() + time); }
     /// Runs until `done`, checked each millisecond. False: `limit` has passed, or the machine asked to stop.
     bool run_until(const std::function<bool()>& done, Duration limit);
-    void stop() { machine_->world.stop(); }
+    /// Stops the machine and saves its properties if keep_properties_in() named a directory. Tells which
+    /// real-time code used the heap, a lock or the system meanwhile, if the program links tappet_host_watch.
+    void stop();
+    /// Returns why stop() could not save the properties; empty: they are saved, or none are kept.
+    [[nodiscard]] const Sentence& unsaved() const noexcept { return unsaved_; }
 
     [[nodiscard]] SimulatedDevices& devices() noexcept { return devices_; }
     [[nodiscard]] VirtualWorld& world() noexcept { return machine_->world; }
@@ -61,6 +66,7 @@ private:
         VirtualWorld world{instance};
     };
     std::expected<void, Sentence> start_machine();
+    void watch_real_time_code();
 
     os::Clock clock_{os::Clock::Kind::virtual_time};
     AcceptedMachine accepted_;
@@ -69,6 +75,8 @@ private:
     std::string_view browsed_in_{};
     std::optional<Machine> machine_;
     std::optional<std::uint64_t> timed_by_{};
+    std::array<bool, max_activities> watched_{};
+    Sentence unsaved_{};
     std::uint64_t seen_steps_ = 0;
     std::function<void(Time now)> look_{};
 };
@@ -91,9 +99,11 @@ public:
     bool supervise(Duration time) { return world_.supervise(time); }
     /// Returns SimulatedDevices::is_done() as of the plant's last move.
     [[nodiscard]] bool is_done() const noexcept { return done_.load(std::memory_order_acquire); }
-    /// Stops the machine first, then the plant, which has `coming_to_rest` for its last moves. Returns how
-    /// many threads of the machine hung.
+    /// Stops the machine first, then the plant, which has `coming_to_rest` for its last moves, then saves the
+    /// properties. Returns how many threads of the machine hung.
     int stop();
+    /// As in VirtualRun.
+    [[nodiscard]] const Sentence& unsaved() const noexcept { return unsaved_; }
 
     [[nodiscard]] RealWorld& world() noexcept { return world_; }
     /// Call only after stop(): until then the plant's thread owns them.
@@ -113,6 +123,7 @@ private:
     os::Clock clock_{os::Clock::Kind::real};
     SimulatedDevices devices_;
     PropertyFiles files_{""};
+    Sentence unsaved_{};
     MachineInstance instance_;
     RealWorld world_;
     bool running_ = false;

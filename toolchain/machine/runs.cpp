@@ -1,6 +1,8 @@
 // The two runs of a machine with its plant in one process.
 #include "kernel/base/digest.hpp"
+#include "kernel/os/host_watch.hpp"
 #include "kernel/os/sleep.hpp"
+#include "kernel/os/terminal.hpp"
 #include "toolchain/machine/host.hpp"
 
 namespace tappet {
@@ -35,6 +37,7 @@ std::expected<void, Sentence> VirtualRun::start_machine() {
     if (auto configured = instance().configure(devices_.provided()); !configured)
         return std::unexpected(configured.error());
     if (timed_by_) machine_->world.take_times(*timed_by_);
+    if (os::host_watch::is_linked()) watch_real_time_code();
     machine_->world.add({this,
                          [](void* self) {
                              auto& run = *static_cast<VirtualRun*>(self);
@@ -55,6 +58,41 @@ std::expected<void, Sentence> VirtualRun::start_machine() {
                          }});
     if (const Sentence refusal = machine_->world.start(); !refusal.empty()) return std::unexpected(refusal);
     return {};
+}
+
+// A twin is a simulation and may allocate: activities with a component on a device are left out.
+void VirtualRun::watch_real_time_code() {
+    const MachineView& table = accepted_.table;
+    const auto engines = instance().engines();
+    for (std::size_t a = 0; a < engines.size(); ++a) watched_[a] = engines[a].plan().real_time;
+    for (std::size_t c = 0; c < table.components.size(); ++c)
+        if (!table.components[c].device.empty()) watched_[accepted_.index.activity[c]] = false;
+    static const bool sees_calls = os::host_watch::prepare(accepted_.table.name);
+    static_cast<void>(sees_calls); // the heap and locks are watched all the same
+    machine_->world.run_cycles_by({this, [](void* self, Engine& engine, bool woken) {
+                                       auto& run = *static_cast<VirtualRun*>(self);
+                                       const auto a = &engine - run.instance().engines().data();
+                                       const bool is_watched = run.watched_[static_cast<std::size_t>(a)];
+                                       os::host_watch::enter(engine.name(), is_watched);
+                                       engine.run(woken);
+                                       os::host_watch::leave();
+                                   }});
+}
+
+void VirtualRun::stop() {
+    machine_->world.stop();
+    if (files_.keeps()) unsaved_ = instance().save_properties(instance().standing());
+    if (!os::host_watch::is_linked()) return;
+    static std::size_t told = 0; // once for each place in a program that runs many machines
+    const auto uses = os::host_watch::uses();
+    for (; told < uses.size(); ++told)
+        static_cast<void>(os::write_all(
+            2,
+            Sentence{accepted_.table.name, ": activity \"", uses[told].activity, "\" is real-time but used ",
+                     uses[told].what, ", ", os::host_watch::place_of(uses[told]), ", ", uses[told].cycles,
+                     " times; on a box it may be late or break a contract. Reserve what it needs "
+                     "before start, or run its component in an activity that is not_real_time\n"}
+                .view()));
 }
 
 bool VirtualRun::run_until(const std::function<bool()>& done, Duration limit) {
@@ -103,6 +141,7 @@ int RealRun::stop() {
     plant_ends_.store(true, std::memory_order_release);
     plant_waiter_.wake();
     plant_thread_.join();
+    if (files_.keeps()) unsaved_ = instance_.save_properties(instance_.standing());
     return hung;
 }
 

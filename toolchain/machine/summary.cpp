@@ -5,6 +5,7 @@
 #include "kernel/machine/slots/behaviour_slot.hpp"
 #include "kernel/os/box.hpp"
 #include "kernel/os/heap.hpp"
+#include "kernel/os/host_watch.hpp"
 #include "kernel/os/memory.hpp"
 #include "kernel/os/terminal.hpp"
 #include "kernel/services/json.hpp"
@@ -175,9 +176,11 @@ std::size_t write_summary(MachineInstance& instance, const RunFacts& facts, std:
     json.close('}');
     json.field("emissions_lost", instance.observation().lost_emissions())
         .field("forced_ports", instance.observation().forced_ports().load());
-    json.field("heap_allocations_after_arming",
-               os::heap::allocations_after_seal() + os::heap::mappings_after_seal())
-        .field("page_faults_after_arming", facts.page_faults_after_arming);
+    if (os::heap::seal_counts())
+        json.field("heap_allocations_after_arming",
+                   os::heap::allocations_after_seal() + os::heap::mappings_after_seal());
+    if (os::host_watch::is_linked()) json.field("cycles_that_may_block", os::host_watch::cycles());
+    json.field("page_faults_after_arming", facts.page_faults_after_arming);
     json.field("contracts_broken", facts.contracts_broken).field("texts_dropped", os::dropped_texts());
     json.field("deadline_misses", misses)
         .field("binary_bytes", os::binary_bytes())

@@ -300,7 +300,7 @@ void SwarmRun::stop() {
         deny(Sentence{"its stop took ", took / 1ms, " ms, and its board allows ",
                       of_.machine.board->stop_within / 1ms});
     leave();
-    if (const Sentence fault = run_.instance().save_properties(run_.instance().standing()); !fault.empty())
+    if (const Sentence& fault = run_.unsaved(); !fault.empty())
         deny(Sentence{"the properties cannot be saved at halt: ", fault});
     judge_saved(true);
     kept_ = kept_values();

@@ -6,8 +6,12 @@
 
 #include "toolchain/machine/host.hpp"
 #include "toolchain/machine/on_host.hpp"
+#include "toolchain/machine/test_names.hpp"
 
 #include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
 
 namespace TAPPET_NAMESPACE {
 
@@ -27,15 +31,37 @@ struct MachineTest : testing::Test {
         run.stop();
     }
 
+    /// Returns the component; a name or a type that the table lacks ends the case with the reason.
     template <class Component>
     Component& of(std::string_view component) {
-        return *run.instance().template find<Component>(component);
+        if (auto* const found = run.instance().template find<Component>(component)) return *found;
+        const tappet::Sentence fault = tappet::check_component(run.instance(), component);
+        const std::string why = fault.empty()
+                                    ? "component \"" + std::string{component} + "\" has another type"
+                                    : std::string{fault.view()};
+        throw std::invalid_argument(why);
     }
+    /// Returns the outermost active state of the state machine that drives the component.
     [[nodiscard]] std::string_view state_of(std::string_view component) {
+        if (const auto fault = tappet::check_component(run.instance(), component); !fault.empty())
+            ADD_FAILURE() << fault.view();
         return tappet::state_of(run.instance(), component);
     }
+    /// Returns whether the state is active: the innermost one, or one that encloses it.
+    [[nodiscard]] bool is_in(std::string_view component, std::string_view state) {
+        if (const auto fault = tappet::check_state(run.instance(), component, state); !fault.empty())
+            ADD_FAILURE() << fault.view();
+        return tappet::is_in_state(run.instance(), component, state);
+    }
+    /// Runs until the state is active, at any level. Returns false after `within`, and at once when the name
+    /// is wrong, which also fails the case.
     bool comes_to(std::string_view component, std::string_view state, tappet::Duration within) {
-        return run.run_until([&] { return state_of(component) == state; }, within);
+        const auto is_there = [&] { return tappet::is_in_state(run.instance(), component, state); };
+        if (const auto fault = tappet::check_state(run.instance(), component, state); !fault.empty()) {
+            ADD_FAILURE() << fault.view();
+            return false;
+        }
+        return run.run_until(is_there, within);
     }
 
     Plant plant;

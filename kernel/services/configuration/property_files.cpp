@@ -1,10 +1,12 @@
 // Reads and writes the text of properties files.
 #include "kernel/services/configuration/property_files.hpp"
 
+#include "kernel/base/value_text.hpp"
 #include "kernel/os/file.hpp"
 #include "kernel/os/terminal.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace tappet {
 
@@ -14,6 +16,46 @@ Sentence no_directory(const ComponentRow& row) noexcept {
     return Sentence{"component \"", row.name, "\": there is no directory for its properties file \"",
                     row.properties.name,
                     "\"; name one by --properties, or as the board's properties_directory"};
+}
+
+std::size_t index_of(const ComponentRow& row, std::string_view property) noexcept {
+    const auto found = std::ranges::find(row.type->facets, property, &Facet::name);
+    return static_cast<std::size_t>(found - row.type->facets.begin());
+}
+
+/// The values that the row sets, as they stand before its file is read.
+struct StatedValues {
+    alignas(PropertyTransaction::alignment) std::array<std::byte, PropertyTransaction::max_bytes> bytes{};
+
+    /// Calls use(property's index, place of its copy) for each setting.
+    template <class Use>
+    void each(const ComponentRow& row, Use&& use) noexcept {
+        std::size_t used = 0;
+        for (const PropertyRow& setting : row.settings) {
+            const std::size_t index = index_of(row, setting.name);
+            use(index, bytes.data() + used);
+            used += PropertyTransaction::bytes_for(row.type->facets[index]);
+        }
+    }
+};
+
+/// A value that somebody wrote into the table and that has no effect is told.
+void tell_overridden(const ComponentRow& row, StatedValues& stated, PropertyTransaction& now) noexcept {
+    stated.each(row, [&](std::size_t index, const std::byte* before) {
+        const Facet& facet = row.type->facets[index];
+        const std::byte* const after = now.change(index);
+        if (std::equal(before, before + facet.type->size, after)) return;
+        std::array<char, 64> from{}, to{};
+        const std::size_t old_length = format_value(*facet.type, before, from);
+        const std::size_t new_length = format_value(*facet.type, after, to);
+        os::print(Sentence{
+            "component \"", row.name, "\": \"", facet.name, "\" is ",
+            new_length == 0 ? std::string_view{"another list"} : std::string_view{to.data(), new_length},
+            " from its file \"", row.properties.name, "\", not ",
+            old_length == 0 ? std::string_view{"the list"} : std::string_view{from.data(), old_length},
+            " as its row sets; remove it from the file, or set the same\n"}
+                      .view());
+    });
 }
 
 } // namespace
@@ -40,6 +82,10 @@ bool PropertyFiles::name_path(std::string_view directory, const ComponentRow& ro
 
 Sentence PropertyFiles::load(const ComponentRow& row, PropertyTransaction& into) noexcept {
     if (!keeps()) return row.properties.may_be_missing ? Sentence{} : no_directory(row);
+    StatedValues stated;
+    stated.each(row, [&](std::size_t index, std::byte* copy) {
+        std::memcpy(copy, into.change(index), row.type->facets[index].type->size);
+    });
     auto found = load_from(directory_, row, nullptr, into);
     if (!found) return found.error();
     if (!older_.empty()) {
@@ -47,6 +93,7 @@ Sentence PropertyFiles::load(const ComponentRow& row, PropertyTransaction& into)
         if (!there) return there.error();
         *found |= *there;
     }
+    tell_overridden(row, stated, into);
     if (*found || row.properties.may_be_missing || !name_path(directory_, row)) return {};
     return Sentence{
         std::string_view{path_.data()},

@@ -1,6 +1,7 @@
 // A new weave is loaded into the weaving loom (thesis 5.2.4) at an angle of the shaft. A faulty one is
 // refused with its line, a failing one is rolled back, and the loom keeps weaving.
 #include "tests/apps/carpet_loom/loom_rig.hpp"
+#include "toolchain/machine/test_names.hpp"
 
 #include <gmock/gmock.h>
 
@@ -114,6 +115,16 @@ TEST_F(WeaveBehaviour, the_loom_weaves_its_carpet_again_after_unloading) {
     ASSERT_TRUE(rig.weave(20));
     EXPECT_EQ(twill_picks(), before);
     expect_undisturbed();
+}
+
+TEST(LoomStates, are_active_with_all_that_enclose_them) {
+    LoomRig rig{3};
+    MachineInstance& machine = rig.run().instance();
+    ASSERT_TRUE(rig.run_until([&] { return is_in_state(machine, "loom", "weave"); }, 60s));
+    for (const std::string_view active : {"operating", "running", "weave"})
+        EXPECT_TRUE(is_in_state(machine, "loom", active)) << active;
+    EXPECT_FALSE(is_in_state(machine, "loom", "stopped"));
+    EXPECT_EQ(check_state(machine, "loom", "running").view(), "");
 }
 
 } // namespace

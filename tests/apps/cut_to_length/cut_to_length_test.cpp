@@ -3,8 +3,29 @@
 #include "apps/cut_to_length/line.hpp"
 #include "toolchain/machine/test.hpp"
 
+#include <gtest/gtest-spi.h>
+
 namespace cut_to_length {
 namespace {
+
+TEST_F(MachineTest, fails_a_case_that_names_a_component_or_a_state_that_the_machine_lacks) {
+    EXPECT_TRUE(comes_to("line", "locked", 1s));
+    EXPECT_TRUE(is_in("line", "locked"));
+    EXPECT_FALSE(is_in("line", "running"));
+    const Time before = run.now();
+    EXPECT_NONFATAL_FAILURE(
+        EXPECT_FALSE(comes_to("line", "runing", 60s)),
+        "the state machine of \"line\" has no state \"runing\"; did you mean \"running\"?");
+    EXPECT_EQ(run.now(), before) << "nobody waits for a state that cannot come";
+    EXPECT_NONFATAL_FAILURE(static_cast<void>(is_in("lime", "running")),
+                            "the machine has no component \"lime\"; did you mean \"line\"?");
+    EXPECT_NONFATAL_FAILURE(static_cast<void>(state_of("lime")), "no component \"lime\"");
+    EXPECT_NONFATAL_FAILURE(static_cast<void>(comes_to("can", "running", 1s)),
+                            "no state machine drives component \"can\"");
+    EXPECT_THROW(static_cast<void>(of<Line>("lime")), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(of<Line>("can")), std::invalid_argument) << "it has another type";
+    EXPECT_EQ(&of<Line>("line"), run.instance().find<Line>("line"));
+}
 
 struct Cutter : MachineTest, testing::WithParamInterface<std::uint64_t> {
     Cutter() : MachineTest{GetParam()} {}

@@ -139,6 +139,24 @@ TEST_F(PropertyFilesOfAMachine, are_read_before_configure_and_override_the_row) 
     EXPECT_EQ(tension("edge").band.low.get(), 15.0);
 }
 
+TEST_F(PropertyFilesOfAMachine, are_told_where_they_differ_from_the_row) {
+    put("warp.cpf", cpf(real("gain", "3.5") + band(real("low", "100") + real("high", "200"))));
+    testing::internal::CaptureStdout();
+    ASSERT_EQ(configure(), "");
+    EXPECT_EQ(testing::internal::GetCapturedStdout(),
+              "component \"warp\": \"gain\" is 3.5 from its file \"warp.cpf\", not 2 as its row sets; remove "
+              "it from the "
+              "file, or set the same\n")
+        << "no row sets the band";
+}
+
+TEST_F(PropertyFilesOfAMachine, are_silent_where_they_repeat_the_row) {
+    put("warp.cpf", cpf(real("gain", "2.0")));
+    testing::internal::CaptureStdout();
+    ASSERT_EQ(configure(), "");
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
 TEST_F(PropertyFilesOfAMachine, leave_unmentioned_properties_to_the_row) {
     put("warp.cpf", cpf(""));
     ASSERT_EQ(configure(), "");
