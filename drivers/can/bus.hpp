@@ -228,12 +228,18 @@ private:
 
     static constexpr Facet signal_facet(std::size_t s) {
         const Signal& signal = map.signals[s];
+        const auto& frame = map.frames[map.frame_of[s]];
         const std::string_view name = FacetNames<map>::signals[s].view();
-        if (map.frames[map.frame_of[s]].direction == Direction::transmit)
-            return is_integer(signal) ? nth_input<&Bus::integer_in>(s, name, signal.unit, "sent")
-                                      : nth_input<&Bus::physical_in>(s, name, signal.unit, "sent");
-        return is_integer(signal) ? nth_output<&Bus::integer_out>(s, name, signal.unit, "received")
-                                  : nth_output<&Bus::physical_out>(s, name, signal.unit, "received");
+        const auto comes = comes_every(frame.every);
+        if (frame.direction == Direction::receive)
+            return is_integer(signal)
+                       ? nth_output<&Bus::integer_out>(s, name, signal.unit, "received", comes)
+                       : nth_output<&Bus::physical_out>(s, name, signal.unit, "received", comes);
+        Facet sent = is_integer(signal) ? nth_input<&Bus::integer_in>(s, name, signal.unit, "sent")
+                                        : nth_input<&Bus::physical_in>(s, name, signal.unit, "sent");
+        sent.needs_wake =
+            frame.every == Duration::zero(); // a cyclic frame takes what is there when it is due
+        return sent;
     }
 
     /// Uses absolute times: a late cycle does not shift later ones, and whole missed periods are skipped.

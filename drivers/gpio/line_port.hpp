@@ -181,7 +181,7 @@ private:
             all[n++] = nth_event<&LinePort::falls>(i, Names::falls[i].view(),
                                                    "the line became inactive, at that time");
         } else if constexpr (map.rows[i].driven == Driven::by_port) {
-            all[n++] = nth_input<&LinePort::wanted>(i, name, "", "the level wanted");
+            all[n++] = nth_input<&LinePort::wanted>(i, name, "", "the level wanted", needs_wake);
         } else {
             all[n++] = operation<&LinePort::template set<i>>(Names::set[i].view(), "makes the line active",
                                                              required);

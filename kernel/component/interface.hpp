@@ -41,6 +41,16 @@ inline constexpr ValidToStart valid_to_start{};
 /// Marks an input whose component needs staleness to detect silence: its row must say stale_after(...).
 struct GrowsStale {};
 inline constexpr GrowsStale grows_stale{};
+/// Marks an input that its component, which a device wakes, looks at only when it is woken: rows from other
+/// activities say `wakes`.
+struct NeedsWake {};
+inline constexpr NeedsWake needs_wake{};
+/// States that an output's values come from outside in this period: its rows say stale_after(...), and a
+/// longer time. 0: they come at any time.
+struct ComesEvery {
+    Duration period;
+};
+constexpr ComesEvery comes_every(Duration period) noexcept { return {period}; }
 /// States the value of an output of bool while its component is stopped, for example `connected` is false.
 /// The engine writes it after stop(). A driver states it for each of its outputs of bool, or marks the output
 /// as_it_was.
@@ -106,6 +116,8 @@ constexpr void apply(Facet& facet, Optional) noexcept { facet.required = false; 
 constexpr void apply(Facet& facet, Required) noexcept { facet.required = true; }
 constexpr void apply(Facet& facet, ValidToStart) noexcept { facet.valid_to_start = true; }
 constexpr void apply(Facet& facet, GrowsStale) noexcept { facet.grows_stale = true; }
+constexpr void apply(Facet& facet, NeedsWake) noexcept { facet.needs_wake = true; }
+constexpr void apply(Facet& facet, ComesEvery values) noexcept { facet.comes_every = values.period; }
 constexpr void apply(Facet& facet, WhileStopped stopped) noexcept { facet.at_rest = stopped.says; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
@@ -155,7 +167,7 @@ constexpr Facet output(std::string_view name, std::string_view unit, std::string
                        Options... options) {
     using M = detail::MemberOf<Member>;
     using T = typename M::Type::Value;
-    static_assert(std::same_as<typename M::Type, Output<bool>> || sizeof...(Options) == 0,
+    static_assert(std::same_as<typename M::Type, Output<bool>> || (std::same_as<Options, ComesEvery> && ...),
                   "while_stopped(..) is for an Output<bool>; write other outputs in stop()");
     if constexpr (std::same_as<typename M::Type, BufferOutput<T>>)
         return {.name = name,

@@ -119,6 +119,31 @@ constexpr Sentence check_transition(const MachineView& m, const ConnectionRow& r
     return {};
 }
 
+/// Checks that a silent sender is noticed, and that one that sends in time is not called silent.
+constexpr Sentence check_age(const MachineView& m, const ConnectionRow& row, const Facet& from,
+                             std::size_t writer) {
+    if (row.buffered) return {};
+    if (from.comes_every > Duration::zero() && row.max_age == Duration::zero())
+        return of_connection(
+            row, ": \"", row.from, "\" comes from outside every ", from.comes_every.count() / 1000,
+            " us, and nothing notices when it falls silent; add stale_after(...), longer than that, with "
+            "hold, substitute(...) or stop_machine");
+    const ActivityRow& activity = m.activities[writer];
+    const bool is_outside = from.comes_every > Duration::zero();
+    const Duration every = is_outside                           ? from.comes_every
+                           : activity.trigger == Trigger::every ? activity.period
+                                                                : Duration::zero();
+    if (row.max_age == Duration::zero() || row.max_age > every) return {};
+    if (is_outside)
+        return of_connection(row, ": stale_after(", row.max_age.count() / 1000,
+                             " us) is not longer than the ", every.count() / 1000, " us in which \"",
+                             row.from, "\" comes, so that good values would be stale; lengthen it");
+    return of_connection(row, ": stale_after(", row.max_age.count() / 1000,
+                         " us) is not longer than the period of ", every.count() / 1000,
+                         " us of its writer's activity \"", activity.name,
+                         "\", so that good values would be stale; lengthen it");
+}
+
 constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row, const Facet& to,
                                   std::size_t writer, std::size_t reader) {
     if (row.buffered && row.capacity == 0)
@@ -145,6 +170,11 @@ constexpr Sentence check_policies(const MachineView& m, const ConnectionRow& row
     if (to.grows_stale && row.max_age == Duration::zero())
         return of_connection(row, " has no maximum age, but \"", row.to,
                              "\" needs staleness to detect silence; add stale_after(...) and hold");
+    if (to.needs_wake && !row.wakes_reader && writer != reader && !m.activities[reader].periodic())
+        return of_connection(row, ": \"", row.to, "\" is looked at only when activity \"",
+                             m.activities[reader].name,
+                             "\" is woken, so that a new value could wait for ever; add "
+                             "wakes");
     if (row.wakes_reader && m.activities[reader].periodic())
         return of_connection(row, " wakes activity \"", m.activities[reader].name,
                              "\", which is periodic; remove wakes");
@@ -205,6 +235,9 @@ constexpr Sentence check_connections(const MachineView& m, TableIndexView r) {
         if (Sentence fault = check_units(row, facet_at(m, link.from), to); !fault.empty()) return fault;
         if (Sentence fault =
                 check_policies(m, row, to, r.activity[link.from.component], r.activity[link.to.component]);
+            !fault.empty())
+            return fault;
+        if (Sentence fault = check_age(m, row, facet_at(m, link.from), r.activity[link.from.component]);
             !fault.empty())
             return fault;
         if (Sentence fault = check_writers(m, r, x); !fault.empty()) return fault;

@@ -23,17 +23,34 @@ struct Hearer {
     Input<Text<8>> word;
     Input<std::int8_t> count, pulse;
     Input<float> share;
+    Input<double> loud;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(input<&Hearer::word>("word", "", "that it hears", optional),
                       input<&Hearer::count>("count", "", "of the words", optional),
                       input<&Hearer::share>("share", "", "of silence", optional),
+                      input<&Hearer::loud>("loud", "", "as it was", optional),
                       input<&Hearer::pulse>("pulse", "", "of who talks", optional, grows_stale));
     }
 };
 void add_talk(Table& m, const ConnectionRow& row) {
     m.add(component<Talker>("talker"), "logic");
     m.add(component<Hearer>("hearer"), "logic");
+    m.add(row);
+}
+
+/// A driver's ends, as its map makes them.
+struct Wire {
+    Output<double> level;
+    Input<double> wanted;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(output<&Wire::level>("level", "", "that is received", comes_every(10ms)),
+                      input<&Wire::wanted>("wanted", "", "that is set", optional, needs_wake));
+    }
+};
+void add_wire(Table& m, const ConnectionRow& row) {
+    m.add(component<Wire>("wire"), "logic");
     m.add(row);
 }
 
@@ -105,6 +122,23 @@ constexpr Fault end_faults[] = {
 INSTANTIATE_TEST_SUITE_P(ends, Refusal, planted_into(small_loom, end_faults), name_of);
 
 constexpr Fault option_faults[] = {
+    {"row_from_outside_without_an_age",
+     [](Table& m) {
+         m.add(component<Hearer>("hearer"), "field");
+         add_wire(m, data("wire.level", "hearer.loud"));
+     },
+     R"(loom: connection "wire.level" -> "hearer.loud": "wire.level" comes from outside every 10000 us, and nothing notices when it falls silent; add stale_after(...), longer than that, with hold, substitute(...) or stop_machine)"},
+    {"row_from_outside_stale_too_soon",
+     [](Table& m) {
+         m.add(component<Hearer>("hearer"), "field");
+         add_wire(m, data("wire.level", "hearer.loud", stale_after(10ms), hold));
+     },
+     R"(loom: connection "wire.level" -> "hearer.loud": stale_after(10000 us) is not longer than the 10000 us in which "wire.level" comes, so that good values would be stale; lengthen it)"},
+    {"row_stale_before_its_writer_writes_again",
+     [](Table& m) { m.connections[1] = data("shaft.speed", "tension.speed", stale_after(1ms), hold); },
+     R"(loom: connection "shaft.speed" -> "tension.speed": stale_after(1000 us) is not longer than the period of 1000 us of its writer's activity "motion", so that good values would be stale; lengthen it)"},
+    {"row_that_must_wake", [](Table& m) { add_wire(m, data("shaft.speed", "wire.wanted")); },
+     R"(loom: connection "shaft.speed" -> "wire.wanted": "wire.wanted" is looked at only when activity "logic" is woken, so that a new value could wait for ever; add wakes)"},
     {"connection_stale_never", [](Table& m) { measured(m, stop_machine); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" says what to do with a stale value but not when it is stale; add stale_after(...))"},
     {"connection_stale_before_it_is_written", [](Table& m) { measured(m, stale_after(-5ms), hold); },
