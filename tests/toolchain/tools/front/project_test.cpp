@@ -70,10 +70,10 @@ TEST_F(Folder, gets_a_whole_machine_in_few_lines) {
     const struct {
         Choice choice;
         std::ptrdiff_t lines;
-    } projects[] = {{{"lines"}, 129},
-                    {{"on_can", true}, 149},
-                    {{"on_modbus", true, true}, 164},
-                    {{"with_all", true, true, true}, 184}};
+    } projects[] = {{{"lines"}, 130},
+                    {{"on_can", true}, 150},
+                    {{"on_modbus", true, true}, 165},
+                    {{"with_all", true, true, true}, 185}};
     for (const auto& [choice, lines] : projects) {
         ASSERT_THAT(write_project(TAPPET_TEMPLATE, choice), IsEmpty());
         const auto written = lines_of(choice.name);
