@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Real time is checked whichever compiler builds. Clang from 20 on follows the effects of functions itself. Beside another
-# compiler, each source with components of a machine is read by such a clang, too, at the same time (toolchain/effects). Without
-# one, the build says so, and the firmware arms on the host and the bench only.
+# Real time is checked whichever compiler builds. Clang from 20 on follows the effects of functions itself. With another compiler,
+# such a clang also reads each source with components of a machine, at the same time (toolchain/effects). Without one, the build
+# says so, and the firmware arms on the host and the bench only.
 include_guard(GLOBAL)
 
 function(tappet_finds_effects path is_one) # a validator of find_program: is it a clang that follows effects?
@@ -34,9 +34,7 @@ endif()
 if(DEFINED TAPPET_TOOLS)
     set(tappet_effects_program "${TAPPET_TOOLS}/tappet-effects" CACHE INTERNAL "")
 else()
-    add_executable(tappet-effects "${CMAKE_CURRENT_LIST_DIR}/effects/effects.cpp")
-    target_link_libraries(tappet-effects PRIVATE tappet_options tappet_warnings)
-    set_target_properties(tappet-effects PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tools")
+    add_subdirectory("${CMAKE_CURRENT_LIST_DIR}/effects" "${CMAKE_CURRENT_BINARY_DIR}/toolchain/effects")
     set(tappet_effects_program "${CMAKE_BINARY_DIR}/tools/tappet-effects" CACHE INTERNAL "")
 endif()
 

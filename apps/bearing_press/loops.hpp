@@ -86,7 +86,7 @@ struct Standing {
         return facets(input<&Standing::position>("position", "m", "of the slide"),
                       input<&Standing::sent>("sent", "m/s", "to the drive in the step before"),
                       output<&Standing::target>("target", "m", "the next place"),
-                      output<&Standing::speed>("speed", "m/s", "there"));
+                      output<&Standing::speed>("speed", "m/s", "speed of the target"));
     }
 
 private:
@@ -117,7 +117,7 @@ struct Jogging {
         return facets(input<&Jogging::position>("position", "m", "of the slide"),
                       input<&Jogging::sent>("sent", "m/s", "to the drive in the step before"),
                       output<&Jogging::target>("target", "m", "the next place"),
-                      output<&Jogging::speed>("speed", "m/s", "there"),
+                      output<&Jogging::speed>("speed", "m/s", "speed of the target"),
                       operation<&Jogging::at>("at", "speed, m/s"));
     }
 
@@ -159,11 +159,12 @@ struct Path {
         is_under_way_ = begins_ = true;
     }
     static constexpr auto interface() {
-        return facets(input<&Path::position>("position", "m", "of the slide"),
-                      output<&Path::target>("target", "m", "the next place"),
-                      output<&Path::speed>("speed", "m/s", "there"),
-                      event<&Path::arrived>("arrived", "the slide is there, within 20 um"),
-                      operation<&Path::aim>("aim", "go there, m; heard at rest"));
+        return facets(
+            input<&Path::position>("position", "m", "of the slide"),
+            output<&Path::target>("target", "m", "the next place"),
+            output<&Path::speed>("speed", "m/s", "speed of the target"),
+            event<&Path::arrived>("arrived", "the slide is at the end of its path, within 20 um"),
+            operation<&Path::aim>("aim", "moves to this position in m; ignored while a path is under way"));
     }
 
 private:
@@ -211,10 +212,10 @@ struct Approach {
     void step(const Cycle&) noexcept TAPPET_REALTIME { target.write(force.get()); }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { target.write(0.0); }
     static constexpr auto interface() {
-        return facets(
-            input<&Approach::position>("position", "m", "of the slide"),
-            output<&Approach::target>("target", "N", "to press with"),
-            property<&Approach::force>("force", "N", "of a bearing that is seated", range(100.0, 5000.0)));
+        return facets(input<&Approach::position>("position", "m", "of the slide"),
+                      output<&Approach::target>("target", "N", "to press with"),
+                      property<&Approach::force>("force", "N", "at which a bearing counts as seated",
+                                                 range(100.0, 5000.0)));
     }
 };
 
@@ -295,12 +296,11 @@ struct Trim {
     }
     void stop(const Cycle&) noexcept TAPPET_REALTIME { wanted.write(0.0); }
     static constexpr auto interface() {
-        return facets(
-            input<&Trim::target>("target", "m/s", "the next speed"),
-            input<&Trim::velocity>("velocity", "m/s", "of the slide"),
-            input<&Trim::sent>("sent", "m/s", "to the drive in the step before"),
-            output<&Trim::wanted>("wanted", "m/s", "of the drive"),
-            property<&Trim::ki>("ki", "1/s", "gain on the drive's missing speed", range(0.0, 10.0)));
+        return facets(input<&Trim::target>("target", "m/s", "the next speed"),
+                      input<&Trim::velocity>("velocity", "m/s", "of the slide"),
+                      input<&Trim::sent>("sent", "m/s", "to the drive in the step before"),
+                      output<&Trim::wanted>("wanted", "m/s", "of the drive"),
+                      property<&Trim::ki>("ki", "1/s", "integral gain on the speed error", range(0.0, 10.0)));
     }
 
 private:

@@ -30,7 +30,7 @@ struct LastResort {
             input<&LastResort::shaft_alive>("shaft_alive", "", "the activity of the shaft shows life"),
             event<&LastResort::set_brake>("set_brake", "brake on", heard_by(1)),
             event<&LastResort::close_valve>("close_valve", "valve closed, and no weft let go", heard_by(2)),
-            event<&LastResort::quick_stop>("quick_stop", "drives to a stand at once", heard_by(2)),
+            event<&LastResort::quick_stop>("quick_stop", "stop the drives at once", heard_by(2)),
             event<&LastResort::rest_cutter>("rest_cutter", "yarn cutter off", heard_by(1)),
             operation<&LastResort::let_cutter_rest>("let_cutter_rest", "the shaft is silent, for this time",
                                                     required),

@@ -80,7 +80,7 @@ struct MainDrive {
             property<&MainDrive::slip_for>("slip_for", "s", "how long it may be off its speed", range(0, 10)),
             operation<&MainDrive::enable>("enable", "leads the drive to operation enabled; resets one fault",
                                           required),
-            operation<&MainDrive::disable>("disable", "takes the voltage away", required),
+            operation<&MainDrive::disable>("disable", "disables the drive's voltage", required),
             operation<&MainDrive::quick_stop>("quick_stop", "brakes with the drive's quick stop", required),
             operation<&MainDrive::run>("run", "turns at the weaving speed", required),
             operation<&MainDrive::halt>("halt", "target velocity zero", required));

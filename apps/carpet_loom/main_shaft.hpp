@@ -124,7 +124,8 @@ struct MainShaft {
             output<&MainShaft::speed_rpm>("speed_rpm", "rpm", "speed now"),
             output<&MainShaft::valid>("valid", "", "the encoder can be relied on; written on change"),
             output<&MainShaft::standing>("standing", "", "the shaft stands; written on change"),
-            output<&MainShaft::stop_error_deg>("stop_error_deg", "deg", "of the last stop, to its angle"),
+            output<&MainShaft::stop_error_deg>("stop_error_deg", "deg",
+                                               "deviation of the last stop from the wanted angle"),
             output<&MainShaft::stops>("stops", "", "at the stop angle, since start"),
             output<&MainShaft::brake_distance_deg>(
                 "brake_distance_deg", "deg", "learned, from the brake's edge to standstill at nominal speed"),
@@ -138,12 +139,12 @@ struct MainShaft {
             event<&MainShaft::brake_now>(
                 "brake_now", "the brake must be driven now to stop at the stop angle", heard_by(3)),
             event<&MainShaft::stopped>("stopped", "the shaft stands after a stop; error in degrees"),
-            event<&MainShaft::rests>("rests", "the shaft has come to stand, or its angle is lost"),
+            event<&MainShaft::rests>("rests", "the shaft stands, or its angle is unknown"),
             command<&MainShaft::stop_shaft, &MainShaft::has_stopped>(
-                "stop", "comes to stand at the stop angle; results in the error in degrees",
+                "stop", "stops the shaft at the stop angle; returns the error in degrees",
                 for_people(Role::machine_operator)),
             command<&MainShaft::stop_shaft_at, &MainShaft::has_stopped_at>(
-                "stop_at", "comes to stand at this angle in degrees; results in the error in degrees",
+                "stop_at", "stops the shaft at this angle in degrees; returns the error in degrees",
                 for_people(Role::machine_operator)),
             method<&MainShaft::angle_at>("angle_at", "the angle in degrees at a time near the last sample"),
             operation<&MainShaft::stop_at_angle>("stop_at_angle", "brakes to stand at the stop angle",
@@ -157,11 +158,11 @@ struct MainShaft {
                                                               "when the encoder would be stale"),
             property<&MainShaft::stop_angle_deg>("stop_angle_deg", "deg",
                                                  "harnesses level, least warp tension", range(0, 359.99)),
-            property<&MainShaft::first_brake_distance_deg>("first_brake_distance_deg", "deg",
-                                                           "believed before the first stop",
-                                                           range(least_distance_deg, most_distance_deg)),
-            property<&MainShaft::learning_rate>("learning_rate", "", "of the last stop, into the brake angle",
-                                                range(0, 1)),
+            property<&MainShaft::first_brake_distance_deg>(
+                "first_brake_distance_deg", "deg", "assumed before the first stop; each stop replaces it",
+                range(least_distance_deg, most_distance_deg)),
+            property<&MainShaft::learning_rate>(
+                "learning_rate", "", "weight of the last stop in the learned deceleration", range(0, 1)),
             property<&MainShaft::late_deg>(
                 "late_deg", "deg", "up to this far after the brake angle it still brakes in this turn",
                 range(0, 90)),

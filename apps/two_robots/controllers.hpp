@@ -43,7 +43,7 @@ protected:
     template <class Own, class... Facets>
     static constexpr auto controller_facets(const Facets&... more) {
         return facets(input<&Own::target>("target", "rad", "where the joints shall be"),
-                      input<&Own::rate>("rate", "rad/s", "as they pass there"),
+                      input<&Own::rate>("rate", "rad/s", "of the joints at the target"),
                       input<&Own::positions>("positions", "rad", "of the joints"),
                       input<&Own::sent>("sent", "rad/s", "to the drives in the step before"),
                       input<&Own::calibrated>("calibrated", "", "the positions are angles of the arm"),

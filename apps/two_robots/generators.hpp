@@ -25,7 +25,7 @@ protected:
         return facets(input<&Own::positions>("positions", "rad", "of the joints"),
                       input<&Own::sent>("sent", "rad/s", "to the drives in the step before"),
                       output<&Own::target>("target", "rad", "where the joints shall be next"),
-                      output<&Own::rate>("rate", "rad/s", "as they pass there"), more...);
+                      output<&Own::rate>("rate", "rad/s", "of the joints at the target"), more...);
     }
 };
 
@@ -132,7 +132,7 @@ struct JointPath : JointGenerator {
     static constexpr auto interface() {
         return joint_facets<JointPath>(
             method<&JointPath::is_ready>("is_ready", "the joints are where work begins"),
-            command<&JointPath::go, &JointPath::gone>("go", "to these angles, rad; rejected on the way elsewhere", for_people(Role::machine_operator)),
+            command<&JointPath::go, &JointPath::gone>("go", "moves to these angles in rad; rejected while it moves elsewhere", for_people(Role::machine_operator)),
             command<&JointPath::go_ready, &JointPath::arrived>("go_ready", "to where work begins"),
             property<&JointPath::ready>("ready", "rad", "where work begins", range(-6.3, 6.3)),
             property<&JointPath::most_rate>("most_rate", "rad/s", "of each joint", range(0.01, 0.4)),

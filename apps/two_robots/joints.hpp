@@ -79,7 +79,7 @@ struct JointSensor {
             output<&JointSensor::positions>("positions", "rad", "of the joints"),
             output<&JointSensor::rates>("rates", "rad/s", "of the joints"),
             output<&JointSensor::calibrated>("calibrated", "", "the positions are angles of the arm"),
-            method<&JointSensor::calibrate>("calibrate", "joint 1 to 6, and its angle in rad; heard within 10000"),
+            method<&JointSensor::calibrate>("calibrate", "joint 1 to 6, and its angle in rad; ignored beyond 10000"),
             method<&JointSensor::is_calibrated>("is_calibrated", "whether joint 1 to 6 is calibrated"),
             property<&JointSensor::counts_per_rad>("counts_per_rad", "1/rad", "negative: it counts the other way", range(-1e9, 1e9)),
             property<&JointSensor::absolute>("absolute", "", "the encoders know their zero"));
@@ -145,7 +145,7 @@ struct JointEffector {
             output<&JointEffector::enable>("enable", "", "of the drives"),
             output<&JointEffector::release>("release", "", "of the brakes"),
             command<&JointEffector::power_on>("power_on", "drives enabled, brakes released"),
-            command<&JointEffector::power_off>("power_off", "rates of nought, brakes on"),
+            command<&JointEffector::power_off>("power_off", "rates 0, brakes on"),
             property<&JointEffector::volts_per_rate>("volts_per_rate", "V.s/rad", "negative: it turns the other way", range(-20.0, 20.0)),
             property<&JointEffector::most_rate>("most_rate", "rad/s", "of each joint", range(0.0, 0.5)),
             property<&JointEffector::most_acceleration>("most_acceleration", "rad/s^2", "of each joint", range(0.1, 20.0)));

@@ -79,8 +79,8 @@ struct Belt {
 
     static constexpr auto interface() {
         return facets(
-            input<&Belt::drive_position>("drive_position", "mm", "as its encoder has it"),
-            input<&Belt::drive_speed>("drive_speed", "mm/s", "as its encoder has it"),
+            input<&Belt::drive_position>("drive_position", "mm", "measured by its encoder"),
+            input<&Belt::drive_speed>("drive_speed", "mm/s", "measured by its encoder"),
             input<&Belt::code>("code", "", "the board that was scanned last"),
             input<&Belt::bus_faulted>("bus_faulted", "", "the drive is not heard"),
             input<&Belt::saw_is_there>("saw_is_there", "", "it is heard on the wire"),
@@ -94,7 +94,7 @@ struct Belt {
             output<&Belt::boards_in>("boards_in", "", "that were scanned; written on change"),
             output<&Belt::boards_out>("boards_out", "", "that left the last station; written on change"),
             event<&Belt::board_in>("board_in", "a board lies on the belt"),
-            command<&Belt::stop_at, &Belt::stopped_at>("stop_at", "the belt stands there, mm"),
+            command<&Belt::stop_at, &Belt::stopped_at>("stop_at", "stops the belt at this position in mm"),
             operation<&Belt::go>("go", "a station has done its work"),
             operation<&Belt::board_leaves>("board_leaves", "a board left the last station"),
             operation<&Belt::scanned>("scanned", "the scanner has read a board"));

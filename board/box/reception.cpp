@@ -53,9 +53,9 @@ std::string refused(const std::string& why) { return "refused\n" + why + "\n"; }
 
 std::string take_order(const Words& words, const ServiceFacts& facts) {
     if (words.size() != 3 || std::ranges::find(order_verbs, words[1]) == order_verbs.end())
-        return refused("there are the orders roll-back, factory-reset and measure");
+        return refused("an order is roll-back, factory-reset or measure, with its signature");
     if (!is_signed({words[1], facts.own.machine, facts.own.board, facts.nonce}, words[2], *facts.key))
-        return refused("its signature does not fit this box's key, or was made on another day");
+        return refused("its signature does not match this box's key, or was made before its last start");
     if (!keep(offered_order, words[1] + "\n" + words[2] + "\n")) return refused("the box has no memory left");
     return "ok\n" + words[1] + accepted;
 }
@@ -154,7 +154,7 @@ void Reception::take_line(Client& client, Time now) {
     else if (words[0] == "order")
         answer(client, take_order(words, facts_), now);
     else
-        answer(client, refused("there are status, update and order"), now);
+        answer(client, refused("unknown request; known are status, update and order"), now);
 }
 
 void Reception::take_header(Client& client, Time now) {
@@ -169,7 +169,7 @@ void Reception::take_header(Client& client, Time now) {
         if (client.version < other.version || (client.version == other.version && !is_slow))
             return answer(client,
                           refused("version " + std::to_string(other.version) +
-                                  " is on its way already; wait until it is here"),
+                                  " is on its way already; wait until it is received"),
                           now);
         answer(other, refused("another update took its place"), now);
     }
@@ -185,8 +185,8 @@ std::string Reception::refusal_of_header(const Client& client) const {
     const Manifest offered = manifest_of(client.said);
     if (std::string why = refusal_of(offered, facts_.own); !why.empty()) return why;
     if (!has_signed_header(client.said, *facts_.key))
-        return "its header's signature does not fit this box's key: it is somebody else's, or damaged, or an "
-               "older tappet wrote it; write it anew";
+        return "its header's signature does not match this box's key: it is somebody else's, or damaged, or "
+               "an older tappet wrote it; write it anew";
     // Older versions are signed, too: with one, somebody could block a newer one for ever.
     if (const auto waiting = waiting_version(); offered.version < waiting)
         return "it is version " + std::to_string(offered.version) + ", and version " +
@@ -199,7 +199,7 @@ std::string Reception::judge_update(const Client& client) const {
     if (!update) return refused(update.error());
     if (!keep(offered_update, client.said)) return refused("the box has no memory left for it");
     std::string text =
-        "ok\nversion " + std::to_string(update->manifest.version) + " is here and its signature fits";
+        "ok\nversion " + std::to_string(update->manifest.version) + " is received and its signature is valid";
     if (update->manifest.layout != facts_.own.layout)
         text +=
             "; its properties differ: values that it does not know are kept for the version that knows them";

@@ -92,7 +92,7 @@ private:
         const std::string rest = text.substr(std::min(verb.size() + 1, text.size()));
         if (!key_ ||
             !is_signed({verb, own_.machine, own_.board, nonce_}, rest.substr(0, rest.find('\n')), *key_))
-            return refuse("the order that waits", "its signature does not fit this box's key");
+            return refuse("the order that waits", "its signature does not match this box's key");
         const auto done = verb == "roll-back"       ? slots_.roll_back()
                           : verb == "measure"       ? on_data(&measure)
                           : verb == "factory-reset" ? on_data(&forget_settings)

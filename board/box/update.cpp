@@ -151,7 +151,7 @@ std::expected<Update, std::string> decode(std::string_view bytes, const PublicKe
     std::memcpy(signature.data(), bytes.data() + signed_bytes, signature.size());
     if (crypto_sign_final_verify(&state, signature.data(), key.data()) != 0)
         return std::unexpected(
-            "its signature does not fit this box's key: it is somebody else's, or damaged");
+            "its signature does not match this box's key: it is somebody else's, or damaged");
     return Update{manifest_of(bytes), std::string{kernel}, std::string{bytes.substr(0, update_header_bytes)}};
 }
 

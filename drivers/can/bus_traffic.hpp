@@ -16,7 +16,7 @@ namespace detail {
 constexpr Sentence us(std::int64_t ns) { return Sentence{ns / 1000, " us"}; }
 
 constexpr Sentence largest_part(const FrameResponse& found, std::string_view of, std::uint32_t bit_rate) {
-    const Sentence most{"most of it, ", us(found.largest_ns), ", "};
+    const Sentence most{"the largest part, ", us(found.largest_ns), ", "};
     switch (found.largest) {
     case Part::jitter:
         return Sentence{most, "is how late it may enter its queue; shorten the response of the activity that "
@@ -28,9 +28,10 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
         return Sentence{most, "is \"", of,
                         "\", which may just have begun; shorten that, or lengthen the period"};
     case Part::in_flight:
-        return Sentence{most,
-                        "are less urgent frames of this machine that the controller holds already; shorten "
-                        "those, or lengthen the period"};
+        return Sentence{
+            most,
+            "is caused by less urgent frames of this machine that the controller holds already; shorten "
+            "those, or lengthen the period"};
     case Part::handing_over:
         return Sentence{most, "is the time until the next frames follow those in flight; shorten the "
                               "response of the activity that drives the bus"};
@@ -39,9 +40,8 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
                         "\", which wins the bus before it; send that less often, or give this "
                         "one a lower identifier"};
     case Part::errors:
-        return Sentence{most,
-                        "are errors on the wire; lengthen the period, or say fewer with bus_errors(...) of "
-                        "the board's device"};
+        return Sentence{most, "is caused by errors on the wire; lengthen the period, or state fewer errors "
+                              "with bus_errors(...) of the board's device"};
     }
     return {};
 }

@@ -153,7 +153,7 @@ template <const auto& row> struct ToldClock {
                                       "the most by which `ahead` may be wrong; it grows between exchanges"),
             output<&ToldClock::is_known>(
                 "known", "",
-                "the clock was told lately, and its error is small enough; written on "
+                "the clock was received recently, and its error is small enough; written on "
                 "change",
                 while_stopped(false)),
             output<&ToldClock::rate>("rate", "",

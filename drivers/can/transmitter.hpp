@@ -22,9 +22,9 @@ constexpr std::uint32_t frames_in_flight(Duration hand_over, Duration shortest) 
     return fewest;
 }
 
-/// Frames are queued here, not in the kernel, because a frame in the kernel or the controller cannot be taken
-/// back. So at most `in_flight` frames are handed over before one is confirmed (sent and acknowledged on the
-/// wire).
+/// Frames are queued here, not in the kernel, because a frame in the kernel or the controller cannot be
+/// withdrawn. So at most `in_flight` frames are handed over before one is confirmed (sent and acknowledged on
+/// the wire).
 class Transmitter {
 public:
     constexpr void configure(const Settings& settings) noexcept {

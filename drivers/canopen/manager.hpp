@@ -109,9 +109,11 @@ template <const auto& map> struct Manager {
                                                "the first node that is silent, 0: none; written on change"),
                  output<&Manager::reason>("reason", "", "why not every node works; written on change"),
                  output<&Manager::reboots>("reboots", "", "of nodes that worked; written on change"),
-                 output<&Manager::not_sent>("not_sent", "", "frames that found no room; written on change"),
-                 output<&Manager::wrong_lengths>(
-                     "wrong_lengths", "", "frames that are not as the standard has them; written on change"),
+                 output<&Manager::not_sent>(
+                     "not_sent", "",
+                     "frames dropped because the queue to the bus was full; written on change"),
+                 output<&Manager::wrong_lengths>("wrong_lengths", "",
+                                                 "frames of a wrong length; written on change"),
                  tappet::event<&Manager::emergency>("emergency", "EMCY: node, code, error register"),
                  operation<&Manager::reset>("reset", "NMT reset of one node"),
              })

@@ -22,11 +22,12 @@ constexpr std::expected<LinePlan, Sentence> plan(const Settings& settings) {
     const Sentence who{"GPIO chip \"", settings.chip, "\""};
     if (settings.lines.size() < 2)
         return std::unexpected{
-            Sentence{who, " is asked for fewer than two lines: lost edges of a single line are invisible; "
-                          "add another line, used or not"}};
+            Sentence{who, ": fewer than two lines are requested, and lost edges of a single line are "
+                          "invisible; add another line, used or not"}};
     if (settings.lines.size() > most_lines)
-        return std::unexpected{Sentence{who, " is asked for ", settings.lines.size(),
-                                        " lines: one request holds 64; use a second device"}};
+        return std::unexpected{
+            Sentence{who, ": ", settings.lines.size(),
+                     " lines are requested, but one request holds 64; use a second device"}};
     LinePlan result;
     for (std::size_t i = 0; i < settings.lines.size(); ++i) {
         const Line& line = settings.lines[i];

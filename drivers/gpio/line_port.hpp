@@ -163,7 +163,7 @@ private:
         all[n++] = tappet::event<&LinePort::edges_were_lost>("edges_were_lost",
                                                              "edges were lost; the levels were read anew");
         all[n++] = tappet::output<&LinePort::is_faulted>(
-            "faulted", "", "the chip refuses what is asked of it; written on change", while_stopped(true));
+            "faulted", "", "the chip refuses requests; written on change", while_stopped(true));
         all[n++] = tappet::event<&LinePort::line_fault>("line_fault", "the lines can no longer be relied on");
         all[n++] =
             timer<&LinePort::next_look, &LinePort::step>("next_look", "whether a faulted chip answers again");

@@ -56,7 +56,8 @@ BenchServer::~BenchServer() {
 
 std::expected<void, Sentence> BenchServer::open(const DevicePlace& place) {
     if (place.is_on_board)
-        return std::unexpected(Sentence{"the bench has no serial lines; bind it to 127.0.0.1:1502"});
+        return std::unexpected(
+            Sentence{"this server serves Modbus TCP only; bind the device to 127.0.0.1:1502"});
     address_ = host_of(place.address);
     port_ = port_of(place.address);
     unit_ = server_facts(place.bound).unit;

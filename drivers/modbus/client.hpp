@@ -106,7 +106,8 @@ template <const auto& map> struct Client {
         }
         list[n++] = output<&Client::connected>("connected", "", "the server answers", while_stopped(false));
         list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");
-        list[n++] = output<&Client::outages_survived>("outages_survived", "", "times it came back");
+        list[n++] = output<&Client::outages_survived>("outages_survived", "",
+                                                      "outages after which the server came back");
         list[n++] = output<&Client::no_numbers>(
             "no_numbers", "",
             "registers read that are not a number, since start; their outputs become stale");

@@ -37,6 +37,8 @@ Sentence CanRecorder::open(std::string_view bus, const std::string& folder) {
     path_ = (std::filesystem::path{folder} / (name + ".log")).string();
     std::error_code fault;
     std::filesystem::create_directories(folder, fault);
+    if (std::filesystem::is_regular_file(path_, fault)) // a device takes it
+        return Sentence{"\"", path_, "\" exists already; name another folder, or remove it"};
     file_.open(path_, std::ios::trunc);
     return file_ ? Sentence{}
                  : Sentence{"\"", path_, "\" cannot be written; name a folder in which you may write"};

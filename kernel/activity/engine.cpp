@@ -81,7 +81,10 @@ static_assert(FunctionKind::step == FunctionKind{}, "the first of a part's funct
 [[gnu::always_inline]] inline void Engine::watch_wakes() noexcept TAPPET_REALTIME {
     const auto n = static_cast<std::uint64_t>(plan_.at_most_n);
     Time& oldest = wakes_[oldest_wake_];
-    if (wake_count_ >= n && cycle_.now - oldest < plan_.at_most_per) ++statistics_.wakes_too_many;
+    if (wake_count_ >= n && cycle_.now - oldest < plan_.at_most_per) {
+        ++statistics_.wakes_too_many;
+        measure_processor();
+    }
     oldest = cycle_.now;
     oldest_wake_ = oldest_wake_ + 1 == n ? 0 : oldest_wake_ + 1;
     ++wake_count_;
@@ -331,6 +334,15 @@ void Engine::note_miss(Duration response) noexcept TAPPET_REALTIME {
     if (plan_.stop_when_late) ask_stop(StopReason::missed_deadline, miss.function);
 }
 
+// Reading the thread's processor time enters the kernel. If never busy for longer than its budget, and never
+// woken too often, the activity kept its claim, whatever else ran. Otherwise it may have been preempted, or
+// have claimed too little.
+void Engine::measure_processor() noexcept TAPPET_REALTIME {
+    if (measures_processor_ || plan_.budget <= Duration::zero()) return;
+    measures_processor_ = true;
+    serves_ = Serves::everything;
+}
+
 // A response that exceeds neither the longest lateness nor the longest busy time is no new maximum of either,
 // which are parts of it, nor of their sum.
 void Engine::note_response(Duration response) noexcept TAPPET_REALTIME {
@@ -339,14 +351,7 @@ void Engine::note_response(Duration response) noexcept TAPPET_REALTIME {
         seen.longest_response = std::max(seen.longest_response, response);
         seen.longest_lateness = std::max(seen.longest_lateness, cycle_.now - cycle_.release);
         seen.longest_busy = std::max(seen.longest_busy, lap_ - cycle_.now);
-        // Reading the thread's processor time enters the kernel. If never busy for longer than its budget,
-        // the activity kept it, whatever else ran. Otherwise it may have been preempted, or have claimed too
-        // little.
-        if (!measures_processor_ && plan_.budget > Duration::zero() &&
-            (seen.longest_busy > plan_.budget || seen.wakes_too_many != 0)) {
-            measures_processor_ = true;
-            serves_ = Serves::everything;
-        }
+        if (seen.longest_busy > plan_.budget) measure_processor();
         quiet_busy_ = has_deadline_ ? std::min(seen.longest_busy, plan_.deadline) : seen.longest_busy;
         quiet_response_ = std::min(seen.longest_lateness, quiet_busy_);
     }

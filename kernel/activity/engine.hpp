@@ -93,7 +93,7 @@ enum class StopReason : std::uint8_t {
     broken_contract,
     requested,
     behaviour,
-    section,        ///< a row of a section of another folder
+    section,        ///< a row of a section of the table that another folder adds
     activity_hangs, ///< its start or stop alone was not finished in time
     not_started     ///< an activity, while the machine was started
 };
@@ -405,6 +405,7 @@ private:
     void note_excess(const FunctionTiming& function, Duration took) noexcept TAPPET_REALTIME;
     void note_miss(Duration response) noexcept TAPPET_REALTIME;
     void note_response(Duration response) noexcept TAPPET_REALTIME;
+    void measure_processor() noexcept TAPPET_REALTIME;
     void end_period() noexcept TAPPET_REALTIME;
     /// The work of a cycle beside requests, commands and messages. Rare features cost nothing in activities
     /// without them.

@@ -23,7 +23,7 @@ namespace tappet {
 /// The answer to a method call: a result, or none when the called component does not run. The caller decides
 /// what to do then. A const method is always answered. Real-time.
 template <class R>
-class [[nodiscard("the component that was called may not run: say what happens then")]] Answer {
+class [[nodiscard("the called component may be stopped: handle the case without an answer")]] Answer {
 public:
     Answer() = default;
     Answer(const R& result) noexcept : result_{result}, given_{true} {}
@@ -38,7 +38,7 @@ private:
     bool given_ = false;
 };
 template <>
-class [[nodiscard("the component that was called may not run: say what happens then")]] Answer<void> {
+class [[nodiscard("the called component may be stopped: handle the case without an answer")]] Answer<void> {
 public:
     constexpr explicit Answer(bool given = false) noexcept : given_{given} {}
     [[nodiscard]] bool given() const noexcept TAPPET_REALTIME { return given_; }
@@ -178,7 +178,7 @@ struct MethodOf {
 
     static R run(void* component, const std::remove_cvref_t<A>&... arguments) noexcept TAPPET_REALTIME {
         if constexpr (blocks)
-            TAPPET_ESCAPE("the table's check lets activities only call it that are not real-time",
+            TAPPET_ESCAPE("the table's check allows only activities that are not real-time to call it",
                           return (static_cast<Component*>(component)->*Method)(arguments...));
         else
             return (static_cast<Component*>(component)->*Method)(arguments...);

@@ -39,12 +39,11 @@ public:
             output<&ChainSwitch::chain>("chain", "", "the one that runs"),
             output<&ChainSwitch::hindered>(
                 "hindered", "", "\"component.input\" without which the last hand-over did not happen"),
-            event<&ChainSwitch::handed_over>("handed_over",
-                                             "another chain runs, because somebody asked for it"),
+            event<&ChainSwitch::handed_over>("handed_over", "another chain runs, as requested"),
             event<&ChainSwitch::fell_back>("fell_back", "a part of the chain failed; the first one runs"),
             command<&ChainSwitch::run, &ChainSwitch::has_run>(
                 "run", "the chain of that name, in place of the one that runs; failed: it cannot start"),
-            method<&ChainSwitch::is_running>("is_running", "that chain, or the one asked for", any_thread));
+            method<&ChainSwitch::is_running>("is_running", "that chain runs, or is requested", any_thread));
     }
 
 private:

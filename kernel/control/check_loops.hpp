@@ -166,15 +166,15 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
     };
     const auto say = [&](double bound, std::string_view what, std::string_view otherwise) {
         return of_loop(row, "gain times period is ", in_digits(with(longest).proportional),
-                       jitter == Duration::zero() ? "" : " in the longest period", ", and ", what, " with ",
-                       dead, dead == 1 ? " step" : " steps",
-                       varying != 0 ? " of varying delay is " : " of delay is ", in_digits(bound), "; set ",
-                       row.gain, " below ", in_digits(bound / (row.factor * longest)), otherwise);
+                       jitter == Duration::zero() ? "" : " at the longest period", ", but with ", dead,
+                       dead == 1 ? " step" : " steps", varying != 0 ? " of varying delay" : " of delay", what,
+                       in_digits(bound), "; set ", row.gain, " below ",
+                       in_digits(bound / (row.factor * longest)), otherwise);
     };
     const double bound = varying != 0 ? most_stable_at_any_delay(dead) : most_stable(dead);
     if (!is_stable(with(longest)) || !is_stable(with(period))) {
         if (with(longest).proportional >= bound)
-            return say(bound, "the most that is stable", ", or shorten the delay");
+            return say(bound, " the loop is stable only below ", ", or shorten the delay");
         return of_loop(row, "it is not stable with an integral gain of ", in_digits(integral), "; set ",
                        row.integral, " lower");
     }
@@ -183,7 +183,7 @@ constexpr Sentence check_loop(const LoopRow& row, const MachineView& m, const Ta
                        "with an integral around an axis it overshoots after each step of the set point; add "
                        "may_overshoot if that does no harm, or leave the integral out");
     if (!row.may_overshoot && with(longest).proportional > most_without_overshoot(dead) * (1 + 1e-9))
-        return say(most_without_overshoot(dead), "the most that does not overshoot",
+        return say(most_without_overshoot(dead), " the loop overshoots above ",
                    ", or add may_overshoot if that does no harm");
     return check_by_hand(row, by_hand, integral_by_hand, bound, longest, dead, varying);
 }

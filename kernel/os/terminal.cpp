@@ -4,12 +4,15 @@
 #include "kernel/base/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <climits>
 #include <cstdio>
 #include <cstring>
 #include <mutex>
+#include <optional>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -158,7 +161,15 @@ bool write_all(int file, std::string_view text) noexcept {
     return true;
 }
 
-void print(std::string_view text) noexcept { static_cast<void>(write_all(STDOUT_FILENO, text)); }
+namespace {
+constinit std::atomic<bool> print_failed{false};
+} // namespace
+
+void print(std::string_view text) noexcept {
+    if (!write_all(STDOUT_FILENO, text)) print_failed.store(true, std::memory_order_relaxed);
+}
+
+bool has_printed_all() noexcept { return !print_failed.load(std::memory_order_relaxed); }
 
 namespace {
 
@@ -179,19 +190,67 @@ bool sync_directory(const char* path) noexcept {
 
 } // namespace
 
-bool replace_file(const char* path, std::span<const std::string_view> pieces) noexcept {
-    char beside[4096];
+namespace {
+
+using Path = std::array<char, 4096>;
+
+/// Writes the name that `path` leads to, through symbolic links, into `target`. Returns what stands there;
+/// empty: nothing does, and `target` is `path`.
+std::optional<struct stat> find_target(const char* path, Path& target) noexcept {
     const std::size_t length = std::strlen(path);
-    if (length + 5 > sizeof beside) return false;
-    std::memcpy(beside, path, length);
-    std::memcpy(beside + length, ".new", 5);
-    const int file = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (length < target.size()) std::memcpy(target.data(), path, length + 1);
+    const int there = open(path, O_PATH | O_CLOEXEC);
+    if (there < 0) return {};
+    struct stat facts{};
+    char by_number[40] = "/proc/self/fd/";
+    *std::to_chars(by_number + 14, by_number + sizeof by_number - 1, there).ptr = '\0';
+    const bool known = fstat(there, &facts) == 0;
+    const ssize_t count = readlink(by_number, target.data(), target.size() - 1);
+    close(there);
+    if (!known || count <= 0) return {};
+    target[static_cast<std::size_t>(count)] = '\0';
+    return facts;
+}
+
+bool write_into(int file, std::span<const std::string_view> pieces) noexcept {
+    for (const std::string_view piece : pieces)
+        if (!write_all(file, piece)) return false;
+    return fsync(file) == 0 || errno == EINVAL; // a device or a pipe cannot be synced
+}
+
+/// A device or a pipe is no file that another could replace.
+bool write_to_device(const char* path, std::span<const std::string_view> pieces) noexcept {
+    const int file = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK); // a pipe that nobody reads is refused
     if (file < 0) return false;
-    bool written = true;
-    for (const std::string_view piece : pieces) written = written && write_all(file, piece);
-    written = written && fsync(file) == 0;
-    if (close(file) == 0 && written && rename(beside, path) == 0) return sync_directory(path);
-    unlink(beside);
+    fcntl(file, F_SETFL, 0);
+    const bool written = write_into(file, pieces);
+    return close(file) == 0 && written;
+}
+
+} // namespace
+
+bool replace_file(const char* path, std::span<const std::string_view> pieces) noexcept {
+    Path target{};
+    const auto there = find_target(path, target);
+    struct stat link{};
+    if (!there && lstat(path, &link) == 0) return false; // a link to nothing
+    if (there && !S_ISREG(there->st_mode)) return !S_ISDIR(there->st_mode) && write_to_device(path, pieces);
+    constexpr std::string_view ending = ".tappet-new";
+    Path beside = target;
+    const std::size_t length = std::strlen(target.data());
+    if (length == 0 || length + ending.size() + 1 > beside.size()) return false;
+    std::memcpy(beside.data() + length, ending.data(), ending.size());
+    unlink(beside.data()); // left over from a power failure; were it a link, its target would stay
+    const int file = open(beside.data(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (file < 0) return false;
+    bool written = write_into(file, pieces);
+    if (there) {
+        written = written && fchmod(file, there->st_mode & 07777) == 0;
+        static_cast<void>(fchown(file, there->st_uid, there->st_gid)); // only root may give a file away
+    }
+    if (close(file) == 0 && written && rename(beside.data(), target.data()) == 0)
+        return sync_directory(target.data());
+    unlink(beside.data());
     return false;
 }
 

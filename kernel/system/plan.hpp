@@ -193,7 +193,7 @@ constexpr Sentence check_clock_error(const SystemView& s, std::span<const WireFr
         error.count() / 1000,
         " us, but it is promised within ",
         clock.within.count() / 1000,
-        " us; most of it, ",
+        " us; the larger part, ",
         std::max(clock.stamps_late, parted).count() / 1000,
         " us, is ",
         clock.stamps_late >= parted

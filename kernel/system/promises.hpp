@@ -185,7 +185,7 @@ constexpr Sentence check_promises(const SystemView& s, const Plan& plan, std::sp
                             time.worst.count() / 1000,
                             " us, but is promised within ",
                             row.within.count() / 1000,
-                            " us; most of it, ",
+                            " us; the largest part, ",
                             time.largest_part.count() / 1000,
                             " us, is ",
                             time.largest,

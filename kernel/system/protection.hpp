@@ -50,9 +50,10 @@ constexpr Sentence protection_fault(const Protection& by, std::size_t bytes) {
                         by.checksum_bytes() + 1,
                         " bytes at byte ",
                         by.at,
-                        " does not fit into ",
+                        " does not fit into a payload of ",
                         bytes,
-                        " bytes: move it or lengthen those"};
+                        bytes == 1 ? " byte" : " bytes",
+                        ": move the header or lengthen the payload"};
     if (by.form == Protection::Form::id_nibble && by.id > 0x0FFF)
         return Sentence{"the id ", unsigned{by.id},
                         " has more than the 12 bits that are sent and summed: "

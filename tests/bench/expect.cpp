@@ -79,7 +79,7 @@ bool has_golden(const std::string& output, const std::string& file) {
         if (n > most) most = n, at = i;
     }
     if (!golden.empty() && most == golden.size()) return true;
-    std::printf("FAILED: the output is not as in %s from its line %zu on; masked, it goes on:\n",
+    std::printf("FAILED: the output is not as in %s from its line %zu on; masked, it continues:\n",
                 file.c_str(), most + 1);
     for (std::size_t i = at + most; i < lines.size() && i < at + golden.size() + 2; ++i)
         std::printf("%s\n", lines[i].c_str());

@@ -78,6 +78,9 @@ struct Exception {
 // clang-format off
 constexpr std::array exceptions{
     Exception{"kernel/os/heap.cpp",         "malloc",  "the heap itself"},
+    Exception{"kernel/os/host_watch.cpp",   "malloc",  "a host's program: notes the call and passes it on"},
+    Exception{"kernel/os/host_watch.cpp",   "calloc",  "a host's program: notes the call and passes it on"},
+    Exception{"kernel/os/host_watch.cpp",   "realloc", "a host's program: notes the call and passes it on"},
     Exception{"kernel/os/heap_symbols.cpp", "new",     "the heap itself: the program's operators"},
     Exception{"kernel/os/heap_symbols.cpp", "malloc",  "the heap itself: the program's symbols"},
     Exception{"kernel/os/heap_symbols.cpp", "calloc",  "the heap itself: the program's symbols"},

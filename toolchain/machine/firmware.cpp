@@ -377,7 +377,12 @@ int run_firmware(const AcceptedMachine& machine, GuardedDevices& devices, int co
     const auto print_line = [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); };
     if (options.plan) describe_plan(machine, nullptr, print_line);
     if (options.board) describe_board(machine, nullptr, print_line);
-    if (options.plan || options.board) return 0;
+    if (options.plan || options.board)
+        return os::has_printed_all()
+                   ? 0
+                   : static_cast<int>(
+                         run.fail(Ending::wrong_set_up, Sentence{"the output could not be written; is "
+                                                                 "the disk full?"}));
     if (options.measure != nullptr) return measure_box(machine, options.measured);
     if (hooks.take != nullptr)
         if (const Sentence refusal = hooks.take({options.own.begin(), options.own.size()}); !refusal.empty())

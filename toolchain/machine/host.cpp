@@ -213,6 +213,18 @@ private:
 
 } // namespace
 
+namespace {
+
+/// The end of a run whose output was its purpose.
+int end_of_output(std::string_view program) {
+    if (os::has_printed_all()) return ended_well;
+    static_cast<void>(
+        os::write_all(2, Sentence{program, ": the output could not be written; is the disk full?\n"}.view()));
+    return wrong_set_up;
+}
+
+} // namespace
+
 int run_host(const AcceptedMachine& machine,
              const std::function<std::unique_ptr<Plant>(std::uint64_t seed)>& make_plant, int count,
              char** words, const HostHooks& hooks) {
@@ -234,7 +246,7 @@ int run_host(const AcceptedMachine& machine,
     if (options->has("--plan")) {
         describe_plan(machine, nullptr,
                       [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
-        return ended_well;
+        return end_of_output(machine.table.name);
     }
     if (options->has("--quiet") && std::freopen("/dev/null", "w", stdout) == nullptr) return wrong_set_up;
     const auto host = std::make_unique<Host>(machine, *plant, *options, hooks);

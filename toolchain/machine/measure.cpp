@@ -99,9 +99,9 @@ public:
     HardwareLatency& operator=(const HardwareLatency&) = delete;
 
     [[nodiscard]] Sentence tell() const {
-        if (!is_on_) return Sentence{"gaps of the hardware: not measured, this kernel has no tracer hwlat"};
+        if (!is_on_) return Sentence{"hardware latency: not measured, this kernel has no tracer hwlat"};
         const os::SystemFile seen{"", Sentence{std::string_view{tracing}, "/tracing_max_latency"}};
-        return Sentence{"gaps of the hardware: ", seen.text() == "0" ? "none over 10" : seen.text(), " us"};
+        return Sentence{"hardware latency: ", seen.text() == "0" ? "none over 10" : seen.text(), " us"};
     }
 
 private:

@@ -94,9 +94,9 @@ void draw_map(Svg& svg, std::span<const Moment> moments, std::span<const Look> l
 void draw_legend(Svg& svg) {
     const double x = left + map_width + 30.0;
     svg.line(x, map_top + 20, x + 30, map_top + 20, "stroke=\"#999\" stroke-width=\"3\"");
-    svg.words(x + 40, map_top + 25, "the car, truly");
+    svg.words(x + 40, map_top + 25, "true position of the car");
     svg.circle(x + 15, map_top + 45, 3.0, "fill=\"#c8202a\"");
-    svg.words(x + 40, map_top + 50, "the car, as located");
+    svg.words(x + 40, map_top + 50, "located position of the car");
     svg.line(x, map_top + 70, x + 30, map_top + 70, "stroke=\"#5b8def\"");
     svg.words(x + 40, map_top + 75, "where the camera looks");
 }

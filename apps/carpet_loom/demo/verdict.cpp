@@ -130,7 +130,7 @@ std::vector<std::string> faults_of(const Json& run, std::int64_t picks_wanted) {
                 "%s was loaded, and \"%s\" is at work; %llu picks were woven with its pattern", new_weave,
                 text(weave, "script").c_str(), static_cast<unsigned long long>(picks_of_it)));
         if (count(weave, "roll_backs") != 1)
-            faults.push_back(format("one script that misbehaves was loaded, and %llu were taken back",
+            faults.push_back(format("one script that misbehaves was loaded, and %llu were rolled back",
                                     count(weave, "roll_backs")));
     }
     for (const auto& [key, what] : must_be_none)

@@ -29,7 +29,7 @@ Sentence MachineInstance::describe_stop() const {
     const std::string_view who = stop.from == nullptr ? std::string_view{} : stop.from->name();
     switch (stop.reason) {
     case StopReason::none: return Sentence{"no stop was requested"};
-    case StopReason::requested: return Sentence{"asked for from outside"};
+    case StopReason::requested: return Sentence{"requested from outside"};
     case StopReason::broken_contract: return Sentence{"a contract was broken in activity \"", who, "\""};
     case StopReason::behaviour: {
         const std::string_view driven = machine().table.components[stop.detail].name;

@@ -87,7 +87,8 @@ public:
     }
     /// Asks the supervisor to stop the machine. Real-time, any thread.
     void ask_stop(StopReason reason, std::uint64_t detail, const Engine* from) noexcept TAPPET_REALTIME;
-    /// Requests a stop for a row of a section of another folder, which describes the reason.
+    /// Requests a stop for a row of a section that another folder adds to the table; the folder describes the
+    /// reason.
     void ask_section_stop(std::size_t section, std::size_t row, const Engine* from) noexcept TAPPET_REALTIME {
         ask_stop(StopReason::section, std::uint64_t{section} << 32 | row, from);
     }

@@ -84,7 +84,7 @@ public:
     [[nodiscard]] std::span<T> at(const PlacesOf<T>& places) noexcept TAPPET_REALTIME {
         return {at<T>(places.at), places.count};
     }
-    /// Returns the memory of a section of another folder.
+    /// Returns the memory of a section that another folder adds to the table.
     [[nodiscard]] std::span<std::byte> extra_memory(std::size_t section) const noexcept;
     /// Returns the gate by which everything but its engine enters a component. Real-time.
     [[nodiscard]] GatedComponent* gate_of(std::size_t component) noexcept TAPPET_REALTIME;

@@ -147,18 +147,18 @@ bool BehaviourSlot::ask(Change change, const SlotMoment& moment) noexcept {
 Sentence BehaviourSlot::describe_roll_back() const {
     switch (why_) {
     case RollBack::none: return {};
-    case RollBack::asked: return Sentence{"taken back: asked for"};
+    case RollBack::asked: return Sentence{"rolled back: on request"};
     case RollBack::error:
     case RollBack::left_over:
     case RollBack::late:
     case RollBack::too_much: break;
     }
     const Bank& failed = banks_[static_cast<std::size_t>(spare())];
-    Sentence text{"taken back: "};
+    Sentence text{"rolled back: "};
     text.add(failed.name.view());
     if (why_ == RollBack::left_over)
-        return text.add(": its statements of one step did not come to an end within their number and the "
-                        "deadline of its activity; let it wait, or allow it more");
+        return text.add(": its statements of one step exceeded their number or the deadline of its activity; "
+                        "let it wait, or allow it more");
     if (why_ == RollBack::late)
         return text.add(": it made its activity miss a deadline; let the script do less in one step");
     if (why_ == RollBack::too_much)

@@ -10,7 +10,7 @@ bool act(StateMachineExecution& machine, BehaviourAction action, StateIndex stat
     switch (action) {
     case BehaviourAction::start: return machine.start(now) != StateOutcome::ignored;
     case BehaviourAction::stop:
-        return machine.request_final(now, "asked for from outside") != StateOutcome::ignored;
+        return machine.request_final(now, "requested from outside") != StateOutcome::ignored;
     case BehaviourAction::pause: return machine.pause() != StateOutcome::ignored;
     case BehaviourAction::step: return machine.step_once(now);
     case BehaviourAction::reset: return machine.request_initial(now) != StateOutcome::ignored;

@@ -112,7 +112,7 @@ public:
     [[nodiscard]] std::uint32_t roll_backs() const noexcept TAPPET_REALTIME { return roll_backs_; }
     /// How many times a behaviour took over.
     [[nodiscard]] std::uint32_t loads() const noexcept TAPPET_REALTIME { return loads_; }
-    /// Says why the last behaviour was taken back, with the line of the script; empty when none was. Not
+    /// Says why the last behaviour was rolled back, with the line of the script; empty when none was. Not
     /// real-time.
     [[nodiscard]] Sentence describe_roll_back() const;
     [[nodiscard]] const BehaviourRow& row() const noexcept { return *place_.row; }

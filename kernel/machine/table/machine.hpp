@@ -20,8 +20,8 @@ struct MachineView {
     std::span<const ReactionRow> reactions;
     std::span<const BehaviourRow> behaviours;
     const ExtraList* extras = &no_extras;
-    /// The build states it: clang followed the effects of all real-time functions of the components. Otherwise
-    /// the machine arms on the host and the bench only.
+    /// The build states it: clang followed the effects of all real-time functions of the components.
+    /// Otherwise the machine arms on the host and the bench only.
     bool effects_checked = false;
 };
 

@@ -78,7 +78,7 @@ using tappet::to_text;
     X(call,        machine_operator, 1, browsing::max_words, " METHOD [ARGUMENT...]", R"("result": .. unless it returns nothing)", \
       callable, "a method or an operation, answered at once (operator)") \
     X(send,        machine_operator, 1, browsing::max_words, " COMMAND [ARGUMENT...]", R"("state": "sent"; packets with its states follow)", \
-      command, "a command; --follow: told until it has come to its end (operator)", "send COMMAND [ARGUMENT...] [--follow]") \
+      command, "a command; --follow: prints its states until it is finished (operator)", "send COMMAND [ARGUMENT...] [--follow]") \
     X(set,         engineer,         2, browsing::max_words, " NAME VALUE [NAME VALUE...]", R"("set": n: all of one component and in one transaction, or none)", \
       property, "properties of one component, all at once or none (engineer)", "set PROPERTY VALUE [PROPERTY VALUE...]") \
     X(force,       engineer,         2, 2,         " PORT VALUE", "", port, "a port has this value whatever is written to it (engineer)") \

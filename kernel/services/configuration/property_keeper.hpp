@@ -39,9 +39,10 @@ struct PropertyKeeper {
 
     static constexpr auto interface() {
         return facets(
-            output<&PropertyKeeper::saved>("saved", "", "times, since start"),
-            output<&PropertyKeeper::failed>("failed", "", "times, since start; the console says why"),
-            property<&PropertyKeeper::every>("every", "s", "between two", range(1, 86400)));
+            output<&PropertyKeeper::saved>("saved", "", "how often properties were saved, since start"),
+            output<&PropertyKeeper::failed>("failed", "",
+                                            "how often saving failed, since start; the console says why"),
+            property<&PropertyKeeper::every>("every", "s", "time between two savings", range(1, 86400)));
     }
 
 private:

@@ -52,7 +52,7 @@ constexpr LineFunctions CommandInterpreter::line_functions{
     .let_go =
         [](void* self) {
             auto& own = *static_cast<CommandInterpreter*>(self);
-            if (own.is_at_work()) own.finish(CommandState::failed, Sentence{"who asked for it has left"});
+            if (own.is_at_work()) own.finish(CommandState::failed, Sentence{"its sender has disconnected"});
             own.asker_ = Asker::none;
         },
     .break_off =

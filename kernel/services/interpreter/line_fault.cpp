@@ -33,7 +33,7 @@ Sentence why_of(const Instruction& in, const UnitPart& part, std::string_view na
         if (state == CommandState::failed)
             return Sentence{"\"", name, "\" failed: its component says so, or was stopped"};
         if (state != CommandState::ready)
-            return Sentence{"\"", name, "\" had not ended in time", in_flight(state) ? "; it goes on" : ""};
+            return Sentence{"\"", name, "\" had not ended in time", in_flight(state) ? "; it continues" : ""};
     }
     if (in.run == &primitive::write_property) {
         if (Sentence range = check_range(*in.facet, part.data + in.a); !range.empty()) return range;

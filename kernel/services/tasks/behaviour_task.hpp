@@ -164,8 +164,8 @@ inline constexpr ScriptUnit any_script{};
 /// are the variables and parameters of a machine and the parameters of a program (whose variables are
 /// initialised at each start), except those of record types; the row may set them, and a properties file may
 /// keep them. The properties of a slot's task stay when behaviours change: one that takes over receives them,
-/// one that is taken back has changed none. `run` of a program sets its parameters and returns its result, if
-/// it has one; `start` uses the present parameters. Commands and methods are real-time.
+/// one that is rolled back has changed none. `run` of a program sets its parameters and returns its result,
+/// if it has one; `start` uses the present parameters. Commands and methods are real-time.
 template <const auto& script = any_script, text instance = "">
 struct BehaviourTask : detail::AnyBehaviourTask {
     static constexpr bool knows_script = !script.types.empty();

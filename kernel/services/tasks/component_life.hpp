@@ -37,7 +37,7 @@ struct ComponentLife {
                       command<&ComponentLife::stop_it, &ComponentLife::is_done<LifeChange::stop>>(
                           "stop", "to its safe values"),
                       command<&ComponentLife::restart_it, &ComponentLife::is_done<LifeChange::restart>>(
-                          "restart", "both"),
+                          "restart", "to its safe values, then from them"),
                       method<&ComponentLife::runs>("is_running", "steps and messages reach it", any_thread));
     }
 

@@ -40,13 +40,13 @@ struct TimedEvent {
     [[nodiscard]] bool armed() const noexcept TAPPET_REALTIME { return timer_.when() != never; }
 
     static constexpr auto interface() {
-        return facets(event<&TimedEvent::due>("due", "the time it was armed for has come", heard_by(1)),
-                      output<&TimedEvent::times>("times", "", "it was due"),
+        return facets(event<&TimedEvent::due>("due", "the armed time is reached", heard_by(1)),
+                      output<&TimedEvent::times>("times", "", "how often it was due"),
                       output<&TimedEvent::skipped>("skipped", "", "periods lost to lateness"),
                       operation<&TimedEvent::arm_at>("arm_at", "once, at this time"),
-                      operation<&TimedEvent::arm_after>("arm_after", "once, so long from now"),
-                      operation<&TimedEvent::every>("every", "again and again with this period"),
-                      operation<&TimedEvent::cancel>("cancel", "never"),
+                      operation<&TimedEvent::arm_after>("arm_after", "once, after this time"),
+                      operation<&TimedEvent::every>("every", "periodically, with this period"),
+                      operation<&TimedEvent::cancel>("cancel", "it is not due any more"),
                       timer<&TimedEvent::timer_, &TimedEvent::ring>("timer", "wakes the activity"));
     }
 

@@ -145,7 +145,7 @@ Sentence judge(pid_t guardian, const Draw& draw) {
     if (unsafe_at > asked + bound)
         return Sentence{"its outputs were not safe ", (unsafe_at - asked) / 1ms,
                         " ms after the cause of the stop, and ", bound / 1ms, " ms are allowed"};
-    if (!has_ended) return Sentence{"it does not come to its end"};
+    if (!has_ended) return Sentence{"it does not end"};
     if (page->wire != 0) return Sentence{"its outputs did not stay safe"};
     if (const int ran = page->on_supervisor; ran >= 0)
         return Sentence{function_names[static_cast<std::size_t>(ran)],

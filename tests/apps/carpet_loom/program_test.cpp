@@ -50,7 +50,7 @@ TEST(Program, ends_with_1_when_the_time_was_too_short_for_the_picks) {
     EXPECT_THAT(ended.text, HasSubstr("carpet-loom: stopped: the picks were not woven in time\n"));
 }
 
-TEST(Program, prints_its_options_and_its_plants_when_asked) {
+TEST(Program, prints_its_options_and_those_of_its_plant_for_help) {
     const Ended ended = run_loom({"--help"});
     EXPECT_EQ(ended.exit_code, 0);
     for (const char* option : {"--real", "--seed", "--summary", "--picks", "--weft-break-one-in"})

@@ -34,8 +34,15 @@ Ended beside_the_cutter(const Folder& folder, const std::string& what) {
 
 TEST(RecordedCutter, records_each_step_in_a_file) {
     const Folder folder;
-    const Ended ended = beside_the_cutter(folder, "cat list; browse report start a.mcap --for 2s"
-                                                  "; browse report convert a.mcap a.csv; echo converted: $?");
+    const Ended ended =
+        beside_the_cutter(folder, "cat list; browse report start a.mcap --for 2s"
+                                  "; browse report convert a.mcap a.csv; echo converted: $?"
+                                  "; cp a.mcap b.csv; browse report convert b.csv b.csv; echo kept: $?"
+                                  "; cmp a.mcap b.csv && echo as it was"
+                                  "; browse info > /dev/full; echo full: $?");
+    EXPECT_THAT(ended.text,
+                HasSubstr("'b.csv' exists already; name another file, or remove it\nkept: 2\nas it was"));
+    EXPECT_THAT(ended.text, HasSubstr("its output could not be written; is the disk full?\nfull: 2"));
     EXPECT_THAT(ended.text, HasSubstr("line.target  every step  m/s"));
     EXPECT_THAT(ended.text, HasSubstr("wheel.fired  on change"));
     EXPECT_THAT(ended.text, HasSubstr("written to a.mcap: "));

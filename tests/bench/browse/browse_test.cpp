@@ -148,7 +148,7 @@ TEST_F(LoomBrowser, loads_a_weave_and_refuses_or_reverts_faulty_ones) {
     EXPECT_THAT(faulty.text, HasSubstr("faulty_twill.osd:8:"));
     EXPECT_THAT(faulty.text, HasSubstr("did you mean \"lift\"?"));
     EXPECT_EQ(browse({"behaviour", "load", "/bin/running_out.osd", "weft", "--at", "shaft.beat_up"}).code, 0);
-    EXPECT_TRUE(soon([&] { return list().find("taken back: running_out.osd") != std::string::npos; }))
+    EXPECT_TRUE(soon([&] { return list().find("rolled back: running_out.osd") != std::string::npos; }))
         << list();
     EXPECT_THAT(list(), HasSubstr("weft.Twill: running"));
     EXPECT_EQ(browse({"behaviour", "unload", "weft"}).code, 0);

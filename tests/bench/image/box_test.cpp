@@ -140,18 +140,18 @@ TEST(Box, installs_a_signed_update_over_the_network_on_a_button_press) {
     std::string bytes = image::read_file(update);
     bytes[bytes.size() / 2] ^= 1;
     image::write_file(changed, bytes);
-    EXPECT_THAT(asked(there + changed.string()), HasSubstr("its signature does not fit this box's key"));
+    EXPECT_THAT(asked(there + changed.string()), HasSubstr("its signature does not match this box's key"));
     EXPECT_THAT(asked(there + (image("lonely") / "update.tap").string()),
                 HasSubstr("the box refuses it: it is version 1, and this box has 1"));
     EXPECT_THAT(asked(there + (image("production") / "update.tap").string()),
                 HasSubstr("the box refuses it: it is for carpet-loom on board ipc-x86_64"));
     const std::string raw = "exec 3<>/dev/tcp/" + std::regex_replace(box.address(), std::regex{":"}, "/");
     EXPECT_THAT(run_line("bash -c '" + raw + "; echo weave >&3; cat <&3'").text,
-                HasSubstr("there are status, update"));
+                HasSubstr("unknown request; known are status, update and order"));
     run_line("bash -c '" + raw +
              "; echo update >&3; head -c 5000 /dev/urandom >&3'"); // hangs up without completing
 
-    EXPECT_THAT(asked(there + update), HasSubstr("version 2 is here and its signature fits"));
+    EXPECT_THAT(asked(there + update), HasSubstr("version 2 is received and its signature is valid"));
     EXPECT_THAT(asked("box " + box.address()), HasSubstr("an update waits for the power button"));
     box.press_power_button();
     const std::string said = box.await_end(); // the new version's plant ends it
@@ -168,7 +168,7 @@ TEST(Box, obeys_signed_orders_when_its_power_button_is_pressed) {
     box.await(is_complete);
     const std::string there = "box " + box.address() + " ", keys = " --key " + image("keys").string();
     EXPECT_THAT(asked(there + "roll-back --key " + image("others").string()),
-                HasSubstr("its signature does not fit this box's key"));
+                HasSubstr("its signature does not match this box's key"));
     EXPECT_THAT(asked(there + "rol-back" + keys), HasSubstr("did you mean roll-back?"));
     EXPECT_THAT(asked(there + "factory-reset" + keys), HasSubstr("press the power button at the machine"));
     box.press_power_button();
@@ -195,11 +195,11 @@ TEST(Box, is_measured_when_its_power_button_is_pressed) {
     box.await(is_complete);
     const std::string status = asked(there);
     SCOPED_TRACE(status);
-    EXPECT_THAT(status, HasSubstr("gaps of the hardware: "));
+    EXPECT_THAT(status, HasSubstr("hardware latency: "));
     EXPECT_THAT(status, HasSubstr("processor 0: woke at most "));
     EXPECT_THAT(status, HasSubstr("in addition to its worst response of "));
     EXPECT_THAT(status, HasSubstr("hold the table's claims"))
-        << "can or cannot: the time of the emulated box means nothing";
+        << "the box can or cannot hold them: times of an emulated box mean nothing";
 }
 
 TEST(Box, boots_only_software_of_its_owner_under_secure_boot) {

@@ -102,7 +102,7 @@ TEST_F(LoomWires, leaves_safe_values_on_every_wire_at_its_stop) {
     loom->machine->signal(SIGTERM);
     EXPECT_TRUE(soon(is_safe, 1s)) << "brake on, valve closed, while it stops";
     EXPECT_EQ(loom->end(), 0) << loom->machine->output();
-    EXPECT_NE(loom->machine->output().find("carpet-loom: stopped: asked for from outside"),
+    EXPECT_NE(loom->machine->output().find("carpet-loom: stopped: requested from outside"),
               std::string::npos);
     EXPECT_FALSE(level(wires::line::weft_release));
     std::this_thread::sleep_for(50ms);

@@ -119,8 +119,8 @@ TEST_F(Robots, end_on_request) {
     EXPECT_EQ(tool->wait(), 0) << tool->output();
     body->signal(SIGTERM);
     EXPECT_EQ(body->wait(), 0) << body->output();
-    EXPECT_THAT(tool->output(), HasSubstr("k361: stopped: asked for from outside"));
-    EXPECT_THAT(body->output(), HasSubstr("k160: stopped: asked for from outside"));
+    EXPECT_THAT(tool->output(), HasSubstr("k361: stopped: requested from outside"));
+    EXPECT_THAT(body->output(), HasSubstr("k160: stopped: requested from outside"));
     for (const char* machine : {"/tmp/k160.json", "/tmp/k361.json"}) {
         EXPECT_EQ(number_in(content_of(machine), "heap_allocations_after_arming"), 0) << machine;
         EXPECT_EQ(number_in(content_of(machine), "page_faults_after_arming"), 0) << machine;

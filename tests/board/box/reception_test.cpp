@@ -96,7 +96,7 @@ TEST_F(Receptions, answer_others_while_a_stranger_sends_bytes_now_and_then) {
     EXPECT_EQ(heard(engineer), greeted_and_told);
     const int second = come(engineers);
     say(second, signed_update(2));
-    EXPECT_THAT(heard(second), HasSubstr("ok\nversion 2 is here and its signature fits; press"));
+    EXPECT_THAT(heard(second), HasSubstr("ok\nversion 2 is received and its signature is valid; press"));
     EXPECT_TRUE(decode(init::read_text(offered_update), keys.open));
 }
 
@@ -129,7 +129,7 @@ TEST_F(Receptions, keep_receiving_an_update_while_others_connect) {
     const int engineer = begin(whole);
     for (std::uint32_t address = 10; address < 60; ++address) come(address);
     say(engineer, std::string_view{whole}.substr(10'000));
-    EXPECT_THAT(heard(engineer), HasSubstr("ok\nversion 2 is here"));
+    EXPECT_THAT(heard(engineer), HasSubstr("ok\nversion 2 is received"));
 }
 
 TEST_F(Receptions, drop_silent_clients_and_refuse_pausing_ones) {
@@ -151,7 +151,7 @@ TEST_F(Receptions, take_an_update_over_a_slow_line) {
         pass(1s);
         say(engineer, std::string_view{whole}.substr(at, 1'000));
     }
-    EXPECT_THAT(heard(engineer), HasSubstr("ok\nversion 2 is here"));
+    EXPECT_THAT(heard(engineer), HasSubstr("ok\nversion 2 is received"));
 }
 
 TEST_F(Receptions, accept_one_update_at_a_time_the_newer_or_the_faster_one) {
@@ -167,7 +167,7 @@ TEST_F(Receptions, accept_one_update_at_a_time_the_newer_or_the_faster_one) {
     pass(5s);
     EXPECT_THAT(heard(begin(second)), HasSubstr("refused\nversion 3 is on its way already"));
     say(newer, std::string_view{third}.substr(10'000));
-    EXPECT_THAT(heard(newer), HasSubstr("ok\nversion 3 is here"));
+    EXPECT_THAT(heard(newer), HasSubstr("ok\nversion 3 is received"));
     EXPECT_THAT(heard(begin(second)), HasSubstr("refused\nit is version 2, and version 3 waits"));
 }
 
@@ -176,10 +176,10 @@ TEST_F(Receptions, report_what_is_wrong_with_a_request) {
     changed[changed.size() / 2] ^= 1;
     const std::string order = "roll-back " + sign({"roll-back", "loom", "ipc", "0123"}, keys.secret);
     for (const auto& [said, answer] :
-         {std::pair<std::string, std::string>{"weave\n", "refused\nthere are status"},
-          {changed, "refused\nits signature does not fit"},
+         {std::pair<std::string, std::string>{"weave\n", "refused\nunknown request; known are status"},
+          {changed, "refused\nits signature does not match"},
           {"order " + order + "\n", "ok\nroll-back; press"},
-          {"order " + order + "0\n", "refused\nits signature does not fit"}}) {
+          {"order " + order + "0\n", "refused\nits signature does not match"}}) {
         const int client = come(engineers);
         say(client, said);
         EXPECT_THAT(heard(client), HasSubstr(answer));

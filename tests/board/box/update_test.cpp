@@ -51,7 +51,7 @@ TEST_F(Updates, have_headers_that_are_trusted_only_with_a_valid_signature) {
 }
 
 TEST_F(Updates, are_refused_when_truncated_or_signed_by_another_key) {
-    EXPECT_THAT(decode(bytes, new_keys().open).error(), HasSubstr("does not fit this box's key"));
+    EXPECT_THAT(decode(bytes, new_keys().open).error(), HasSubstr("does not match this box's key"));
     EXPECT_THAT(decode(std::string_view{bytes}.substr(0, bytes.size() - 1), keys.open).error(),
                 HasSubstr("it is incomplete"));
     EXPECT_THAT(decode("anything", keys.open).error(), HasSubstr("it is not an update"));

@@ -1,5 +1,5 @@
 // An axis that is moved by the force it lacks, against a surface of 1e5 N/m: this gain would bounce for ever.
-// refused: axis: loop "contact": gain times period is 0.662 in the longest period, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 2.943e-3, or shorten the delay
+// refused: axis: loop "contact": gain times period is 0.662 at the longest period, but with 2 steps of delay the loop is stable only below 0.618; set position.kp below 2.943e-3, or shorten the delay
 #include "kernel/machine/firmware.hpp"
 #include "tests/kernel/control/axis.hpp"
 

@@ -79,7 +79,7 @@ constexpr Fault cascade_faults[] = {
          m.put(data("encoder.position", "inner.measured", delayed));
          m.control.loops = {loop("place", gain("inner.kp"))};
      },
-     R"(cascade: loop "place": gain times period is 0.315 in the longest period, and the most that does not overshoot with 1 step of delay is 0.25; set inner.kp below 238.095, or add may_overshoot if that does no harm)"},
+     R"(cascade: loop "place": gain times period is 0.315 at the longest period, but with 1 step of delay the loop overshoots above 0.25; set inner.kp below 238.095, or add may_overshoot if that does no harm)"},
     {"loop_of_a_slow_sensor",
      [](Table& m) {
          m.components[5] = component<Follower>("inner", set("kp", 240.0));
@@ -91,7 +91,7 @@ constexpr Fault cascade_faults[] = {
              level("outside", sensor("gauge"), generator("path"), controller("outer", tracks("sent")));
          m.control.loops = {loop("place", gain("inner.kp"))};
      },
-     R"(cascade: loop "place": gain times period is 0.252 in the longest period, and the most that does not overshoot with 5 steps of varying delay is 6.698e-2; set inner.kp below 63.79, or add may_overshoot if that does no harm)"},
+     R"(cascade: loop "place": gain times period is 0.252 at the longest period, but with 5 steps of varying delay the loop overshoots above 6.698e-2; set inner.kp below 63.79, or add may_overshoot if that does no harm)"},
     {"cascade_periods",
      [](Table& m) {
          m.put(activity("slow", every(2500us), budget(50us), runs("path", "outer")));

@@ -192,18 +192,18 @@ constexpr Fault loop_faults[] = {
      R"(axis: loop "place": its gains, stiffness and transport must be positive; if the feedback has the other sign, invert it in the Sensor)"},
     {"loop_that_is_not_stable",
      [](Table& m) { gain_of(m, 700.0, loop("place", gain("position.kp"), transport(2ms))); },
-     R"(axis: loop "place": gain times period is 0.77 in the longest period, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 561.849, or shorten the delay)"},
+     R"(axis: loop "place": gain times period is 0.77 at the longest period, but with 2 steps of delay the loop is stable only below 0.618; set position.kp below 561.849, or shorten the delay)"},
     {"loop_with_a_range_beyond_it",
      [](Table& m) { gain_of(m, 100.0, loop("place", gain("position.kp"), transport(2ms))); },
      R"(axis: loop "place": people may set position.kp to 900 while it runs, which is not stable; give it a range of stable gains, below 561.849)"},
     {"loop_that_overshoots",
      [](Table& m) { m.components[5] = component<Follower>("position", set("kp", 300.0)); },
-     R"(axis: loop "place": gain times period is 0.33 in the longest period, and the most that does not overshoot with 1 step of delay is 0.25; set position.kp below 227.273, or add may_overshoot if that does no harm)"},
+     R"(axis: loop "place": gain times period is 0.33 at the longest period, but with 1 step of delay the loop overshoots above 0.25; set position.kp below 227.273, or add may_overshoot if that does no harm)"},
     {"contact_that_bounces",
      [](Table& m) {
          gain_of(m, 3.15e-3, loop("contact", gain("position.kp"), stiffness(2.0e5), transport(2ms)));
      },
-     R"(axis: loop "contact": gain times period is 0.693 in the longest period, and the most that is stable with 2 steps of delay is 0.618; set position.kp below 2.809e-3, or shorten the delay)"},
+     R"(axis: loop "contact": gain times period is 0.693 at the longest period, but with 2 steps of delay the loop is stable only below 0.618; set position.kp below 2.809e-3, or shorten the delay)"},
     {"loop_that_overshoots_by_its_integral",
      [](Table& m) {
          m.control.loops[0] = loop("place", gain("position.kp"), integral("position.kp"), transport(1ms));

@@ -50,34 +50,35 @@ TEST(BusTraffic, is_refused_with_the_largest_part_of_the_response) {
     EXPECT_EQ(refusal(at(125'000), heard(0x181, "a", 8, 1ms), heard(0x182, "b", 8, 10ms)),
               "frame \"a\" may never be sent: it and more urgent frames fill the bus, which all frames "
               "together load by 118 % at 125000 bit/s; send less often, or run the bus faster");
-    EXPECT_EQ(refusal(at(125'000), heard(0x181, "a", 1, 1ms), heard(0x182, "b", 8, 100ms)),
-              "frame \"a\" may take 1600 us but is due within 1000 us; most of it, 1080 us, is \"b\", which "
-              "may just "
-              "have begun; shorten that, or lengthen the period");
-    EXPECT_EQ(refusal(at(125'000, 0, 100us), sent(0x181, "a", 8, every(2ms))),
-              "frame \"a\" may still wait when the next one follows, 2000 us later; most of it, 1080 us, is "
-              "its own "
-              "time on the wire; lengthen its period, or run the bus faster than 125000 bit/s");
-    EXPECT_EQ(refusal(at(500'000), heard(0x100, "busy", 8, 600us), heard(0x200, "b", 8, 800us),
-                      heard(0x300, "c", 8, 100ms)),
-              "frame \"b\" may take 810 us but is due within 800 us; most of it, 270 us, is \"busy\", which "
-              "wins the "
-              "bus before it; send that less often, or give this one a lower identifier");
-    EXPECT_EQ(refusal(at(500'000), heard(0x100, "late", 8, 2ms, 1900us)),
-              "frame \"late\" may take 2170 us but is due within 2000 us; most of it, 1900 us, is how late "
-              "it may enter its queue; shorten the response of the activity that drives the bus, or the "
-              "jitter in its every(...)");
     EXPECT_EQ(
-        refusal(at(500'000, 3), heard(0x100, "a", 8, 1ms)),
-        "frame \"a\" may take 1266 us but is due within 1000 us; most of it, 996 us, are errors on the wire; "
-        "lengthen the period, or say fewer with bus_errors(...) of the board's device");
+        refusal(at(125'000), heard(0x181, "a", 1, 1ms), heard(0x182, "b", 8, 100ms)),
+        "frame \"a\" may take 1600 us but is due within 1000 us; the largest part, 1080 us, is \"b\", which "
+        "may just have begun; shorten that, or lengthen the period");
+    EXPECT_EQ(
+        refusal(at(125'000, 0, 100us), sent(0x181, "a", 8, every(2ms))),
+        "frame \"a\" may still wait when the next one follows, 2000 us later; the largest part, 1080 us, is "
+        "its own time on the wire; lengthen its period, or run the bus faster than 125000 bit/s");
+    EXPECT_EQ(
+        refusal(at(500'000), heard(0x100, "busy", 8, 600us), heard(0x200, "b", 8, 800us),
+                heard(0x300, "c", 8, 100ms)),
+        "frame \"b\" may take 810 us but is due within 800 us; the largest part, 270 us, is \"busy\", which "
+        "wins the bus before it; send that less often, or give this one a lower identifier");
+    EXPECT_EQ(
+        refusal(at(500'000), heard(0x100, "late", 8, 2ms, 1900us)),
+        "frame \"late\" may take 2170 us but is due within 2000 us; the largest part, 1900 us, is how late "
+        "it may enter its queue; shorten the response of the activity that drives the bus, or the "
+        "jitter in its every(...)");
+    EXPECT_EQ(refusal(at(500'000, 3), heard(0x100, "a", 8, 1ms)),
+              "frame \"a\" may take 1266 us but is due within 1000 us; the largest part, 996 us, is caused "
+              "by errors on the wire; lengthen the period, or state fewer errors with "
+              "bus_errors(...) of the board's device");
     EXPECT_EQ(
         refusal(at(250'000, 0, 1ms), sent(0x100, "urgent", 1, every(3ms)),
                 sent(0x200, "long", 8, on_demand(100ms)), sent(0x201, "longer", 8, on_demand(100ms)),
                 sent(0x202, "longest", 8, on_demand(100ms)), sent(0x203, "more", 8, on_demand(100ms))),
-        "frame \"urgent\" may still wait when the next one follows, 3000 us later; most of it, 2160 us, are "
-        "less urgent frames of this machine that the controller holds already; shorten those, or lengthen "
-        "the period");
+        "frame \"urgent\" may still wait when the next one follows, 3000 us later; the largest part, 2160 "
+        "us, is caused by less urgent frames of this machine that the controller holds already; shorten "
+        "those, or lengthen the period");
 }
 
 TEST(BusTraffic, is_refused_when_the_machine_hands_frames_over_too_slowly) {
@@ -86,10 +87,11 @@ TEST(BusTraffic, is_refused_when_the_machine_hands_frames_over_too_slowly) {
         return refusal(at(1'000'000, 0, 8ms), sent(0x100, "a", 1, on_demand(100ms)),
                        sent(0x101 + I, names[I], 1, on_demand(100ms))...);
     }(std::make_index_sequence<names.size()>{});
-    EXPECT_EQ(refused,
-              "frame \"b\" may take 23805 us but is due within 20000 us; most of it, 15090 us, is the time "
-              "until the next frames follow those in flight; shorten the response of the activity "
-              "that drives the bus");
+    EXPECT_EQ(
+        refused,
+        "frame \"b\" may take 23805 us but is due within 20000 us; the largest part, 15090 us, is the time "
+        "until the next frames follow those in flight; shorten the response of the activity "
+        "that drives the bus");
 }
 
 TEST(BusTraffic, uses_both_bit_rates_for_can_fd_frames) {

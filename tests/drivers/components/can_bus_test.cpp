@@ -254,7 +254,7 @@ TEST_F(CanBus, sends_no_unacknowledged_frame_when_the_bus_recovers) {
     heard.clear();
     wire.set_acknowledged(true); // the cable is back
     run_until(110ms);
-    EXPECT_LE(heard.size(), 4u) << "what the controller holds cannot be taken back";
+    EXPECT_LE(heard.size(), 4u) << "frames that the controller holds cannot be withdrawn";
     heard.clear();
     run_until(400ms);
     EXPECT_EQ(master->recoveries, 1);

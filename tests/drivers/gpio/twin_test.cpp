@@ -187,9 +187,8 @@ std::string refusal(std::span<const Line> lines) {
 
 TEST(GpioPlan, refuses_a_single_line_because_its_losses_are_invisible) {
     EXPECT_EQ(refusal(std::span{loom_lines}.first(1)),
-              "GPIO chip \"loom\" is asked for fewer than two lines: lost edges of a single line are "
-              "invisible; add another line, "
-              "used or not");
+              "GPIO chip \"loom\": fewer than two lines are requested, and lost edges of a single line are "
+              "invisible; add another line, used or not");
 }
 
 TEST(GpioPlan, refuses_two_names_for_the_same_line) {

@@ -108,6 +108,14 @@ TEST_F(CanLog, records_frames_of_both_ends_in_the_order_of_the_wire) {
               "(0000000001.500000) axis_can 182#CC\n");
 }
 
+TEST_F(CanLog, does_not_overwrite_an_earlier_recording) {
+    const std::string log = file("(0.000000) can 181#01\n");
+    CanRecorder recorder;
+    const Sentence said = recorder.open(std::filesystem::path{log}.stem().string(), folder.string());
+    EXPECT_TRUE(said.view().ends_with("exists already; name another folder, or remove it")) << said.view();
+    EXPECT_EQ(std::filesystem::file_size(log), 22u);
+}
+
 TEST_F(CanLog, reports_files_that_it_cannot_write) {
     CanRecorder recorder;
     const Sentence said = recorder.open("can", file("") + "/below_a_file");

@@ -195,19 +195,15 @@ TEST(CommonTime, refuses_invalid_clock_rows) {
               "lane: wire \"wire\" has both identifiers_from(...) and fixed_identifiers; remove one of them");
     EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms))), row),
               "lane: common_clock(\"clock\") has no permitted error; add within(200us)");
-    EXPECT_EQ(
-        refusal(pair::usual_wire("wire", common_clock("clock", every(100ms), within(50us))), row),
-        "lane: common_clock(\"clock\"): its error may be 124 us, but it is promised within 50 us; most of "
-        "it, "
-        "100 us, is "
-        "how late frames are stamped; write a shorter stamps_late(...) if that is true, or promise less");
+    EXPECT_EQ(refusal(pair::usual_wire("wire", common_clock("clock", every(100ms), within(50us))), row),
+              "lane: common_clock(\"clock\"): its error may be 124 us, but it is promised within 50 us; the "
+              "larger part, 100 us, is how late frames are stamped; write a shorter stamps_late(...) if that "
+              "is true, or promise less");
     EXPECT_EQ(
         refusal(pair::usual_wire("wire", common_clock("clock", every(1s), within(150us), stamps_late(10us))),
                 row),
-        "lane: common_clock(\"clock\"): its error may be 241 us, but it is promised within 150 us; most of "
-        "it, "
-        "231 us, is "
-        "the drift of the clocks in 1007 ms; send it more often, or promise less");
+        "lane: common_clock(\"clock\"): its error may be 241 us, but it is promised within 150 us; the "
+        "larger part, 231 us, is the drift of the clocks in 1007 ms; send it more often, or promise less");
     Crossing long_lived = row;
     long_lived.data.max_age = 2s;
     EXPECT_EQ(refusal(clocked_wire, long_lived),

@@ -155,11 +155,12 @@ TEST(SystemRefusals, name_typical_mistakes_of_newcomers) {
 }
 
 TEST(SystemRefusals, name_broken_promises_and_a_wire_that_is_too_slow) {
-    EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level_row, sent_row),
-                      promises(reaction("a.giver.sent", "b.taker.take", within(5ms)))),
-              "reaction \"a.giver.sent\" -> \"b.taker.take\" may take 13622 us, but is promised within 5000 "
-              "us; most of it, 5000 us, is the period of activity \"taking\" at node \"b\"; shorten that, or "
-              "promise less");
+    EXPECT_EQ(
+        refusal(both_nodes, good_wire, crossings(level_row, sent_row),
+                promises(reaction("a.giver.sent", "b.taker.take", within(5ms)))),
+        "reaction \"a.giver.sent\" -> \"b.taker.take\" may take 13622 us, but is promised within 5000 "
+        "us; the largest part, 5000 us, is the period of activity \"taking\" at node \"b\"; shorten that, or "
+        "promise less");
     EXPECT_EQ(refusal(both_nodes, good_wire, crossings(level_row),
                       promises(reaction("a.giver.sent", "b.taker.take", within(50ms)))),
               "reaction \"a.giver.sent\" -> \"b.taker.take\": no row leads from \"a.giver.sent\" to "

@@ -38,7 +38,7 @@ std::optional<std::ifstream> boot(const std::string& box, const std::string& wor
                                 "' 2>&1";
     if (std::system(command.c_str()) == 0)
         return std::ifstream{file}; // NOLINT: the words are the build's own
-    std::cerr << "the bench did not come to its end:\n" << std::ifstream{log}.rdbuf() << '\n';
+    std::cerr << "the bench did not finish:\n" << std::ifstream{log}.rdbuf() << '\n';
     return std::nullopt;
 }
 

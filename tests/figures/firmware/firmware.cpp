@@ -41,7 +41,7 @@ std::optional<nlohmann::json> weave(const fs::path& folder) {
     std::ifstream file{summary};
     auto told = nlohmann::json::parse(file, nullptr, false);
     if (!told.is_discarded()) return told;
-    std::cerr << "the loom did not come to its end on the bench:\n" << std::ifstream{log}.rdbuf() << '\n';
+    std::cerr << "the loom did not finish on the bench:\n" << std::ifstream{log}.rdbuf() << '\n';
     return std::nullopt;
 }
 

@@ -54,7 +54,7 @@ struct Way {
     static constexpr auto interface() {
         return facets(input<&Way::position>("position", "rad", "of the axes"),
                       output<&Way::target>("target", "", "the next place"),
-                      output<&Way::speed>("speed", "", "there"));
+                      output<&Way::speed>("speed", "", "speed of the target"));
     }
 };
 

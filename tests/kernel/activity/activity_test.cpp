@@ -196,13 +196,13 @@ TEST_F(AnActivity, never_runs_its_stop_after_it_hung_and_was_abandoned) {
 
 TEST_F(AnActivity, answers_life_cycle_requests_from_many_threads) {
     start();
-    constexpr int askers = 3, wishes_each = 200;
+    constexpr int askers = 3, requests_each = 200;
     std::array<std::atomic<int>, 4> outcomes{};
     std::vector<std::thread> threads;
     for (int t = 0; t < askers; ++t)
         threads.emplace_back([&, t] {
             Random random{static_cast<std::uint64_t>(t) + 1};
-            for (int n = 0; n < wishes_each; ++n) {
+            for (int n = 0; n < requests_each; ++n) {
                 const auto part = static_cast<std::uint32_t>(random.below(parts.size()));
                 const LifeTicket ticket = engine.ask(part, static_cast<LifeChange>(random.between(0, 2)));
                 LifeAnswer answer;
@@ -219,8 +219,8 @@ TEST_F(AnActivity, answers_life_cycle_requests_from_many_threads) {
     EXPECT_EQ(outcomes[static_cast<std::size_t>(LifeOutcome::refused)], 0); // they have no inputs
     EXPECT_EQ(outcomes[static_cast<std::size_t>(LifeOutcome::done)] +
                   outcomes[static_cast<std::size_t>(LifeOutcome::superseded)],
-              askers * wishes_each);
-    EXPECT_GT(outcomes[static_cast<std::size_t>(LifeOutcome::done)], wishes_each / 2);
+              askers * requests_each);
+    EXPECT_GT(outcomes[static_cast<std::size_t>(LifeOutcome::done)], requests_each / 2);
     stop();
     for (Worker& worker : workers) {
         EXPECT_EQ(worker.out_of_turn, 0);

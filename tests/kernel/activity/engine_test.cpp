@@ -336,6 +336,27 @@ TEST_F(ExecutionEngine, finds_periodic_overruns_of_the_budget_by_sampling) {
     EXPECT_EQ(statistics().most_processor, 150us);
 }
 
+TEST_F(ExecutionEngine, measures_from_the_first_wake_too_many_on) {
+    plan.budget = 100us;
+    plan.periodic = false;
+    plan.at_most_n = 1;
+    plan.at_most_per = 1ms;
+    begin();
+    workers[0].load = 90us; // within its budget
+    for (int n = 1; n <= 5; ++n) {
+        clock.advance_to(at_ns(0) + n * 2ms);
+        engine.run(true);
+    }
+    workers[0].load = 80us;
+    clock.advance_to(at_ns(0) + 20ms);
+    for (int n = 0; n < 5000; ++n)
+        engine.run(true); // back to back: 100 % of the processor, 10 % were claimed
+    EXPECT_GT(statistics().wakes_too_many, 4000u);
+    EXPECT_GT(statistics().measured_claims, 0u);
+    EXPECT_GT(statistics().over_claim, 0u);
+    EXPECT_GT(statistics().most_processor, plan.claim());
+}
+
 TEST_F(ExecutionEngine, compares_the_use_of_a_sporadic_activity_with_its_claim) {
     plan.budget = 100us;
     plan.periodic = false;

@@ -150,7 +150,7 @@ TEST_F(Kept, hours_count_only_while_running) {
 
 TEST_F(Kept, a_keeper_that_cannot_write_reports_it_and_continues) {
     Life life{directory};
-    std::filesystem::create_directory(directory + "/hours.cpf.new"); // the path of the new file
+    std::filesystem::create_directory(directory + "/hours.cpf.tappet-new"); // the path of the new file
     testing::internal::CaptureStdout();
     life.run(125s);
     const std::string said = testing::internal::GetCapturedStdout();

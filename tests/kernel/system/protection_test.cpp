@@ -38,9 +38,11 @@ static_assert(header<8>({.form = Form::wide, .id = 0x1234}, 1) == Header{0xCF, 0
 
 static_assert(protection_fault({.form = Form::id_both, .id = 0xFFFF}, 2).empty());
 static_assert(protection_fault({.form = Form::id_both}, 1).view() ==
-              "a header of 2 bytes at byte 0 does not fit into 1 bytes: move it or lengthen those");
+              "a header of 2 bytes at byte 0 does not fit into a payload of 1 byte: move the header or "
+              "lengthen the payload");
 static_assert(protection_fault({.form = Form::wide, .at = 6}, 8).view() ==
-              "a header of 3 bytes at byte 6 does not fit into 8 bytes: move it or lengthen those");
+              "a header of 3 bytes at byte 6 does not fit into a payload of 8 bytes: move the header or "
+              "lengthen the payload");
 static_assert(protection_fault({.form = Form::wide, .at = ~std::size_t{0}}, 8).size() > 0);
 static_assert(protection_fault({.form = Form::id_nibble, .id = 0x1000}, 8).view() ==
               "the id 4096 has more than the 12 bits that are sent and summed: give one up to 4095, or take "

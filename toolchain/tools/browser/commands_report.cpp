@@ -6,6 +6,7 @@
 #include "toolchain/tools/browser/value.hpp"
 
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <ostream>
 
@@ -101,6 +102,8 @@ Result<void> convert(const Line& line, std::ostream& out) {
     const std::string& to = line.words[3];
     if (!to.ends_with(".csv"))
         return wrong("'report convert' makes a file that ends with .csv, not '" + to + "'");
+    if (std::filesystem::exists(to))
+        return wrong("'" + to + "' exists already; name another file, or remove it");
     const auto bytes = read_whole(from);
     if (!bytes) return std::unexpected(bytes.error());
     const auto contents = mcap::read(*bytes);

@@ -28,5 +28,8 @@ int main(int count, char** words) {
     surroundings.history_file = home == nullptr ? "" : std::string{home} + "/.tappet_browse_history";
     surroundings.signal = &last_signal;
     const std::vector<std::string> line(words + 1, words + count);
-    return run_program(line, surroundings);
+    const int code = run_program(line, surroundings);
+    if (std::cout.flush()) return code;
+    std::cerr << "tappet-browse: its output could not be written; is the disk full?\n";
+    return code == 0 ? 2 : code;
 }

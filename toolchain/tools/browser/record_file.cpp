@@ -15,11 +15,17 @@ namespace tappet::browser {
 
 namespace {
 
-struct flock whole_file() {
+/// The lock by which a recorder is found: behind the end of any file, where nobody else locks.
+struct flock recorders_lock() {
     struct flock lock{};
     lock.l_type = F_WRLCK;
     lock.l_whence = SEEK_SET;
+    lock.l_start = off_t{0x7461707065};
+    lock.l_len = 1;
     return lock;
+}
+bool is_recorders(const struct flock& held) {
+    return held.l_start == recorders_lock().l_start && held.l_len == 1 && held.l_pid > 1;
 }
 
 /// Syncs the folder, so that the file's name survives a power cut like its content.
@@ -39,7 +45,7 @@ Result<std::unique_ptr<RecordFile>> RecordFile::create(const std::string& name) 
     if (descriptor < 0)
         return wrong("'" + name + "' cannot be made: " + std::strerror(errno) +
                      "; check that its folder exists and that you may write there");
-    struct flock lock = whole_file();
+    struct flock lock = recorders_lock();
     static_cast<void>(::fcntl(descriptor, F_SETLK, &lock)); // without it the writer cannot be found: no harm
     sync_folder_of(name);
     return std::unique_ptr<RecordFile>{new RecordFile{name, descriptor}};
@@ -116,12 +122,12 @@ Result<void> stop_recording(const std::string& name) {
     if (descriptor < 0)
         return wrong("'" + name + "' cannot be opened: " + std::strerror(errno) +
                      "; name the file of 'report start'");
-    struct flock lock = whole_file();
+    struct flock lock = recorders_lock();
     const bool asked = ::fcntl(descriptor, F_GETLK, &lock) == 0;
     ::close(descriptor);
     if (!asked || lock.l_type == F_UNLCK) return wrong("nobody records into '" + name + "'");
-    if (lock.l_pid <=
-        1) // the lock belongs to no process: as an argument of kill() it would mean all processes
+    if (!is_recorders(
+            lock)) // a process number of 0 or -1, as an argument of kill(), would mean all processes
         return wrong("'" + name + "' is locked by something that is no 'report start'; end that instead");
     if (::kill(lock.l_pid, SIGTERM) != 0)
         return wrong("process " + std::to_string(lock.l_pid) + ", which records into '" + name +

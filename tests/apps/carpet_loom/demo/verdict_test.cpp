@@ -103,7 +103,7 @@ TEST(Verdict, requires_a_new_weave_and_one_roll_back_of_a_long_run) {
     auto run = good_run();
     run["picks"] = 60;
     const auto faults = [&] { return faults_of(run, 60); };
-    EXPECT_THAT(faults(), ElementsAre(HasSubstr("twill.osd"), HasSubstr("0 were taken back")));
+    EXPECT_THAT(faults(), ElementsAre(HasSubstr("twill.osd"), HasSubstr("0 were rolled back")));
     run["slots"][0] = {{"script", "twill.osd"}, {"loads", 2}, {"roll_backs", 1}, {"news", "line 6"}};
     EXPECT_THAT(faults(), ElementsAre(HasSubstr("0 picks were woven with its pattern")));
     run["patterns"].push_back({{"pattern", pattern_of_new_weave}, {"picks", 9}, {"first_at_pick", 20}});
@@ -111,7 +111,7 @@ TEST(Verdict, requires_a_new_weave_and_one_roll_back_of_a_long_run) {
     EXPECT_THAT(verdict_of(run, 60).value().table,
                 AllOf(HasSubstr("1111 from pick 20 on"), HasSubstr("line 6")));
     run["slots"][0]["roll_backs"] = 2;
-    EXPECT_THAT(faults(), ElementsAre(HasSubstr("2 were taken back")));
+    EXPECT_THAT(faults(), ElementsAre(HasSubstr("2 were rolled back")));
 }
 
 TEST(Verdict, shows_the_run_in_a_table) {

@@ -185,7 +185,7 @@ TEST_F(LifeOfAComponent, stops_alone_with_safe_values_while_others_continue) {
     EXPECT_EQ(state(sensor), ComponentState::running);
 }
 
-TEST_F(LifeOfAComponent, includes_one_stop_only_although_the_machine_stops_later) {
+TEST_F(LifeOfAComponent, ends_with_one_stop_although_the_machine_stops_later) {
     start(5ms);
     static_cast<void>(change(axis, LifeChange::stop));
     static_cast<void>(change(axis, LifeChange::stop));
@@ -222,7 +222,7 @@ TEST_F(LifeOfAComponent, does_not_start_before_its_required_input_and_names_it) 
     EXPECT_EQ(change(axis, LifeChange::start).outcome, LifeOutcome::done);
 }
 
-TEST_F(LifeOfAComponent, is_refused_with_a_stale_input_and_a_restart_then_leaves_it_safe) {
+TEST_F(LifeOfAComponent, stays_stopped_and_safe_after_a_restart_with_a_stale_input) {
     start(10ms);
     the<Sensor>("sensor").silent = true;
     pass(30ms);
@@ -310,7 +310,7 @@ TEST_F(LifeOfAComponent, follows_the_last_of_several_requests_and_marks_others_s
 }
 
 /// Runs one machine under a hundred random requests; returns the digest of its event log.
-std::uint64_t under_random_wishes(std::uint64_t seed) {
+std::uint64_t under_random_requests(std::uint64_t seed) {
     Random random{seed};
     RunningRig<table> rig;
     MachineInstance& instance = rig.instance;
@@ -327,7 +327,7 @@ std::uint64_t under_random_wishes(std::uint64_t seed) {
         if (answer.outcome == LifeOutcome::done || change == LifeChange::restart) {
             EXPECT_EQ(instance.life().state_of(component),
                       runs ? ComponentState::running : ComponentState::stopped)
-                << "seed " << seed << ", wish " << n;
+                << "seed " << seed << ", request " << n;
         }
         if (instance.life().state_of(axis) != ComponentState::running) {
             EXPECT_EQ(the_axis.drive.last(), 0.0);
@@ -338,11 +338,11 @@ std::uint64_t under_random_wishes(std::uint64_t seed) {
     return instance.observation().event_log_digest();
 }
 
-TEST(LifeUnderRandomWishes, steps_and_calls_running_components_only_and_repeats_exactly) {
+TEST(LifeUnderRandomRequests, steps_and_calls_running_components_only_and_repeats_exactly) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        const std::uint64_t first = under_random_wishes(seed);
-        EXPECT_EQ(under_random_wishes(seed), first) << "seed " << seed;
-        EXPECT_NE(under_random_wishes(seed + 1000), first);
+        const std::uint64_t first = under_random_requests(seed);
+        EXPECT_EQ(under_random_requests(seed), first) << "seed " << seed;
+        EXPECT_NE(under_random_requests(seed + 1000), first);
     }
 }
 

@@ -48,7 +48,7 @@ TEST_F(BehaviourSlotTest, events_are_connected_only_while_loaded_behaviours_need
     run(2ms);
     EXPECT_EQ(posted("tick"), heard + 1);
     EXPECT_EQ(posted("moved"), 0u);
-    EXPECT_EQ(wish(BehaviourSlot::Change::unload), "");
+    EXPECT_EQ(request(BehaviourSlot::Change::unload), "");
     run(3ms);
     tick();
     EXPECT_EQ(posted("tick"), heard + 1);
@@ -200,15 +200,15 @@ TEST_F(BehaviourSlotTest, an_invalid_moment_is_refused_with_the_nearest_name) {
 TEST_F(BehaviourSlotTest, the_previous_behaviour_returns_on_roll_back) {
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));
-    EXPECT_EQ(wish(BehaviourSlot::Change::roll_back), "");
+    EXPECT_EQ(request(BehaviourSlot::Change::roll_back), "");
     run(3ms);
     EXPECT_THAT(oven().told, ElementsAre(21, 1));
     EXPECT_EQ(slot.last_roll_back(), RollBack::asked);
-    EXPECT_EQ(wish(BehaviourSlot::Change::unload), "");
+    EXPECT_EQ(request(BehaviourSlot::Change::unload), "");
     run(3ms);
     EXPECT_EQ(slot.phase(), SlotPhase::empty);
     EXPECT_THAT(oven().told, ElementsAre(21, 1, 11));
-    EXPECT_THAT(wish(BehaviourSlot::Change::unload), HasSubstr("nothing is loaded"));
+    EXPECT_THAT(request(BehaviourSlot::Change::unload), HasSubstr("nothing is loaded"));
 }
 
 TEST_F(BehaviourSlotTest, a_waiting_script_ignores_the_moment_of_another_change) {
@@ -232,7 +232,7 @@ TEST_F(BehaviourSlotTest, a_roll_back_discards_a_waiting_script_and_keeps_the_ru
     EXPECT_EQ(load(numbered(3), "door.moved"), "");
     run(2ms);
     ASSERT_EQ(slot.phase(), SlotPhase::waiting);
-    EXPECT_EQ(wish(BehaviourSlot::Change::roll_back), "");
+    EXPECT_EQ(request(BehaviourSlot::Change::roll_back), "");
     run(2ms);
     door().moved.emit();
     run(2ms);
@@ -240,16 +240,16 @@ TEST_F(BehaviourSlotTest, a_roll_back_discards_a_waiting_script_and_keeps_the_ru
     EXPECT_THAT(oven().told, IsEmpty());
     tick();
     EXPECT_THAT(oven().told, ElementsAre(20)) << "the second";
-    EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"))
+    EXPECT_THAT(request(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"))
         << "the third was compiled over the first";
 }
 
 TEST_F(BehaviourSlotTest, a_roll_back_to_an_overwritten_bank_is_refused) {
-    EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
+    EXPECT_THAT(request(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
     load_and_settle(numbered(1));
     load_and_settle(numbered(2));
     EXPECT_THAT(compile("nonsense"), HasSubstr("test.osd:1:1"));
-    EXPECT_THAT(wish(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
+    EXPECT_THAT(request(BehaviourSlot::Change::roll_back), HasSubstr("no earlier behaviour"));
     run(3ms);
     EXPECT_EQ(state_now(), "Begin");
 }

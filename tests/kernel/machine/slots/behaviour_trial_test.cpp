@@ -41,7 +41,7 @@ TEST_F(BehaviourSlotTest, a_script_that_never_completes_a_step_is_rolled_back) {
     EXPECT_EQ(load("var int n = 0; while (true) { set n = n + 1; }"), "");
     run(5ms);
     EXPECT_EQ(slot.last_roll_back(), RollBack::left_over);
-    EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("did not come to an end"));
+    EXPECT_THAT(std::string{slot.describe_roll_back().view()}, HasSubstr("exceeded their number"));
     EXPECT_EQ(state_now(), "Begin");
 }
 
@@ -93,7 +93,7 @@ TEST_F(BehaviourSlotTest, a_script_that_delays_its_activity_on_trial_is_rolled_b
     EXPECT_EQ(slot.last_roll_back(), RollBack::late);
     EXPECT_EQ(
         slot.describe_roll_back().view(),
-        "taken back: test.osd: it made its activity miss a deadline; let the script do less in one step");
+        "rolled back: test.osd: it made its activity miss a deadline; let the script do less in one step");
     EXPECT_EQ(state_now(), "Begin") << "the first is at work";
 }
 
@@ -112,7 +112,7 @@ TEST_F(BehaviourSlotTest, a_script_that_exceeds_the_claim_on_trial_is_rolled_bac
     EXPECT_EQ(state_now(), "Begin");
 }
 
-TEST_F(BehaviourSlotTest, a_script_is_not_rolled_back_for_the_load_of_a_component) {
+TEST_F(BehaviourSlotTest, a_script_is_not_rolled_back_when_a_component_exceeds_the_budget) {
     load_and_settle(numbered(1));
     EXPECT_EQ(load(numbered(2)), "");
     run(3ms);

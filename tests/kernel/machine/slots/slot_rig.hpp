@@ -51,17 +51,17 @@ protected:
     std::string compile(std::string_view text, std::string_view name = "test.osd") {
         return Rig::compile(slot, text, name);
     }
-    std::string wish(BehaviourSlot::Change wish, std::string_view moment = "now") {
+    std::string request(BehaviourSlot::Change what, std::string_view moment = "now") {
         SlotMoment at;
         if (const Sentence fault = slot.parse_moment(moment, at); !fault.empty())
             return std::string{fault.view()};
-        if (const Sentence fault = slot.may(wish); !fault.empty()) return std::string{fault.view()};
-        change(slot, wish, at);
+        if (const Sentence fault = slot.may(what); !fault.empty()) return std::string{fault.view()};
+        change(slot, what, at);
         return {};
     }
     std::string load(std::string_view text, std::string_view moment = "now") {
         const std::string fault = compile(text);
-        return fault.empty() ? wish(BehaviourSlot::Change::take_over, moment) : fault;
+        return fault.empty() ? request(BehaviourSlot::Change::take_over, moment) : fault;
     }
     /// Starts, and receives as many requests as its trial requires.
     void settle() {

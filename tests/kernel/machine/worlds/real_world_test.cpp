@@ -121,7 +121,8 @@ TEST_F(InRealTime, a_broken_contract_stops_the_machine_safely_with_its_message) 
     ASSERT_TRUE(rig.instance.stop_asked());
     EXPECT_EQ(rig.world.stop(), 0) << "the thread whose contract is broken leaves its safe values itself";
     EXPECT_EQ(rig.world.lost(), 1);
-    EXPECT_FALSE(rig.instance.standing()) << "and goes on nowhere";
+    EXPECT_FALSE(rig.instance.standing())
+        << "the thread that broke the contract was abandoned, and counts as running";
     EXPECT_EQ(rig.instance.stop_request().reason, StopReason::broken_contract);
     EXPECT_EQ(rig.instance.describe_stop().view(), "a contract was broken in activity \"motion\"");
     EXPECT_THAT(std::string{rig.world.broken_contract().view()},
@@ -176,7 +177,8 @@ TEST_F(InRealTime, a_blocking_activity_does_not_delay_the_stop_of_others) {
     auto& console = rig.the<watched::Blocking>("console");
     console.until_safe = &rig.worker("logic").at_wire;
     while (!console.blocks) os::sleep_for(1ms);
-    EXPECT_EQ(rig.world.stop(), 0) << "waited for, it would have hung until it was given up";
+    EXPECT_EQ(rig.world.stop(), 0)
+        << "if the stop waited for the console first, the console would block until the stop abandoned it";
     EXPECT_TRUE(console.finalised);
 }
 
@@ -199,7 +201,7 @@ EngineStatistics after(Order order) {
 TEST_F(InRealTime, a_budget_is_checked_against_processor_time) {
     const EngineStatistics waited = after(Order::sleep);
     EXPECT_GE(waited.longest_busy, 20ms);
-    EXPECT_EQ(waited.over_claim, 0u) << "others could have run";
+    EXPECT_EQ(waited.over_claim, 0u) << "a sleeping thread uses no processor time";
     EXPECT_GE(after(Order::overrun).over_claim, 1u);
 }
 
@@ -213,7 +215,7 @@ TEST_F(InRealTime, a_terminating_signal_becomes_a_stop_request) {
         raise(number);
         EXPECT_FALSE(rig.world.supervise(1s)) << number;
         EXPECT_EQ(rig.instance.stop_request().reason, StopReason::requested);
-        EXPECT_EQ(rig.instance.describe_stop().view(), "asked for from outside");
+        EXPECT_EQ(rig.instance.describe_stop().view(), "requested from outside");
         EXPECT_EQ(rig.world.stop(), 0);
     }
 }

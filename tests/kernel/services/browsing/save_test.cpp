@@ -38,7 +38,7 @@ TEST_F(Saving, requires_a_properties_file_of_the_component) {
 TEST_F(Saving, reports_a_failure_and_keeps_the_old_file) {
     EXPECT_TRUE(has(ask("1 save"), R"("files": 1)"));
     const std::string before = kept();
-    std::filesystem::create_directory(directory + "/ram.cpf.new"); // the path of the new file
+    std::filesystem::create_directory(directory + "/ram.cpf.tappet-new"); // the path of the new file
     EXPECT_TRUE(has(ask("2 set ram.speed 3"), R"("set": 1)"));
     EXPECT_TRUE(has(ask("3 save"), "the old file remains"));
     EXPECT_EQ(kept(), before);

@@ -222,7 +222,7 @@ TEST_F(PropertyFilesOfAMachine, are_replaced_after_the_machine_has_stopped) {
     ASSERT_TRUE(instance.save_properties(instance.standing()).empty());
     EXPECT_THAT(get("warp.cpf"), HasSubstr("<value>4.5</value>"));
     EXPECT_TRUE(there("weft.cpf")) << "also the one that was missing";
-    EXPECT_FALSE(there("warp.cpf.new")) << "nothing is left beside it";
+    EXPECT_FALSE(there("warp.cpf.tappet-new")) << "nothing is left beside it";
     ASSERT_EQ(configure(), "");
     EXPECT_EQ(tension("warp").gain_when_configured, 4.5);
 }
@@ -230,7 +230,7 @@ TEST_F(PropertyFilesOfAMachine, are_replaced_after_the_machine_has_stopped) {
 TEST_F(PropertyFilesOfAMachine, stay_unchanged_when_they_cannot_be_replaced) {
     put("warp.cpf", cpf(real("gain", "3.5")));
     ASSERT_EQ(configure(), "");
-    std::filesystem::create_directory(directory / "warp.cpf.new"); // the path of the new file
+    std::filesystem::create_directory(directory / "warp.cpf.tappet-new"); // the path of the new file
     const std::string said{instance.save_properties(instance.standing()).view()};
     EXPECT_THAT(said, AllOf(StartsWith(directory_name + "/warp.cpf: component \"warp\""),
                             HasSubstr("the old file remains")));

@@ -15,6 +15,7 @@
 #include <random>
 #include <string>
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -174,6 +175,36 @@ TEST(RecordFile, is_free_again_after_its_writer_was_killed) {
     const auto stopped = stop_recording(recorder.file);
     ASSERT_FALSE(stopped);
     EXPECT_THAT(stopped.error().sentence, HasSubstr("nobody records into"));
+}
+
+TEST(RecordFile, is_not_stopped_by_ending_a_process_that_locks_it_for_other_reasons) {
+    const std::string file = std::filesystem::temp_directory_path() / "tappet-foreign-XXXXXX";
+    std::string name = file;
+    const int descriptor = ::mkstemp(name.data());
+    ASSERT_GE(descriptor, 0);
+    int locked[2] = {-1, -1};
+    ASSERT_EQ(::pipe(locked), 0);
+    const pid_t stranger = ::fork();
+    if (stranger == 0) {
+        struct flock lock{};
+        lock.l_type = F_WRLCK; // the whole file
+        lock.l_whence = SEEK_SET;
+        const char done = ::fcntl(descriptor, F_SETLK, &lock) == 0 ? 'y' : 'n';
+        static_cast<void>(::write(locked[1], &done, 1) == 1);
+        for (;;) ::pause();
+    }
+    char done = 0;
+    ASSERT_EQ(::read(locked[0], &done, 1), 1);
+    ASSERT_EQ(done, 'y');
+    const auto stopped = stop_recording(name);
+    ASSERT_FALSE(stopped);
+    EXPECT_THAT(stopped.error().sentence, HasSubstr("is locked by something that is no 'report start'"));
+    int status = 0;
+    EXPECT_EQ(::waitpid(stranger, &status, WNOHANG), 0) << "it lives";
+    ::kill(stranger, SIGKILL);
+    ::waitpid(stranger, &status, 0);
+    for (const int each : {descriptor, locked[0], locked[1]}) ::close(each);
+    std::filesystem::remove(name);
 }
 
 } // namespace
