@@ -271,7 +271,7 @@ private:
         ++taken_;
         const FrameRow& row = map.frames[f];
         const CausedBy arrival{frame.stamp};
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+        for (std::size_t s = row.first; s < row.end(); ++s) {
             if (!store_.is_in(row, s, frame)) continue;
             if (is_integer(map.signals[s]))
                 integer_out[s].write(store_.integer(s), frame.stamp);
@@ -352,7 +352,7 @@ private:
             found.agreed &= found.at == never || (at == found.at && at != before_all);
             found.at = at;
         };
-        for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s)
+        for (std::size_t s = map.frames[f].first; s < map.frames[f].end(); ++s)
             if (is_selected(map.frames[f], s))
                 is_integer(map.signals[s]) ? take(s, integer_in[s], integers_[s])
                                            : take(s, physical_in[s], physical_[s]);
@@ -363,7 +363,7 @@ private:
     bool keep_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         const FrameRow& row = map.frames[f];
         const std::uint64_t refused = store_.count.refused;
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+        for (std::size_t s = row.first; s < row.end(); ++s) {
             if (!is_selected(row, s)) continue;
             if (is_integer(map.signals[s]))
                 store_.set_integer(s, integers_[s]);

@@ -8,8 +8,8 @@ namespace tappet::can {
 
 /// The names of a map's facets, "frame.signal" and "frame.received".
 template <const auto& map> struct FacetNames {
-    static constexpr auto signals = array_of<map.signals.size()>(
-        [](std::size_t s) { return FacetName{map.frames[map.frame_of[s]].name, ".", map.signals[s].name}; });
+    static constexpr auto signals =
+        array_of<map.signals.size()>([](std::size_t s) { return map.name_of(s).facet(); });
     static constexpr auto received =
         array_of<map.frames.size()>([](std::size_t f) { return FacetName{map.frames[f].name, ".received"}; });
 };

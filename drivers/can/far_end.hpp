@@ -32,15 +32,13 @@ public:
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
     [[nodiscard]] Device& wire() noexcept { return *wire_; }
 
-    void take(Time) override {}
     void give(Time now) override { wire_->service(now); }
     [[nodiscard]] Time next() const noexcept override { return wire_->next_service(); }
 
 protected:
     bool take_wire(const ProvidedDevice& wire) noexcept override {
-        if (wire.type != type_id<Device>) return false;
-        wire_ = static_cast<Device*>(wire.device);
-        return true;
+        wire_ = wire.as<Device>();
+        return wire_ != nullptr;
     }
 
 private:

@@ -7,8 +7,6 @@
 
 namespace tappet::can {
 
-inline constexpr std::size_t no_such = ~std::size_t{0};
-
 /// The signals of a map, each with the index of its multiplexor, which is lower, so that every chain ends.
 struct Multiplexing {
     std::span<const Signal> signals{};

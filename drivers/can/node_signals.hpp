@@ -35,32 +35,20 @@ protected:
     template <Direction direction>
     struct FrameName {
         std::size_t index;
-        consteval FrameName(const char* name) : index{nodes.frame(name)} {
-            if (index == no_such || nodes.frames[index].direction != direction) {
-                const auto meant = tappet::FarEnd::nearest_to(name, nodes.frames.size(), [](std::size_t i) {
-                    const bool fits = nodes.frames[i].direction == direction;
-                    return tappet::FarEnd::Meant{
-                        {}, fits ? std::string_view{nodes.frames[i].name} : std::string_view{}};
-                });
-                tappet::FarEnd::did_you_mean(meant.of.data(), meant.name.data());
-            }
-        }
+        consteval FrameName(const char* name)
+            : index{tappet::FarEnd::find(name, nodes.frames.size(), [](std::size_t f) {
+                  const FrameRow& row = nodes.frames[f];
+                  return row.direction == direction ? MapName{{}, row.name} : MapName{};
+              })} {}
     };
     template <Direction direction>
     struct SignalName {
         std::size_t index;
-        consteval SignalName(const char* path) : index{nodes.signal(path)} {
-            if (index == no_such || nodes.frames[nodes.frame_of[index]].direction != direction) {
-                const auto meant = tappet::FarEnd::nearest_to(path, nodes.signals.size(), [](std::size_t i) {
-                    const auto& frame = nodes.frames[nodes.frame_of[i]];
-                    const bool fits = frame.direction == direction;
-                    return tappet::FarEnd::Meant{std::string_view{frame.name},
-                                                 fits ? std::string_view{nodes.signals[i].name}
-                                                      : std::string_view{}};
-                });
-                tappet::FarEnd::did_you_mean(meant.of.data(), meant.name.data());
-            }
-        }
+        consteval SignalName(const char* path)
+            : index{tappet::FarEnd::find(path, nodes.signals.size(), [](std::size_t s) {
+                  return nodes.frames[nodes.frame_of[s]].direction == direction ? nodes.name_of(s)
+                                                                                : MapName{};
+              })} {}
     };
 
 public:

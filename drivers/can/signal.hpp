@@ -2,8 +2,8 @@
 #pragma once
 
 #include "drivers/can/frame.hpp"
+#include "drivers/map/rows.hpp"
 #include "kernel/base/bounded.hpp"
-#include "kernel/base/copy_with.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/number.hpp"
 #include "kernel/base/realtime.hpp"
@@ -48,20 +48,13 @@ struct ValueName {
 };
 
 /// physical = raw * factor + offset; the sign belongs to the raw value.
-struct Signal {
+struct Signal : ScaledValue<Signal> {
     static constexpr std::size_t most_selections = 8;
 
-    std::string_view name{};
     std::uint16_t start = 0; ///< in DBC's numbering: bit 8 * byte + position
     std::uint8_t bits = 0;
     Order order = Order::intel;
     Kind kind = Kind::unsigned_integer;
-    double factor = 1;
-    double offset = 0;
-    std::string_view unit{};
-    double safe_value =
-        0; ///< transmitted signals: sent when the bus stops or the machine's process has ended
-    bool says_safe = false;
     std::string_view safe_name{}; ///< instead of `safe_value`; the map looks it up in `names`
     bool is_bits = false;         ///< not a number: a control word, a set of switches
     bool has_range = false;       ///< `least` and `most` limit the physical values that are sent
@@ -83,18 +76,8 @@ struct Signal {
         return copy_with(*this, &Signal::kind, bits == 64 ? Kind::float64 : Kind::float32);
     }
     constexpr Signal big_endian() const noexcept { return copy_with(*this, &Signal::order, Order::motorola); }
-    constexpr Signal times(double new_factor) const noexcept {
-        return copy_with(*this, &Signal::factor, new_factor);
-    }
-    constexpr Signal plus(double new_offset) const noexcept {
-        return copy_with(*this, &Signal::offset, new_offset);
-    }
-    constexpr Signal in(std::string_view new_unit) const noexcept {
-        return copy_with(*this, &Signal::unit, new_unit);
-    }
     constexpr Signal safe(double value) const noexcept {
-        return copy_with(*this, &Signal::safe_value, value, &Signal::safe_name, std::string_view{},
-                         &Signal::says_safe, true);
+        return copy_with(ScaledValue::safe(value), &Signal::safe_name, std::string_view{});
     }
     /// Takes the safe value with this name in its file or in the list of named(): safe("Neutral").
     constexpr Signal safe(std::string_view value_name) const noexcept {

@@ -5,7 +5,6 @@
 #include "drivers/can/multiplexing.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
-#include "kernel/component/facet_name.hpp"
 
 #include <concepts>
 #include <cstddef>
@@ -20,19 +19,15 @@ enum class Direction : std::uint8_t {
 };
 
 /// A row of the table.
-struct FrameRow {
+struct FrameRow : MapRow {
     Identifier identifier{};
-    std::string_view name{};
     Direction direction = Direction::receive;
     std::uint8_t length = 0;
-    Duration every{};      ///< the period; 0: sent on demand, every one, in order
-    Duration apart{};      ///< the least time between two frames; 0: the row does not say
-    Duration jitter{};     ///< receive: how late its node may send it
-    std::size_t first = 0; ///< index of its first signal in the map's array
-    std::size_t signals = 0;
-    bool silence_is_safe = false; ///< transmit: no safe values are sent
-    bool multiplexed = false;     ///< a frame holds only some of its signals
-    std::string_view in_file{};   ///< its name in its DBC file, when the row gives it another
+    Duration every{};           ///< the period; 0: sent on demand, every one, in order
+    Duration apart{};           ///< the least time between two frames; 0: the row does not say
+    Duration jitter{};          ///< receive: how late its node may send it
+    bool multiplexed = false;   ///< a frame holds only some of its signals
+    std::string_view in_file{}; ///< its name in its DBC file, when the row gives it another
     Format format = Format::classical;
     bool is_proven = false; ///< of another node whose own proof shows it is in time: only load here
 };
@@ -44,20 +39,7 @@ constexpr Frame frame_of(const FrameRow& row) noexcept TAPPET_REALTIME {
     return frame;
 }
 
-/// A row together with its signals, before the map flattens them.
-template <std::size_t N> struct FrameWithSignals {
-    FrameRow row{};
-    std::array<Signal, N> signals{};
-
-    /// Sends no safe values: the receiver's own time-out makes it safe when this frame stays away.
-    constexpr FrameWithSignals safe_by_silence() const noexcept {
-        return {copy_with(row, &FrameRow::silence_is_safe, true), signals};
-    }
-    /// Lets the frame's facets begin with this name instead of its name in the file.
-    constexpr FrameWithSignals called(std::string_view name) const noexcept {
-        return {copy_with(row, &FrameRow::in_file, row.name, &FrameRow::name, name), signals};
-    }
-};
+template <std::size_t N> using FrameWithSignals = RowWithValues<FrameRow, Signal, N>;
 
 /// Identifier of a row, 11 bits: standard(0x181).
 constexpr Identifier standard(std::uint32_t id) noexcept { return {id, false}; }
@@ -100,7 +82,6 @@ constexpr auto row(Identifier id, std::string_view name, Direction direction, By
     whole.row.every = rate.every;
     whole.row.apart = rate.apart;
     whole.row.jitter = rate.jitter;
-    whole.row.signals = sizeof...(Signals);
     return whole;
 }
 } // namespace detail
@@ -182,23 +163,20 @@ template <std::size_t F, std::size_t S> struct SignalMap {
         return no_such;
     }
     [[nodiscard]] constexpr std::size_t frame(std::string_view name) const noexcept {
-        for (std::size_t f = 0; f < F; ++f)
-            if (frames[f].name == name) return f;
-        return no_such;
+        return index_of(name, F, [this](std::size_t f) { return MapName{{}, frames[f].name}; });
+    }
+    [[nodiscard]] constexpr MapName name_of(std::size_t s) const noexcept {
+        return {frames[frame_of[s]].name, signals[s].name};
     }
     /// Finds a signal by "frame.signal".
     [[nodiscard]] constexpr std::size_t signal(std::string_view path) const noexcept {
-        for (std::size_t s = 0; s < S; ++s) {
-            const std::string_view owner = frames[frame_of[s]].name;
-            if (path.size() == owner.size() + 1 + signals[s].name.size() && path.starts_with(owner) &&
-                path[owner.size()] == '.' && path.ends_with(signals[s].name))
-                return s;
-        }
-        return no_such;
+        return index_of(path, S, [this](std::size_t s) { return name_of(s); });
     }
 };
 
 namespace detail {
+
+inline constexpr MapWords words{.row = "frame", .value = "signal", .comes = "received", .goes = "sent"};
 
 /// A sentence with the row and the signal it is about; no_such: neither.
 struct MapFault {
@@ -209,7 +187,6 @@ struct MapFault {
 
 constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept {
     const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
-    if (s.name.empty()) return Sentence{"frame \"", frame.name, "\" has a signal without a name: name it"};
     if (frame.name.size() + 1 + s.name.size() > FacetName::most)
         return Sentence{who, ": a facet's name has at most ", FacetName::most,
                         " characters; give it or its frame a shorter one with .called(\"..\")"};
@@ -219,8 +196,6 @@ constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept
     const bool is_float = s.kind == Kind::float32 || s.kind == Kind::float64;
     if (is_float && s.bits != (s.kind == Kind::float64 ? 64 : 32))
         return Sentence{who, " is a float of ", unsigned{s.bits}, " bits: give it 32 or 64"};
-    if (s.factor == 0 || s.factor != s.factor)
-        return Sentence{who, " has the factor 0: every value would be the offset; give it another"};
     if (s.has_range && !(s.least <= s.most))
         return Sentence{who, " has an empty range: put the lower bound first"};
     const unsigned end = 8u * frame.length;
@@ -253,20 +228,13 @@ constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept
 }
 
 constexpr Sentence safe_fault(const FrameRow& frame, const Signal& s) noexcept {
-    const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
-    if (frame.direction == Direction::receive)
-        return s.says_safe ? Sentence{who, " is received and has a safe value: only what is sent has one"}
-                           : Sentence{};
-    if (s.says_safe == frame.silence_is_safe)
-        return s.says_safe
-                   ? Sentence{who, " has a safe value, but its frame is safe by silence: keep one of the two"}
-                   : Sentence{who, " does not say its safe value: write .safe(..) behind it, or "
-                                   ".safe_by_silence() behind the frame"};
-    if (!s.safe_name.empty())
-        if (const Sentence fault = name_fault(frame.name, s, s.safe_name); !fault.empty()) return fault;
-    if (const Raw raw = to_raw(s, s.safe_value); s.says_safe && (raw.saturated || raw.refused))
-        return Sentence{who, " cannot hold its safe value: it is outside of the signal's range"};
-    return {};
+    const bool is_sent = frame.direction != Direction::receive;
+    Sentence no_name{};
+    if (is_sent && !s.safe_name.empty()) no_name = name_fault(frame.name, s, s.safe_name);
+    const Raw raw = to_raw(s, s.safe_value);
+    const bool fits = !no_name.empty() || (!raw.saturated && !raw.refused);
+    const Sentence fault = tappet::safe_fault(words, frame, s, is_sent, fits);
+    return fault.empty() ? no_name : fault;
 }
 
 constexpr Sentence rate_fault(const FrameRow& frame) noexcept {
@@ -352,17 +320,16 @@ constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noe
                              ": a standard one ends at 2047, an extended one at 536870911"},
                     f};
         if (const Sentence fault = length_fault(row); !fault.empty()) return {fault, f};
-        for (std::size_t other = 0; other < f; ++other) {
-            if (map.frames[other].name == row.name)
-                return {Sentence{who, " is there twice: rename one of them"}, f};
-            if (map.frames[other].identifier == row.identifier)
-                return {
-                    Sentence{who, " has the identifier of \"", map.frames[other].name, "\": give it its own"},
+        if (const Sentence fault = tappet::name_fault(words, map.frames, f); !fault.empty())
+            return {fault, f};
+        if (const std::size_t other = map.frame(row.identifier); other < f)
+            return {Sentence{who, " has the identifier of \"", map.frames[other].name, "\": give it its own"},
                     f};
-        }
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+        for (std::size_t s = row.first; s < row.end(); ++s) {
             const Signal& signal = map.signals[s];
             const auto before = std::span{map.signals}.subspan(row.first, s - row.first);
+            if (const Sentence fault = value_fault(words, row, map.signals, s); !fault.empty())
+                return {fault, f, s};
             if (const Sentence fault = signal_fault(row, signal); !fault.empty()) return {fault, f, s};
             if (const Sentence fault = multiplexor_fault(row, signal, before); !fault.empty())
                 return {fault, f, s};
@@ -372,9 +339,6 @@ constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noe
                 covered[s][bit / 64u] |= std::uint64_t{1} << bit % 64u;
             }
             for (std::size_t other = row.first; other < s; ++other) {
-                if (map.signals[other].name == signal.name)
-                    return {Sentence{who, " has two signals \"", signal.name, "\": rename one of them"}, f,
-                            s};
                 const unsigned shared = first_shared(covered[s], covered[other], row.length);
                 if (shared < 8u * row.length && !map.multiplexing().exclude_each_other(s, other))
                     return {Sentence{"signal \"", row.name, ".", signal.name, "\" overlaps \"",
@@ -393,14 +357,14 @@ template <std::size_t F, std::size_t S>
 constexpr Frame safe_frame(const SignalMap<F, S>& map, const FrameRow& row, std::size_t wanted,
                            std::array<bool, S>& held) noexcept {
     std::array<std::uint64_t, S> raw{};
-    for (std::size_t s = row.first; s < row.first + row.signals; ++s)
+    for (std::size_t s = row.first; s < row.end(); ++s)
         raw[s] = to_raw(map.signals[s], map.signals[s].safe_value).bits;
     if (wanted != no_such)
         for (std::size_t at = wanted, up = map.multiplexor_of[at]; up != no_such;
              at = up, up = map.multiplexor_of[at])
             raw[up] = map.signals[at].selections[0].from;
     Frame frame = frame_of(row);
-    for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+    for (std::size_t s = row.first; s < row.end(); ++s) {
         if (!map.holds(row, s, [&](std::size_t m) { return raw[m]; })) continue;
         insert(frame.data, map.places[s], raw[s]);
         held[s] = true;
@@ -413,7 +377,7 @@ template <std::size_t F, std::size_t S>
 constexpr bool add_safe_frames(SignalMap<F, S>& map, const FrameRow& row, std::size_t& room) noexcept {
     std::array<bool, S> held{};
     const Frame last = safe_frame(map, row, no_such, held);
-    for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+    for (std::size_t s = row.first; s < row.end(); ++s) {
         if (held[s]) continue;
         if (room-- == 0) return false;
         map.safe[map.safe_count++] = safe_frame(map, row, s, held);
@@ -428,7 +392,7 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
     map.multiplexor_of.fill(no_such);
     for (std::size_t f = 0; f < frames; ++f) {
         FrameRow& row = map.frames[f];
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s) {
+        for (std::size_t s = row.first; s < row.end(); ++s) {
             map.frame_of[s] = f;
             map.places[s] = place_of(map.signals[s]);
             Signal& one = map.signals[s];
@@ -464,25 +428,12 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
     return {};
 }
 
-/// Copies the rows into `frames` and `signals` of a map or a similar type.
-template <class Map, std::size_t... N>
-constexpr void flatten(Map& into, const FrameWithSignals<N>&... rows) noexcept {
-    std::size_t f = 0;
-    std::size_t s = 0;
-    [[maybe_unused]] const auto add = [&](const auto& row) {
-        into.frames[f] = row.row;
-        into.frames[f++].first = s;
-        for (const Signal& one : row.signals) into.signals[s++] = one;
-    };
-    (add(rows), ...);
-}
-
 } // namespace detail
 
 /// Flattens the rows and checks them: static_assert(map.fault.empty(), map.fault).
 template <std::size_t... N> constexpr auto signal_map(const FrameWithSignals<N>&... rows) noexcept {
     SignalMap<sizeof...(N), (N + ... + 0)> map;
-    detail::flatten(map, rows...);
+    flatten(map.frames, map.signals, rows...);
     map.fault = detail::complete(map, map.frames.size()).text;
     return map;
 }

@@ -34,7 +34,7 @@ public:
             ++count.wrong_lengths;
             return Decoded::wrong_length;
         }
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s)
+        for (std::size_t s = row.first; s < row.end(); ++s)
             if (is_in(row, s, frame)) raw_[s] = extract(frame.data, map_->places[s]);
         ++count.decoded;
         which = f;
@@ -57,7 +57,7 @@ public:
         const FrameRow& row = map_->frames[f];
         Frame frame = frame_of(row);
         frame.stamp = now;
-        for (std::size_t s = row.first; s < row.first + row.signals; ++s)
+        for (std::size_t s = row.first; s < row.end(); ++s)
             if (map_->holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME { return raw_[m]; }))
                 insert(frame.data, map_->places[s], raw_[s]);
         return frame;

@@ -65,7 +65,7 @@ constexpr Sentence mapping_fault(const NodeRow& node, const PdoRow& row, const P
 template <std::size_t F, std::size_t S>
 constexpr Sentence signals_fault(const can::SignalMap<F, S>& signals, const NodeRow& node, const PdoRow& row,
                                  const can::FrameRow& frame) noexcept {
-    for (std::size_t s = frame.first; s < frame.first + frame.signals; ++s) {
+    for (std::size_t s = frame.first; s < frame.end(); ++s) {
         const can::Signal& signal = signals.signals[s];
         const Sentence subject{who(node), ": signal \"", frame.name, ".", signal.name, "\""};
         if (signal.order == can::Order::motorola && signal.bits > 8)
@@ -138,7 +138,7 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
                              const NodeRow& node, const PdoRow& row) noexcept {
     const Sentence subject{who(node), ": frame \"", row.frame, "\""};
     const std::size_t f = signals.frame(row.frame);
-    if (f == can::no_such) return Sentence{subject, " is not in the signal map; write its row there"};
+    if (f == no_such) return Sentence{subject, " is not in the signal map; write its row there"};
     const can::FrameRow& frame = signals.frames[f];
     const PdoPlace place = pdo_place(frame.identifier, node.id);
     if (!place.known)

@@ -34,16 +34,10 @@ class FarEnd final : public tappet::FarEnd {
     template <Role role>
     struct LineName {
         std::size_t index;
-        consteval LineName(const char* name) : index{map.index(name)} {
-            if (index == map.rows.size() || map.rows[index].line.role != role) {
-                const auto meant = nearest_to(name, map.rows.size(), [](std::size_t i) {
-                    return Meant{{},
-                                 map.rows[i].line.role == role ? std::string_view{map.rows[i].line.name}
-                                                               : std::string_view{}};
-                });
-                did_you_mean(meant.of.data(), meant.name.data());
-            }
-        }
+        consteval LineName(const char* name)
+            : index{find(name, map.rows.size(), [](std::size_t i) {
+                  return map.rows[i].line.role == role ? MapName{{}, map.rows[i].line.name} : MapName{};
+              })} {}
     };
 
 public:
@@ -76,12 +70,11 @@ public:
         outputs_ = wires_->outputs();
         changed_at_ = wires_->changed_at(now);
     }
-    void give(Time) override {}
 
 protected:
     bool take_wire(const ProvidedDevice& wire) noexcept override {
-        if (wire.type != type_id<Wires>) return false;
-        wires_ = static_cast<Wires*>(wire.device);
+        wires_ = wire.as<Wires>();
+        if (wires_ == nullptr) return false;
         outputs_ = before_ = 0;
         for (std::size_t i = 0; i < map.rows.size(); ++i)
             if ((inputs_ >> i & 1u) != 0) refused_ += wires_->drive(i, true, now_) ? 0u : 1u;

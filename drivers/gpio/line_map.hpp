@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/gpio/device.hpp"
+#include "drivers/map/rows.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/base/time.hpp"
 
@@ -77,9 +78,7 @@ template <std::size_t N> struct LineMap {
     Sentence fault{}; ///< empty when the map is correct
 
     [[nodiscard]] constexpr std::size_t index(std::string_view name) const noexcept {
-        for (std::size_t i = 0; i < N; ++i)
-            if (rows[i].line.name == name) return i;
-        return N;
+        return index_of(name, N, [this](std::size_t i) { return MapName{{}, rows[i].line.name}; });
     }
 };
 

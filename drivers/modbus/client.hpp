@@ -7,7 +7,6 @@
 #include "drivers/modbus/trouble_text.hpp"
 #include "kernel/base/array_of.hpp"
 #include "kernel/component/component.hpp"
-#include "kernel/component/facet_name.hpp"
 #include "kernel/component/nth.hpp"
 
 #include <array>
@@ -18,8 +17,8 @@
 namespace tappet::modbus {
 
 template <const auto& map> struct RegisterNames {
-    static constexpr auto all = array_of<map.registers.size()>(
-        [](std::size_t v) { return FacetName{map.rows[map.row_of[v]].name, ".", map.registers[v].name}; });
+    static constexpr auto all =
+        array_of<map.registers.size()>([](std::size_t v) { return map.name_of(v).facet(); });
 };
 
 /// Each register read has an output, stamped with the time of the answer and written only then, so its age

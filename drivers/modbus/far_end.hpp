@@ -78,17 +78,10 @@ class FarEnd final : public tappet::FarEnd {
     template <bool write>
     struct RegisterName {
         std::size_t index;
-        consteval RegisterName(const char* path) : index{map.value(path)} {
-            if (index == no_such || map.rows[map.row_of[index]].write != write) {
-                const auto meant = nearest_to(path, map.registers.size(), [](std::size_t i) {
-                    const auto& row = map.rows[map.row_of[i]];
-                    const bool fits = row.write == write;
-                    return Meant{std::string_view{row.name},
-                                 fits ? std::string_view{map.registers[i].name} : std::string_view{}};
-                });
-                did_you_mean(meant.of.data(), meant.name.data());
-            }
-        }
+        consteval RegisterName(const char* path)
+            : index{find(path, map.registers.size(), [](std::size_t v) {
+                  return map.rows[map.row_of[v]].write == write ? map.name_of(v) : MapName{};
+              })} {}
     };
 
 public:
@@ -114,13 +107,10 @@ public:
     }
     [[nodiscard]] ServerTables& tables() noexcept { return *tables_; }
 
-    void take(Time) override {}
-    void give(Time) override {}
-
 protected:
     bool take_wire(const ProvidedDevice& wire) noexcept override {
-        if (wire.type != type_id<ServerTables>) return false;
-        tables_ = static_cast<ServerTables*>(wire.device);
+        tables_ = wire.as<ServerTables>();
+        if (tables_ == nullptr) return false;
         for (const Row& row : map.rows) tables_->have(row.run.table, row.run.address + row.run.count);
         return true;
     }

@@ -40,26 +40,14 @@ constexpr Run holding_registers(std::uint32_t address, std::uint32_t count) noex
 }
 
 /// One request, sent periodically. A written row is also sent at once when one of its values changed.
-struct Row {
-    std::string_view name{};
+struct Row : MapRow {
     Run run{};
     bool write = false;
     Duration every{};
     Duration stale_after{}; ///< write: older values are replaced by their safe values, if any; 0: no limit
-    std::size_t first = 0;  ///< index of its first register in the map's array
-    std::size_t registers = 0;
-    bool silence_is_safe = false; ///< write: no safe values are sent
 };
 
-template <std::size_t N> struct RowWithRegisters {
-    Row row{};
-    std::array<Register, N> registers{};
-
-    /// Sends no safe values: the server's own time-out makes it safe when this row stays away.
-    constexpr RowWithRegisters safe_by_silence() const noexcept {
-        return {copy_with(row, &Row::silence_is_safe, true), registers};
-    }
-};
+template <std::size_t N> using RowWithRegisters = RowWithValues<Row, Register, N>;
 
 struct Every {
     Duration period{};
@@ -77,19 +65,16 @@ constexpr StaleAfter stale_after(Duration age) noexcept { return {age}; }
 /// The connection's row that reads a value states its maximum age.
 template <class... Registers>
 constexpr auto read(std::string_view name, Run run, Every period, const Registers&... registers) noexcept {
-    return RowWithRegisters<sizeof...(Registers)>{
-        {name, run, false, period.period, {}, 0, sizeof...(Registers)}, {registers...}};
+    return RowWithRegisters<sizeof...(Registers)>{{{name}, run, false, period.period, {}}, {registers...}};
 }
 /// write("setpoints", holding_registers(8, 2), every(1s), stale_after(3s), word("temperature", 0).safe(20),
 /// ...)
 template <class... Registers>
 constexpr auto write(std::string_view name, Run run, Every period, StaleAfter age,
                      const Registers&... registers) noexcept {
-    return RowWithRegisters<sizeof...(Registers)>{
-        {name, run, true, period.period, age.age, 0, sizeof...(Registers)}, {registers...}};
+    return RowWithRegisters<sizeof...(Registers)>{{{name}, run, true, period.period, age.age},
+                                                  {registers...}};
 }
-
-inline constexpr std::size_t no_such = ~std::size_t{0};
 
 /// One request that writes safe values: `count` words, from index `first` of the map's words.
 struct SafeWrite {
@@ -117,24 +102,21 @@ template <std::size_t R, std::size_t V> struct RegisterMap {
         return {std::span{safe}.first(safe_count), safe_words, rows, registers};
     }
 
+    [[nodiscard]] constexpr MapName name_of(std::size_t v) const noexcept {
+        return {rows[row_of[v]].name, registers[v].name};
+    }
     [[nodiscard]] constexpr std::size_t row(std::string_view name) const noexcept {
-        for (std::size_t r = 0; r < R; ++r)
-            if (rows[r].name == name) return r;
-        return no_such;
+        return index_of(name, R, [this](std::size_t r) { return MapName{{}, rows[r].name}; });
     }
     /// Finds a register by "row.register".
     [[nodiscard]] constexpr std::size_t value(std::string_view path) const noexcept {
-        for (std::size_t v = 0; v < V; ++v) {
-            const std::string_view owner = rows[row_of[v]].name;
-            if (path.size() == owner.size() + 1 + registers[v].name.size() && path.starts_with(owner) &&
-                path[owner.size()] == '.' && path.ends_with(registers[v].name))
-                return v;
-        }
-        return no_such;
+        return index_of(path, V, [this](std::size_t v) { return name_of(v); });
     }
 };
 
 namespace detail {
+
+inline constexpr MapWords words{.row = "row", .value = "register", .comes = "read", .goes = "written"};
 
 constexpr Sentence row_fault(const Row& row) noexcept {
     const Sentence who{"row \"", row.name, "\""};
@@ -158,7 +140,6 @@ constexpr Sentence row_fault(const Row& row) noexcept {
 
 constexpr Sentence register_fault(const Row& row, const Register& r) noexcept {
     const Sentence who{"register \"", row.name, ".", r.name, "\""};
-    if (r.name.empty()) return Sentence{"row \"", row.name, "\" has a register without a name: name it"};
     if ((r.kind == Kind::bit) != holds_bits(row.run.table))
         return Sentence{who,
                         " is a ",
@@ -173,23 +154,6 @@ constexpr Sentence register_fault(const Row& row, const Register& r) noexcept {
     if (std::uint32_t{r.at} + r.width() > row.run.count)
         return Sentence{who, " reaches outside its row of ", row.run.count,
                         " ", name_of(row.run.table),         ": move it or lengthen the row"};
-    if (r.factor == 0 || r.factor != r.factor)
-        return Sentence{who, " has the factor 0: every value would be the offset; give it another"};
-    return {};
-}
-
-constexpr Sentence safe_fault(const Row& row, const Register& r) noexcept {
-    const Sentence who{"register \"", row.name, ".", r.name, "\""};
-    if (!row.write)
-        return r.says_safe ? Sentence{who, " is read and has a safe value: only what is written has one"}
-                           : Sentence{};
-    if (r.says_safe == row.silence_is_safe)
-        return r.says_safe
-                   ? Sentence{who, " has a safe value, but its row is safe by silence: keep one of the two"}
-                   : Sentence{who, " does not say its safe value: write .safe(..) behind it, or "
-                                   ".safe_by_silence() behind the row"};
-    if (const Encoded raw = to_words(r, r.safe_value); r.says_safe && (raw.saturated || raw.refused))
-        return Sentence{who, " cannot hold its safe value: it is outside of the register's range"};
     return {};
 }
 
@@ -197,20 +161,20 @@ template <std::size_t R, std::size_t V> constexpr Sentence map_fault(const Regis
     for (std::size_t i = 0; i < R; ++i) {
         const Row& row = map.rows[i];
         if (const Sentence fault = row_fault(row); !fault.empty()) return fault;
-        for (std::size_t other = 0; other < i; ++other)
-            if (map.rows[other].name == row.name)
-                return Sentence{"row \"", row.name, "\" is there twice: rename one of them"};
+        if (const Sentence fault = name_fault(words, map.rows, i); !fault.empty()) return fault;
         std::uint32_t covered = 0;
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+        for (std::size_t v = row.first; v < row.end(); ++v) {
             const Register& r = map.registers[v];
+            if (const Sentence fault = value_fault(words, row, map.registers, v); !fault.empty())
+                return fault;
             if (const Sentence fault = register_fault(row, r); !fault.empty()) return fault;
-            if (const Sentence fault = safe_fault(row, r); !fault.empty()) return fault;
+            const Encoded safe = to_words(r, r.safe_value);
+            if (const Sentence fault = safe_fault(words, row, r, row.write, !safe.saturated && !safe.refused);
+                !fault.empty())
+                return fault;
             covered += r.width();
             for (std::size_t other = row.first; other < v; ++other) {
                 const Register& o = map.registers[other];
-                if (o.name == r.name)
-                    return Sentence{"row \"", row.name, "\" has two registers \"", r.name,
-                                    "\": rename one of them"};
                 if (r.at < o.at + o.width() && o.at < r.at + r.width())
                     return Sentence{"register \"",         row.name, ".", r.name, "\" overlaps \"", o.name,
                                     "\": move one of them"};
@@ -230,25 +194,15 @@ template <std::size_t R, std::size_t V> constexpr Sentence map_fault(const Regis
 /// Flattens the rows and checks them: static_assert(map.fault.empty(), map.fault).
 template <std::size_t... N> constexpr auto register_map(const RowWithRegisters<N>&... rows) noexcept {
     RegisterMap<sizeof...(N), (N + ... + 0)> map;
-    std::size_t i = 0;
-    std::size_t v = 0;
-    const auto flatten = [&](const auto& row) {
-        map.rows[i] = row.row;
-        map.rows[i].first = v;
-        for (const Register& one : row.registers) {
-            map.registers[v] = one;
-            map.row_of[v] = i;
-            ++v;
-        }
-        ++i;
-    };
-    (flatten(rows), ...);
+    flatten(map.rows, map.registers, rows...);
+    for (std::size_t r = 0; r < map.rows.size(); ++r)
+        for (std::size_t v = map.rows[r].first; v < map.rows[r].end(); ++v) map.row_of[v] = r;
     map.fault = detail::map_fault(map);
     std::size_t used = 0;
     for (const Row& row : map.rows) {
         if (!map.fault.empty() || !row.write || row.silence_is_safe) continue;
         map.safe[map.safe_count++] = {row.run, used};
-        for (const Register& one : std::span{map.registers}.subspan(row.first, row.registers)) {
+        for (const Register& one : std::span{map.registers}.subspan(row.first, row.values)) {
             const Encoded value = to_words(one, one.safe_value);
             for (unsigned w = 0; w < one.width(); ++w) map.safe_words[used + one.at + w] = value.words[w];
         }

@@ -1,7 +1,7 @@
 // One value in a Modbus server's tables: its words or bit, and their meaning.
 #pragma once
 
-#include "kernel/base/copy_with.hpp"
+#include "drivers/map/rows.hpp"
 #include "kernel/base/number.hpp"
 
 #include <array>
@@ -36,17 +36,11 @@ enum class Kind : std::uint8_t {
 /// physical = raw * factor + offset. By default a double word has its high word first, and a word its high
 /// byte first (Modbus application protocol 1.1b3, section 4.2). Many devices differ: for the bytes ABCD,
 /// swapped() reads CDAB, bytes_swapped() BADC, and both DCBA.
-struct Register {
-    std::string_view name{};
+struct Register : ScaledValue<Register> {
     std::uint16_t at = 0; ///< counted from the row's address
     Kind kind = Kind::unsigned_word;
     bool low_word_first = false;
     bool low_byte_first = false;
-    double factor = 1;
-    double offset = 0;
-    std::string_view unit{};
-    double safe_value = 0; ///< written values: sent when the client stops or the machine's process has ended
-    bool says_safe = false;
 
     [[nodiscard]] constexpr unsigned width() const noexcept { return kind >= Kind::unsigned_double ? 2 : 1; }
 
@@ -57,18 +51,6 @@ struct Register {
     constexpr Register swapped() const noexcept { return copy_with(*this, &Register::low_word_first, true); }
     constexpr Register bytes_swapped() const noexcept {
         return copy_with(*this, &Register::low_byte_first, true);
-    }
-    constexpr Register times(double new_factor) const noexcept {
-        return copy_with(*this, &Register::factor, new_factor);
-    }
-    constexpr Register plus(double new_offset) const noexcept {
-        return copy_with(*this, &Register::offset, new_offset);
-    }
-    constexpr Register in(std::string_view new_unit) const noexcept {
-        return copy_with(*this, &Register::unit, new_unit);
-    }
-    constexpr Register safe(double value) const noexcept {
-        return copy_with(*this, &Register::safe_value, value, &Register::says_safe, true);
     }
 };
 

@@ -95,7 +95,7 @@ public:
             for (int tries = 0; row.write && tries < 2 && unanswered < 2; ++tries) {
                 if (!connected_) at = connect(at);
                 // Renews the stamps: none becomes too old while earlier rows or a failed attempt take time.
-                for (std::size_t v = row.first; v < row.first + row.registers; ++v)
+                for (std::size_t v = row.first; v < row.end(); ++v)
                     if (values_[v].stamp == stamp) values_[v].stamp = at;
                 stamp = at;
                 if (connected_) at = request(r, at);
@@ -185,12 +185,12 @@ private:
             if (!row.write)
                 take(row, done);
             else
-                std::ranges::fill(std::span{at_server_}.subspan(row.first, row.registers), AtServer::is);
+                std::ranges::fill(std::span{at_server_}.subspan(row.first, row.values), AtServer::is);
             changed_at_[r] = never;
             answered();
             return done;
         case Outcome::exception:
-            for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+            for (std::size_t v = row.first; v < row.end(); ++v) {
                 values_[v].quality = Quality::exception;
                 values_[v].exception = answer.exception;
             }
@@ -207,12 +207,12 @@ private:
         return lose(done, {r, answer.outcome});
     }
     [[nodiscard]] bool has_safe_value(const Row& row) const noexcept {
-        return std::ranges::any_of(std::span{map_->registers}.subspan(row.first, row.registers),
+        return std::ranges::any_of(std::span{map_->registers}.subspan(row.first, row.values),
                                    &Register::says_safe);
     }
     /// Returns true when all values of the row were set; otherwise it was never sent.
     [[nodiscard]] bool was_set(const Row& row) const noexcept {
-        return std::ranges::none_of(std::span{values_}.subspan(row.first, row.registers),
+        return std::ranges::none_of(std::span{values_}.subspan(row.first, row.values),
                                     [](const Value& each) { return each.stamp == Time::min(); });
     }
     /// Returns whether the row is sent. Values that became too old before the server had them are replaced by
@@ -230,7 +230,7 @@ private:
         };
         bool is_good = true;
         bool is_behind = false;
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+        for (std::size_t v = row.first; v < row.end(); ++v) {
             is_good = is_good && !is_old(v);
             is_behind = is_behind || at_server_[v] == AtServer::not_yet;
         }
@@ -239,7 +239,7 @@ private:
             if (std::exchange(changed_at_[r], never) != never) ++count_.dropped_stale;
             return false;
         }
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+        for (std::size_t v = row.first; v < row.end(); ++v) {
             if (!is_old(v) || at_server_[v] == AtServer::is) continue;
             const Words before = words_[v];
             static_cast<void>(set(v, map_->registers[v].safe_value, now)); // in range, by the map's check
@@ -248,12 +248,12 @@ private:
         return true;
     }
     void fill(const Row& row) noexcept {
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v)
+        for (std::size_t v = row.first; v < row.end(); ++v)
             for (unsigned i = 0; i < map_->registers[v].width(); ++i)
                 buffer_[map_->registers[v].at + i] = words_[v][i];
     }
     void take(const Row& row, Time stamp) noexcept {
-        for (std::size_t v = row.first; v < row.first + row.registers; ++v) {
+        for (std::size_t v = row.first; v < row.end(); ++v) {
             const Register& one = map_->registers[v];
             for (unsigned i = 0; i < one.width(); ++i) words_[v][i] = buffer_[one.at + i];
             if (const double value = to_physical(one, words_[v]); is_number(value)) {

@@ -122,7 +122,7 @@ struct StationRows {
         can::Services<frame_count, 0, signal_count> all{};
         std::size_t k = 0;
         each_signal([&](std::size_t f, const can::Signal& signal) {
-            if (all.frames[f].signals++ == 0) all.frames[f].first = k;
+            if (all.frames[f].values++ == 0) all.frames[f].first = k;
             all.signals[k++] = signal;
         });
         all.bit_rate = system.wire.rate.bits_per_second;

@@ -2,6 +2,7 @@
 // same plant works with twins and with the real drivers.
 #pragma once
 
+#include "drivers/map/rows.hpp"
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/contract.hpp"
 #include "kernel/base/nearest.hpp"
@@ -39,9 +40,9 @@ public:
                         "\", which the machine does not have; correct the name in the plant"};
     }
     /// Receives what the machine put on the wires by `now`.
-    virtual void take(Time now) = 0;
+    virtual void take(Time /*now*/) {}
     /// Sends what the plant set.
-    virtual void give(Time now) = 0;
+    virtual void give(Time /*now*/) {}
     /// Returns when give() has something to send by itself: the next periodic frame.
     [[nodiscard]] virtual Time next() const noexcept { return never; }
 
@@ -55,24 +56,24 @@ public:
         if (of != name || name == nullptr) // always true: g++ reports less about a constant expression
             this_name_is_not_in_the_map_or_goes_the_other_way();
     }
-    struct Meant {
-        std::string_view of{}, name{};
-    };
-    /// Returns the nearest of the names that `names(i)` returns; skips empty ones.
+    /// Returns the index of the name among the first `count` of `names(i)`, of which empty ones do not count.
+    /// Does not compile when it is not there.
     template <class Names>
-    static constexpr Meant nearest_to(std::string_view written, std::size_t count, const Names& names) {
-        Meant meant;
+    static constexpr std::size_t find(std::string_view written, std::size_t count, const Names& names) {
+        MapName meant;
         std::size_t least = std::max<std::size_t>(2, written.size() / 3) + 1;
         for (std::size_t i = 0; i < count; ++i) {
-            const Meant each = names(i);
+            const MapName each = names(i);
             if (each.name.empty()) continue;
+            if (each.is(written)) return i;
             const Sentence whole{each.of, each.of.empty() ? "" : ".", each.name};
             const std::size_t far = edit_distance(written, whole.view(), least);
             if (far >= least) continue;
             least = far;
             meant = each;
         }
-        return meant;
+        did_you_mean(meant.of.data(), meant.name.data());
+        return no_such;
     }
 
 protected:

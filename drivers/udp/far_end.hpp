@@ -23,15 +23,10 @@ public:
     std::size_t receive(std::span<std::byte> into) { return wires_ == nullptr ? 0 : wires_->hear(into); }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
-    void take(Time) override {}
-    void give(Time) override {}
-    [[nodiscard]] Time next() const noexcept override { return never; }
-
 protected:
     bool take_wire(const ProvidedDevice& wire) noexcept override {
-        if (wire.type != type_id<Wires>) return false;
-        wires_ = static_cast<Wires*>(wire.device);
-        return true;
+        wires_ = wire.as<Wires>();
+        return wires_ != nullptr;
     }
 
 private:

@@ -9,8 +9,8 @@ namespace tappet {
 namespace detail {
 template <class Row>
 constexpr void set_members(Row&) noexcept {}
-template <class Row, class Value, class... More>
-constexpr void set_members(Row& row, Value Row::* member, const std::type_identity_t<Value>& value,
+template <class Row, class Owner, class Value, class... More>
+constexpr void set_members(Row& row, Value Owner::* member, const std::type_identity_t<Value>& value,
                            const More&... more) noexcept {
     row.*member = value;
     set_members(row, more...);

@@ -23,6 +23,12 @@ struct ProvidedDevice {
     TypeId type = nullptr;
     std::string_view name{}; ///< the logical name, as in the board and in the machine table
     void* device = nullptr;
+
+    /// Returns it when it is of that class, or null.
+    template <class Device>
+    [[nodiscard]] Device* as() const noexcept {
+        return type == type_id<Device> ? static_cast<Device*>(device) : nullptr;
+    }
 };
 
 struct Setup {
@@ -39,8 +45,7 @@ struct Setup {
     template <class Device>
     [[nodiscard]] Device* device() const {
         for (const auto& each : devices)
-            if (each.type == type_id<Device> && each.name == device_name)
-                return static_cast<Device*>(each.device);
+            if (each.name == device_name && each.as<Device>() != nullptr) return each.as<Device>();
         return nullptr;
     }
     /// Returns the answer for configure() when device() found nothing.

@@ -20,7 +20,7 @@ constexpr Duration usual_settling = 200ms; // periods, deadlines and queues on t
 bool is_in(const can::Identifiers& map, const can::FrameRow& row, const can::Signal& signal,
            const can::Frame& frame) {
     if (signal.multiplexor.empty()) return true;
-    for (const can::Signal& each : map.signals.subspan(row.first, row.signals))
+    for (const can::Signal& each : map.signals.subspan(row.first, row.values))
         if (each.name == signal.multiplexor)
             return is_in(map, row, each, frame) && signal.is_selected_by(can::extract(frame.data, each));
     return false;
@@ -93,7 +93,7 @@ void SwarmWires::add_signals(std::size_t c) {
         const can::FrameRow& frame = map.frames[f];
         if (frame.direction != can::Direction::transmit) continue;
         sent_.push_back({row.device, &map, f});
-        for (const can::Signal& signal : map.signals.subspan(frame.first, frame.signals)) {
+        for (const can::Signal& signal : map.signals.subspan(frame.first, frame.values)) {
             Output output{.driver = c, .is_switch = signal.bits == 1, .settles = frame.every, .goes_in = f};
             // A multiplexed frame, or one that selects others, goes out in turns.
             if (frame.every > Duration{} && !signal.is_bits && !frame.multiplexed) {
@@ -121,7 +121,7 @@ void SwarmWires::add_registers(std::size_t c) {
     modbus::Twin& server = devices_.server(row.device);
     for (const modbus::Row& request : map.rows) {
         if (!request.write) continue;
-        for (const modbus::Register& one : map.registers.subspan(request.first, request.registers)) {
+        for (const modbus::Register& one : map.registers.subspan(request.first, request.values)) {
             const auto whole = [width = one.width()](auto word) {
                 std::uint64_t all = 0;
                 for (unsigned w = 0; w < width; ++w) all = all << 16 | word(w);
@@ -196,7 +196,7 @@ void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
         const can::FrameRow& row = sent.map->frames[sent.row];
         if (sent.device != device || row.identifier != can::Identifier{frame.id, frame.extended}) continue;
         sent.last = frame;
-        for (const can::Signal& signal : sent.map->signals.subspan(row.first, row.signals)) {
+        for (const can::Signal& signal : sent.map->signals.subspan(row.first, row.values)) {
             if (!is_in(*sent.map, row, signal, frame)) continue;
             const std::uint64_t raw = can::extract(frame.data, signal);
             const double value = can::to_physical(signal, raw);

@@ -50,7 +50,7 @@ template <std::size_t... N>
 constexpr auto node(std::string_view name, const FrameWithSignals<N>&... rows) noexcept {
     Node<sizeof...(N), (N + ... + 0)> node;
     node.name = name;
-    detail::flatten(node, rows...);
+    flatten(node.frames, node.signals, rows...);
     return node;
 }
 

@@ -53,7 +53,7 @@ public:
                     signals[s] = &each;
                     map.signals[s++] = signal_of(each, map.signals);
                 }
-            frame.signals = s - frame.first;
+            frame.values = s - frame.first;
         }
         const detail::MapFault fault = detail::complete(map, f);
         if (fault.text.empty()) return;
@@ -103,7 +103,7 @@ private:
                 return net_.fail(each.at, "the row of message \"", name,
                                  "\" repeats its file; leave identifier and length out");
             each.row = &row;
-            for (const Signal& signal : node_.signals.subspan(row.first, row.signals))
+            for (const Signal& signal : node_.signals.subspan(row.first, row.values))
                 find_signal(each, signal);
             return;
         }
@@ -145,7 +145,7 @@ private:
                              is_ours ? "\" does not receive it; write transmit(..)"
                                      : "\"; write receive(..)");
         message.direction = sends ? Direction::transmit : Direction::receive;
-        const bool takes_all = sends || (message.row != nullptr && message.row->signals == 0);
+        const bool takes_all = sends || (message.row != nullptr && message.row->values == 0);
         for (SignalRow& each : net_.of(message))
             if (takes_all || each.row != nullptr ||
                 (!node_.name.empty() && names(each.receivers, node_.name)))

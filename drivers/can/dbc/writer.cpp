@@ -69,7 +69,7 @@ public:
         const std::string id = whole(frame.identifier.id | (frame.identifier.extended ? 0x8000'0000u : 0u));
         messages_ += "BO_ " + id + ' ' + name(frame.name) + ": " + whole(unsigned{frame.length}) + ' ' +
                      (sent ? machine_ : "others") + '\n';
-        const auto own = signals_.subspan(frame.first, frame.signals);
+        const auto own = signals_.subspan(frame.first, frame.values);
         for (const Signal& signal : own) add(signal, own, id, sent ? "others" : machine_);
         messages_ += '\n';
         if (frame.format != Format::classical) {

@@ -54,7 +54,7 @@ public:
     }
     /// Returns the frame's name; empty: the map has no such frame.
     std::string_view take(const can::Frame& frame) {
-        std::size_t row = can::no_such;
+        std::size_t row = no_such;
         return store_.decode(frame, row) == can::Decoded::yes ? map.frames[row].name : std::string_view{};
     }
     /// A value of the last received frame of that name, before factor and offset.
