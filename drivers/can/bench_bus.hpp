@@ -16,9 +16,7 @@ public:
     ~BenchBus() override;
 
     std::expected<void, Sentence> open(const DevicePlace& place) override;
-    ProvidedDevice provided(std::string_view name) noexcept override {
-        return {type_id<Device>, name, static_cast<Device*>(this)};
-    }
+    ProvidedDevice provided(std::string_view name) noexcept override { return provide<Device>(name, *this); }
     /// Sends a bus-off error frame to every listener of error frames.
     void announce_bus_off() override;
     [[nodiscard]] std::uint64_t unsent() const noexcept override { return count_.refused; }

@@ -4,10 +4,10 @@
 #include "drivers/can/bus_traffic.hpp"
 #include "drivers/can/demand.hpp"
 #include "drivers/can/device.hpp"
-#include "drivers/can/facet_names.hpp"
 #include "drivers/can/services.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "drivers/can/transmit_queue.hpp"
+#include "kernel/base/array_of.hpp"
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/nth.hpp"
@@ -174,8 +174,7 @@ struct Bus {
         std::size_t n = 0;
         for (std::size_t s = 0; s < signal_count; ++s) list[n++] = signal_facet(s);
         for (std::size_t f = 0; f < frame_count; ++f)
-            list[n++] =
-                nth_event<&Bus::frame_received>(f, FacetNames<map>::received[f].view(), "a frame arrived");
+            list[n++] = nth_event<&Bus::frame_received>(f, received_names[f].view(), "a frame arrived");
         for (const Facet& facet : {
                  output<&Bus::is_faulted>("faulted", "", "nothing is sent; written on change",
                                           while_stopped(true)),
@@ -215,6 +214,8 @@ struct Bus {
 
 private:
     static constexpr std::size_t fixed_facets = 13;
+    static constexpr auto received_names =
+        array_of<frame_count>([](std::size_t f) { return FacetName{map.frames[f].name, ".received"}; });
     // At the start: the kernel's buffer holds fewer frames.
     static constexpr int max_passes = 4096;
 
@@ -228,8 +229,8 @@ private:
 
     static constexpr Facet signal_facet(std::size_t s) {
         const Signal& signal = map.signals[s];
-        const auto& frame = map.frames[map.frame_of[s]];
-        const std::string_view name = FacetNames<map>::signals[s].view();
+        const auto& frame = map.frames[map.row_of[s]];
+        const std::string_view name = ValueNames<map>::all[s].view();
         const auto comes = comes_every(frame.every);
         if (frame.direction == Direction::receive)
             return is_integer(signal)

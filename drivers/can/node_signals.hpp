@@ -46,8 +46,7 @@ protected:
         std::size_t index;
         consteval SignalName(const char* path)
             : index{tappet::FarEnd::find(path, nodes.signals.size(), [](std::size_t s) {
-                  return nodes.frames[nodes.frame_of[s]].direction == direction ? nodes.name_of(s)
-                                                                                : MapName{};
+                  return nodes.frames[nodes.row_of[s]].direction == direction ? nodes.name_of(s) : MapName{};
               })} {}
     };
 

@@ -31,10 +31,6 @@ std::expected<void, Sentence> RealBus::open(const DevicePlace& place) {
     return bus_.open(settings);
 }
 
-ProvidedDevice RealBus::provided(std::string_view name) noexcept {
-    return {type_id<Device>, name, static_cast<Device*>(&bus_)};
-}
-
 void RealBus::report(os::ArmingReport& report, std::string_view) { report.passed("can-bus", bus_.found()); }
 
 std::expected<void, Sentence> RealBus::prepare_safe_ending() {

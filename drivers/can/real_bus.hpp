@@ -14,7 +14,7 @@ public:
     static constexpr const DeviceKind& kind = device_kind;
 
     std::expected<void, Sentence> open(const DevicePlace& place) override;
-    ProvidedDevice provided(std::string_view name) noexcept override;
+    ProvidedDevice provided(std::string_view name) noexcept override { return provide<Device>(name, bus_); }
     void report(os::ArmingReport& report, std::string_view name) override;
     void count(WireCounters& into) const noexcept override { bus_.counters().tell(into); }
     std::expected<void, Sentence> prepare_safe_ending() override;

@@ -124,7 +124,7 @@ inline constexpr std::size_t most_safe_pages = 16;
 template <std::size_t F, std::size_t S> struct SignalMap {
     std::array<FrameRow, F> frames{};
     std::array<Signal, S> signals{};
-    std::array<std::size_t, S> frame_of{}; ///< the frame that holds a signal
+    std::array<std::size_t, S> row_of{}; ///< the frame that holds a signal
     std::array<std::size_t, S> multiplexor_of{};
     std::array<Place, S> places{};
     std::array<Identifier, F> received{}; ///< the first `received_count` are valid
@@ -166,7 +166,7 @@ template <std::size_t F, std::size_t S> struct SignalMap {
         return index_of(name, F, [this](std::size_t f) { return MapName{{}, frames[f].name}; });
     }
     [[nodiscard]] constexpr MapName name_of(std::size_t s) const noexcept {
-        return {frames[frame_of[s]].name, signals[s].name};
+        return {frames[row_of[s]].name, signals[s].name};
     }
     /// Finds a signal by "frame.signal".
     [[nodiscard]] constexpr std::size_t signal(std::string_view path) const noexcept {
@@ -393,7 +393,7 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
     for (std::size_t f = 0; f < frames; ++f) {
         FrameRow& row = map.frames[f];
         for (std::size_t s = row.first; s < row.end(); ++s) {
-            map.frame_of[s] = f;
+            map.row_of[s] = f;
             map.places[s] = place_of(map.signals[s]);
             Signal& one = map.signals[s];
             if (!one.safe_name.empty())

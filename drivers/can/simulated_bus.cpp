@@ -23,13 +23,6 @@ std::expected<void, Sentence> SimulatedBus::open(const void* device_map) {
     return {};
 }
 
-ProvidedDevice SimulatedBus::machine_end() noexcept {
-    return {type_id<Device>, name, static_cast<Device*>(&machine)};
-}
-ProvidedDevice SimulatedBus::plant_end() noexcept {
-    return {type_id<Device>, name, static_cast<Device*>(&plant)};
-}
-
 void SimulatedBus::bring_to_plant(Time now) {
     wire.deliver_until(now);
     if (faulted(plant.state())) static_cast<void>(plant.restart());

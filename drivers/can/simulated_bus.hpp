@@ -15,8 +15,8 @@ public:
     SimulatedBus(std::string_view of, std::uint64_t seed) : SimulatedDevice{of}, wire{seed} {}
 
     std::expected<void, Sentence> open(const void* device_map);
-    [[nodiscard]] ProvidedDevice machine_end() noexcept;
-    [[nodiscard]] ProvidedDevice plant_end() noexcept;
+    [[nodiscard]] ProvidedDevice machine_end() noexcept { return provide<Device>(name, machine); }
+    [[nodiscard]] ProvidedDevice plant_end() noexcept { return provide<Device>(name, plant); }
 
     std::expected<void, Sentence> open_again() { return machine.open(settings); }
     void count(WireCounters& into) const noexcept { machine.counters().tell(into); }

@@ -22,7 +22,7 @@ constexpr Sentence path_fault(const SignalMap<F, S>& map, std::string_view path)
     Nearest nearest{path};
     std::array<Sentence, S> all{};
     for (std::size_t s = 0; s < S; ++s) {
-        all[s] = Sentence{map.frames[map.frame_of[s]].name, ".", map.signals[s].name};
+        all[s] = Sentence{map.name_of(s).of, ".", map.name_of(s).name};
         nearest.consider(all[s].view());
     }
     return Sentence{"the map has no signal \"", path, "\"", or_meant(nearest, "; write it as frame.signal")};
@@ -32,7 +32,7 @@ constexpr Sentence value_fault(const SignalMap<F, S>& map, std::string_view path
                                std::string_view name) noexcept {
     if (const Sentence fault = path_fault(map, path); !fault.empty()) return fault;
     const std::size_t s = map.signal(path);
-    return name_fault(map.frames[map.frame_of[s]].name, map.signals[s], name);
+    return name_fault(map.name_of(s).of, map.signals[s], name);
 }
 
 template <const auto& map, text path, text name> struct CalledValue {

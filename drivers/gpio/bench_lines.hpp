@@ -24,9 +24,7 @@ public:
     /// `folder` holds sim_gpio<n>/pull and sim_gpio<n>/value; the binding states the lines' offsets.
     std::expected<void, Sentence> open_at(const std::string& folder, std::span<const LineRow> map,
                                           std::span<const Fact> bound);
-    ProvidedDevice provided(std::string_view name) noexcept override {
-        return {type_id<Wires>, name, static_cast<Wires*>(this)};
-    }
+    ProvidedDevice provided(std::string_view name) noexcept override { return provide<Wires>(name, *this); }
 
     bool drive(std::size_t line, bool active, Time at) noexcept override;
     /// Reads the actuators at each call, outputs of a port each `slow_period`: reading takes an emulator some

@@ -12,10 +12,6 @@ std::expected<void, Sentence> RealChip::open(const DevicePlace& to) {
     return chip_.open({to.address, std::span{lines_}.first(map.size())});
 }
 
-ProvidedDevice RealChip::provided(std::string_view name) noexcept {
-    return {type_id<Device>, name, static_cast<Device*>(&chip_)};
-}
-
 std::expected<void, Sentence> RealChip::prepare_safe_ending() {
     if (chip_.make_safe()) return {};
     return std::unexpected(

@@ -12,7 +12,7 @@ public:
     static constexpr const DeviceKind& kind = device_kind;
 
     std::expected<void, Sentence> open(const DevicePlace& place) override;
-    ProvidedDevice provided(std::string_view name) noexcept override;
+    ProvidedDevice provided(std::string_view name) noexcept override { return provide<Device>(name, chip_); }
     void count(WireCounters& into) const noexcept override { chip_.counters().tell(into); }
     [[nodiscard]] int kept_by_guardian() const noexcept override { return chip_.wait_handle(); }
     std::expected<void, Sentence> prepare_safe_ending() override;

@@ -18,12 +18,8 @@ public:
         place(map, [next = 0u](std::string_view) mutable { return next++; }, lines_); // a twin has no board
         return twin.open({name, std::span{lines_}.first(map.size())});
     }
-    [[nodiscard]] ProvidedDevice machine_end() noexcept {
-        return {type_id<Device>, name, static_cast<Device*>(&twin)};
-    }
-    [[nodiscard]] ProvidedDevice plant_end() noexcept {
-        return {type_id<Wires>, name, static_cast<Wires*>(&twin)};
-    }
+    [[nodiscard]] ProvidedDevice machine_end() noexcept { return provide<Device>(name, twin); }
+    [[nodiscard]] ProvidedDevice plant_end() noexcept { return provide<Wires>(name, twin); }
 
     void count(WireCounters& into) const noexcept { twin.counters().tell(into); }
     void bring_to_plant(Time) { seen_ = twin.outputs(); }

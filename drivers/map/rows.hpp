@@ -2,6 +2,7 @@
 // safe values, and the checks of these. A driver derives its own rows from them.
 #pragma once
 
+#include "kernel/base/array_of.hpp"
 #include "kernel/base/copy_with.hpp"
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/text.hpp"
@@ -86,7 +87,6 @@ constexpr void flatten(Rows& rows, Values& values, const Each&... each) noexcept
 struct MapName {
     std::string_view of{}, name{};
 
-    [[nodiscard]] constexpr FacetName facet() const { return FacetName{of, ".", name}; }
     [[nodiscard]] constexpr bool is(std::string_view written) const noexcept {
         if (of.empty()) return written == name;
         return written.size() == of.size() + 1 + name.size() && written.starts_with(of) &&
@@ -100,6 +100,12 @@ constexpr std::size_t index_of(std::string_view written, std::size_t count, cons
         if (name_of(i).is(written)) return i;
     return no_such;
 }
+
+/// The facets' names of all values of a map.
+template <const auto& map> struct ValueNames {
+    static constexpr auto all = array_of<map.row_of.size()>(
+        [](std::size_t v) { return FacetName{map.name_of(v).of, ".", map.name_of(v).name}; });
+};
 
 // ---- checks of a map at compile time; each returns the first fault, or nothing
 

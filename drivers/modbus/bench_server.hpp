@@ -26,7 +26,7 @@ public:
 
     std::expected<void, Sentence> open(const DevicePlace& place) override;
     ProvidedDevice provided(std::string_view name) noexcept override {
-        return {type_id<ServerTables>, name, static_cast<ServerTables*>(this)};
+        return provide<ServerTables>(name, *this);
     }
     /// Starts to answer, for the addresses stated by have().
     std::expected<void, Sentence> listen() override;

@@ -16,11 +16,6 @@
 
 namespace tappet::modbus {
 
-template <const auto& map> struct RegisterNames {
-    static constexpr auto all =
-        array_of<map.registers.size()>([](std::size_t v) { return map.name_of(v).facet(); });
-};
-
 /// Each register read has an output, stamped with the time of the answer and written only then, so its age
 /// shows an outage. Each register written has a required input. The client blocks for the requests that are
 /// due, until one gets no answer or a period has passed: it runs in an activity of its own, one server each,
@@ -98,7 +93,7 @@ template <const auto& map> struct Client {
         std::array<Facet, count + 8> list{};
         std::size_t n = 0;
         for (std::size_t v = 0; v < count; ++v) {
-            const std::string_view name = RegisterNames<map>::all[v].view(), unit = map.registers[v].unit;
+            const std::string_view name = ValueNames<map>::all[v].view(), unit = map.registers[v].unit;
             list[n++] = is_written(v) ? nth_input<&Client::wanted>(v, name, unit, "written to the server")
                                       : nth_output<&Client::read>(v, name, unit, "read from the server",
                                                                   comes_every(map.rows[map.row_of[v]].every));

@@ -83,10 +83,6 @@ std::expected<void, Sentence> RealServer::open(const DevicePlace& place) {
     return server_.open(settings);
 }
 
-ProvidedDevice RealServer::provided(std::string_view name) noexcept {
-    return {type_id<Transport>, name, static_cast<Transport*>(&server_)};
-}
-
 void RealServer::report(os::ArmingReport& report, std::string_view name) {
     if (is_serial_) return; // a serial line opens even without a server
     const Sentence who{"Modbus server \"", name, "\" at \"", address_, "\""};

@@ -12,7 +12,9 @@ public:
     static constexpr const DeviceKind& kind = device_kind;
 
     std::expected<void, Sentence> open(const DevicePlace& place) override;
-    ProvidedDevice provided(std::string_view name) noexcept override;
+    ProvidedDevice provided(std::string_view name) noexcept override {
+        return provide<Transport>(name, server_);
+    }
     void report(os::ArmingReport& report, std::string_view name) override;
     [[nodiscard]] bool has_safe_requests() const noexcept override { return true; }
     bool make_safe_requests(Time end, const Meanwhile& meanwhile) noexcept override;

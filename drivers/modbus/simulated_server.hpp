@@ -17,12 +17,8 @@ public:
         safe_ = static_cast<const SafeWrites*>(device_map);
         return {};
     }
-    [[nodiscard]] ProvidedDevice machine_end() noexcept {
-        return {type_id<Transport>, name, static_cast<Transport*>(&twin)};
-    }
-    [[nodiscard]] ProvidedDevice plant_end() noexcept {
-        return {type_id<ServerTables>, name, static_cast<ServerTables*>(&twin)};
-    }
+    [[nodiscard]] ProvidedDevice machine_end() noexcept { return provide<Transport>(name, twin); }
+    [[nodiscard]] ProvidedDevice plant_end() noexcept { return provide<ServerTables>(name, twin); }
 
     void bring_to_machine(Time) { seen_ = twin.changes(); }
     [[nodiscard]] bool is_driven() const noexcept { return twin.changes() != seen_; }

@@ -12,9 +12,7 @@ public:
     static constexpr const DeviceKind& kind = device_kind;
 
     std::expected<void, Sentence> open(const DevicePlace& place) override;
-    ProvidedDevice provided(std::string_view name) noexcept override {
-        return {type_id<Wires>, name, static_cast<Wires*>(&sender_)};
-    }
+    ProvidedDevice provided(std::string_view name) noexcept override { return provide<Wires>(name, sender_); }
 
 private:
     Sender sender_{};

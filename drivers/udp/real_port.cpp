@@ -12,8 +12,4 @@ std::expected<void, Sentence> RealPort::open(const DevicePlace& place) {
     return longest != nullptr && longest->asks ? socket_.ask(host, port) : socket_.open(host, port);
 }
 
-ProvidedDevice RealPort::provided(std::string_view name) noexcept {
-    return {type_id<Device>, name, static_cast<Device*>(&socket_)};
-}
-
 } // namespace tappet::udp

@@ -11,7 +11,9 @@ public:
     static constexpr const DeviceKind& kind = device_kind;
 
     std::expected<void, Sentence> open(const DevicePlace& place) override;
-    ProvidedDevice provided(std::string_view name) noexcept override;
+    ProvidedDevice provided(std::string_view name) noexcept override {
+        return provide<Device>(name, socket_);
+    }
 
 private:
     Socket socket_{};

@@ -13,12 +13,8 @@ public:
     SimulatedPort(std::string_view of, std::uint64_t) : SimulatedDevice{of} {}
 
     std::expected<void, Sentence> open(const void*) { return {}; }
-    [[nodiscard]] ProvidedDevice machine_end() noexcept {
-        return {type_id<Device>, name, static_cast<Device*>(&twin_)};
-    }
-    [[nodiscard]] ProvidedDevice plant_end() noexcept {
-        return {type_id<Wires>, name, static_cast<Wires*>(&twin_)};
-    }
+    [[nodiscard]] ProvidedDevice machine_end() noexcept { return provide<Device>(name, twin_); }
+    [[nodiscard]] ProvidedDevice plant_end() noexcept { return provide<Wires>(name, twin_); }
 
 private:
     Twin twin_{};

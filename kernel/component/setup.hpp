@@ -30,6 +30,11 @@ struct ProvidedDevice {
         return type == type_id<Device> ? static_cast<Device*>(device) : nullptr;
     }
 };
+/// Provides the device under its abstract class.
+template <class Device>
+constexpr ProvidedDevice provide(std::string_view name, Device& device) noexcept {
+    return {type_id<Device>, name, &device};
+}
 
 struct Setup {
     std::string_view component{};

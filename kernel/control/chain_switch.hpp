@@ -43,7 +43,7 @@ public:
             event<&ChainSwitch::fell_back>("fell_back", "a part of the chain failed; the first one runs"),
             command<&ChainSwitch::run, &ChainSwitch::has_run>(
                 "run", "the chain of that name, in place of the one that runs; failed: it cannot start"),
-            method<&ChainSwitch::is_running>("is_running", "that chain runs, or is requested", any_thread));
+            method<&ChainSwitch::is_running>("is_running", "that chain runs", any_thread));
     }
 
 private:

@@ -45,7 +45,8 @@ const std::vector<Row> house{
     {"kernel/services",   {"kernel/machine/worlds"}},
     {"kernel/system",     {"kernel/machine/check"}},
 
-    {"drivers/twin",      {"kernel/component"}},
+    {"drivers/map",       {"kernel/component"}},
+    {"drivers/twin",      {"drivers/map"}},
     {"drivers/can",       {"kernel/component", "drivers/twin"}},
     {"drivers/gpio",      {"kernel/component", "drivers/twin"}},
     {"drivers/modbus",    {"kernel/component", "drivers/twin"}},

@@ -28,7 +28,7 @@ void expect_same(const SignalMap<F, S>& map, const DbcMap& text, Places places =
     for (std::size_t s = 0; s < S; ++s) {
         const Signal& ours = map.signals[s];
         const std::size_t place =
-            read.signal(std::string{map.frames[map.frame_of[s]].name} + "." + std::string{ours.name});
+            read.signal(std::string{map.frames[map.row_of[s]].name} + "." + std::string{ours.name});
         ASSERT_NE(place, no_such) << ours.name;
         if (places == Places::the_same) {
             EXPECT_EQ(place, s) << ours.name;
