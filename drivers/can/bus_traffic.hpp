@@ -50,29 +50,16 @@ constexpr Sentence largest_part(const FrameResponse& found, std::string_view of,
 constexpr Sentence late_fault(const FrameRow& row, const FrameResponse& found, std::string_view of,
                               std::int64_t deadline_ns, std::int64_t load_ppm, std::uint32_t bit_rate) {
     if (!found.response.bounded && found.largest_ns > 0)
-        return Sentence{"frame \"",
-                        row.name,
-                        "\" may still wait when the next one follows, ",
-                        us(row.apart.count()),
-                        " later; ",
-                        largest_part(found, of, bit_rate)};
+        return Sentence("frame \"", row.name, "\" may still wait when the next one follows, ",
+                        us(row.apart.count()), " later; ", largest_part(found, of, bit_rate));
     if (!found.response.bounded)
-        return Sentence{"frame \"",
-                        row.name,
+        return Sentence("frame \"", row.name,
                         "\" may never be sent: it and more urgent frames fill the bus, which all frames "
                         "together load by ",
-                        load_ppm / 10'000,
-                        " % at ",
-                        bit_rate,
-                        " bit/s; send less often, or run the bus faster"};
-    return Sentence{"frame \"",
-                    row.name,
-                    "\" may take ",
-                    us(found.response.worst_ns),
-                    " but is due within ",
-                    us(deadline_ns),
-                    "; ",
-                    largest_part(found, of, bit_rate)};
+                        load_ppm / 10'000, " % at ", bit_rate,
+                        " bit/s; send less often, or run the bus faster");
+    return Sentence("frame \"", row.name, "\" may take ", us(found.response.worst_ns), " but is due within ",
+                    us(deadline_ns), "; ", largest_part(found, of, bit_rate));
 }
 
 } // namespace detail
@@ -86,15 +73,9 @@ constexpr Sentence bit_rate_fault(const ProvenRates& proven, const BusFacts& bus
         return Sentence{"it runs at ", bus.bit_rate, " bit/s, but its wire was checked for ", proven.nominal,
                         "; correct one of them"};
     if (proven.data != 0 && proven.data != bus.data_bit_rate)
-        return Sentence{"its data phase runs at ",
-                        bus.data_bit_rate,
-                        " bit/s, but its wire was checked for ",
-                        proven.data,
-                        "; write bit_rate(",
-                        proven.nominal,
-                        ", ",
-                        proven.data,
-                        ") at the device, or correct the wire"};
+        return Sentence("its data phase runs at ", bus.data_bit_rate, " bit/s, but its wire was checked for ",
+                        proven.data, "; write bit_rate(", proven.nominal, ", ", proven.data,
+                        ") at the device, or correct the wire");
     return {};
 }
 

@@ -336,10 +336,8 @@ constexpr Sentence name_fault(std::string_view frame, const Signal& s, std::stri
     for (const ValueName& each : s.names) {
         nearest.consider(each.name);
         if (each.name == name && &each != value)
-            return Sentence{who,          "two values \"",
-                            name,         "\", ",
-                            value->value, " and ",
-                            each.value,   "; give them different names, by VAL_ or by .named(..)"};
+            return Sentence(who, "two values \"", name, "\", ", value->value, " and ", each.value,
+                            "; give them different names, by VAL_ or by .named(..)");
     }
     if (value != nullptr) return {};
     return Sentence{who, "no value \"", name, "\"",

@@ -202,24 +202,16 @@ constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept
     const unsigned low = bit_place(s, 0);
     const unsigned high = bit_place(s, s.bits - 1u);
     if (s.start >= end || low >= end || high >= end)
-        return Sentence{who,
-                        " reaches outside its frame of ",
-                        unsigned{frame.length},
-                        " bytes: it starts at bit ",
-                        unsigned{s.start},
+        return Sentence(who, " reaches outside its frame of ", unsigned{frame.length},
+                        " bytes: it starts at bit ", unsigned{s.start},
                         s.order == Order::intel ? " (its lowest) and goes up "
                                                 : " (its highest) and goes down ",
-                        unsigned{s.bits},
-                        " bits; move it or lengthen the frame"};
+                        unsigned{s.bits}, " bits; move it or lengthen the frame");
     for (std::size_t i = 0; i < s.names.size(); ++i) {
         const std::int64_t value = s.names[i].value;
         if (!is_float && to_integer(s, static_cast<std::uint64_t>(value) & mask_of(s)) != value)
-            return Sentence{who,
-                            " has a name for the value ",
-                            value,
-                            ", which its ",
-                            unsigned{s.bits},
-                            " bits cannot hold: correct one of them"};
+            return Sentence(who, " has a name for the value ", value, ", which its ", unsigned{s.bits},
+                            " bits cannot hold: correct one of them");
         for (std::size_t other = 0; other < i; ++other)
             if (s.names[other].value == value)
                 return Sentence{who, " has two names for the value ", value, ": keep one"};
@@ -261,19 +253,12 @@ constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
         nearest.consider(each.name);
         if (each.name != s.multiplexor) continue;
         if (!is_integer(each) || each.bits > 32)
-            return Sentence{"signal \"",
-                            frame.name,
-                            ".",
-                            each.name,
-                            "\" selects \"",
-                            s.name,
-                            "\" but is not an integer of at most 32 bits: remove factor and offset"};
+            return Sentence("signal \"", frame.name, ".", each.name, "\" selects \"", s.name,
+                            "\" but is not an integer of at most 32 bits: remove factor and offset");
         for (const Selection& values : s.selections)
             if (values.from > values.to || values.to > mask_of(each))
-                return Sentence{who,         " is selected by values that \"",
-                                each.name,   "\" never has: ",
-                                values.from, " to ",
-                                values.to,   "; correct them"};
+                return Sentence(who, " is selected by values that \"", each.name,
+                                "\" never has: ", values.from, " to ", values.to, "; correct them");
         return {};
     }
     return Sentence{who, " is selected by \"", s.multiplexor,

@@ -40,24 +40,14 @@ constexpr Sentence mapping_fault(const NodeRow& node, const PdoRow& row, const P
     if (object == nullptr)
         return Sentence{subject, ", which ", node.dictionary.file, " does not have; correct one of them"};
     if (!object->mappable || bits_of(object->type) == 0)
-        return Sentence{subject,
-                        ", which may not be mapped into a PDO (",
-                        node.dictionary.file,
-                        ":",
-                        object->line,
-                        "); take another one"};
+        return Sentence(subject, ", which may not be mapped into a PDO (", node.dictionary.file, ":",
+                        object->line, "); take another one");
     const bool wrong_way = place.sent_by_node
                                ? !readable(object->access) || object->access == Access::read_write_write
                                : !writable(object->access) || object->access == Access::read_write_read;
     if (wrong_way)
-        return Sentence{subject,
-                        ", which the device ",
-                        place.sent_by_node ? "only receives" : "only sends",
-                        " (",
-                        node.dictionary.file,
-                        ":",
-                        object->line,
-                        "); map it in the other direction"};
+        return Sentence(subject, ", which the device ", place.sent_by_node ? "only receives" : "only sends",
+                        " (", node.dictionary.file, ":", object->line, "); map it in the other direction");
     return {};
 }
 
@@ -78,30 +68,21 @@ constexpr Sentence signals_fault(const can::SignalMap<F, S>& signals, const Node
             const unsigned low = can::bit_place(signal, 0), high = can::bit_place(signal, signal.bits - 1u);
             const bool starts_inside = low >= begin && low < end;
             if (starts_inside && high >= end)
-                return Sentence{subject,     " reaches from bit ",
-                                low,         " to ",
-                                high,        ", but object ",
-                                to_text(at), " \"",
-                                object.name, "\" from ",
-                                begin,       " to ",
-                                end - 1,     "; move it or shorten it"};
+                return Sentence(subject, " reaches from bit ", low, " to ", high, ", but object ",
+                                to_text(at), " \"", object.name, "\" from ", begin, " to ", end - 1,
+                                "; move it or shorten it");
             const bool whole = low == begin && high + 1 == end;
             const bool real = signal.kind == can::Kind::float32 || signal.kind == can::Kind::float64;
             const bool with_sign = signal.kind == can::Kind::signed_integer;
             if (whole && (real != is_real(object.type) || (!real && with_sign != is_signed(object.type))))
-                return Sentence{subject,
-                                " is ",
+                return Sentence(subject, " is ",
                                 real        ? "a real"
                                 : with_sign ? "signed"
                                             : "unsigned",
-                                ", but object ",
-                                to_text(at),
-                                " \"",
-                                object.name,
-                                "\" is ",
+                                ", but object ", to_text(at), " \"", object.name, "\" is ",
                                 is_real(object.type)     ? "a real; write as_float()"
                                 : is_signed(object.type) ? "signed; write as_signed()"
-                                                         : "unsigned; take as_signed() or as_float() away"};
+                                                         : "unsigned; take as_signed() or as_float() away");
             begin = end;
         }
     }
@@ -117,19 +98,13 @@ constexpr Sentence times_fault(const Sentence& subject, const NodeRow& node, con
         return Sentence{subject, " has an event timer that is not a multiple of 1 ms, or an inhibit time "
                                  "that is not one of 100 us, up to 65535; round it"};
     if (row.how.event_timer != Duration{} && node.dictionary.find({place.communication(), 5}) == nullptr)
-        return Sentence{subject,
-                        " has an event timer, which the device does not have: ",
-                        node.dictionary.file,
-                        " has no ",
-                        to_text({place.communication(), 5}),
-                        "; let it be synchronous, or send by itself"};
+        return Sentence(
+            subject, " has an event timer, which the device does not have: ", node.dictionary.file,
+            " has no ", to_text({place.communication(), 5}), "; let it be synchronous, or send by itself");
     if (row.how.inhibit_time != Duration{} && node.dictionary.find({place.communication(), 3}) == nullptr)
-        return Sentence{subject,
-                        " has an inhibit time, which the device does not have: ",
-                        node.dictionary.file,
-                        " has no ",
-                        to_text({place.communication(), 3}),
-                        "; take it away"};
+        return Sentence(subject,
+                        " has an inhibit time, which the device does not have: ", node.dictionary.file,
+                        " has no ", to_text({place.communication(), 3}), "; take it away");
     return {};
 }
 
@@ -142,27 +117,17 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
     const can::FrameRow& frame = signals.frames[f];
     const PdoPlace place = pdo_place(frame.identifier, node.id);
     if (!place.known)
-        return Sentence{subject,
-                        " has the identifier ",
-                        hex(frame.identifier.id, 3),
-                        ", which is not one of the node's PDOs; its first are ",
-                        hex(cob::tpdo + node.id, 3),
-                        " (it sends) and ",
-                        hex(cob::rpdo + node.id, 3),
-                        " (it receives)"};
+        return Sentence(subject, " has the identifier ", hex(frame.identifier.id, 3),
+                        ", which is not one of the node's PDOs; its first are ", hex(cob::tpdo + node.id, 3),
+                        " (it sends) and ", hex(cob::rpdo + node.id, 3), " (it receives)");
     if (place.sent_by_node != (frame.direction == can::Direction::receive))
         return Sentence{subject, " is one that the node ", place.sent_by_node ? "sends" : "receives",
                         ", by its identifier; exchange can::receive and can::transmit"};
     if (node.dictionary.find({place.communication(), 1}) == nullptr ||
         node.dictionary.find({place.mapping(), 0}) == nullptr)
-        return Sentence{subject,
-                        " is a PDO that the device does not have: ",
-                        node.dictionary.file,
-                        " has no ",
-                        hex(place.communication(), 4),
-                        " or no ",
-                        hex(place.mapping(), 4),
-                        "; take another identifier"};
+        return Sentence(subject, " is a PDO that the device does not have: ", node.dictionary.file,
+                        " has no ", hex(place.communication(), 4), " or no ", hex(place.mapping(), 4),
+                        "; take another identifier");
     if (frame.format != can::Format::classical)
         return Sentence{subject, " is CAN FD, and CANopen has classical frames; write bytes(8) or less"};
     unsigned bits = 0;
@@ -171,12 +136,8 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
         bits += bits_of(node.dictionary.find(at)->type);
     }
     if (bits != 8u * frame.length)
-        return Sentence{subject,
-                        " has ",
-                        unsigned{frame.length},
-                        " bytes, but its objects take ",
-                        bits,
-                        " bits; correct one of them"};
+        return Sentence(subject, " has ", unsigned{frame.length}, " bytes, but its objects take ", bits,
+                        " bits; correct one of them");
     if (row.how.type > 240 && row.how.type < 252)
         return Sentence{subject, " is synchronous(", unsigned{row.how.type}, "); the standard ends at 240"};
     if (row.how.type <= 240 && manager.sync_every == Duration{})
@@ -215,20 +176,15 @@ constexpr Sentence parameter_fault(const NodeRow& node, const ParameterRow& row)
     if (object == nullptr)
         return Sentence{subject, ": ", node.dictionary.file, " has no such object; correct one of them"};
     if (!writable(object->access))
-        return Sentence{
-            subject,          ": the object is only read (", node.dictionary.file, ":", object->line,
-            "); take it away"};
+        return Sentence(subject, ": the object is only read (", node.dictionary.file, ":", object->line,
+                        "); take it away");
     const unsigned wide = bits_of(object->type);
     const auto bits = static_cast<std::uint64_t>(row.value);
     const bool fits = wide >= 64 || (row.value >= 0 ? bits <= low_bits(~std::uint64_t{0}, wide)
                                                     : is_signed(object->type) && ~bits >> (wide - 1) == 0);
     if (wide == 0 || is_real(object->type) || !fits || !within_limits(*object, low_bits(bits, wide), node.id))
-        return Sentence{subject,
-                        ": the value is outside of the range of the object (",
-                        node.dictionary.file,
-                        ":",
-                        object->line,
-                        "); correct it"};
+        return Sentence(subject, ": the value is outside of the range of the object (", node.dictionary.file,
+                        ":", object->line, "); correct it");
     return {};
 }
 
@@ -243,21 +199,13 @@ constexpr Sentence node_fault(const ManagerRow& manager, const NodeRow& node) no
         return Sentence{subject, " has the identifier of the manager; give one of them another"};
     if (node.name.empty()) return Sentence{subject, " has no name; name it"};
     if (node.too_many)
-        return Sentence{subject,
-                        " has more than ",
-                        NodeRow::most_pdos,
-                        " PDOs of 8 objects, or more than ",
-                        NodeRow::most_parameters,
-                        " values to write; keep those in the device"};
+        return Sentence(subject, " has more than ", NodeRow::most_pdos, " PDOs of 8 objects, or more than ",
+                        NodeRow::most_parameters, " values to write; keep those in the device");
     if (node.dictionary.objects.empty())
         return Sentence{subject, " has no dictionary; name it: canopen::dictionary<files::..>"};
     if (node.dictionary.node != 0 && node.dictionary.node != node.id)
-        return Sentence{subject,
-                        ": ",
-                        node.dictionary.file,
-                        " is the configuration of node ",
-                        unsigned{node.dictionary.node},
-                        "; take the one of this node"};
+        return Sentence(subject, ": ", node.dictionary.file, " is the configuration of node ",
+                        unsigned{node.dictionary.node}, "; take the one of this node");
     if (node.beats == Duration{})
         return Sentence{subject,
                         " has no heartbeat, so that its loss would not be detected; write .heartbeat(100ms)"};

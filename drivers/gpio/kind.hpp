@@ -38,9 +38,8 @@ constexpr Sentence check_chip(const DeviceAsked& asked) {
                 return Sentence{"lines \"", other.part, "\" and \"", line.part,
                                 "\" share a name or an offset; correct one"};
         if (line.numbers[0] >= count)
-            return Sentence{"line \"",        line.part,    "\" has offset ",     line.numbers[0],
-                            " but device \"", asked.device, "\" has lines 0 to ", count - 1,
-                            "; correct it"};
+            return Sentence("line \"", line.part, "\" has offset ", line.numbers[0], " but device \"",
+                            asked.device, "\" has lines 0 to ", count - 1, "; correct it");
         bool wanted = false;
         for (const auto& each : asked.parts) wanted |= each == line.part;
         if (!wanted)

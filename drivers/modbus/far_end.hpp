@@ -64,13 +64,10 @@ class FarEnd final : public tappet::FarEnd {
     static constexpr Sentence out_of_reach = [] {
         for (const Row& row : map.rows)
             if (row.run.address + row.run.count > ServerTables::size)
-                return Sentence{"row \"",
-                                row.name,
-                                "\" ends at address ",
-                                row.run.address + row.run.count - 1,
-                                ": a simulated server ends at ",
+                return Sentence("row \"", row.name, "\" ends at address ",
+                                row.run.address + row.run.count - 1, ": a simulated server ends at ",
                                 ServerTables::size - 1,
-                                "; raise ServerTables::size in drivers/modbus/far_end.hpp"};
+                                "; raise ServerTables::size in drivers/modbus/far_end.hpp");
         return Sentence{};
     }();
     TAPPET_ACCEPTED(out_of_reach);

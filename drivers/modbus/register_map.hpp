@@ -123,9 +123,8 @@ constexpr Sentence row_fault(const Row& row) noexcept {
     const unsigned most = std::min(most_in_request(row.run.table, row.write), most_words);
     if (row.name.empty()) return Sentence{"a row has no name: name it"};
     if (row.run.count == 0 || row.run.count > most)
-        return Sentence{
-            who,  " has ",     row.run.count, " ", name_of(row.run.table), ": a row carries 1 to ",
-            most, "; split it"};
+        return Sentence(who, " has ", row.run.count, " ", name_of(row.run.table), ": a row carries 1 to ",
+                        most, "; split it");
     if (row.run.address + std::uint64_t{row.run.count} > 65536)
         return Sentence{who, " ends at address ", row.run.address + row.run.count - 1, ": the last is 65535"};
     if (row.write && !writable(row.run.table))
@@ -141,12 +140,9 @@ constexpr Sentence row_fault(const Row& row) noexcept {
 constexpr Sentence register_fault(const Row& row, const Register& r) noexcept {
     const Sentence who{"register \"", row.name, ".", r.name, "\""};
     if ((r.kind == Kind::bit) != holds_bits(row.run.table))
-        return Sentence{who,
-                        " is a ",
-                        r.kind == Kind::bit ? "bit" : "word",
-                        " among ",
+        return Sentence(who, " is a ", r.kind == Kind::bit ? "bit" : "word", " among ",
                         name_of(row.run.table),
-                        ": take bit() for coils and discrete inputs, words elsewhere"};
+                        ": take bit() for coils and discrete inputs, words elsewhere");
     if (r.low_word_first && r.width() == 1)
         return Sentence{who, " is swapped, but has one word; write bytes_swapped(), or take swapped() away"};
     if (r.low_byte_first && r.kind == Kind::bit)
@@ -181,10 +177,9 @@ template <std::size_t R, std::size_t V> constexpr Sentence map_fault(const Regis
             }
         }
         if (row.write && covered != row.run.count)
-            return Sentence{
-                "row \"",      row.name, "\" writes ",
-                row.run.count, " ",      name_of(row.run.table),
-                " and names ", covered,  ": name all, or what is not named would be overwritten with 0"};
+            return Sentence("row \"", row.name, "\" writes ", row.run.count, " ", name_of(row.run.table),
+                            " and names ", covered,
+                            ": name all, or what is not named would be overwritten with 0");
     }
     return {};
 }

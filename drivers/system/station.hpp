@@ -171,14 +171,9 @@ struct StationRows {
     static constexpr Sentence wake_fault =
         wakes <= Engine::max_wakes_watched
             ? Sentence{}
-            : Sentence{system.name,
-                       ": node \"",
-                       system.nodes[n].name,
-                       "\" may be woken ",
-                       wakes,
-                       " times by its wire within served_within(...), and ",
-                       Engine::max_wakes_watched,
-                       " are watched: serve it within a shorter time, or let fewer rows begin and end there"};
+            : Sentence(system.name, ": node \"", system.nodes[n].name, "\" may be woken ", wakes,
+                       " times by its wire within served_within(...), and ", Engine::max_wakes_watched,
+                       " are watched: serve it within a shorter time, or let fewer rows begin and end there");
     TAPPET_ACCEPTED(wake_fault);
 
     // ---- the rows
