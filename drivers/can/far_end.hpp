@@ -12,9 +12,9 @@
 namespace tappet::can {
 
 /// Raw frames, for a plant that builds its own.
-class RawFarEnd : public FarEnd {
+class RawFarEnd : public FarEndOf<Device> {
 public:
-    RawFarEnd(FarEnds& of, std::string_view device) : FarEnd{of, device, "can"} {}
+    RawFarEnd(FarEnds& of, std::string_view device) : FarEndOf{of, device, "can"} {}
 
     /// Takes the machine's next frame. Returns false when there is none.
     bool receive(Frame& frame) noexcept {
@@ -29,21 +29,9 @@ public:
         refused_ += taken ? 0u : 1u;
         return taken;
     }
-    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
-    [[nodiscard]] Device& wire() noexcept { return *wire_; }
 
     void give(Time now) override { wire_->service(now); }
     [[nodiscard]] Time next() const noexcept override { return wire_->next_service(); }
-
-protected:
-    bool take_wire(const ProvidedDevice& wire) noexcept override {
-        wire_ = wire.as<Device>();
-        return wire_ != nullptr;
-    }
-
-private:
-    Device* wire_ = nullptr;
-    std::uint64_t refused_ = 0;
 };
 
 /// Access by the names of the map, which the compiler checks:

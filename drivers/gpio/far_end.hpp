@@ -28,7 +28,7 @@ public:
 ///     io.get("valve")                     as the machine drives it
 ///     io.set("bottle_present", true)      in this move(), or at a given time not before it
 template <const auto& map>
-class FarEnd final : public tappet::FarEnd {
+class FarEnd final : public FarEndOf<Wires> {
     TAPPET_ACCEPTED(map.fault);
 
     template <Role role>
@@ -44,7 +44,7 @@ public:
     using Input = LineName<Role::input>; ///< of the machine
     using Output = LineName<Role::output>;
 
-    FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "gpio"} {}
+    FarEnd(FarEnds& of, std::string_view device) : FarEndOf{of, device, "gpio"} {}
 
     [[nodiscard]] bool get(Output line) const noexcept { return (outputs_ >> line.index & 1u) != 0; }
     /// Returns true when the machine changed it since the plant's last move().
@@ -58,37 +58,32 @@ public:
         const Mask bit = Mask{1} << line.index;
         if (((inputs_ & bit) != 0) == active) return;
         inputs_ ^= bit;
-        if (wires_ == nullptr) return; // applied once the wires exist
-        refused_ += wires_->drive(line.index, active, at) ? 0u : 1u;
+        if (wire_ == nullptr) return; // applied once the wires exist
+        refused_ += wire_->drive(line.index, active, at) ? 0u : 1u;
     }
-    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
-    [[nodiscard]] Wires& wire() noexcept { return *wires_; }
 
     void take(Time now) override {
         now_ = now;
         before_ = outputs_;
-        outputs_ = wires_->outputs();
-        changed_at_ = wires_->changed_at(now);
+        outputs_ = wire_->outputs();
+        changed_at_ = wire_->changed_at(now);
     }
 
 protected:
-    bool take_wire(const ProvidedDevice& wire) noexcept override {
-        wires_ = wire.as<Wires>();
-        if (wires_ == nullptr) return false;
+    bool take_wire(const ProvidedDevice& provided) noexcept override {
+        if (!FarEndOf::take_wire(provided)) return false;
         outputs_ = before_ = 0;
         for (std::size_t i = 0; i < map.rows.size(); ++i)
-            if ((inputs_ >> i & 1u) != 0) refused_ += wires_->drive(i, true, now_) ? 0u : 1u;
+            if ((inputs_ >> i & 1u) != 0) refused_ += wire_->drive(i, true, now_) ? 0u : 1u;
         return true;
     }
 
 private:
-    Wires* wires_ = nullptr;
     Mask inputs_ = 0;
     Mask outputs_ = 0;
     Mask before_ = 0;
     Time now_{};
     Time changed_at_{};
-    std::uint64_t refused_ = 0;
 };
 
 } // namespace tappet::gpio

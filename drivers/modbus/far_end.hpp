@@ -59,7 +59,7 @@ private:
 ///     server.get("pump.on")               the last value the machine wrote
 ///     server.set("unit.oil_pressure", 2.5)
 template <const auto& map>
-class FarEnd final : public tappet::FarEnd {
+class FarEnd final : public FarEndOf<ServerTables> {
     TAPPET_ACCEPTED(map.fault);
     static constexpr Sentence out_of_reach = [] {
         for (const Row& row : map.rows)
@@ -85,30 +85,29 @@ public:
     using Read = RegisterName<false>; ///< by the machine
     using Written = RegisterName<true>;
 
-    FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "modbus"} {}
+    FarEnd(FarEnds& of, std::string_view device) : FarEndOf{of, device, "modbus"} {}
 
     [[nodiscard]] double get(Written path) const noexcept {
         const Place place{path.index};
-        const auto whole = tables_->whole();
-        Words words{tables_->get(place.table, place.address), 0};
-        if (place.of.width() == 2) words[1] = tables_->get(place.table, place.address + 1);
+        const auto whole = wire_->whole();
+        Words words{wire_->get(place.table, place.address), 0};
+        if (place.of.width() == 2) words[1] = wire_->get(place.table, place.address + 1);
         return to_physical(place.of, words);
     }
     void set(Read path, double value) noexcept {
         const Place place{path.index};
         const Encoded encoded = to_words(place.of, value);
         if (encoded.refused) return; // not a number: the previous value stays
-        const auto whole = tables_->whole();
+        const auto whole = wire_->whole();
         for (std::size_t i = 0; i < place.of.width(); ++i)
-            tables_->set(place.table, place.address + i, encoded.words[i]);
+            wire_->set(place.table, place.address + i, encoded.words[i]);
     }
-    [[nodiscard]] ServerTables& tables() noexcept { return *tables_; }
+    [[nodiscard]] ServerTables& tables() noexcept { return *wire_; }
 
 protected:
-    bool take_wire(const ProvidedDevice& wire) noexcept override {
-        tables_ = wire.as<ServerTables>();
-        if (tables_ == nullptr) return false;
-        for (const Row& row : map.rows) tables_->have(row.run.table, row.run.address + row.run.count);
+    bool take_wire(const ProvidedDevice& provided) noexcept override {
+        if (!FarEndOf::take_wire(provided)) return false;
+        for (const Row& row : map.rows) wire_->have(row.run.table, row.run.address + row.run.count);
         return true;
     }
 
@@ -122,8 +121,6 @@ private:
               table{map.rows[map.row_of[v]].run.table},
               address{map.rows[map.row_of[v]].run.address + map.registers[v].at} {}
     };
-
-    ServerTables* tables_ = nullptr;
 };
 
 } // namespace tappet::modbus

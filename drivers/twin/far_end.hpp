@@ -11,6 +11,7 @@
 #include "kernel/component/setup.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -82,6 +83,27 @@ protected:
 private:
     std::string_view device_;
     std::string_view kind_;
+};
+
+/// A far end whose wire a world provides as a `Wire`.
+template <class Wire>
+class FarEndOf : public FarEnd {
+public:
+    using FarEnd::FarEnd;
+
+    /// Once it is connected.
+    [[nodiscard]] Wire& wire() noexcept { return *wire_; }
+    /// Returns how often the wire refused what the plant sent.
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
+
+protected:
+    bool take_wire(const ProvidedDevice& provided) noexcept override {
+        wire_ = provided.as<Wire>();
+        return wire_ != nullptr;
+    }
+
+    Wire* wire_ = nullptr; ///< null before it is connected
+    std::uint64_t refused_ = 0;
 };
 
 } // namespace tappet

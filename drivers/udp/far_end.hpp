@@ -10,28 +10,17 @@ namespace tappet::udp {
 
 ///     udp::FarEnd camera{ends, "camera-link"};
 ///     camera.send(packet);
-class FarEnd final : public tappet::FarEnd {
+class FarEnd final : public FarEndOf<Wires> {
 public:
-    FarEnd(FarEnds& of, std::string_view device) : tappet::FarEnd{of, device, "udp"} {}
+    FarEnd(FarEnds& of, std::string_view device) : FarEndOf{of, device, "udp"} {}
 
     /// Sends at once. Counts datagrams that could not be sent.
     void send(std::span<const std::byte> datagram) {
-        if (wires_ == nullptr || !wires_->tell(datagram)) ++refused_;
+        if (wire_ == nullptr || !wire_->tell(datagram)) ++refused_;
     }
     /// Takes the machine's next datagram; returns 0 when there is none. On the bench, where machines reach
     /// each other directly, it always returns 0.
-    std::size_t receive(std::span<std::byte> into) { return wires_ == nullptr ? 0 : wires_->hear(into); }
-    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
-
-protected:
-    bool take_wire(const ProvidedDevice& wire) noexcept override {
-        wires_ = wire.as<Wires>();
-        return wires_ != nullptr;
-    }
-
-private:
-    Wires* wires_ = nullptr;
-    std::uint64_t refused_ = 0;
+    std::size_t receive(std::span<std::byte> into) { return wire_ == nullptr ? 0 : wire_->hear(into); }
 };
 
 } // namespace tappet::udp
