@@ -4,6 +4,7 @@
 
 #include "drivers/can/signal_store.hpp"
 #include "drivers/twin/far_end.hpp"
+#include "kernel/base/array_of.hpp"
 
 #include <cstdint>
 #include <utility>
@@ -33,28 +34,19 @@ protected:
     static constexpr auto nodes = seen_from_the_nodes(map);
 
     template <Direction direction>
-    struct FrameName {
-        std::size_t index;
-        consteval FrameName(const char* name)
-            : index{tappet::FarEnd::find(name, nodes.frames.size(), [](std::size_t f) {
-                  const FrameRow& row = nodes.frames[f];
-                  return row.direction == direction ? MapName{{}, row.name} : MapName{};
-              })} {}
-    };
+    static constexpr auto frame_names = array_of<nodes.frames.size()>([](std::size_t f) {
+        return nodes.frames[f].direction == direction ? MapName{{}, nodes.frames[f].name} : MapName{};
+    });
     template <Direction direction>
-    struct SignalName {
-        std::size_t index;
-        consteval SignalName(const char* path)
-            : index{tappet::FarEnd::find(path, nodes.signals.size(), [](std::size_t s) {
-                  return nodes.frames[nodes.row_of[s]].direction == direction ? nodes.name_of(s) : MapName{};
-              })} {}
-    };
+    static constexpr auto signal_names = array_of<nodes.signals.size()>([](std::size_t s) {
+        return nodes.frames[nodes.row_of[s]].direction == direction ? nodes.name_of(s) : MapName{};
+    });
 
 public:
-    using Received = FrameName<Direction::receive>;
-    using Sent = FrameName<Direction::transmit>;
-    using ReceivedSignal = SignalName<Direction::receive>;
-    using SentSignal = SignalName<Direction::transmit>;
+    using Received = FarEndName<frame_names<Direction::receive>>;
+    using Sent = FarEndName<frame_names<Direction::transmit>>;
+    using ReceivedSignal = FarEndName<signal_names<Direction::receive>>;
+    using SentSignal = FarEndName<signal_names<Direction::transmit>>;
 
     [[nodiscard]] double get(ReceivedSignal signal) const noexcept TAPPET_REALTIME {
         return store_.physical(signal.index);

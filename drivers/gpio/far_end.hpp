@@ -3,6 +3,7 @@
 
 #include "drivers/gpio/line_map.hpp"
 #include "drivers/twin/far_end.hpp"
+#include "kernel/base/array_of.hpp"
 
 #include <array>
 
@@ -32,17 +33,13 @@ class FarEnd final : public FarEndOf<Wires> {
     TAPPET_ACCEPTED(map.fault);
 
     template <Role role>
-    struct LineName {
-        std::size_t index;
-        consteval LineName(const char* name)
-            : index{find(name, map.rows.size(), [](std::size_t i) {
-                  return map.rows[i].line.role == role ? MapName{{}, map.rows[i].line.name} : MapName{};
-              })} {}
-    };
+    static constexpr auto names = array_of<map.rows.size()>([](std::size_t i) {
+        return map.rows[i].line.role == role ? MapName{{}, map.rows[i].line.name} : MapName{};
+    });
 
 public:
-    using Input = LineName<Role::input>; ///< of the machine
-    using Output = LineName<Role::output>;
+    using Input = FarEndName<names<Role::input>>; ///< of the machine
+    using Output = FarEndName<names<Role::output>>;
 
     FarEnd(FarEnds& of, std::string_view device) : FarEndOf{of, device, "gpio"} {}
 

@@ -3,6 +3,7 @@
 
 #include "drivers/modbus/register_map.hpp"
 #include "drivers/twin/far_end.hpp"
+#include "kernel/base/array_of.hpp"
 
 #include <array>
 #include <atomic>
@@ -73,17 +74,12 @@ class FarEnd final : public FarEndOf<ServerTables> {
     TAPPET_ACCEPTED(out_of_reach);
 
     template <bool write>
-    struct RegisterName {
-        std::size_t index;
-        consteval RegisterName(const char* path)
-            : index{find(path, map.registers.size(), [](std::size_t v) {
-                  return map.rows[map.row_of[v]].write == write ? map.name_of(v) : MapName{};
-              })} {}
-    };
+    static constexpr auto names = array_of<map.registers.size()>(
+        [](std::size_t v) { return map.rows[map.row_of[v]].write == write ? map.name_of(v) : MapName{}; });
 
 public:
-    using Read = RegisterName<false>; ///< by the machine
-    using Written = RegisterName<true>;
+    using Read = FarEndName<names<false>>; ///< by the machine
+    using Written = FarEndName<names<true>>;
 
     FarEnd(FarEnds& of, std::string_view device) : FarEndOf{of, device, "modbus"} {}
 

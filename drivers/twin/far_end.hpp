@@ -47,8 +47,36 @@ public:
     /// Returns when give() has something to send by itself: the next periodic frame.
     [[nodiscard]] virtual Time next() const noexcept { return never; }
 
-    // ---- for names checked at compile time
+protected:
+    virtual bool take_wire(const ProvidedDevice& wire) noexcept = 0;
 
+private:
+    std::string_view device_;
+    std::string_view kind_;
+};
+
+/// A name that a plant writes, checked at compile time: one of `names`, of which empty ones do not count.
+template <const auto& names>
+struct FarEndName {
+    std::size_t index = 0; ///< in `names`
+
+    consteval FarEndName(const char* written) {
+        MapName meant;
+        std::size_t least = std::max<std::size_t>(2, std::string_view{written}.size() / 3) + 1;
+        for (; index < names.size(); ++index) {
+            const MapName& each = names[index];
+            if (each.name.empty()) continue;
+            if (each.is(written)) return;
+            const Sentence whole{each.of, each.of.empty() ? "" : ".", each.name};
+            const std::size_t far = edit_distance(written, whole.view(), least);
+            if (far >= least) continue;
+            least = far;
+            meant = each;
+        }
+        did_you_mean(meant.of.data(), meant.name.data());
+    }
+
+private:
     /// Neither defined nor constexpr: the compiler's message names it when a plant's name is not in the map.
     static void this_name_is_not_in_the_map_or_goes_the_other_way();
     /// Puts the nearest name into clang's message, by its arguments; for a signal, its frame's before it.
@@ -57,32 +85,6 @@ public:
         if (of != name || name == nullptr) // always true: g++ reports less about a constant expression
             this_name_is_not_in_the_map_or_goes_the_other_way();
     }
-    /// Returns the index of the name among the first `count` of `names(i)`, of which empty ones do not count.
-    /// Does not compile when it is not there.
-    template <class Names>
-    static constexpr std::size_t find(std::string_view written, std::size_t count, const Names& names) {
-        MapName meant;
-        std::size_t least = std::max<std::size_t>(2, written.size() / 3) + 1;
-        for (std::size_t i = 0; i < count; ++i) {
-            const MapName each = names(i);
-            if (each.name.empty()) continue;
-            if (each.is(written)) return i;
-            const Sentence whole{each.of, each.of.empty() ? "" : ".", each.name};
-            const std::size_t far = edit_distance(written, whole.view(), least);
-            if (far >= least) continue;
-            least = far;
-            meant = each;
-        }
-        did_you_mean(meant.of.data(), meant.name.data());
-        return no_such;
-    }
-
-protected:
-    virtual bool take_wire(const ProvidedDevice& wire) noexcept = 0;
-
-private:
-    std::string_view device_;
-    std::string_view kind_;
 };
 
 /// A far end whose wire a world provides as a `Wire`.

@@ -31,7 +31,7 @@ const std::vector<Size> sizes{
     {"kernel/pieces",         697},
     {"kernel/services",       5896},
     {"kernel/system",         2141},
-    {"drivers",               19394},
+    {"drivers",               19205},
     {"board",                 4550},
     {"apps/carpet_loom",      5245},
     {"apps/bearing_press",    783},
