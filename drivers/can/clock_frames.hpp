@@ -47,17 +47,11 @@ inline constexpr auto clock_frames = [] {
     TAPPET_ACCEPTED(clock_fault(row));
     Services<2, 0> both{};
     both.sends_itself = true; // the sender; receivers send nothing
-    both.frames[0].name = "clock.sync";
-    both.frames[1].name = "clock.follow_up";
-    for (FrameRow& frame : both.frames) {
-        frame.identifier = row.identifier;
-        frame.direction = direction;
-        frame.length = 8;
-    }
     // Not on the bus's own time grid. Two FUP can be closer together than two SYNC.
-    both.frames[0].apart = row.every;
-    both.frames[0].jitter = direction == Direction::transmit ? Duration{} : row.jitter;
-    both.frames[1].apart = row.every - row.jitter - follow_up_within(row);
+    const Rate sync{{}, row.every, direction == Direction::transmit ? Duration{} : row.jitter};
+    const Rate follow_up{{}, row.every - row.jitter - follow_up_within(row), {}};
+    both.frames = {FrameRow{{"clock.sync"}, sync, row.identifier, direction, 8},
+                   FrameRow{{"clock.follow_up"}, follow_up, row.identifier, direction, 8}};
     return both;
 }();
 

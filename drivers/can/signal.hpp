@@ -116,11 +116,7 @@ struct Signal : ScaledValue<Signal> {
 };
 
 constexpr Signal signal(std::string_view name, std::uint16_t start, std::uint8_t bits) noexcept {
-    Signal s;
-    s.name = name;
-    s.start = start;
-    s.bits = bits;
-    return s;
+    return {{{name}}, start, bits};
 }
 
 /// A signal whose place and meaning come from a DBC file.

@@ -18,18 +18,22 @@ enum class Direction : std::uint8_t {
     passing ///< frames between other nodes: only load on the bus, for the timing proof
 };
 
+/// How often a frame comes; the bus's response times are computed from this.
+struct Rate {
+    Duration every{};  ///< the period; 0: sent on demand, every one, in order
+    Duration apart{};  ///< the least time between two frames; 0: the row does not say
+    Duration jitter{}; ///< receive: how late its node may send it
+};
+
 /// A row of the table.
-struct FrameRow : MapRow {
+struct FrameRow : MapRow, Rate {
     Identifier identifier{};
     Direction direction = Direction::receive;
     std::uint8_t length = 0;
-    Duration every{};           ///< the period; 0: sent on demand, every one, in order
-    Duration apart{};           ///< the least time between two frames; 0: the row does not say
-    Duration jitter{};          ///< receive: how late its node may send it
+    Format format = Format::classical;
     bool multiplexed = false;   ///< a frame holds only some of its signals
     std::string_view in_file{}; ///< its name in its DBC file, when the row gives it another
-    Format format = Format::classical;
-    bool is_proven = false; ///< of another node whose own proof shows it is in time: only load here
+    bool is_proven = false;     ///< of another node whose own proof shows it is in time: only load here
 };
 
 /// Returns the row's frame without contents.
@@ -58,10 +62,6 @@ constexpr Bytes bytes(std::uint8_t count) noexcept { return {count, Format::clas
 /// Length of a CAN FD frame that switches to the data bit rate: 0 to 8, 12, 16, 20, 24, 32, 48 or 64 bytes.
 /// Bits that no signal covers are sent as 0.
 constexpr Bytes fd_bytes(std::uint8_t count) noexcept { return {count, Format::flexible_faster}; }
-/// How often a frame comes; the bus's response times are computed from this.
-struct Rate {
-    Duration every{}, apart{}, jitter{};
-};
 /// The frame has this period. A received frame may come later than that by `jitter`.
 constexpr Rate every(Duration period, Duration jitter = {}) noexcept { return {period, period, jitter}; }
 /// Sends the frame when one of its values was written: every one, in order. A received frame comes when its
@@ -73,16 +73,8 @@ namespace detail {
 template <class... Signals>
 constexpr auto row(Identifier id, std::string_view name, Direction direction, Bytes length, Rate rate,
                    const Signals&... signals) noexcept {
-    FrameWithSignals<sizeof...(Signals)> whole{{}, {signals...}};
-    whole.row.identifier = id;
-    whole.row.name = name;
-    whole.row.direction = direction;
-    whole.row.length = length.count;
-    whole.row.format = length.format;
-    whole.row.every = rate.every;
-    whole.row.apart = rate.apart;
-    whole.row.jitter = rate.jitter;
-    return whole;
+    return FrameWithSignals<sizeof...(Signals)>{{{name}, rate, id, direction, length.count, length.format},
+                                                {signals...}};
 }
 } // namespace detail
 

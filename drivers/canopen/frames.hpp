@@ -55,13 +55,7 @@ inline constexpr auto frames = [] {
     // The manager's frames are not on the bus's own time grid: they have a rate, but no period there.
     const auto add = [&](std::uint32_t id, std::string_view name, can::Direction direction,
                          std::uint8_t length, Duration every, Duration apart) {
-        can::FrameRow& row = all.frames[used++];
-        row.identifier = can::standard(id);
-        row.name = name;
-        row.direction = direction;
-        row.length = length;
-        row.every = every;
-        row.apart = apart;
+        all.frames[used++] = {{name}, {every, apart}, can::standard(id), direction, length};
     };
     using enum can::Direction;
     for (std::size_t i = 0; i < n; ++i) {

@@ -105,9 +105,6 @@ template <std::size_t R, std::size_t V> struct RegisterMap {
     [[nodiscard]] constexpr MapName name_of(std::size_t v) const noexcept {
         return {rows[row_of[v]].name, registers[v].name};
     }
-    [[nodiscard]] constexpr std::size_t row(std::string_view name) const noexcept {
-        return index_of(name, R, [this](std::size_t r) { return MapName{{}, rows[r].name}; });
-    }
     /// Finds a register by "row.register".
     [[nodiscard]] constexpr std::size_t value(std::string_view path) const noexcept {
         return index_of(path, V, [this](std::size_t v) { return name_of(v); });

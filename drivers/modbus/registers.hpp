@@ -54,24 +54,15 @@ struct Register : ScaledValue<Register> {
     }
 };
 
-constexpr Register of_kind(Kind kind, std::string_view name, std::uint16_t at) noexcept {
-    Register r;
-    r.name = name;
-    r.at = at;
-    r.kind = kind;
-    return r;
-}
-constexpr Register bit(std::string_view name, std::uint16_t at) noexcept {
-    return of_kind(Kind::bit, name, at);
-}
+constexpr Register bit(std::string_view name, std::uint16_t at) noexcept { return {{{name}}, at, Kind::bit}; }
 constexpr Register word(std::string_view name, std::uint16_t at) noexcept {
-    return of_kind(Kind::unsigned_word, name, at);
+    return {{{name}}, at, Kind::unsigned_word};
 }
 constexpr Register double_word(std::string_view name, std::uint16_t at) noexcept {
-    return of_kind(Kind::unsigned_double, name, at);
+    return {{{name}}, at, Kind::unsigned_double};
 }
 constexpr Register float_word(std::string_view name, std::uint16_t at) noexcept {
-    return of_kind(Kind::float_double, name, at);
+    return {{{name}}, at, Kind::float_double};
 }
 
 /// The words as the server stores them; a bit is one word of 0 or 1.

@@ -28,13 +28,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         frame.extended = read.map.frames[f].identifier.extended;
         frame.length = read.map.frames[f].length;
         frame.data.fill(0xA5);
-        std::size_t which = no_such;
+        std::size_t which = tappet::no_such;
         demand(store.decode(frame, which) == Decoded::yes && which == f);
         const Frame again = store.encode(f, {});
         SignalStore second{read.map};
         demand(second.decode(again) == Decoded::yes);
-        for (std::size_t s = read.map.frames[f].first;
-             s < read.map.frames[f].first + read.map.frames[f].signals; ++s)
+        for (std::size_t s = read.map.frames[f].first; s < read.map.frames[f].end(); ++s)
             demand(store.integer(s) == second.integer(s));
     }
     return 0;

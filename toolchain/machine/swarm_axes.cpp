@@ -49,7 +49,7 @@ void SwarmWires::add_axes() {
 
 SwarmWires::Axis::Wire SwarmWires::wire_of(const can::Identifiers& map, std::string_view facet) {
     for (const can::FrameRow& row : map.frames)
-        for (const can::Signal& signal : map.signals.subspan(row.first, row.signals))
+        for (const can::Signal& signal : map.signals.subspan(row.first, row.values))
             if (facet == std::string{row.name} + "." + std::string{signal.name})
                 return {row.identifier, &signal};
     return {};

@@ -215,11 +215,7 @@ private:
         frame.name = kept([&](const auto& put) { put(message.name); });
         if (message.row == nullptr) return frame;
         if (!message.row->in_file.empty()) frame.name = message.row->name;
-        if (says_rate(message)) {
-            frame.every = message.row->every;
-            frame.apart = message.row->apart;
-            frame.jitter = message.row->jitter;
-        }
+        if (says_rate(message)) static_cast<Rate&>(frame) = *message.row;
         frame.silence_is_safe = message.row->silence_is_safe;
         return frame;
     }

@@ -147,8 +147,7 @@ private:
                 mine.push_back(frame);
                 orders << "decode " << order_of(frame) << hex_of(frame) << '\n';
                 orders << "encode " << order_of(frame);
-                for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals;
-                     ++s)
+                for (std::size_t s = map.frames[f].first; s < map.frames[f].end(); ++s)
                     orders << ' ' << map.signals[s].name << '='
                            << raw_text(map.signals[s], extract(frame.data, map.signals[s]));
                 orders << '\n';
@@ -281,7 +280,7 @@ private:
         for (const std::string& each : parts_of(answer, '\t'))
             if (const std::size_t at = each.find('='); at != each.npos)
                 theirs[each.substr(0, at)] = each.substr(at + 1);
-        for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s) {
+        for (std::size_t s = map.frames[f].first; s < map.frames[f].end(); ++s) {
             const Signal& signal = map.signals[s];
             const auto found = theirs.find(std::string{signal.name});
             const std::string who =
@@ -305,7 +304,7 @@ private:
         const std::size_t f = map.frame(Identifier{frame.id, frame.extended});
         SignalStore store{map};
         bool is_plain = true; // a NaN has no text that reads back
-        for (std::size_t s = map.frames[f].first; s < map.frames[f].first + map.frames[f].signals; ++s) {
+        for (std::size_t s = map.frames[f].first; s < map.frames[f].end(); ++s) {
             const std::uint64_t raw = extract(frame.data, asked().taken[file_]->read->map.signals[s]);
             is_plain = is_plain && !std::isnan(to_physical(map.signals[s], raw));
             store.set_bits(s, raw);
