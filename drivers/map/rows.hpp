@@ -38,6 +38,7 @@ struct MapValue {
 };
 
 /// The setters of a value. `Value` is the driver's own type, derived from this.
+// NOLINTNEXTLINE: a private constructor would make the rows no aggregates
 template <class Value> struct ScaledValue : MapValue {
     constexpr Value times(double by) const noexcept { return copy_with(own(), &MapValue::factor, by); }
     constexpr Value plus(double this_much) const noexcept {
