@@ -55,6 +55,10 @@ private:
     std::string_view kind_;
 };
 
+/// Neither defined nor constexpr: the compiler's message names it when a plant's name is not in the map. Not
+/// a member, which would have the linkage of a map in an unnamed namespace and then must be defined.
+void this_name_is_not_in_the_map_or_goes_the_other_way();
+
 /// A name that a plant writes, checked at compile time: one of `names`, of which empty ones do not count.
 template <const auto& names>
 struct FarEndName {
@@ -77,8 +81,6 @@ struct FarEndName {
     }
 
 private:
-    /// Neither defined nor constexpr: the compiler's message names it when a plant's name is not in the map.
-    static void this_name_is_not_in_the_map_or_goes_the_other_way();
     /// Puts the nearest name into clang's message, by its arguments; for a signal, its frame's before it.
     template <class Character>
     static constexpr void did_you_mean(const Character* of, const Character* name) {
