@@ -94,14 +94,14 @@ constexpr Operand Statements::assigned_value(TypeId type) {
         fail(token_,
              {"function \"", function->name, "\" has statements; put its result into a variable first"});
     const TypeId result = function->result;
-    const DataOffset slot = expand(*function, type);
+    const DataOffset slot = expand(*function, true);
     begin_action();
     return ok() ? at_place(result, slot) : Operand{};
 }
 
 constexpr void Statements::parse_do(const Token& at) {
     if (Function* const function = statement_function(); function != nullptr) {
-        static_cast<void>(expand(*function, nullptr));
+        static_cast<void>(expand(*function, false));
         return;
     }
     const Token name = need_word("what to do: a method, command, operation, event or function");

@@ -216,7 +216,7 @@ private:
             DataOffset result = no_data;
             if (given) {
                 if (Function* const function = statement_function(); function != nullptr) {
-                    result = expand(*function, type);
+                    result = expand(*function, true);
                     begin_action();
                     value = at_place(function->result, result);
                 } else {
@@ -272,11 +272,12 @@ private:
             return nullptr;
         return &functions_[symbol->number];
     }
-    /// Expands the function's statements here; returns the offset of its result.
-    constexpr DataOffset expand(Function& function, TypeId wanted) {
+    /// Expands the function's statements here; returns the offset of its result, which it must have if a
+    /// value is wanted. Not by the wanted type: `auto` has none.
+    constexpr DataOffset expand(Function& function, bool wants_value) {
         const Token name = token_;
         advance();
-        if (wanted != nullptr && function.result == nullptr) {
+        if (wants_value && function.result == nullptr) {
             fail(name, {"function \"", function.name, "\" returns nothing; give it the type of a result"});
             return no_data;
         }

@@ -93,6 +93,9 @@ const Wrong faults_of_programs[] = {
     {"", "1:1", {"empty"}},
     {"var Positon q;", "1:5", {"did you mean \"Position\"?"}},
     {"try ; catch do note(1);", "1:13", {"nothing in this try"}},
+    {"function f() { do note(1); do note(2); }\nprogram p { var auto x = f(); }",
+     "2:26",
+     {"returns nothing", "type of a result"}},
 };
 
 TEST(A_fault_in_a_program, is_reported_with_its_place_and_a_cure) {
