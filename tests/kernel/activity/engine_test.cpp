@@ -337,11 +337,7 @@ TEST_F(ExecutionEngine, finds_periodic_overruns_of_the_budget_by_sampling) {
 }
 
 TEST_F(ExecutionEngine, measures_from_the_first_wake_too_many_on) {
-    plan.budget = 100us;
-    plan.periodic = false;
-    plan.at_most_n = 1;
-    plan.at_most_per = 1ms;
-    begin();
+    begin_sporadic(1);
     workers[0].load = 90us; // within its budget
     for (int n = 1; n <= 5; ++n) {
         clock.advance_to(at_ns(0) + n * 2ms);
@@ -358,11 +354,7 @@ TEST_F(ExecutionEngine, measures_from_the_first_wake_too_many_on) {
 }
 
 TEST_F(ExecutionEngine, compares_the_use_of_a_sporadic_activity_with_its_claim) {
-    plan.budget = 100us;
-    plan.periodic = false;
-    plan.at_most_n = 3;
-    plan.at_most_per = 1ms;
-    begin();
+    begin_sporadic(3);
     const auto wakes = [this](Duration first, std::initializer_list<Duration> loads) {
         clock.advance_to(at_ns(0) + first);
         for (const Duration load : loads) {

@@ -82,6 +82,14 @@ struct ExecutionEngine : testing::Test {
         plan.timers = timers;
         engine.inbox().place(placed.mailboxes);
     }
+    /// Begins a sporadic activity with a budget of 100 us, which promises at most so many wakes in 1 ms.
+    void begin_sporadic(std::uint32_t at_most) {
+        plan.budget = std::chrono::microseconds{100};
+        plan.periodic = false;
+        plan.at_most_n = at_most;
+        plan.at_most_per = std::chrono::milliseconds{1};
+        begin();
+    }
     void begin() {
         engine.place(plan, clock);
         engine.on_stop(

@@ -33,7 +33,7 @@ TEST_F(InRealTime, the_machine_arms_runs_and_stops_the_last_row_first) {
     EXPECT_FALSE(rig.instance.stop_asked());
 }
 
-// Nobody may run luck: a lock in a step shows as a late cycle at some hour only.
+// A board that even asks for a warning only.
 constexpr Board board_of_box = [] {
     Board board = real_board;
     board.world = "box";
