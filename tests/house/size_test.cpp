@@ -43,7 +43,7 @@ const std::vector<Size> sizes{
     {"toolchain/tools",       13367},
     {"tests/kernel",         32489},
     {"tests/drivers",         16877},
-    {"tests/apps",            6127},
+    {"tests/apps",            6131},
     {"tests/toolchain",       6229},
     {"tests/bench",           4654},
     {"tests/diagnostics",     4262},
