@@ -1,45 +1,46 @@
 // A whole script: types, programs, and their instances.
 #pragma once
 
-#include "kernel/script/compiler_transitions.hpp"
+#include "kernel/script/parse_machine.hpp"
 
 namespace tappet::script_detail {
 
-class Compiler : Machines {
+class Compiler {
 public:
-    using Machines::Machines;
+    constexpr Compiler(std::string_view text, std::string_view file, const Reach& reach,
+                       const ScriptRoom& room, ScriptOutcome& outcome)
+        : outcome_{outcome}, reach_{reach}, basis_{text, file, reach, room, outcome} {}
 
     constexpr void compile() {
-        advance();
-        if (reach_.components.empty()) fail(token_, {"there is no component that the script could drive"});
-        while (ok() && !is(Sign::end)) {
-            switch (token_.sign) {
-            case Sign::semicolon: advance(); break;
-            case Sign::k_StateMachine: parse_machine(); break;
+        text_.advance();
+        if (reach_.components.empty()) text_.fail({"there is no component that the script could drive"});
+        while (text_.has_more(Sign::end)) {
+            switch (text_.token().sign) {
+            case Sign::semicolon: text_.advance(); break;
+            case Sign::k_StateMachine: machines_.parse(); break;
             case Sign::k_RootStateMachine: parse_root(); break;
             case Sign::k_program: parse_named_program(); break;
-            case Sign::k_function: parse_function_definition(false); break;
+            case Sign::k_function: statements_.parse_function_definition(false); break;
             default: parse_bare_program(); break;
             }
         }
-        if (ok() && types_.used == 0)
-            fail(token_, {"the script is empty; give it a program or a StateMachine"});
-        if (ok() && count_programs(types_.room, instances_.view()) == instances_.used) add_implied_root();
+        if (text_.ok() && out_.types.used == 0)
+            text_.fail({"the script is empty; give it a program or a StateMachine"});
+        if (text_.ok() && count_programs(out_.types.room, out_.instances.view()) == out_.instances.used)
+            add_implied_root();
         finish();
-        note_sizes();
     }
     /// Compiles statements, or one expression, whose value is the result.
     constexpr void compile_line() {
-        is_line_ = true;
-        advance();
-        if (reach_.components.empty()) fail(token_, {"there is no component that the line could name"});
-        if (is(Sign::end)) fail(token_, {"the line is empty; write an expression or a statement"});
-        if (begins_statement(token_.sign))
-            make_program(token_, file_, true, nullptr);
+        calls_.set_purpose(Purpose::line);
+        text_.advance();
+        if (reach_.components.empty()) text_.fail({"there is no component that the line could name"});
+        if (text_.is(Sign::end)) text_.fail({"the line is empty; write an expression or a statement"});
+        if (begins_statement(text_.token().sign))
+            parse_program(text_.token(), text_.file(), true, nullptr);
         else
-            make_expression();
+            parse_expression();
         finish();
-        note_sizes();
     }
 
 private:
@@ -63,211 +64,230 @@ private:
         default: return false;
         }
     }
-    constexpr void make_expression() {
-        looks_only_ = true;
-        begin_type();
-        BehaviourType type;
-        type.name = keep({file_});
-        const ProgramIndex program = begin_program({file_});
-        begin_action();
-        const Token at = token_;
-        const Operand value = reckoned(at, parse_expression());
-        static_cast<void>(take(Sign::semicolon));
-        if (ok() && !is(Sign::end))
-            fail(token_, {"found \"", quoted(token_.text),
-                          "\" after the expression; a line is one expression, or statements that begin with "
-                          "do, set, var, if, wait ..."});
-        if (!ok()) return;
-        DataOffset result = no_data;
-        static_cast<void>(add_variable(value.type->size, result));
-        store(at, value, value.type, result, "");
-        add(variables_, VariableRow{keep({"value"}), value.type, result, VariableKind::result}, "variables");
-        pending_ = add_arc(end_action(at));
-        static_cast<void>(end_program(program, no_chain));
-        end_type(type);
-        add_program_instance(false);
+
+    // ---- programs
+
+    constexpr void parse_expression() {
+        calls_.set_purpose(Purpose::line_expression);
+        out_.begin_type();
+        const std::string_view name = out_.keep({text_.file()});
+        const ProgramIndex program = flow_.begin_program({text_.file()});
+        flow_.begin_action();
+        const Token at = text_.token();
+        const Operand value = values_.reckoned(at, expressions_.parse());
+        static_cast<void>(text_.take(Sign::semicolon));
+        if (text_.ok() && !text_.is(Sign::end))
+            text_.fail({"found \"", quoted(text_.token().text),
+                        "\" after the expression; a line is one expression, or statements that begin with "
+                        "do, set, var, if, wait ..."});
+        if (!text_.ok()) return;
+        values_.store(at, value, value.type, add_result("value", value.type), "");
+        flow_.end_statement(at);
+        static_cast<void>(flow_.end_program(program, no_chain));
+        end_program_type(at, name, false);
     }
-    constexpr void add_program_instance(bool on_command) {
-        if (!ok()) return;
-        BehaviourInstance instance;
-        instance.name = types_.room[types_.used - 1].name;
-        instance.type = static_cast<TypeIndex>(types_.used - 1);
-        instance.on_command = on_command;
-        instance.image = types_.room[instance.type].tables.image;
-        add(instances_, instance, "instances");
+    /// Adds the variable with the result of a program.
+    constexpr DataOffset add_result(std::string_view name, TypeId type) {
+        DataOffset at = no_data;
+        static_cast<void>(out_.add_variable(type->size, at));
+        out_.add(out_.variables, VariableRow{out_.keep({name}), type, at, VariableKind::result}, "variables");
+        return at;
+    }
+    /// Ends the type of a program and adds its instance.
+    constexpr void end_program_type(const Token& at, std::string_view name, bool on_command) {
+        const BehaviourType* const type = out_.end_type(name);
+        check_instance_name(at, name);
+        if (!text_.ok()) return;
+        out_.add(out_.instances,
+                 BehaviourInstance{.name = name,
+                                   .type = static_cast<TypeIndex>(out_.types.used - 1),
+                                   .on_command = on_command,
+                                   .image = type->tables.image},
+                 "instances");
     }
     /// "program name { ... }": one instance of its own type. "program [type] name(type parameter, ...)
     /// { ... }" waits for its task's command and, with a type, returns a result.
     constexpr void parse_named_program() {
-        advance();
-        Token name = need_word("the name of the program, or the type of its result");
+        text_.advance();
+        Token name = text_.need_word("the name of the program, or the type of its result");
         TypeId result = nullptr;
-        if (ok() && is(Sign::name)) {
-            result = find_type(name.text);
-            if (result == nullptr) fail(name, {"found \"", quoted(name.text), "\", expected a type"});
-            name = token_;
-            advance();
+        if (text_.ok() && text_.is(Sign::name)) {
+            result = peers_.find_type(name.text);
+            if (result == nullptr) text_.fail(name, {"found \"", quoted(name.text), "\", expected a type"});
+            name = text_.token();
+            text_.advance();
         }
-        if (ok() && name.sign != Sign::name)
-            fail(name, {"found \"", quoted(name.text), "\", expected the name of the program"});
-        make_program(name, name.text, false, result);
-        need(Sign::close_brace, "\"}\"");
+        if (text_.ok() && name.sign != Sign::name)
+            text_.fail(name, {"found \"", quoted(name.text), "\", expected the name of the program"});
+        parse_program(name, name.text, false, result);
+        text_.need(Sign::close_brace, "\"}\"");
     }
-    constexpr void parse_program_parameters() {
-        while (ok() && !is(Sign::close_round)) {
-            const TypeId type = parse_type();
-            if (ok()) parse_variable_of(type, VariableKind::parameter);
-            if (!is(Sign::close_round)) need(Sign::comma, "\",\" or \")\"");
+    constexpr void parse_parameters() {
+        while (text_.ok() && !text_.is(Sign::close_round)) {
+            const TypeId type = peers_.parse_type();
+            if (text_.ok()) parameters_.parse_variable(type, VariableKind::parameter);
+            text_.need_comma();
         }
-        need(Sign::close_round, "\")\"");
+        text_.need(Sign::close_round, "\")\"");
     }
     /// Statements alone are one program, named after the file.
     constexpr void parse_bare_program() {
-        if (is(Sign::broken) || types_.used != 0)
-            return fail_expected("StateMachine, RootStateMachine, program or function");
-        std::string_view name = file_.substr(file_.rfind('/') + 1);
+        if (text_.is(Sign::broken) || out_.types.used != 0)
+            return text_.fail_expected("StateMachine, RootStateMachine, program or function");
+        std::string_view name = text_.file().substr(text_.file().rfind('/') + 1);
         name = name.substr(0, name.find('.'));
-        make_program(token_, name, true, nullptr);
+        parse_program(text_.token(), name, true, nullptr);
     }
-    constexpr void make_program(const Token& at, std::string_view name, bool to_the_end, TypeId result) {
-        if (!ok()) return;
-        begin_type();
-        BehaviourType type;
-        type.name = keep({name});
-        const std::size_t symbols = symbols_used_;
-        const bool on_command = !to_the_end && take(Sign::open_round);
-        if (on_command) parse_program_parameters();
+    constexpr void parse_program(Token at, std::string_view name, bool to_the_end, TypeId result) {
+        if (!text_.ok()) return;
+        out_.begin_type();
+        const std::string_view kept = out_.keep({name});
+        const Scope::Mark outer = scope_.mark();
+        const bool on_command = !to_the_end && text_.take(Sign::open_round);
+        if (on_command) parse_parameters();
         Frame frame{.result = result};
         if (result != nullptr) {
             if (!on_command)
-                return fail(at, {"nothing asks \"", quoted(name),
-                                 "\" for its result; give it a list of parameters, which may be empty"});
-            static_cast<void>(add_variable(result->size, frame.slot));
-            add(variables_, VariableRow{keep({"return"}), result, frame.slot, VariableKind::result},
-                "variables");
+                return text_.fail(at,
+                                  {"nothing asks \"", quoted(name),
+                                   "\" for its result; give it a list of parameters, which may be empty"});
+            frame.slot = add_result("return", result);
         }
-        if (!to_the_end) need(Sign::open_brace, "\"{\"");
-        exports_variables_ = true;
-        const ProgramIndex program = parse_program({name}, to_the_end, frame);
-        exports_variables_ = false;
-        symbols_used_ = symbols;
-        if (ok() && program == no_program) return fail(at, {"the program has no statement"});
-        end_type(type);
-        if (ok()) check_instance_name(at, types_.room[types_.used - 1].name);
-        add_program_instance(on_command);
+        if (!to_the_end) text_.need(Sign::open_brace, "\"{\"");
+        const ProgramIndex program = statements_.parse_program({name}, to_the_end, frame, true);
+        scope_.close(outer);
+        if (text_.ok() && program == no_program)
+            return text_.fail(to_the_end ? text_.token() : at, {"the program has no statement"});
+        end_program_type(at, kept, on_command);
     }
     constexpr void check_instance_name(const Token& at, std::string_view name) {
-        for (std::size_t i = 0; i < instances_.used; ++i)
-            if (instances_.room[i].name == name)
-                return fail(at, {"\"", quoted(name), "\" is there twice; rename one"});
+        for (const BehaviourInstance& each : out_.instances.view())
+            if (each.name == name)
+                return text_.fail(at, {"\"", quoted(name), "\" is there twice; rename one"});
     }
+
+    // ---- instances of state machines
+
     /// "RootStateMachine Type name(arguments)"
     constexpr void parse_root() {
-        advance();
-        const TypeIndex type = parse_machine_type("the type of the state machine", " before this line");
-        const Token name = need_name("the name of the state machine");
-        if (!ok()) return;
+        text_.advance();
+        const TypeIndex type = machines_.parse_type("the type of the state machine", " before this line");
+        const Token name = text_.need_name("the name of the state machine");
+        if (!text_.ok()) return;
         check_instance_name(name, name.text);
-        const auto first = static_cast<std::uint16_t>(arguments_used_);
-        const std::uint16_t count = parse_machine_arguments(name, type);
-        add_root(name, keep({name.text}), type, first, count);
-        arguments_used_ = first;
-        static_cast<void>(take(Sign::semicolon));
+        const ArgumentList arguments = parameters_.parse_arguments(name, type);
+        add_root(name, out_.keep({name.text}), type, arguments);
+        parameters_.forget(arguments);
+        static_cast<void>(text_.take(Sign::semicolon));
     }
     /// Without RootStateMachine, the last type of state machine gets one instance.
     constexpr void add_implied_root() {
-        std::size_t last = types_.used;
-        while (last != 0 && types_.room[last - 1].is_program()) --last;
+        std::size_t last = out_.types.used;
+        while (last != 0 && out_.types[last - 1].is_program()) --last;
         if (last == 0) return;
         const auto type = static_cast<TypeIndex>(last - 1);
-        Token at = machine_name_token();
-        static_cast<void>(parse_machine_arguments(at, type));
-        add_root(at, types_.room[type].name, type, 0, 0);
+        const Token at = machines_.name();
+        static_cast<void>(parameters_.parse_arguments(at, type));
+        add_root(at, out_.types[type].name, type, {});
     }
-    constexpr void add_root(const Token& at, std::string_view name, TypeIndex type, std::uint16_t first,
-                            std::uint16_t count) {
-        if (!ok()) return;
-        std::uint32_t i = instances_.used;
-        add_instance(name, type, no_instance, first, count);
-        for (; ok() && i < instances_.used; ++i) {
+    constexpr void add_root(const Token& at, std::string_view name, TypeIndex type, ArgumentList arguments) {
+        if (!text_.ok()) return;
+        std::uint32_t i = out_.instances.used;
+        add_instance(name, type, no_instance, arguments);
+        for (; text_.ok() && i < out_.instances.used; ++i) {
+            BehaviourInstance& instance = out_.instances[i];
             std::uint32_t depth = 1;
-            for (InstanceIndex outer = instances_.room[i].parent; outer != no_instance;
-                 outer = instances_.room[outer].parent)
+            for (InstanceIndex outer = instance.parent; outer != no_instance;
+                 outer = out_.instances[outer].parent)
                 ++depth;
             if (depth > reach_.depth)
-                return fail(at, {"child machines are nested deeper than ", digits(reach_.depth),
-                                 " levels, which its row allows"});
-            for (std::size_t c = 0; ok() && c < children_used_; ++c) {
-                const Child& child = children_[c];
-                if (child.parent != instances_.room[i].type) continue;
-                if (instances_.room[i].children++ == 0)
-                    instances_.room[i].first_child = static_cast<InstanceIndex>(instances_.used);
-                add_instance(keep({instances_.room[i].name, ".", child.name}), child.type,
-                             static_cast<InstanceIndex>(i), child.first_argument, child.arguments);
+                return text_.fail(at, {"child machines are nested deeper than ", text_.digits(reach_.depth),
+                                       " levels, which its row allows"});
+            for (const Child& child : behaviours_.children()) {
+                if (!text_.ok() || child.parent != instance.type) continue;
+                if (instance.children++ == 0)
+                    instance.first_child = static_cast<InstanceIndex>(out_.instances.used);
+                add_instance(out_.keep({instance.name, ".", child.name}), child.type,
+                             static_cast<InstanceIndex>(i), child.arguments);
             }
         }
     }
     constexpr void add_instance(std::string_view name, TypeIndex type, InstanceIndex parent,
-                                std::uint16_t first, std::uint16_t count) {
-        if (!ok()) return;
-        BehaviourInstance instance;
-        instance.name = name;
-        instance.type = type;
-        instance.parent = parent;
-        const ProgramTables& tables = types_.room[type].tables;
-        instance.image = tables.image;
-        if (count != 0) {
-            image_base_ = aligned(image_base_, data_alignment);
-            const std::size_t size = tables.image.size();
-            if (room_.image.size() < image_base_ || room_.image.size() - image_base_ < size)
-                return fail_room("bytes of initial data");
-            const auto own = room_.image.subspan(image_base_, size);
-            std::copy_n(tables.image.data(), size, own.data());
-            for (std::size_t i = first; i < std::size_t{first} + count; ++i) {
-                const VariableRow& variable = tables.variables[arguments_[i].variable];
-                static_cast<void>(encode(arguments_[i].value, variable.type, own.data() + variable.at));
-            }
+                                ArgumentList arguments) {
+        if (!text_.ok()) return;
+        const ProgramTables& tables = out_.types[type].tables;
+        BehaviourInstance instance{.name = name, .type = type, .parent = parent, .image = tables.image};
+        if (arguments.count != 0) {
+            const auto own = out_.add_image(tables.image.size());
+            if (!text_.ok()) return;
+            std::copy_n(tables.image.data(), own.size(), own.data());
+            parameters_.write(arguments, tables, own);
             instance.image = own;
-            image_base_ += static_cast<std::uint32_t>(size);
         }
-        add(instances_, instance, "instances");
+        out_.add(out_.instances, instance, "instances");
+    }
+
+    // ---- the result
+
+    constexpr void finish() {
+        if (text_.ok()) count_needs();
+        if (text_.ok() && out_.reach.room.size() < reach_.components.size()) text_.fail_room("components");
+        if (text_.ok()) {
+            // They may be stored there already.
+            if (out_.reach.room.data() != reach_.components.data())
+                std::copy_n(reach_.components.data(), reach_.components.size(), out_.reach.room.data());
+            const ScriptUnit unit{.name = out_.keep({text_.file()}),
+                                  .types = out_.types.view(),
+                                  .instances = out_.instances.view(),
+                                  .reach = out_.reach.room.first(reach_.components.size()),
+                                  .command_slots = static_cast<std::uint16_t>(outcome_.sizes.command_slots)};
+            if (text_.ok()) outcome_.unit = unit;
+        }
+        out_.count_rows(outcome_.sizes);
+        outcome_.sizes.reach = static_cast<std::uint32_t>(reach_.components.size());
     }
     /// Sums up what all instances need at run time, and checks that the slot has it.
-    constexpr void finish() {
-        if (!ok()) return;
+    constexpr void count_needs() {
         ScriptSizes& s = outcome_.sizes;
-        for (std::size_t i = 0; i < instances_.used; ++i) {
-            const BehaviourType& type = types_.room[instances_.room[i].type];
+        for (const BehaviourInstance& each : out_.instances.view()) {
+            const BehaviourType& type = out_.types[each.type];
             s.data += aligned(type.tables.layout.size, data_alignment);
             for (const LinkRow& row : type.tables.links) s.command_slots += row.needs_slot ? 1 : 0;
             for (const TransitionRow& row : type.machine.transitions) s.timers += row.timed ? 1 : 0;
             for (const NodeRow& node : type.tables.nodes)
-                for (std::size_t a = 0; a < node.arcs; ++a)
-                    if (type.tables.arcs[node.first_arc + a].after != no_data) {
+                for (const ArcRow& arc : type.tables.arcs.subspan(node.first_arc, node.arcs))
+                    if (arc.after != no_data) {
                         ++s.timers;
                         break;
                     }
         }
         if (s.command_slots > reach_.command_slots)
-            return fail(token_, {"the script sends ", digits(s.command_slots),
-                                 " commands and its slot has room for ", digits(reach_.command_slots),
-                                 "; send fewer or give its row more command_slots(...)"});
+            return text_.fail({"the script sends ", text_.digits(s.command_slots),
+                               " commands and its slot has room for ", text_.digits(reach_.command_slots),
+                               "; send fewer or give its row more command_slots(...)"});
         if (s.timers > reach_.timers)
-            return fail(token_, {"the script waits for time at ", digits(s.timers),
-                                 " places and its slot has room for ", digits(reach_.timers),
-                                 "; wait at fewer or give its row more timers(...)"});
-        if (room_.reach.size() < reach_.components.size()) return fail_room("components");
-        // They may be stored there already.
-        if (room_.reach.data() != reach_.components.data())
-            std::copy_n(reach_.components.data(), reach_.components.size(), room_.reach.data());
-        ScriptUnit& unit = outcome_.unit;
-        unit.name = keep({file_});
-        unit.types = room_.types.first(types_.used);
-        unit.instances = room_.instances.first(instances_.used);
-        unit.reach = room_.reach.first(reach_.components.size());
-        unit.command_slots = static_cast<std::uint16_t>(s.command_slots);
-        if (!ok()) unit = {};
+            text_.fail({"the script waits for time at ", text_.digits(s.timers),
+                        " places and its slot has room for ", text_.digits(reach_.timers),
+                        "; wait at fewer or give its row more timers(...)"});
     }
+
+    ScriptOutcome& outcome_;
+    const Reach& reach_;
+    Basis basis_;
+    Reader& text_ = basis_.text;
+    Emitter& out_ = basis_.out;
+    Values& values_ = basis_.values;
+    Scope& scope_ = basis_.scope;
+    Peers& peers_ = basis_.peers;
+    Behaviours& behaviours_ = basis_.behaviours;
+    Flow& flow_ = basis_.flow;
+    Expressions expressions_{basis_, calls_};
+    Calls calls_{basis_, expressions_};
+    Statements statements_{basis_, expressions_, calls_, actions_};
+    Actions actions_{basis_, expressions_, calls_, statements_};
+    Parameters parameters_{basis_, expressions_};
+    States states_{basis_, expressions_, statements_};
+    Machines machines_{basis_, parameters_, statements_, states_};
 };
 
 } // namespace tappet::script_detail
