@@ -75,21 +75,15 @@ public:
         text_.need(Sign::dot, "a dot and what is asked of the child machine");
         const Token word = text_.need_word("a variable of the child machine, inState or inError");
         if (!text_.ok()) return {};
-        Instruction in;
-        in.rows = static_cast<std::uint8_t>(child.number);
-        for (const auto& each : machine_questions) {
-            if (each.name != word.text) continue;
-            text_.need(Sign::open_round, "\"(\"");
-            if (each.meaning == MachineQuestion::in_state) in.size = parse_state(child);
-            text_.need(Sign::close_round, "\")\"");
-            in.run = &primitive::ask_child;
-            in.inner = static_cast<std::uint8_t>(each.meaning);
+        if (const auto* const asked = find_word(machine_questions, word)) {
+            Instruction in = instruction(&primitive::ask_child, child);
+            in.size = parse_brackets(child, asked->meaning == MachineQuestion::in_state);
+            in.inner = static_cast<std::uint8_t>(asked->meaning);
             return made(script_bool, out_.emit_to_scratch(in, 1));
         }
         const VariableRow* const variable = find_variable(child, word);
         if (variable == nullptr) return {};
-        in.run = &primitive::read_child;
-        set_place(in, *variable);
+        const Instruction in = instruction(&primitive::read_child, child, *variable);
         return made(variable->type, out_.emit_to_scratch(in, variable->type->size));
     }
     /// False: there is no such command.
@@ -99,20 +93,16 @@ public:
         const Token word =
             text_.need_word("activate, start, pause, stop, reset, deactivate, requestState or step");
         if (!text_.ok()) return false;
-        Instruction in;
-        in.run = &primitive::command_child;
-        in.rows = static_cast<std::uint8_t>(child.number);
-        for (const auto& each : machine_commands) {
-            if (each.name != word.text) continue;
-            text_.need(Sign::open_round, "\"(\"");
-            if (each.meaning >= MachineCommand::request_state) in.size = parse_state(child);
-            text_.need(Sign::close_round, "\")\"");
-            in.inner = static_cast<std::uint8_t>(each.meaning);
-            out_.emit(in);
-            return true;
+        const auto* const command = find_word(machine_commands, word);
+        if (command == nullptr) {
+            text_.fail_unknown(word, "command", machine_commands, " of child machines");
+            return false;
         }
-        text_.fail_unknown(word, "command", machine_commands, " of child machines");
-        return false;
+        Instruction in = instruction(&primitive::command_child, child);
+        in.size = parse_brackets(child, command->meaning >= MachineCommand::request_state);
+        in.inner = static_cast<std::uint8_t>(command->meaning);
+        out_.emit(in);
+        return true;
     }
     /// Parses a child's variable that is assigned; sets the instruction that writes it. Null: a fault.
     constexpr const VariableRow* parse_machine_variable(std::uint16_t number, Instruction& in) {
@@ -120,10 +110,7 @@ public:
         text_.need(Sign::dot, "a dot and a variable of the child machine");
         const Token word = text_.need_word("a variable of the child machine");
         const VariableRow* const variable = text_.ok() ? find_variable(child, word) : nullptr;
-        if (variable == nullptr) return nullptr;
-        in.run = &primitive::write_child;
-        in.rows = static_cast<std::uint8_t>(child.number);
-        set_place(in, *variable);
+        if (variable != nullptr) in = instruction(&primitive::write_child, child, *variable);
         return variable;
     }
 
@@ -157,20 +144,31 @@ public:
     }
 
 private:
-    /// Parses ".word()"; returns the meaning of the word.
+    /// Null: there is no such word.
+    template <class Meaning, std::size_t N>
+    static constexpr const BehaviourWord<Meaning>* find_word(const BehaviourWord<Meaning> (&words)[N],
+                                                             const Token& name) noexcept {
+        for (const BehaviourWord<Meaning>& each : words)
+            if (each.name == name.text) return &each;
+        return nullptr;
+    }
+    /// Parses ".word()" of a program; returns the meaning of the word.
     template <class Meaning, std::size_t N>
     constexpr Meaning parse_word(const BehaviourWord<Meaning> (&words)[N], std::string_view wanted) {
         text_.need(Sign::dot, "a dot");
-        const Token word = text_.need_word(wanted);
-        if (!text_.ok()) return words[0].meaning;
-        for (const auto& each : words) {
-            if (each.name != word.text) continue;
-            text_.need(Sign::open_round, "\"(\"");
-            text_.need(Sign::close_round, "\")\"");
-            return each.meaning;
-        }
-        text_.fail_unknown(word, "word", words, " of programs");
-        return words[0].meaning;
+        const Token name = text_.need_word(wanted);
+        const auto* const word = find_word(words, name);
+        if (word == nullptr) text_.fail_unknown(name, "word", words, " of programs");
+        text_.need(Sign::open_round, "\"(\"");
+        text_.need(Sign::close_round, "\")\"");
+        return word != nullptr ? word->meaning : Meaning{};
+    }
+    /// Parses "()", or "(State)" of the child; returns the state.
+    constexpr std::uint16_t parse_brackets(const Child& child, bool with_state) {
+        text_.need(Sign::open_round, "\"(\"");
+        const std::uint16_t state = with_state ? parse_state(child) : std::uint16_t{0};
+        text_.need(Sign::close_round, "\")\"");
+        return state;
     }
     /// Parses the name of a state of the child, in quotes or without.
     constexpr std::uint16_t parse_state(const Child& child) {
@@ -193,10 +191,16 @@ private:
         text_.fail_unknown(word, "variable", variables, " of the child machine");
         return nullptr;
     }
-    static constexpr void set_place(Instruction& in, const VariableRow& variable) noexcept {
-        in.size = static_cast<std::uint16_t>(variable.type->size);
-        in.inner = static_cast<std::uint8_t>(variable.at & 0xff);
-        in.columns = static_cast<std::uint8_t>(variable.at >> 8);
+    static constexpr Instruction instruction(Primitive run, const Child& child) noexcept {
+        return {.run = run, .rows = static_cast<std::uint8_t>(child.number)};
+    }
+    static constexpr Instruction instruction(Primitive run, const Child& child,
+                                             const VariableRow& variable) noexcept {
+        return {.run = run,
+                .size = static_cast<std::uint16_t>(variable.type->size),
+                .rows = static_cast<std::uint8_t>(child.number),
+                .inner = static_cast<std::uint8_t>(variable.at & 0xff),
+                .columns = static_cast<std::uint8_t>(variable.at >> 8)};
     }
 
     Reader& text_;

@@ -9,11 +9,12 @@ class Compiler {
 public:
     constexpr Compiler(std::string_view text, std::string_view file, const Reach& reach,
                        const ScriptRoom& room, ScriptOutcome& outcome)
-        : outcome_{outcome}, reach_{reach}, basis_{text, file, reach, room, outcome} {}
+        : outcome_{outcome}, basis_{text, file, reach, room, outcome} {}
 
     constexpr void compile() {
         text_.advance();
-        if (reach_.components.empty()) text_.fail({"there is no component that the script could drive"});
+        if (basis_.reach.components.empty())
+            text_.fail({"there is no component that the script could drive"});
         while (text_.has_more(Sign::end)) {
             switch (text_.token().sign) {
             case Sign::semicolon: text_.advance(); break;
@@ -34,7 +35,7 @@ public:
     constexpr void compile_line() {
         calls_.set_purpose(Purpose::line);
         text_.advance();
-        if (reach_.components.empty()) text_.fail({"there is no component that the line could name"});
+        if (basis_.reach.components.empty()) text_.fail({"there is no component that the line could name"});
         if (text_.is(Sign::end)) text_.fail({"the line is empty; write an expression or a statement"});
         if (begins_statement(text_.token().sign))
             parse_program(text_.token(), text_.file(), true, nullptr);
@@ -45,24 +46,11 @@ public:
 
 private:
     static constexpr bool begins_statement(Sign sign) noexcept {
-        switch (sign) {
-        case Sign::open_brace:
-        case Sign::semicolon:
-        case Sign::k_do:
-        case Sign::k_set:
-        case Sign::k_var:
-        case Sign::k_const:
-        case Sign::k_if:
-        case Sign::k_while:
-        case Sign::k_for:
-        case Sign::k_try:
-        case Sign::k_wait:
-        case Sign::k_yield:
-        case Sign::k_return:
-        case Sign::k_break:
-        case Sign::k_continue: return true;
-        default: return false;
-        }
+        constexpr Sign signs[] = {Sign::open_brace, Sign::semicolon, Sign::k_do,      Sign::k_set,
+                                  Sign::k_var,      Sign::k_const,   Sign::k_if,      Sign::k_while,
+                                  Sign::k_for,      Sign::k_try,     Sign::k_wait,    Sign::k_yield,
+                                  Sign::k_return,   Sign::k_break,   Sign::k_continue};
+        return std::ranges::find(signs, sign) != std::end(signs);
     }
 
     // ---- programs
@@ -75,23 +63,17 @@ private:
         flow_.begin_action();
         const Token at = text_.token();
         const Operand value = values_.reckoned(at, expressions_.parse());
-        static_cast<void>(text_.take(Sign::semicolon));
+        text_.skip(Sign::semicolon);
         if (text_.ok() && !text_.is(Sign::end))
             text_.fail({"found \"", quoted(text_.token().text),
                         "\" after the expression; a line is one expression, or statements that begin with "
                         "do, set, var, if, wait ..."});
         if (!text_.ok()) return;
-        values_.store(at, value, value.type, add_result("value", value.type), "");
+        const DataOffset result = out_.add_variable("value", value.type, VariableKind::result);
+        values_.store(at, value, value.type, result, "");
         flow_.end_statement(at);
         static_cast<void>(flow_.end_program(program, no_chain));
         end_program_type(at, name, false);
-    }
-    /// Adds the variable with the result of a program.
-    constexpr DataOffset add_result(std::string_view name, TypeId type) {
-        DataOffset at = no_data;
-        static_cast<void>(out_.add_variable(type->size, at));
-        out_.add(out_.variables, VariableRow{out_.keep({name}), type, at, VariableKind::result}, "variables");
-        return at;
     }
     /// Ends the type of a program and adds its instance.
     constexpr void end_program_type(const Token& at, std::string_view name, bool on_command) {
@@ -151,7 +133,7 @@ private:
                 return text_.fail(at,
                                   {"nothing asks \"", quoted(name),
                                    "\" for its result; give it a list of parameters, which may be empty"});
-            frame.slot = add_result("return", result);
+            frame.slot = out_.add_variable("return", result, VariableKind::result);
         }
         if (!to_the_end) text_.need(Sign::open_brace, "\"{\"");
         const ProgramIndex program = statements_.parse_program({name}, to_the_end, frame, true);
@@ -178,7 +160,7 @@ private:
         const ArgumentList arguments = parameters_.parse_arguments(name, type);
         add_root(name, out_.keep({name.text}), type, arguments);
         parameters_.forget(arguments);
-        static_cast<void>(text_.take(Sign::semicolon));
+        text_.skip(Sign::semicolon);
     }
     /// Without RootStateMachine, the last type of state machine gets one instance.
     constexpr void add_implied_root() {
@@ -200,9 +182,9 @@ private:
             for (InstanceIndex outer = instance.parent; outer != no_instance;
                  outer = out_.instances[outer].parent)
                 ++depth;
-            if (depth > reach_.depth)
-                return text_.fail(at, {"child machines are nested deeper than ", text_.digits(reach_.depth),
-                                       " levels, which its row allows"});
+            if (depth > basis_.reach.depth)
+                return text_.fail(at, {"child machines are nested deeper than ",
+                                       text_.digits(basis_.reach.depth), " levels, which its row allows"});
             for (const Child& child : behaviours_.children()) {
                 if (!text_.ok() || child.parent != instance.type) continue;
                 if (instance.children++ == 0)
@@ -231,20 +213,22 @@ private:
 
     constexpr void finish() {
         if (text_.ok()) count_needs();
-        if (text_.ok() && out_.reach.room.size() < reach_.components.size()) text_.fail_room("components");
+        if (text_.ok() && out_.reach.room.size() < basis_.reach.components.size())
+            text_.fail_room("components");
         if (text_.ok()) {
             // They may be stored there already.
-            if (out_.reach.room.data() != reach_.components.data())
-                std::copy_n(reach_.components.data(), reach_.components.size(), out_.reach.room.data());
+            if (out_.reach.room.data() != basis_.reach.components.data())
+                std::copy_n(basis_.reach.components.data(), basis_.reach.components.size(),
+                            out_.reach.room.data());
             const ScriptUnit unit{.name = out_.keep({text_.file()}),
                                   .types = out_.types.view(),
                                   .instances = out_.instances.view(),
-                                  .reach = out_.reach.room.first(reach_.components.size()),
+                                  .reach = out_.reach.room.first(basis_.reach.components.size()),
                                   .command_slots = static_cast<std::uint16_t>(outcome_.sizes.command_slots)};
             if (text_.ok()) outcome_.unit = unit;
         }
         out_.count_rows(outcome_.sizes);
-        outcome_.sizes.reach = static_cast<std::uint32_t>(reach_.components.size());
+        outcome_.sizes.reach = static_cast<std::uint32_t>(basis_.reach.components.size());
     }
     /// Sums up what all instances need at run time, and checks that the slot has it.
     constexpr void count_needs() {
@@ -261,18 +245,18 @@ private:
                         break;
                     }
         }
-        if (s.command_slots > reach_.command_slots)
+        if (s.command_slots > basis_.reach.command_slots)
             return text_.fail({"the script sends ", text_.digits(s.command_slots),
-                               " commands and its slot has room for ", text_.digits(reach_.command_slots),
+                               " commands and its slot has room for ",
+                               text_.digits(basis_.reach.command_slots),
                                "; send fewer or give its row more command_slots(...)"});
-        if (s.timers > reach_.timers)
+        if (s.timers > basis_.reach.timers)
             text_.fail({"the script waits for time at ", text_.digits(s.timers),
-                        " places and its slot has room for ", text_.digits(reach_.timers),
+                        " places and its slot has room for ", text_.digits(basis_.reach.timers),
                         "; wait at fewer or give its row more timers(...)"});
     }
 
     ScriptOutcome& outcome_;
-    const Reach& reach_;
     Basis basis_;
     Reader& text_ = basis_.text;
     Emitter& out_ = basis_.out;

@@ -139,6 +139,13 @@ public:
         at = place_in(Region::variables, size);
         return zeros(image.room.size() - region_used(Region::variables), size, "variables");
     }
+    /// Adds a variable of zero bytes; returns its place.
+    constexpr DataOffset add_variable(std::string_view name, TypeId type, VariableKind kind) {
+        DataOffset at = no_data;
+        static_cast<void>(add_variable(type->size, at));
+        add(variables, VariableRow{keep({name}), type, at, kind}, "variables");
+        return at;
+    }
     /// Allocates initial data of an instance, after those of all types. Empty: no room.
     constexpr std::span<std::byte> add_image(std::size_t size) {
         image.used = aligned(image.used, data_alignment);

@@ -80,10 +80,12 @@ public:
         begin_action();
         return add_arc(end_action(at));
     }
-    /// Notes that the program may need more than one step, and whether it waits in the node in any case.
-    constexpr void note_wait(NodeIndex node, bool always) noexcept {
+    /// Ends the action of a node where the program may wait; `always`: in any case.
+    constexpr NodeIndex end_wait(const Token& at, bool always) {
         may_wait_ = true;
+        const NodeIndex node = end_action(at);
         if (text_.ok()) waits_.put(node, always);
+        return node;
     }
 
     // ---- arcs

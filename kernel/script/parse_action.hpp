@@ -70,23 +70,26 @@ public:
         if (script_type(value.type) == script_bool) {
             // Evaluated again in each step, so its instructions belong to the arc and not to the node.
             const ConditionIndex condition = flow_.add_condition(where, flow_.first_instruction(), value);
-            const NodeIndex node = flow_.end_action(at);
-            flow_.note_wait(node, false);
+            const NodeIndex node = flow_.end_wait(at, false);
             if (text_.ok()) out_.nodes[node].count = 0;
             flow_.pending = flow_.add_arc(node, condition);
             return parse_timeout(node);
         }
         if (script_type(value.type) != script_duration)
-            return values_.fail_type(where, value.type, "a condition or a duration", "");
-        const DataOffset time = persistent_time(where, value);
-        const NodeIndex node = flow_.end_action(at);
-        flow_.note_wait(node, value.literal && value.integer > 0);
+            return static_cast<void>(values_.fail_type(where, value.type, "a condition or a duration", ""));
+        DataOffset time = no_data; // kept while the program waits
+        if (value.literal) {
+            time = values_.constant(where, value, script_duration, "").at;
+        } else {
+            time = out_.place_in(Region::arguments, sizeof(Duration));
+            values_.store(where, value, script_duration, time, "");
+        }
+        const NodeIndex node = flow_.end_wait(at, value.literal && value.integer > 0);
         flow_.pending = flow_.add_arc(node, no_condition, time);
     }
     constexpr void parse_yield(const Token& at) {
         flow_.begin_action();
-        const NodeIndex node = flow_.end_action(at);
-        flow_.note_wait(node, true);
+        const NodeIndex node = flow_.end_wait(at, true);
         if (text_.ok()) out_.nodes[node].yields = true;
         flow_.pending = flow_.add_arc(node);
     }
@@ -106,7 +109,7 @@ private:
             expressions_.fail_unknown(name, nullptr);
             return place;
         }
-        const Facet& facet = *place.facet.facet;
+        const Facet& facet = *place.facet;
         place.action = find_write(facet);
         if (!place.action)
             text_.fail(name, {"\"", quoted(facet.name), "\" is ", to_text(facet.kind),
@@ -166,7 +169,7 @@ private:
     // ---- calls
 
     constexpr void parse_action(const Token& at, const Token& name, PeerFacet named) {
-        const Facet& facet = *named.facet;
+        const Facet& facet = *named;
         switch (facet.kind) {
         case FacetKind::method: {
             peers_.check_call(name, named);
@@ -214,13 +217,6 @@ private:
 
     // ---- waits and commands
 
-    /// Returns where a time is kept while the program waits.
-    constexpr DataOffset persistent_time(const Token& at, const Operand& value) {
-        if (value.literal) return values_.constant(at, value, script_duration, "").at;
-        const DataOffset to = out_.place_in(Region::arguments, sizeof(Duration));
-        values_.store(at, value, script_duration, to, "");
-        return to;
-    }
     /// Parses "timeout 5s": the node fails when no other arc was open until then.
     constexpr void parse_timeout(NodeIndex node) {
         if (!text_.take(Sign::k_timeout)) return;
@@ -228,7 +224,7 @@ private:
         const Operand value = expressions_.parse_known(script_duration, "a time-out");
         if (!text_.ok()) return;
         if (value.type != script_duration)
-            return values_.fail_type(where, value.type, "a duration such as 5s", "");
+            return static_cast<void>(values_.fail_type(where, value.type, "a duration such as 5s", ""));
         const DataOffset time = values_.constant(where, value, script_duration, "").at;
         const Chain arc = flow_.add_arc(node, no_condition, time);
         if (text_.ok()) out_.arcs[arc].to = no_node; // the target of on_error
@@ -236,8 +232,7 @@ private:
     /// Ends the node that begins a command; its exit opens when `ended` finds that the command has ended.
     /// `always`: not in the same step. Parses a time-out.
     constexpr void wait_for_end(const Token& at, bool always, const Instruction& ended) {
-        const NodeIndex node = flow_.end_action(at);
-        flow_.note_wait(node, always);
+        const NodeIndex node = flow_.end_wait(at, always);
         const std::uint16_t first = out_.instruction_count();
         const Operand has_ended = at_place(script_bool, out_.emit_to_scratch(ended, 1));
         flow_.pending = flow_.add_arc(node, flow_.add_condition(at, first, has_ended));
@@ -273,11 +268,11 @@ private:
         calls_.end_arguments(all.size());
         if (!text_.ok()) return;
         const std::uint16_t slot = peers_.link(facet, !is_own);
-        Instruction in = (is_own ? begin_command(*facet.facet) : send_command(*facet.facet)).instruction;
+        Instruction in = (is_own ? begin_command(*facet) : send_command(*facet)).instruction;
         in.link = slot;
         (is_own ? in.to : in.a) = packed;
         out_.emit(in);
-        in = (is_own ? command_progress(*facet.facet) : command_ended(*facet.facet)).instruction;
+        in = (is_own ? command_progress(*facet) : command_ended(*facet)).instruction;
         in.link = slot;
         if (is_own) in.a = packed;
         wait_for_end(at, !is_own, in);
@@ -285,7 +280,7 @@ private:
         flow_.begin_action();
         DataOffset from = moved(packed, command.argument_bytes);
         if (!is_own) {
-            in = command_results(*facet.facet).instruction;
+            in = command_results(*facet).instruction;
             in.link = slot;
             from = out_.emit_to_scratch(in, command.result_bytes);
         }

@@ -57,13 +57,11 @@ public:
         case FacetKind::buffer_input: return parse_buffer(name, facet);
         case FacetKind::buffer_output: return parse_push(name, facet);
         case FacetKind::command:
-            text_.fail(name, {"\"", quoted(facet->name),
-                              "\" is a command, which takes time; write \"do\" and no value"});
-            return {};
+            return values_.fail(name, {"\"", quoted(facet->name),
+                                       "\" is a command, which takes time; write \"do\" and no value"});
         default:
-            text_.fail(name,
-                       {"\"", quoted(facet->name), "\" is ", to_text(facet->kind), ", which has no value"});
-            return {};
+            return values_.fail(
+                name, {"\"", quoted(facet->name), "\" is ", to_text(facet->kind), ", which has no value"});
         }
     }
 
@@ -71,11 +69,10 @@ public:
 
     /// Expands a function whose body is one return.
     constexpr Operand parse_value(const Token& name, Function& function) {
-        if (!function.is_value) {
-            text_.fail(name, {"function \"", function.name, "\" has statements; call it by \"set x = ",
-                              function.name, "(...)\" or \"do\" alone, or make one return of it"});
-            return {};
-        }
+        if (!function.is_value)
+            return values_.fail(name, {"function \"", function.name,
+                                       "\" has statements; call it by \"set x = ", function.name,
+                                       "(...)\" or \"do\" alone, or make one return of it"});
         const Expansion expansion = begin_expansion(name, function);
         if (!text_.ok()) return {};
         text_.advance(); // return
@@ -112,7 +109,7 @@ public:
             }
             const TypeId type = peers_.parse_type();
             const Token parameter = text_.need_name("the name of a parameter");
-            static_cast<void>(text_.take(Sign::comma));
+            text_.skip(Sign::comma);
             parameters = text_.here();
             text_.go_to(call);
             if (text_.is(Sign::close_round) && text_.ok()) {
@@ -152,10 +149,8 @@ public:
         TypeId types[2] = {};
         std::size_t count = 0;
         while (text_.ok() && !text_.is(Sign::close_round)) {
-            if (count == 2) {
-                text_.fail({"\"", quoted(name.text), "\" has at most 2 arguments"});
-                return {};
-            }
+            if (count == 2)
+                return values_.fail(text_.token(), {"\"", quoted(name.text), "\" has at most 2 arguments"});
             const Token at = text_.token();
             operands[count] = values_.reckoned(at, expressions_.parse());
             types[count] = operands[count].type;
@@ -180,7 +175,7 @@ private:
             text_.fail(name, {"\"", quoted(facet->name), "\" may change \"", peers_.name_of(facet),
                               "\", and an expression changes nothing; write \"do\" before it, or make the "
                               "method const"});
-        const FacetAction action = call_method(*facet.facet);
+        const FacetAction action = call_method(*facet);
         if (text_.ok() && action.type == nullptr)
             text_.fail(name, {"\"", quoted(facet->name), "\" returns nothing; write \"do\" and no value"});
         if (!text_.ok()) return {};
@@ -194,32 +189,29 @@ private:
             const Reader::Place before = text_.here();
             text_.advance();
             const std::string_view part = text_.token().text;
-            const FacetAction asked = part == "valid"   ? input_valid(*facet.facet)
-                                      : part == "fresh" ? input_fresh(*facet.facet)
-                                      : part == "age"   ? port_age(*facet.facet)
+            const FacetAction asked = part == "valid"   ? input_valid(*facet)
+                                      : part == "fresh" ? input_fresh(*facet)
+                                      : part == "age"   ? port_age(*facet)
                                                         : FacetAction{};
-            if (part == "value") {
+            if (part == "value" || asked)
                 text_.advance();
-            } else if (asked) {
-                text_.advance();
-                return act(asked, facet);
-            } else {
+            else
                 text_.go_to(before);
-            }
+            if (asked) return act(asked, facet);
         }
-        return act(purpose_ == Purpose::script ? find_read(*facet.facet) : find_look(*facet.facet), facet);
+        return act(purpose_ == Purpose::script ? find_read(*facet) : find_look(*facet), facet);
     }
     constexpr Operand parse_buffer(const Token& name, PeerFacet facet) {
         peers_.check_near(name, facet, "a buffer");
         if (!text_.need(Sign::dot, "\".empty\" or \".pop()\" of the buffer")) return {};
         const Token part = text_.need_word("empty or pop");
-        if (part.text == "empty") return act(buffer_empty(*facet.facet), facet);
+        if (part.text == "empty") return act(buffer_empty(*facet), facet);
         if (part.text != "pop")
             text_.fail(part, {"a buffered input has empty and pop(), not \"", quoted(part.text), "\""});
         if (purpose_ != Purpose::script) peers_.fail_foreign(part, facet, "reads it");
         text_.need(Sign::open_round, "\"(\"");
         text_.need(Sign::close_round, "\")\"");
-        return act(pop_buffer(*facet.facet), facet);
+        return act(pop_buffer(*facet), facet);
     }
     constexpr Operand parse_push(const Token& name, PeerFacet facet) {
         peers_.check_near(name, facet, "a buffer");
@@ -231,7 +223,7 @@ private:
         if (!text_.ok()) return {};
         const DataOffset value = out_.scratch(facet->type->size), to = out_.scratch(1);
         parse_arguments({&facet->type, 1}, value);
-        peers_.act(push_buffer(*facet.facet), facet, to, value);
+        peers_.act(push_buffer(*facet), facet, to, value);
         return made(script_bool, to);
     }
     constexpr Operand act(const FacetAction& action, PeerFacet facet, DataOffset packed = no_data) {
@@ -279,10 +271,7 @@ private:
             return literal_of(script_double, 0, value.real);
         if (value.type == type) return value;
         const Conversion conversion = find_conversion(value.type, type);
-        if (!conversion) {
-            values_.fail_type(at, value.type, type_name(type), "");
-            return {};
-        }
+        if (!conversion) return values_.fail_type(at, value.type, type_name(type), "");
         const Operand ready = values_.in_data(at, value);
         return text_.ok() ? values_.convert(conversion, ready, type, out_.scratch(type->size)) : Operand{};
     }
@@ -306,11 +295,9 @@ private:
             parse_part(whole, type->element, type->element->size * element);
         }
         if (!text_.ok()) return {};
-        if (text_.is(Sign::comma)) {
-            text_.fail(
-                {"a ", type_name(type), " has ", text_.digits(parts), " parts; leave out what is more"});
-            return {};
-        }
+        if (text_.is(Sign::comma))
+            return values_.fail(text_.token(), {"a ", type_name(type), " has ", text_.digits(parts),
+                                                " parts; leave out what is more"});
         text_.need(Sign::close_round, "\")\"");
         return whole;
     }
@@ -322,7 +309,7 @@ private:
             std::byte bytes[8] = {};
             std::byte* const into = out_.constant_bytes(whole.at) + offset;
             if (!encode(value, part, part->size <= 8 ? bytes : into))
-                return values_.fail_type(at, value.type, type_name(part), "");
+                return static_cast<void>(values_.fail_type(at, value.type, type_name(part), ""));
             if (part->size <= 8) std::copy_n(bytes, part->size, into);
             return;
         }

@@ -48,10 +48,7 @@ public:
         const Token at = text_.token();
         const Operand value = parse_known(type, what);
         if (!text_.ok() || type == nullptr || value.type == type) return value;
-        if (!value.literal) {
-            values_.fail_type(at, value.type, type_name(type), "");
-            return {};
-        }
+        if (!value.literal) return values_.fail_type(at, value.type, type_name(type), "");
         const Operand placed = values_.as(at, value, type, "");
         return type == script_double ? literal_of(script_double, 0, value.real) : placed;
     }
@@ -61,10 +58,7 @@ public:
     /// Parses the field or element after a dot or bracket of a value.
     constexpr Operand parse_part(const Operand& whole) {
         const Token at = text_.token();
-        if (whole.literal) {
-            text_.fail(at, {"a ", type_name(whole.type), " has no parts"});
-            return {};
-        }
+        if (whole.literal) return values_.fail(at, {"a ", type_name(whole.type), " has no parts"});
         if (text_.is(Sign::open_square)) return parse_element(whole);
         text_.advance();
         const Token name = text_.need_word("the name of a field");
@@ -81,9 +75,8 @@ public:
             if (name.text[0] >= 'w' && name.text[0] <= 'z' && i < type->rows)
                 return part_of(whole, type->element, i * type->element->size);
         }
-        text_.fail(name, {"a ", type_name(type), " has no \"", quoted(name.text),
-                          "\"; fields are those of records, and x, y, z of vectors"});
-        return {};
+        return values_.fail(name, {"a ", type_name(type), " has no \"", quoted(name.text),
+                                   "\"; fields are those of records, and x, y, z of vectors"});
     }
     struct Index {
         bool is_known = false;
@@ -149,10 +142,8 @@ private:
     constexpr Operand parse_choice(const Operand& condition, TypeId expected) {
         const Token at = text_.token();
         text_.advance();
-        if (condition.type != script_bool) {
-            values_.fail_type(at, condition.type, "a condition of type bool", " before ?");
-            return {};
-        }
+        if (condition.type != script_bool)
+            return values_.fail_type(at, condition.type, "a condition of type bool", " before ?");
         const Operand asked = values_.in_data(at, condition);
         const std::uint16_t first_skip = begin_skip(true);
         Token where = text_.token();
@@ -223,10 +214,8 @@ private:
     /// The right side is evaluated only when the left one does not decide.
     constexpr Operand parse_logical(const Token& at, Level level, const Operand& left) {
         const bool is_and = level.op == Operator::both;
-        if (script_type(left.type) != script_bool) {
-            values_.fail_type(at, left.type, "bool", is_and ? " before &&" : " before ||");
-            return {};
-        }
+        if (script_type(left.type) != script_bool)
+            return values_.fail_type(at, left.type, "bool", is_and ? " before &&" : " before ||");
         const DataOffset to = out_.scratch(1);
         values_.store(at, left, script_bool, to, "");
         const std::uint16_t skip = begin_skip(is_and);
@@ -258,10 +247,7 @@ private:
         const TypeId element = whole.type->element;
         if (index.is_known) return part_of(whole, element, index.number * element->size);
         Instruction in = element_read(whole.type);
-        if (in.run == nullptr) {
-            text_.fail(at, {"a ", type_name(whole.type), " has no elements"});
-            return {};
-        }
+        if (in.run == nullptr) return values_.fail(at, {"a ", type_name(whole.type), " has no elements"});
         in.a = whole.at;
         in.b = index.at;
         return made(element, out_.emit_to_scratch(in, element->size));

@@ -108,10 +108,7 @@ private:
                 static_cast<void>(expressions_.parse_condition());
                 flow_.drop_action(); // made once, with all of them
                 break;
-            case Sign::k_transitions:
-                text_.advance();
-                parse_transitions(number);
-                break;
+            case Sign::k_transitions: parse_transitions(number); break;
             case Sign::k_transition:
                 text_.advance();
                 parse_transition(at, number, true);
@@ -160,16 +157,15 @@ private:
             return text_.fail(at, {"state \"", state, "\" has \"", at.text, "\" twice; put both into one"});
         text_.need(Sign::open_brace, "\"{\"");
         peers_.set_command_scope(part == &StateRow::run ? run_scope_ : std::uint16_t{0});
-        const ProgramIndex program = statements_.parse_program({state, ".", at.text});
+        out_.states[number].*part = ProgramRef{statements_.parse_program({state, ".", at.text})};
         peers_.set_command_scope(0);
         text_.need(Sign::close_brace, "\"}\"");
-        if (text_.ok() && program != no_program) out_.states[number].*part = ProgramRef{program};
     }
 
     // ---- transitions
 
-    /// Parses after "transitions".
     constexpr void parse_transitions(std::uint16_t state) {
+        text_.advance();
         text_.need(Sign::open_brace, "\"{\"");
         while (text_.ok() && !text_.is(Sign::close_brace)) {
             const Token at = text_.token();
@@ -228,7 +224,7 @@ private:
             row.otherwise = parse_branch(row);
             static_cast<void>(parse_select(row, true));
         }
-        static_cast<void>(text_.take(Sign::semicolon));
+        text_.skip(Sign::semicolon);
         out_.add(out_.transitions, row, "transitions");
     }
     constexpr void parse_guard(TransitionRow& row) {
@@ -244,7 +240,7 @@ private:
                 return text_.fail(
                     reason, {"the reason is empty; say what is missing when the condition does not hold"});
         }
-        static_cast<void>(text_.take(Sign::k_then));
+        text_.skip(Sign::k_then);
     }
     constexpr std::string_view parse_reason(std::string_view wanted) {
         const Token reason = text_.token();
@@ -253,10 +249,10 @@ private:
     /// Parses the program of a branch, if it has one.
     constexpr ProgramRef parse_branch(const TransitionRow& row) {
         if (!text_.take(Sign::open_brace)) return {};
-        const ProgramIndex program =
-            statements_.parse_program({row.from, ".", row.on_event ? row.event : "transition"});
+        const ProgramRef program{
+            statements_.parse_program({row.from, ".", row.on_event ? row.event : "transition"})};
         text_.need(Sign::close_brace, "\"}\"");
-        return text_.ok() && program != no_program ? ProgramRef{program} : ProgramRef{};
+        return program;
     }
     /// Parses "select State", "select history(State)", "select deep history(State)", "because" and a reason,
     /// for the row that is added next.
@@ -280,7 +276,7 @@ private:
             text_.fail(target, {"the else branch enters a state itself and not its history"});
         note_target(static_cast<std::uint16_t>(out_.transitions.count()), otherwise, target);
         if (text_.take(Sign::k_because)) row.because = parse_reason("the reason, in quotes");
-        static_cast<void>(text_.take(Sign::semicolon));
+        text_.skip(Sign::semicolon);
         return true;
     }
     constexpr void parse_event(TransitionRow& row) {

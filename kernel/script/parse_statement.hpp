@@ -12,7 +12,16 @@ struct Frame {
     Chain exits = no_chain;
     bool is_function = false;
 };
+/// Exits of a condition.
+struct Branch {
+    NodeIndex node = 0;
+    Chain otherwise = no_chain; ///< if it does not hold
+};
+/// A loop from its condition to its end.
 struct Loop {
+    Loop* outer = nullptr;
+    std::uint64_t cost = 0; ///< of the statements before it
+    Branch head{};
     Chain breaks = no_chain;
     Chain continues = no_chain;
 };
@@ -29,7 +38,7 @@ public:
     constexpr void parse() {
         if (!text_.enter()) return;
         parse_by_word(text_.token());
-        static_cast<void>(text_.take(Sign::semicolon));
+        text_.skip(Sign::semicolon);
         text_.leave();
     }
     /// Parses the statements of a program, up to a closing brace that belongs to its owner, or to the end.
@@ -60,10 +69,8 @@ public:
         do {
             const Token name = text_.need_name("the name of the variable");
             if (!text_.ok()) return {};
-            if (type == nullptr && !text_.is(Sign::assign)) {
+            if (type == nullptr && !text_.is(Sign::assign))
                 text_.fail_expected("\"=\" and a value, of which auto takes the type");
-                return {};
-            }
             value = parse_variable(at, name, type);
         } while (text_.ok() && text_.take(Sign::comma));
         return value;
@@ -95,7 +102,8 @@ public:
         }
         if (!text_.need(Sign::close_round, "\")\"")) return;
         if (!text_.need(Sign::open_brace, "\"{\"")) return;
-        if (skip_body(function)) scope_.declare(name, function);
+        skip_body(function);
+        scope_.declare(name, function);
     }
     /// Returns the function with statements that is called next; null: none is.
     [[nodiscard]] constexpr Function* next_function() {
@@ -109,11 +117,9 @@ public:
     constexpr Operand expand(Function& function, TypeId wanted) {
         const Token name = text_.token();
         text_.advance();
-        if (wanted != nullptr && function.result == nullptr) {
-            text_.fail(name,
-                       {"function \"", function.name, "\" returns nothing; give it the type of a result"});
-            return {};
-        }
+        if (wanted != nullptr && function.result == nullptr)
+            return values_.fail(
+                name, {"function \"", function.name, "\" returns nothing; give it the type of a result"});
         flow_.begin_action();
         const Calls::Expansion expansion = calls_.begin_expansion(name, function, true);
         if (!text_.ok()) return {};
@@ -177,15 +183,9 @@ private:
             if (type == nullptr) type = value.type;
         }
         if (!text_.ok()) return {};
-        Symbol symbol{.operand = at_place(type, no_data)};
-        DataOffset& place = symbol.operand.at;
-        if (exports_variables_ && text_.depth() == 1) {
-            static_cast<void>(out_.add_variable(type->size, place));
-            out_.add(out_.variables, VariableRow{out_.keep({name.text}), type, place, VariableKind::variable},
-                     "variables");
-        } else {
-            place = out_.place_in(Region::arguments, type->size);
-        }
+        const DataOffset place = exports_variables_ && text_.depth() == 1
+                                     ? out_.add_variable(name.text, type, VariableKind::variable)
+                                     : out_.place_in(Region::arguments, type->size);
         if (given) {
             values_.store(where, value, type, place, "");
         } else {
@@ -194,32 +194,23 @@ private:
             values_.copy(type, zero, place);
         }
         flow_.end_statement(at);
-        scope_.declare(name, symbol);
+        scope_.declare(name, Symbol{.operand = at_place(type, place)});
         return value;
     }
-    /// Skips the body of a function; notes whether it is one return. False after a fault.
-    constexpr bool skip_body(Function& function) {
-        function.is_value = text_.is(Sign::k_return);
-        std::size_t depth = 1, statements = 0;
-        for (bool first = true; text_.ok() && depth != 0; first = false) {
-            if (text_.is(Sign::end) || text_.is(Sign::broken)) {
+    /// Skips the body of a function; notes whether it is one return.
+    constexpr void skip_body(Function& function) {
+        function.is_value =
+            text_.take(Sign::k_return) && !text_.is(Sign::semicolon) && !text_.is(Sign::close_brace);
+        for (std::size_t depth = 1, statements = 0; text_.ok() && depth != 0; text_.advance()) {
+            if (text_.is(Sign::end) || text_.is(Sign::broken))
                 text_.fail_expected("\"}\" at the end of the function");
-                return false;
-            }
             if (text_.is(Sign::open_brace)) ++depth;
             if (text_.is(Sign::close_brace)) --depth;
-            if (first && function.is_value) {
-                text_.advance();
-                if (text_.is(Sign::semicolon) || text_.is(Sign::close_brace)) function.is_value = false;
-                continue;
-            }
             if (text_.is(Sign::semicolon))
                 ++statements;
             else if (statements > 0 && depth != 0)
                 function.is_value = false;
-            text_.advance();
         }
-        return true;
     }
     constexpr void parse_return(const Token& at) {
         flow_.begin_action();
@@ -240,7 +231,7 @@ private:
 
     constexpr void parse_if(const Token& at) {
         Branch branch = parse_branch(at);
-        static_cast<void>(text_.take(Sign::k_then));
+        text_.skip(Sign::k_then);
         parse();
         if (!text_.take(Sign::k_else)) return flow_.join(flow_.pending, branch.otherwise);
         const Chain after = flow_.pending;
@@ -249,11 +240,11 @@ private:
         flow_.join(flow_.pending, after);
     }
     constexpr void parse_while(const Token& at) {
-        Round round;
-        begin_round(at, round);
+        Loop loop;
+        begin_loop(at, loop);
         parse();
-        flow_.join(flow_.pending, round.loop.continues);
-        end_round(at, round, 0);
+        flow_.join(flow_.pending, loop.continues);
+        end_loop(at, loop, 0);
     }
     constexpr void parse_for(const Token& at) {
         const Scope::Mark outer = scope_.open();
@@ -261,15 +252,15 @@ private:
         const bool has_counter = text_.is(Sign::k_var);
         Operand first;
         if (!text_.is(Sign::semicolon)) first = parse_step();
-        static_cast<void>(text_.take(Sign::semicolon));
+        text_.skip(Sign::semicolon);
         const auto own = scope_.symbols().subspan(outer.used);
         Symbol* const counter = has_counter && text_.ok() && own.size() == 1 ? own.data() : nullptr;
         const std::uint64_t rounds =
             counter != nullptr && counter->operand.type == script_int && first.literal
                 ? count_rounds(*counter, first.integer)
                 : 0;
-        Round round;
-        begin_round(at, round);
+        Loop loop;
+        begin_loop(at, loop);
         text_.need(Sign::semicolon, "\";\" and the step of the loop");
         const Reader::Place step = text_.here();
         for (std::size_t depth = 0; text_.ok() && (depth != 0 || !text_.is(Sign::close_round));
@@ -283,22 +274,21 @@ private:
         if (rounds != 0) counter->fixed = true;
         parse();
         if (rounds != 0) counter->fixed = false;
-        flow_.join(flow_.pending, round.loop.continues);
+        flow_.join(flow_.pending, loop.continues);
         const Reader::Place after = text_.here();
         text_.go_to(step);
         if (!text_.is(Sign::close_round)) parse_step();
         if (text_.ok() && !text_.is(Sign::close_round))
             text_.fail_expected("\")\" after the step of the loop");
         text_.go_to(after);
-        end_round(at, round, rounds);
+        end_loop(at, loop, rounds);
         scope_.close(outer);
     }
     /// Parses after "break" or "continue", which is `at`.
     constexpr void parse_jump(const Token& at) {
-        Loop* const loop = loop_;
-        if (loop == nullptr) return text_.fail(at, {"found \"", at.text, "\" outside of a loop"});
+        if (loop_ == nullptr) return text_.fail(at, {"found \"", at.text, "\" outside of a loop"});
         const Chain arc = flow_.pass(at);
-        flow_.join(at.sign == Sign::k_break ? loop->breaks : loop->continues, arc);
+        flow_.join(at.sign == Sign::k_break ? loop_->breaks : loop_->continues, arc);
     }
     constexpr void parse_try() {
         const auto first = static_cast<NodeIndex>(out_.nodes.count());
@@ -320,11 +310,7 @@ private:
         flow_.join(flow_.pending, after);
     }
 
-    struct Branch {
-        NodeIndex node = 0;
-        Chain otherwise = no_chain;
-    };
-    /// Creates a branching node: `pending` is the exit if the condition holds, `otherwise` if it does not.
+    /// Creates a branching node, whose exit if the condition holds is `pending`.
     constexpr Branch parse_branch(const Token& at) {
         flow_.begin_action();
         Branch branch{flow_.end_action(at)};
@@ -336,25 +322,18 @@ private:
         if (condition != no_condition) branch.otherwise = flow_.add_arc(branch.node);
         return branch;
     }
-    /// A loop from its condition to its end.
-    struct Round {
-        Loop loop{};
-        Loop* outer = nullptr;
-        std::uint64_t cost = 0;
-        Branch head{};
-    };
-    constexpr void begin_round(const Token& at, Round& round) {
-        round.outer = loop_;
-        loop_ = &round.loop;
-        round.cost = flow_.cost();
-        round.head = parse_branch(at);
+    constexpr void begin_loop(const Token& at, Loop& loop) {
+        loop.outer = loop_;
+        loop_ = &loop;
+        loop.cost = flow_.cost();
+        loop.head = parse_branch(at);
     }
-    constexpr void end_round(const Token& at, const Round& round, std::uint64_t rounds) {
-        flow_.lead(flow_.pending, round.head.node);
-        flow_.check_loop(at, round.head.node, round.cost, rounds);
-        flow_.pending = round.head.otherwise;
-        flow_.join(flow_.pending, round.loop.breaks);
-        loop_ = round.outer;
+    constexpr void end_loop(const Token& at, const Loop& loop, std::uint64_t rounds) {
+        flow_.lead(flow_.pending, loop.head.node);
+        flow_.check_loop(at, loop.head.node, loop.cost, rounds);
+        flow_.pending = loop.head.otherwise;
+        flow_.join(flow_.pending, loop.breaks);
+        loop_ = loop.outer;
     }
     /// Parses a statement in the brackets of a for: var, set, do, or an assignment without "set". Returns the
     /// first value of a variable.

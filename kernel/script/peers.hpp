@@ -13,6 +13,7 @@ struct PeerFacet {
 
     explicit constexpr operator bool() const noexcept { return facet != nullptr; }
     constexpr const Facet* operator->() const noexcept { return facet; }
+    constexpr const Facet& operator*() const noexcept { return *facet; }
 };
 
 class Peers {
@@ -183,7 +184,10 @@ public:
         std::size_t rows = 0, columns = 0;
         if (read_shape(name, rows, columns)) {
             if (const TypeId known = matrix_type(rows, columns); known != nullptr) return known;
-            return find_in_reach([&](TypeId type) { return is_shape(type, rows, columns); });
+            return find_in_reach([&](TypeId type) {
+                return type->kind == ValueKind::matrix && type->element == script_double &&
+                       type->rows == rows && type->columns == columns;
+            });
         }
         return find_in_reach([&](TypeId type) {
             return (type->kind == ValueKind::record || type->kind == ValueKind::enumeration ||
@@ -257,24 +261,17 @@ private:
         return own.size() == name.size() && lower_case(own[0]) == lower_case(name[0]) &&
                own.substr(1) == name.substr(1);
     }
-    static constexpr bool is_shape(TypeId type, std::size_t rows, std::size_t columns) noexcept {
-        return type->kind == ValueKind::matrix && type->element == script_double && type->rows == rows &&
-               type->columns == columns;
-    }
-
     /// Passes each type that the interfaces in reach name to `wanted`, until it accepts one.
     template <class Wanted>
     [[nodiscard]] constexpr TypeId find_in_reach(const Wanted& wanted) const {
         for (const Reachable& component : reach_.components)
             for (const Facet& facet : component.type->facets) {
                 if (facet.type == nullptr) continue;
-                if (const TypeId found = find_inside(facet.type, wanted, 0); found != nullptr) return found;
-                if (facet.kind == FacetKind::method)
-                    if (const TypeId found = find_inside(facet.method->result, wanted, 0); found != nullptr)
-                        return found;
-                if (facet.kind == FacetKind::command)
-                    if (const TypeId found = find_inside(facet.command->results, wanted, 0); found != nullptr)
-                        return found;
+                const TypeId result = facet.kind == FacetKind::method    ? facet.method->result
+                                      : facet.kind == FacetKind::command ? facet.command->results
+                                                                         : nullptr;
+                for (const TypeId type : {facet.type, result})
+                    if (const TypeId found = find_inside(type, wanted, 0); found != nullptr) return found;
             }
         return nullptr;
     }

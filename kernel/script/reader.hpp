@@ -104,6 +104,9 @@ public:
         advance();
         return true;
     }
+    constexpr void skip(Sign optional) {
+        if (is(optional)) advance();
+    }
     constexpr bool need(Sign sign, std::string_view wanted) {
         if (take(sign)) return true;
         fail_expected(wanted);
@@ -150,10 +153,7 @@ public:
 private:
     constexpr Token need_if(bool is_wanted, std::string_view wanted) {
         const Token name = token_;
-        if (is_wanted)
-            advance();
-        else
-            fail_expected(wanted);
+        is_wanted ? advance() : fail_expected(wanted);
         return name;
     }
 

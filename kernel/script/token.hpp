@@ -187,7 +187,15 @@ constexpr bool is_letter(char c) noexcept {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Reads forward; to read a part again, call begin() there.
+struct UnitOfTime {
+    std::string_view name;
+    std::int64_t ns;
+};
+inline constexpr UnitOfTime units_of_time[] = {{"s", 1'000'000'000},    {"ms", 1'000'000},
+                                               {"us", 1'000},           {"ns", 1},
+                                               {"min", 60'000'000'000}, {"h", 3'600'000'000'000}};
+
+/// Reads forward; to read a part again, copy the lexer there.
 class Lexer {
 public:
     constexpr Lexer() = default;
@@ -329,21 +337,12 @@ private:
         const char* const from = q;
         while (q != end_ && (is_letter(*q) || is_digit(*q))) ++q;
         const std::string_view word{from, static_cast<std::size_t>(q - from)};
-        std::int64_t unit = 0;
-        if (word == "s")
-            unit = 1'000'000'000;
-        else if (word == "ms")
-            unit = 1'000'000;
-        else if (word == "us")
-            unit = 1'000;
-        else if (word == "ns")
-            unit = 1;
-        else if (word == "min")
-            unit = 60'000'000'000;
-        else if (word == "h")
-            unit = 3'600'000'000'000;
-        if (unit != 0) p = q;
-        return unit;
+        for (const UnitOfTime& each : units_of_time)
+            if (word == each.name) {
+                p = q;
+                return each.ns;
+            }
+        return 0;
     }
     constexpr void make_duration(Token& token, const char* from, const char* to, std::uint64_t digits,
                                  int exponent, std::int64_t unit) noexcept {

@@ -10,11 +10,9 @@ namespace tappet::script_detail {
 struct Operand {
     TypeId type = nullptr;
     DataOffset at = no_data;
-    bool literal =
-        false; ///< it is stored below, not in the data: bools, numbers, times, texts, names of values
+    bool literal = false;  ///< stored below, not in the data: bools, numbers, times, texts, names of values
     bool constant = false; ///< its bytes are among the constants
-    bool simple = false;   ///< made by the last instruction, whole and in the scratch: the instruction may
-                           ///< write it elsewhere
+    bool simple = false;   ///< the last instruction made it, in the scratch: it may write it elsewhere
     std::int64_t integer = 0;
     double real = 0;
     std::string_view text{};
@@ -137,8 +135,14 @@ class Values {
 public:
     constexpr Values(Reader& text, Emitter& out) : text_{text}, out_{out} {}
 
-    constexpr void fail_type(const Token& at, TypeId found, std::string_view wanted, std::string_view where) {
-        text_.fail(at, {"found a value of type ", type_name(found), ", expected ", wanted, where});
+    /// Reports a fault; returns no value.
+    constexpr Operand fail(const Token& at, std::initializer_list<std::string_view> pieces) {
+        text_.fail(at, pieces);
+        return {};
+    }
+    constexpr Operand fail_type(const Token& at, TypeId found, std::string_view wanted,
+                                std::string_view where) {
+        return fail(at, {"found a value of type ", type_name(found), ", expected ", wanted, where});
     }
 
     // ---- conversions
@@ -149,13 +153,10 @@ public:
         if (value.literal) return constant(at, value, type, where);
         if (value.type == type) return value;
         const Conversion conversion = find_conversion(value.type, type);
-        if ((!conversion || !conversion.implicit) && script_type(value.type) != value.type)
-            return as(at, reckoned(at, value), type, where);
-        if (!conversion || !conversion.implicit) {
-            fail_type(at, value.type, type_name(type), where);
-            return {};
-        }
-        return convert(conversion, value, type, out_.scratch(type->size));
+        if (conversion && conversion.implicit)
+            return convert(conversion, value, type, out_.scratch(type->size));
+        if (script_type(value.type) == value.type) return fail_type(at, value.type, type_name(type), where);
+        return as(at, reckoned(at, value), type, where); // another width: by the script's own
     }
     constexpr Operand convert(const Conversion& conversion, const Operand& value, TypeId type,
                               DataOffset to) {
@@ -206,8 +207,8 @@ public:
                 return;
             }
             if (script_type(value.type) == value.type)
-                return fail_type(at, value.type, type_name(type), where);
-            return store(at, reckoned(at, value), type, to, where); // another width: by the script's own
+                return static_cast<void>(fail_type(at, value.type, type_name(type), where));
+            return store(at, reckoned(at, value), type, to, where);
         }
         const Operand ready = as(at, value, type, where);
         if (!text_.ok()) return;
@@ -232,11 +233,9 @@ public:
         Operand known;
         if (left.literal && right.literal && fold(op, left, right, known)) return known;
         const OperatorMatch match = find_binary(op, left.type, right.type);
-        if (!match) {
-            text_.fail(at, {"there is no ", type_name(left.type), " ", to_text(op), " ",
-                            type_name(right.type), "; convert one of them, as with double(x)"});
-            return {};
-        }
+        if (!match)
+            return fail(at, {"there is no ", type_name(left.type), " ", to_text(op), " ",
+                             type_name(right.type), "; convert one of them, as with double(x)"});
         const Operand a = as(at, left, match.a, ""), b = as(at, right, match.b, "");
         return apply(match, a, b);
     }
@@ -251,11 +250,9 @@ public:
         if (inner.literal && !negates && inner.type == script_bool)
             return literal_of(script_bool, inner.integer == 0, 0);
         const OperatorMatch match = find_unary(negates ? Operator::negate : Operator::invert, inner.type);
-        if (!match) {
-            text_.fail(at, {"there is no ", negates ? "-" : "!", " of ", type_name(inner.type),
-                            negates ? "" : "; compare it with something"});
-            return {};
-        }
+        if (!match)
+            return fail(at, {"there is no ", negates ? "-" : "!", " of ", type_name(inner.type),
+                             negates ? "" : "; compare it with something"});
         return apply(match, as(at, inner, match.a, ""), {});
     }
     constexpr Operand apply(const OperatorMatch& match, const Operand& a, const Operand& b) {
