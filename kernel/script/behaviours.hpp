@@ -36,6 +36,15 @@ inline constexpr BehaviourWord<ProgramQuestion> program_questions[] = {
     {"isPaused", ProgramQuestion::is_paused},
     {"inError", ProgramQuestion::in_error}};
 
+/// Null: there is no such word.
+template <class Meaning, std::size_t N>
+constexpr const BehaviourWord<Meaning>* find_word(const BehaviourWord<Meaning> (&words)[N],
+                                                  const Token& name) noexcept {
+    for (const BehaviourWord<Meaning>& each : words)
+        if (each.name == name.text) return &each;
+    return nullptr;
+}
+
 /// Values for the parameters of an instance, among all arguments of the script.
 struct ArgumentList {
     std::uint16_t first = 0;
@@ -51,6 +60,20 @@ struct Child {
 };
 
 class Behaviours {
+    // A template must be complete before a constant expression calls it.
+
+    /// Parses ".word()" of a program; returns the meaning of the word.
+    template <class Meaning, std::size_t N>
+    constexpr Meaning parse_word(const BehaviourWord<Meaning> (&words)[N], std::string_view wanted) {
+        text_.need(Sign::dot, "a dot");
+        const Token name = text_.need_word(wanted);
+        const auto* const word = find_word(words, name);
+        if (word == nullptr) text_.fail_unknown(name, "word", words, " of programs");
+        text_.need(Sign::open_round, "\"(\"");
+        text_.need(Sign::close_round, "\")\"");
+        return word != nullptr ? word->meaning : Meaning{};
+    }
+
 public:
     constexpr Behaviours(Reader& text, Emitter& out) : text_{text}, out_{out} {}
 
@@ -144,25 +167,6 @@ public:
     }
 
 private:
-    /// Null: there is no such word.
-    template <class Meaning, std::size_t N>
-    static constexpr const BehaviourWord<Meaning>* find_word(const BehaviourWord<Meaning> (&words)[N],
-                                                             const Token& name) noexcept {
-        for (const BehaviourWord<Meaning>& each : words)
-            if (each.name == name.text) return &each;
-        return nullptr;
-    }
-    /// Parses ".word()" of a program; returns the meaning of the word.
-    template <class Meaning, std::size_t N>
-    constexpr Meaning parse_word(const BehaviourWord<Meaning> (&words)[N], std::string_view wanted) {
-        text_.need(Sign::dot, "a dot");
-        const Token name = text_.need_word(wanted);
-        const auto* const word = find_word(words, name);
-        if (word == nullptr) text_.fail_unknown(name, "word", words, " of programs");
-        text_.need(Sign::open_round, "\"(\"");
-        text_.need(Sign::close_round, "\")\"");
-        return word != nullptr ? word->meaning : Meaning{};
-    }
     /// Parses "()", or "(State)" of the child; returns the state.
     constexpr std::uint16_t parse_brackets(const Child& child, bool with_state) {
         text_.need(Sign::open_round, "\"(\"");

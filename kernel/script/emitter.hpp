@@ -197,7 +197,6 @@ private:
         image_most_ = std::max(image_most_, constants_end + 2 * variables_size);
         return bytes;
     }
-
     constexpr void lay_out(ProgramTables& tables) {
         const std::uint32_t constants_end = aligned(region_used(Region::constants), data_alignment);
         const std::uint32_t variables_end =

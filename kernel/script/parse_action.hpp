@@ -35,7 +35,7 @@ public:
     /// Parses after "do".
     constexpr void parse_do(const Token& at) {
         if (Function* const function = statements_.next_function(); function != nullptr) {
-            static_cast<void>(statements_.expand(*function, nullptr));
+            static_cast<void>(statements_.expand(*function, false));
             return;
         }
         Token name = text_.need_word("what to do: a method, command, operation, event or function");
@@ -61,7 +61,6 @@ public:
         scope_.consider_all(nearest);
         text_.fail_unknown(name, "component", nearest, "");
     }
-
     constexpr void parse_wait(const Token& at) {
         flow_.begin_action();
         const Token where = text_.token();
@@ -163,7 +162,7 @@ private:
         if (flow_.has_instructions())
             text_.fail(
                 {"function \"", function->name, "\" has statements; put its result into a variable first"});
-        return statements_.expand(*function, type);
+        return statements_.expand(*function, true);
     }
 
     // ---- calls
@@ -238,7 +237,6 @@ private:
         flow_.pending = flow_.add_arc(node, flow_.add_condition(at, first, has_ended));
         parse_timeout(node);
     }
-
     /// Starts own commands in this step; sends those of others. The exit opens when the command is done
     /// (thesis 5.1.5); a separate node fetches its results.
     constexpr void parse_command(const Token& at, const Token& name, PeerFacet facet) {

@@ -232,7 +232,6 @@ private:
         peers_.act(action, facet, to, packed);
         return made(action.type, to);
     }
-
     /// Parses the argument of a function's parameter.
     constexpr Operand parse_parameter(TypeId type, bool keeps) {
         const Token at = text_.token();

@@ -127,7 +127,6 @@ public:
         index.at = in.to;
         return index;
     }
-
     constexpr void fail_unknown(const Token& name, TypeId expected) {
         if (!text_.ok()) return;
         Nearest nearest{name.text};

@@ -1,5 +1,4 @@
-// State machines: their variables and parameters, functions, child machines and states, and the checks of a
-// complete one.
+// State machines: their variables, parameters, functions and child machines, and the checks of a whole one.
 #pragma once
 
 #include "kernel/script/parse_state.hpp"
@@ -38,7 +37,6 @@ public:
         out_.add(out_.variables, VariableRow{out_.keep({name.text}), type, at, kind}, "variables");
         scope_.declare(name, Symbol{.operand = at_place(type, at)});
     }
-
     /// Parses "(1, 2)" or "(first = 1, second = 2)" for the parameters of a type.
     constexpr ArgumentList parse_arguments(const Token& at, TypeIndex type) {
         const auto variables = out_.types[type].tables.variables;
@@ -110,7 +108,6 @@ private:
         }
         return variables.size();
     }
-
     /// A scalar or text for a parameter.
     struct Argument {
         std::uint16_t variable = 0;

@@ -14,7 +14,6 @@ public:
         heads_ = {};
         unresolved_used_ = 0;
     }
-
     /// Parses "state name { ... }", inside of the state `parent` if there is one.
     constexpr void parse(std::string_view parent = {}, std::string_view region = {}) {
         if (!text_.enter()) return;
@@ -53,7 +52,6 @@ public:
         run_scope_ = outer_scope;
         text_.leave();
     }
-
     /// Replaces names of states by copies that outlive the text; call when all states are known.
     constexpr void resolve_names() {
         for (StateRow& row : out_.states.view()) resolve(row.parent, row.line, row.column);

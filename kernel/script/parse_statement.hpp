@@ -113,11 +113,11 @@ public:
         Function& function = scope_.functions()[symbol->number];
         return function.is_value ? nullptr : &function;
     }
-    /// Expands the function's statements here; returns its result for a value of the `wanted` type.
-    constexpr Operand expand(Function& function, TypeId wanted) {
+    /// Expands the function's statements here; returns its result, which it must have if a value is wanted.
+    constexpr Operand expand(Function& function, bool wants_value) {
         const Token name = text_.token();
         text_.advance();
-        if (wanted != nullptr && function.result == nullptr)
+        if (wants_value && function.result == nullptr)
             return values_.fail(
                 name, {"function \"", function.name, "\" returns nothing; give it the type of a result"});
         flow_.begin_action();
@@ -176,7 +176,7 @@ private:
         Operand value;
         if (given) {
             if (Function* const function = next_function(); function != nullptr)
-                value = expand(*function, type);
+                value = expand(*function, true);
             else
                 value = type == nullptr ? values_.reckoned(where, expressions_.parse())
                                         : expressions_.parse(type);
@@ -309,7 +309,6 @@ private:
         parse();
         flow_.join(flow_.pending, after);
     }
-
     /// Creates a branching node, whose exit if the condition holds is `pending`.
     constexpr Branch parse_branch(const Token& at) {
         flow_.begin_action();
@@ -373,7 +372,6 @@ private:
         text_.go_to(before);
         return rounds;
     }
-
     static constexpr std::uint64_t rounds_between(Sign how, std::int64_t from, std::int64_t to,
                                                   std::int64_t by) noexcept {
         constexpr std::int64_t large = std::int64_t{1} << 40;

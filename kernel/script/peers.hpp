@@ -17,6 +17,36 @@ struct PeerFacet {
 };
 
 class Peers {
+    // A template must be complete before a constant expression calls it.
+
+    /// Passes each type that the interfaces in reach name to `wanted`, until it accepts one.
+    template <class Wanted>
+    [[nodiscard]] constexpr TypeId find_in_reach(const Wanted& wanted) const {
+        for (const Reachable& component : reach_.components)
+            for (const Facet& facet : component.type->facets) {
+                if (facet.type == nullptr) continue;
+                const TypeId result = facet.kind == FacetKind::method    ? facet.method->result
+                                      : facet.kind == FacetKind::command ? facet.command->results
+                                                                         : nullptr;
+                for (const TypeId type : {facet.type, result})
+                    if (const TypeId found = find_inside(type, wanted, 0); found != nullptr) return found;
+            }
+        return nullptr;
+    }
+    template <class Wanted>
+    [[nodiscard]] static constexpr TypeId find_inside(TypeId type, const Wanted& wanted, int depth) {
+        if (type == nullptr || depth == 4) return nullptr;
+        if (type->kind != ValueKind::arguments && wanted(type)) return type;
+        for (const TypeId each : type->elements)
+            if (const TypeId found = find_inside(each, wanted, depth + 1); found != nullptr) return found;
+        for (const RecordField& field : type->fields)
+            if (const TypeId found = find_inside(field.type, wanted, depth + 1); found != nullptr)
+                return found;
+        if (type->kind == ValueKind::matrix || type->kind == ValueKind::sequence)
+            return find_inside(type->element, wanted, depth + 1);
+        return nullptr;
+    }
+
 public:
     constexpr Peers(Reader& text, Emitter& out, const Reach& reach) : text_{text}, out_{out}, reach_{reach} {}
 
@@ -255,40 +285,11 @@ private:
         text_.fail(at, {"\"", peer, ".", name, "\" is not in the reach of this slot; add it to ", what,
                         "(...) of the slot's row"});
     }
-
     static constexpr bool is_named(TypeId type, std::string_view name) noexcept {
         const std::string_view own = short_name(type->name);
         return own.size() == name.size() && lower_case(own[0]) == lower_case(name[0]) &&
                own.substr(1) == name.substr(1);
     }
-    /// Passes each type that the interfaces in reach name to `wanted`, until it accepts one.
-    template <class Wanted>
-    [[nodiscard]] constexpr TypeId find_in_reach(const Wanted& wanted) const {
-        for (const Reachable& component : reach_.components)
-            for (const Facet& facet : component.type->facets) {
-                if (facet.type == nullptr) continue;
-                const TypeId result = facet.kind == FacetKind::method    ? facet.method->result
-                                      : facet.kind == FacetKind::command ? facet.command->results
-                                                                         : nullptr;
-                for (const TypeId type : {facet.type, result})
-                    if (const TypeId found = find_inside(type, wanted, 0); found != nullptr) return found;
-            }
-        return nullptr;
-    }
-    template <class Wanted>
-    [[nodiscard]] static constexpr TypeId find_inside(TypeId type, const Wanted& wanted, int depth) {
-        if (type == nullptr || depth == 4) return nullptr;
-        if (type->kind != ValueKind::arguments && wanted(type)) return type;
-        for (const TypeId each : type->elements)
-            if (const TypeId found = find_inside(each, wanted, depth + 1); found != nullptr) return found;
-        for (const RecordField& field : type->fields)
-            if (const TypeId found = find_inside(field.type, wanted, depth + 1); found != nullptr)
-                return found;
-        if (type->kind == ValueKind::matrix || type->kind == ValueKind::sequence)
-            return find_inside(type->element, wanted, depth + 1);
-        return nullptr;
-    }
-
     /// Parses "vector3", "matrix2x3".
     static constexpr bool read_shape(std::string_view name, std::size_t& rows,
                                      std::size_t& columns) noexcept {
