@@ -46,7 +46,7 @@ public:
     /// Returns the blobs, in no order. `weigh(Colour)` returns an integer: 0 for a pixel of no blob, at most
     /// 1000. Real-time.
     template <class Weigh>
-    std::span<const Blob> find(const Image& image, Weigh weigh) noexcept TAPPET_REALTIME {
+    std::span<const Blob> find(const Picture& image, Weigh weigh) noexcept TAPPET_REALTIME {
         count_ = 0;
         above_.fill(no_label);
         for (std::size_t row = 0; row < image_rows; ++row) {

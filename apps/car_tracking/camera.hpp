@@ -1,9 +1,8 @@
 // The steerable camera (thesis 1.4, 5.4): takes images, aims as commanded, and learns the zeros of its axes
-// and its lens.
+// and its lens. Its sensor and its head are devices of their own.
 #pragma once
 
 #include "apps/car_tracking/blob.hpp"
-#include "apps/car_tracking/camera_device.hpp"
 #include "apps/car_tracking/head_axis.hpp"
 #include "apps/car_tracking/lens_calibration.hpp"
 #include "kernel/component/component.hpp"
@@ -14,16 +13,19 @@
 namespace tappet::car_tracking {
 
 /// All real-time, in a periodic activity. Its commands come from one component at a time. It rejects a
-/// command that does not fit its current action.
+/// command that does not fit its current action. While the head or the sensor is silent, nothing moves and
+/// commands fail.
 struct Camera {
-    static constexpr DeviceKind device_kind{.name = "camera"};
-
+    Input<Picture> picture;
+    Input<bool> sensor_faulted;
+    Input<std::int64_t> pan_counts, pan_index, pan_index_seen, tilt_counts, tilt_index, tilt_index_seen;
+    Output<std::int64_t> drives_on;
+    Output<double> pan_speed, tilt_speed;
     Output<Image> image;
     Output<Aim> aim;
     Output<Lens> lens;
     Output<double> calibration_error_px;
     Event<> image_ready;
-    Property<double> refresh_hz{25.0};
     Property<Duration> exposure{16ms};
     Property<double> nominal_focal_px{150.0};
     Property<double> mark_pan{0.0};
@@ -31,41 +33,37 @@ struct Camera {
 
     // Commands.
     bool switch_on() noexcept TAPPET_REALTIME {
-        device_->switch_on(true);
         is_on_ = true;
         return true;
     }
     bool switch_off() noexcept TAPPET_REALTIME {
-        device_->turn(0.0, 0.0);
-        device_->switch_on(false);
         is_on_ = is_moving_ = is_fetching_ = false;
         phase_ = Phase::idle;
         return true;
     }
     /// Starts a move. Rejected while the camera moves, calibrates or is off, and for an aim out of reach.
     bool begin_move(const Aim& to) noexcept TAPPET_REALTIME {
-        if (!is_on_ || is_moving_ || phase_ != Phase::idle || !can_reach(to)) return false;
+        if (!is_free() || is_moving_ || !can_reach(to)) return false;
         go_to(to);
         return true;
     }
     CommandProgress moved() noexcept TAPPET_REALTIME {
         if (is_moving_) return CommandProgress::executing;
-        return is_on_ ? CommandProgress::done : CommandProgress::failed;
+        return is_fit() ? CommandProgress::done : CommandProgress::failed;
     }
     /// Starts to take an image. Rejected while an image is being taken, during calibration, and while off.
     bool begin_fetch() noexcept TAPPET_REALTIME {
-        if (!is_on_ || is_fetching_ || phase_ != Phase::idle) return false;
-        is_fetching_ = true;
-        is_exposed_ = false;
+        if (!is_free() || is_fetching_) return false;
+        await_image();
         return true;
     }
     CommandProgress fetched() noexcept TAPPET_REALTIME {
         if (is_fetching_) return CommandProgress::executing;
-        return is_on_ ? CommandProgress::done : CommandProgress::failed;
+        return is_fit() ? CommandProgress::done : CommandProgress::failed;
     }
     /// Finds the index marks, then the mark under several aims. Fails when the marks cannot be seen.
     bool begin_calibration() noexcept TAPPET_REALTIME {
-        if (!is_on_ || is_moving_ || is_fetching_ || phase_ != Phase::idle) return false;
+        if (!is_free() || is_moving_ || is_fetching_) return false;
         is_calibrated_.store(false, std::memory_order_relaxed);
         pan_.call_it(0.0);
         tilt_.call_it(0.0);
@@ -91,32 +89,40 @@ struct Camera {
         return is_calibrated_.load(std::memory_order_relaxed);
     }
 
-    Sentence configure(Setup& setup) {
-        device_ = setup.device<CameraDevice>();
-        return device_ == nullptr ? setup.no_device() : Sentence{};
-    }
     /// Keeps an earlier calibration.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        read_head();
+        knows_head_ = false;
+        steer();
         if (is_calibrated()) return;
         lens.write({nominal_focal_px.get(), 0.0});
         calibration_error_px.write(0.0);
-        pan_.call_it(0.0); // until the index marks are known, angles count from the present position
-        tilt_.call_it(0.0);
-        read_head();
     }
     void step(const Cycle& cycle) noexcept TAPPET_REALTIME {
-        read_head();
-        if (!is_on_) return;
-        if (phase_ == Phase::homing) home();
+        read_head(cycle.now);
+        if (is_on_ && !is_fit()) give_up();
+        if (is_on_ && phase_ == Phase::homing) home();
         steer();
-        take_image(cycle.now);
+        if (is_fetching_) take_image(cycle.now);
     }
-    void stop(const Cycle&) noexcept TAPPET_REALTIME { static_cast<void>(switch_off()); }
+    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+        static_cast<void>(switch_off());
+        steer();
+    }
 
     // clang-format off
     static constexpr auto interface() {
         return facets(
+            input<&Camera::picture>("picture", "", "of the sensor, at the middle of its exposure"),
+            input<&Camera::sensor_faulted>("sensor_faulted", "", "the sensor sends nothing"),
+            input<&Camera::pan_counts>("pan_counts", "", "of the encoder"),
+            input<&Camera::pan_index>("pan_index", "", "count of the index mark"),
+            input<&Camera::pan_index_seen>("pan_index_seen", "", "1: the mark was passed since power-on"),
+            input<&Camera::tilt_counts>("tilt_counts", "", "of the encoder"),
+            input<&Camera::tilt_index>("tilt_index", "", "count of the index mark"),
+            input<&Camera::tilt_index_seen>("tilt_index_seen", "", "1: the mark was passed since power-on"),
+            output<&Camera::drives_on>("drives_on", "", "1: the motors turn, 0: they hold"),
+            output<&Camera::pan_speed>("pan_speed", "deg/s", "wanted"),
+            output<&Camera::tilt_speed>("tilt_speed", "deg/s", "wanted"),
             output<&Camera::image>("image", "", "the last image"),
             output<&Camera::aim>("aim", "", "where it looks, as far as it knows"),
             output<&Camera::lens>("lens", "", "nominal until it is calibrated; written on change"),
@@ -129,8 +135,7 @@ struct Camera {
             command<&Camera::begin_calibration, &Camera::calibrated>("calibrate", "learns the axes' zero and the lens"),
             method<&Camera::get_position>("get_position", "where it looks, as far as it knows", any_thread),
             method<&Camera::is_calibrated>("is_calibrated", "the last calibration was good", any_thread),
-            property<&Camera::refresh_hz>("refresh_hz", "1/s", "images a second at most", range(1, 100)),
-            property<&Camera::exposure>("exposure", "s", "of an image", range(0.001, 0.1)),
+            property<&Camera::exposure>("exposure", "s", "of an image: one that began before it was asked for is not taken", range(0.001, 0.1)),
             property<&Camera::nominal_focal_px>("nominal_focal_px", "px", "focal length by the lens' data sheet", range(50, 500)),
             property<&Camera::mark_pan>("mark_pan", "deg", "where the calibration mark is, roughly", range(-40, 40)),
             property<&Camera::mark_tilt>("mark_tilt", "deg", "where the calibration mark is, roughly", range(-60, 0)));
@@ -154,21 +159,56 @@ private:
         is_moving_ = true;
     }
 
-    void read_head() noexcept TAPPET_REALTIME {
-        const HeadReading head = device_->head();
-        pan_.read(head.pan);
-        tilt_.read(head.tilt);
-        aim.write(aim_now());
-        shown_aim_.write(aim_now());
+    [[nodiscard]] bool is_fit() const noexcept TAPPET_REALTIME { return is_on_ && knows_head_ && sees_; }
+    [[nodiscard]] bool is_free() const noexcept TAPPET_REALTIME { return is_fit() && phase_ == Phase::idle; }
+    /// The current command fails.
+    void give_up() noexcept TAPPET_REALTIME {
+        is_moving_ = is_fetching_ = false;
+        phase_ = Phase::idle;
     }
+    void await_image() noexcept TAPPET_REALTIME {
+        is_fetching_ = true;
+        asked_at_ = never;
+    }
+
+    static bool read(HeadAxis& axis, Input<std::int64_t>& counts, Input<std::int64_t>& index,
+                     Input<std::int64_t>& index_seen) noexcept TAPPET_REALTIME {
+        axis.read({counts.get(), index_seen.get() != 0, index.get()});
+        return counts.good() && index.good() && index_seen.good();
+    }
+    void read_head(Time now) noexcept TAPPET_REALTIME {
+        const bool knew_head = knows_head_;
+        knows_head_ = read(pan_, pan_counts, pan_index, pan_index_seen);
+        knows_head_ = read(tilt_, tilt_counts, tilt_index, tilt_index_seen) && knows_head_;
+        sees_ = !sensor_faulted.get();
+        if (!knows_head_) return;
+        if (!knew_head && !is_calibrated()) { // until the index marks are known, angles count from here
+            pan_.call_it(0.0);
+            tilt_.call_it(0.0);
+        }
+        const Aim here = aim_now();
+        aim.write(here);
+        shown_aim_.write(here);
+        path_[steps_++ % path_.size()] = {now, here};
+    }
+    /// Returns where it looked at that time, as far back as images can be old.
+    [[nodiscard]] Aim aim_at(Time time) const noexcept TAPPET_REALTIME {
+        const Passed* nearest = &path_[0];
+        for (const Passed& each : path_)
+            if (std::chrono::abs(each.at - time) < std::chrono::abs(nearest->at - time)) nearest = &each;
+        return nearest->aim;
+    }
+    /// Writes the speeds in each step: the head stops when they grow stale.
     void steer() noexcept TAPPET_REALTIME {
-        if (!is_moving_) return;
-        device_->turn(pan_.speed(), tilt_.speed());
+        const bool moves = is_on_ && is_moving_;
+        drives_on.write(is_on_ ? 1 : 0);
+        pan_speed.write(moves ? pan_.speed() : 0.0);
+        tilt_speed.write(moves ? tilt_.speed() : 0.0);
+        if (!moves) return;
         is_moving_ = !(pan_.arrived() && tilt_.arrived());
         if (is_moving_ || phase_ != Phase::turning_to_view) return;
         phase_ = Phase::taking_view;
-        is_fetching_ = true;
-        is_exposed_ = false;
+        await_image();
     }
 
     /// Swings both axes to either side until both index marks were passed.
@@ -191,18 +231,11 @@ private:
     [[nodiscard]] Aim mark() const noexcept TAPPET_REALTIME { return {mark_pan.get(), mark_tilt.get()}; }
 
     void take_image(Time now) noexcept TAPPET_REALTIME {
-        if (!is_fetching_) return;
-        if (!is_exposed_) {
-            if (now - exposed_at_ < Duration{static_cast<std::int64_t>(1e9 / refresh_hz.get())}) return;
-            if (!device_->expose(exposure.get())) return;
-            is_exposed_ = true;
-            exposed_at_ = now;
-            aim_then_ = aim_now();
-            return;
-        }
-        Time taken{};
-        if (!device_->take(frame_, taken)) return;
-        frame_.aim = aim_then_;
+        if (asked_at_ == never) asked_at_ = now;
+        if (picture.read(frame_) != Flow::fresh) return;
+        const Time taken = picture.stamp();
+        if (taken - exposure.get() / 2 < asked_at_) return;
+        frame_.aim = aim_at(taken);
         is_fetching_ = false;
         if (phase_ == Phase::taking_view) {
             look_at_mark();
@@ -236,19 +269,25 @@ private:
         is_calibrated_.store(true, std::memory_order_relaxed);
     }
 
-    CameraDevice* device_ = nullptr;
+    struct Passed {
+        Time at{};
+        Aim aim{};
+    };
+
     HeadAxis pan_{}, tilt_{};
     DataObject<Aim> shown_aim_{};
     std::atomic<bool> is_calibrated_{false};
     bool is_on_ = false;
     bool is_moving_ = false;
     bool is_fetching_ = false;
-    bool is_exposed_ = false; // the image that is being fetched
+    bool knows_head_ = false;
+    bool sees_ = false;
     Phase phase_ = Phase::idle;
     std::size_t swing_ = 0;
     std::size_t view_ = 0;
-    Time exposed_at_{};
-    Aim aim_then_{};
+    Time asked_at_{};               // since when an image is awaited; never: not yet noted
+    std::array<Passed, 32> path_{}; // the last steps
+    std::size_t steps_ = 0;
     Image frame_{};
     BlobFinder finder_{};
     LensCalibration calibration_{};

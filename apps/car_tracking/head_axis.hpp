@@ -2,12 +2,23 @@
 // an angle and stops there.
 #pragma once
 
-#include "apps/car_tracking/camera_device.hpp"
+#include "apps/car_tracking/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tappet::car_tracking {
+
+/// One axis of the head, as its encoder reports it.
+struct AxisReading {
+    static constexpr double counts_per_degree = 200.0;
+    std::int64_t counts = 0;
+    bool is_index_seen = false; ///< since power-on
+    std::int64_t index_counts = 0;
+};
+
+/// The angles at which the index marks are mounted, in degrees.
+inline constexpr Aim index_marks{0.0, -30.0};
 
 /// All real-time; angles in degrees.
 class HeadAxis {

@@ -1,24 +1,38 @@
-// The simulated room behind the camera's wires, and the record of a run in it.
+// The simulated room behind the wires of the camera and its head, and the record of a run in it.
 #pragma once
 
 #include "apps/car_tracking/host/record.hpp"
+#include "apps/car_tracking/maps.hpp"
+#include "drivers/camera/far_end.hpp"
+#include "drivers/can/far_end.hpp"
 #include "drivers/plant/plant.hpp"
 
-#include <array>
 #include <string>
 
 namespace tappet::car_tracking {
 
-/// In virtual time only: machine and room share the sensor without a lock.
 class Plant final : public tappet::Plant {
 public:
-    explicit Plant(std::uint64_t seed) : scene{seed} {}
+    explicit Plant(std::uint64_t seed) : scene{seed} {
+        head.send_every("pan", head_period);
+        head.send_every("tilt", head_period);
+    }
 
     Time move(Time now) override {
+        scene.drive(head.integer("drives.on") != 0, head.get("drives.pan_speed"),
+                    head.get("drives.tilt_speed"));
         scene.advance(now);
+        const AxisReading pan = scene.pan();
+        head.set("pan.counts", static_cast<double>(pan.counts));
+        head.set("pan.index", static_cast<double>(pan.index_counts));
+        head.set("pan.index_seen", pan.is_index_seen ? 1.0 : 0.0);
+        const AxisReading tilt = scene.tilt();
+        head.set("tilt.counts", static_cast<double>(tilt.counts));
+        head.set("tilt.index", static_cast<double>(tilt.index_counts));
+        head.set("tilt.index_seen", tilt.is_index_seen ? 1.0 : 0.0);
+        if (const Picture* image = scene.new_image()) camera.show(image->pixels, now);
         return scene.next();
     }
-    [[nodiscard]] std::span<const ProvidedDevice> devices() override { return devices_; }
     [[nodiscard]] Duration usual_time() const override { return 60s; }
     [[nodiscard]] std::string_view usage() const override {
         return "  --picture FILE      draws the run as SVG: tracks, states, images, errors\n";
@@ -48,8 +62,8 @@ public:
     std::string picture{}; ///< the file to write; empty: no picture
 
 private:
-    std::array<ProvidedDevice, 1> devices_{
-        {{type_id<CameraDevice>, "tracking-camera", static_cast<CameraDevice*>(&scene)}}};
+    can::FarEnd<head_signals> head{ends, "tracking-head"};
+    camera::FarEnd camera{ends, "tracking-camera"};
 };
 
 } // namespace tappet::car_tracking

@@ -92,6 +92,10 @@ std::vector<Need> needs_of(const Facts& facts) {
     for (const Words& each : facts.all("serial"))
         needs.push_back(awaited("serial port " + each[0], "check the board's devices",
                                 [path = each[0]] { return exists(path); }));
+    for (const Words& each : facts.all("camera"))
+        needs.push_back(awaited("camera " + each[0],
+                                "check its cable, and that the board's modules name its driver",
+                                [path = each[0]] { return exists(path); }));
     return needs;
 }
 

@@ -2,6 +2,7 @@
 // include and a name.
 #pragma once
 
+#include "drivers/camera/real_camera.hpp"
 #include "drivers/can/real_bus.hpp"
 #include "drivers/gpio/real_chip.hpp"
 #include "drivers/modbus/real_server.hpp"
@@ -10,6 +11,6 @@
 namespace tappet {
 
 template <template <class...> class List>
-using RealKinds = List<can::RealBus, gpio::RealChip, modbus::RealServer, udp::RealPort>;
+using RealKinds = List<camera::RealCamera, can::RealBus, gpio::RealChip, modbus::RealServer, udp::RealPort>;
 
 } // namespace tappet

@@ -47,6 +47,7 @@ const std::vector<Row> house{
 
     {"drivers/map",       {"kernel/component"}},
     {"drivers/twin",      {"drivers/map"}},
+    {"drivers/camera",    {"kernel/component", "drivers/twin"}},
     {"drivers/can",       {"kernel/component", "drivers/twin"}},
     {"drivers/gpio",      {"kernel/component", "drivers/twin"}},
     {"drivers/modbus",    {"kernel/component", "drivers/twin"}},
@@ -54,7 +55,7 @@ const std::vector<Row> house{
     {"drivers/canopen",   {"drivers/can", "kernel/pieces", "kernel/motion"}},
     {"drivers/instruments", {"kernel/component"}},
     {"drivers/system",    {"kernel/system", "drivers/can"}},
-    {"drivers/hardware",  {"kernel/machine/instance", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/udp"}},
+    {"drivers/hardware",  {"kernel/machine/instance", "drivers/camera", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/udp"}},
     {"drivers/plant",     {"kernel/services", "drivers/hardware"}},
 
     {"board/init",        {}},

@@ -22,7 +22,8 @@ void Record::look(MachineInstance& machine, const Scene& scene, Time time) {
     if (recognition.images_processed.last() == images_seen_) return;
     images_seen_ = recognition.images_processed.last();
     const Sighting& seen = recognition.sighting.last();
-    const Truth& then = scene.pictured();
+    const Truth& then =
+        scene.pictured(*PortAccess::data<Sighting>.places(&recognition.sighting, false).stamp);
     looks_.push_back(
         {now.at_s, seen.located, seen.whole, seen.x, seen.y, then.car.x, then.car.y, then.car_hidden});
 }

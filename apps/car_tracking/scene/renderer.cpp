@@ -89,7 +89,7 @@ void Renderer::add(int moment, const Aim& aim, const CarPose& car) {
     }
 }
 
-void Renderer::finish(Random& noise, Image& into) const {
+void Renderer::finish(Random& noise, Picture& into) const {
     for (std::size_t i = 0; i < pixels; ++i) {
         const std::uint64_t drawn = noise.next();
         // Two bytes a channel: triangular noise with a standard deviation of about 6.5 steps.

@@ -18,7 +18,7 @@ public:
     /// Adds one moment; `moment` counts from 0.
     void add(int moment, const Aim& aim, const CarPose& car);
     /// Writes the image of all moments.
-    void finish(Random& noise, Image& into) const;
+    void finish(Random& noise, Picture& into) const;
 
 private:
     struct Flat {

@@ -2,6 +2,7 @@
 #include "apps/car_tracking/scene/scene.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tappet::car_tracking {
 
@@ -29,13 +30,11 @@ void Scene::Axis::advance(double seconds) {
     index_counts = counts_at(index);
 }
 
-std::int64_t Scene::Axis::counts_at(double at) const noexcept TAPPET_REALTIME {
+std::int64_t Scene::Axis::counts_at(double at) const {
     return static_cast<std::int64_t>(std::floor((at - origin) * AxisReading::counts_per_degree + 0.5));
 }
 
-AxisReading Scene::Axis::reading() const noexcept TAPPET_REALTIME {
-    return {counts_at(angle), is_index_seen, index_counts};
-}
+AxisReading Scene::Axis::reading() const { return {counts_at(angle), is_index_seen, index_counts}; }
 
 Scene::Scene(std::uint64_t seed)
     : random_{seed},
@@ -51,66 +50,47 @@ Scene::Scene(std::uint64_t seed)
     tilt_.origin = 100.0 * random_.unit() - 50.0;
 }
 
-void Scene::switch_on(bool on) noexcept TAPPET_REALTIME {
+void Scene::drive(bool on, double pan, double tilt) {
     is_on_ = on;
-    if (!on) sensor_ = Sensor::idle;
+    pan_.wanted_speed = on ? pan : 0.0;
+    tilt_.wanted_speed = on ? tilt : 0.0;
 }
 
-void Scene::turn(double pan, double tilt) noexcept TAPPET_REALTIME {
-    pan_.wanted_speed = pan;
-    tilt_.wanted_speed = tilt;
-}
+const Picture* Scene::new_image() { return std::exchange(is_new_, false) ? &image_ : nullptr; }
 
-HeadReading Scene::head() const noexcept TAPPET_REALTIME { return {pan_.reading(), tilt_.reading()}; }
-
-bool Scene::expose(Duration exposure) noexcept TAPPET_REALTIME {
-    if (!is_on_ || sensor_ == Sensor::asked || sensor_ == Sensor::exposing || sensor_ == Sensor::reading_out)
-        return false;
-    sensor_ = Sensor::asked;
-    exposure_ = exposure;
-    return true;
-}
-
-bool Scene::take(Image& into, Time& taken) noexcept TAPPET_REALTIME {
-    if (sensor_ != Sensor::ready) return false;
-    into = image_;
-    taken = exposure_began_ + exposure_ / 2;
-    sensor_ = Sensor::idle;
-    return true;
+const Truth& Scene::pictured(Time taken) const {
+    return std::ranges::min_element(
+               shots_, {}, [taken](const Shot& each) { return std::chrono::abs(each.taken - taken); })
+        ->truth;
 }
 
 void Scene::advance(Time now) {
     constexpr double seconds = 1e-9 * static_cast<double>(step.count());
     while (now_ + step <= now) {
         now_ += step;
-        for (Axis* axis : {&pan_, &tilt_}) {
-            if (!is_on_) axis->wanted_speed = 0.0;
-            axis->advance(seconds);
-        }
+        for (Axis* axis : {&pan_, &tilt_}) axis->advance(seconds);
         car_.advance(seconds);
         advance_sensor();
     }
 }
 
 void Scene::advance_sensor() {
-    if (sensor_ == Sensor::asked) {
-        sensor_ = Sensor::exposing;
-        exposure_began_ = now_;
+    const Duration into_frame = now_.time_since_epoch() % frame;
+    if (into_frame == Duration::zero()) {
         moments_taken_ = 0;
         renderer_.begin();
     }
-    if (sensor_ == Sensor::exposing) {
-        // One moment in the middle of each quarter of the exposure.
-        if (now_ - exposure_began_ >= (2 * moments_taken_ + 1) * exposure_ / (2 * Renderer::moments)) {
-            if (moments_taken_ == Renderer::moments / 2) pictured_ = truth();
-            renderer_.add(moments_taken_++, {pan_.angle, tilt_.angle}, car_.pose());
-        }
-        if (moments_taken_ == Renderer::moments) sensor_ = Sensor::reading_out;
-    } else if (sensor_ == Sensor::reading_out && now_ - exposure_began_ >= exposure_ + readout) {
-        renderer_.finish(noise_, image_);
-        ++images_;
-        sensor_ = Sensor::ready;
+    // One moment in the middle of each quarter of the exposure.
+    if (moments_taken_ < Renderer::moments &&
+        into_frame >= (2 * moments_taken_ + 1) * exposure / (2 * Renderer::moments)) {
+        if (moments_taken_ == Renderer::moments / 2)
+            shots_[images_ % shots_.size()] = {now_ - into_frame + exposure / 2, truth()};
+        renderer_.add(moments_taken_++, {pan_.angle, tilt_.angle}, car_.pose());
     }
+    if (into_frame != exposure + readout) return;
+    renderer_.finish(noise_, image_);
+    ++images_;
+    is_new_ = true;
 }
 
 } // namespace tappet::car_tracking

@@ -84,7 +84,7 @@ TEST_F(Restarted, the_task_switches_camera_and_recognition_off_before_it_stops) 
     auto& recognition = *run.instance().find<ImageRecognition>("recognition");
     stop("tracking");
     EXPECT_EQ(run.state(), "Shutdown");
-    EXPECT_FALSE(run.scene().expose(10ms)) << "the camera";
+    EXPECT_FALSE(run.scene().is_on()) << "the camera";
     EXPECT_FALSE(recognition.begin_processing()) << "the second command of the final state";
 }
 
@@ -99,7 +99,7 @@ TEST_F(Restarted, the_task_ends_before_it_starts_again) {
         EXPECT_EQ(run.state(), part.state);
         EXPECT_THAT(change("tracking", LifeChange::restart), IsEmpty());
         EXPECT_EQ(run.state(), "Waiting");
-        EXPECT_TRUE(run.scene().expose(10ms)) << "it has switched the camera on again";
+        EXPECT_TRUE(run.scene().is_on()) << "it has switched the camera on again";
         stop("panel");
         start("panel");
     }
@@ -118,9 +118,9 @@ TEST_F(Restarted, a_recognition_without_an_image_is_refused_with_the_reason) {
 TEST_F(Restarted, a_camera_stays_off_until_switched_on_and_its_user_names_the_line) {
     EXPECT_TRUE(run.run_for(to_wait));
     stop("camera");
-    EXPECT_FALSE(run.scene().expose(10ms));
+    EXPECT_FALSE(run.scene().is_on());
     start("camera");
-    EXPECT_FALSE(run.scene().expose(10ms));
+    EXPECT_FALSE(run.scene().is_on());
     EXPECT_FALSE(run.run_for(1s)) << "the panel moved it";
     EXPECT_THAT(std::string{run.instance().describe_stop().view()},
                 HasSubstr(R"(run of state "Positioning" failed in line)"));

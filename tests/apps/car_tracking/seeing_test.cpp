@@ -11,20 +11,30 @@
 namespace tappet::car_tracking {
 namespace {
 
-/// Camera and recognition with their device, run by hand in steps of 5 ms.
+/// Camera and recognition before the room, run by hand in steps of 5 ms.
 class Eyes {
 public:
     explicit Eyes(std::uint64_t seed) : scene_{std::make_unique<Scene>(seed)} {
-        const std::array devices{
-            ProvidedDevice{type_id<CameraDevice>, "eye", static_cast<CameraDevice*>(scene_.get())}};
-        Setup setup;
-        setup.device_name = "eye";
-        setup.devices = devices;
-        EXPECT_TRUE(camera().configure(setup).empty());
-        PortAccess::data<Image>.link_local(&recognition().image, &camera().image, nullptr);
-        PortAccess::data<Lens>.link_local(&recognition().lens, &camera().lens, nullptr);
+        const auto link = [this]<class T>(Input<T>& input, Output<T>& output) {
+            PortAccess::data<T>.set_clock(&input, true, &now_);
+            PortAccess::data<T>.set_clock(&output, false, &now_);
+            PortAccess::data<T>.link_local(&input, &output, nullptr);
+        };
+        link(recognition().image, camera().image);
+        link(recognition().lens, camera().lens);
+        link(camera().picture, sensor_->picture);
+        link(camera().sensor_faulted, sensor_->faulted);
+        link(camera().pan_counts, sensor_->pan[0]);
+        link(camera().pan_index, sensor_->pan[1]);
+        link(camera().pan_index_seen, sensor_->pan[2]);
+        link(camera().tilt_counts, sensor_->tilt[0]);
+        link(camera().tilt_index, sensor_->tilt[1]);
+        link(camera().tilt_index_seen, sensor_->tilt[2]);
+        PortAccess::data<Sighting>.set_clock(&recognition().sighting, false, &now_);
+        sensor_->faulted.write(false);
         camera().start({});
         recognition().start({});
+        step();
     }
     /// Runs until the command has ended; returns how.
     CommandProgress run(CommandProgress (Camera::*progress)() noexcept TAPPET_REALTIME,
@@ -36,11 +46,23 @@ public:
         return CommandProgress::executing;
     }
     void step() {
-        now_ += 5ms;
-        scene_->advance(now_);
+        for (const Time end = now_ + 5ms; now_ < end;) {
+            now_ += Scene::step;
+            scene_->advance(now_);
+            if (const Picture* picture = scene_->new_image())
+                sensor_->picture.write(*picture, now_ - Scene::exposure / 2 - Scene::readout);
+        }
+        write(sensor_->pan, scene_->pan());
+        write(sensor_->tilt, scene_->tilt());
         camera().step({now_, now_, 5ms});
         recognition().step({now_, now_, 5ms});
+        scene_->drive(camera().drives_on.last() != 0, camera().pan_speed.last(), camera().tilt_speed.last());
     }
+    /// The truth of the image processed last.
+    const Truth& pictured() {
+        return scene_->pictured(*PortAccess::data<Sighting>.places(&recognition().sighting, false).stamp);
+    }
+    void blind(bool faulted) { sensor_->faulted.write(faulted); }
     bool calibrate() {
         return recognition().switch_on() && camera().switch_on() && camera().begin_calibration() &&
                run(&Camera::calibrated) == CommandProgress::done;
@@ -59,7 +81,20 @@ public:
     Scene& scene() { return *scene_; }
 
 private:
+    /// The outputs of the two drivers.
+    struct Drivers {
+        Output<Picture> picture;
+        Output<bool> faulted;
+        std::array<Output<std::int64_t>, 3> pan, tilt;
+    };
+    static void write(std::array<Output<std::int64_t>, 3>& axis, const AxisReading& reading) {
+        axis[0].write(reading.counts);
+        axis[1].write(reading.index_counts);
+        axis[2].write(reading.is_index_seen ? 1 : 0);
+    }
+
     std::unique_ptr<Scene> scene_;
+    std::unique_ptr<Drivers> sensor_ = std::make_unique<Drivers>();
     std::unique_ptr<Camera> camera_ = std::make_unique<Camera>();
     std::unique_ptr<ImageRecognition> recognition_ = std::make_unique<ImageRecognition>();
     Time now_{};
@@ -195,6 +230,22 @@ TEST(Camera, refuses_commands_that_conflict_with_its_state) {
     EXPECT_FALSE(camera.is_calibrated());
 }
 
+TEST(Camera, fails_its_command_and_stands_while_its_sensor_is_silent) {
+    Eyes eyes{5};
+    ASSERT_TRUE(eyes.camera().switch_on());
+    ASSERT_TRUE(eyes.camera().begin_move({20, 1}));
+    for (int i = 0; i < 5; ++i) eyes.step();
+    EXPECT_NE(eyes.camera().pan_speed.last(), 0.0);
+    eyes.blind(true);
+    EXPECT_EQ(eyes.run(&Camera::moved), CommandProgress::failed);
+    EXPECT_EQ(eyes.camera().pan_speed.last(), 0.0);
+    EXPECT_FALSE(eyes.camera().begin_fetch());
+    eyes.blind(false);
+    eyes.step();
+    EXPECT_TRUE(eyes.camera().begin_fetch());
+    EXPECT_EQ(eyes.run(&Camera::fetched), CommandProgress::done);
+}
+
 TEST(Recognition, locates_the_car_in_the_room_to_four_centimetres) {
     for (const std::uint64_t seed : seeds) {
         Eyes eyes{seed};
@@ -206,7 +257,7 @@ TEST(Recognition, locates_the_car_in_the_room_to_four_centimetres) {
             if (car.lifted) continue; // nobody knows where it will stand
             ASSERT_TRUE(eyes.look_at(aim_along(Eigen::Vector3d{car.x, car.y, 0} - room::eye())));
             const Sighting sighting = eyes.look();
-            const Truth truth = eyes.scene().pictured();
+            const Truth truth = eyes.pictured();
             if (truth.car_hidden || room::tunnel.holds(truth.car.x, truth.car.y, 0.35)) continue;
             ASSERT_TRUE(sighting.located) << "seed " << seed << " look " << i;
             const double error = std::hypot(sighting.x - truth.car.x, sighting.y - truth.car.y);

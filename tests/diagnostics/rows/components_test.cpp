@@ -1,4 +1,5 @@
 // Components: their rows, their life-cycle functions, and the devices that the board has for them.
+#include "drivers/camera/kind.hpp"
 #include "drivers/udp/kind.hpp"
 #include "kernel/machine/instance/line_functions.hpp"
 #include "tests/diagnostics/rows/fault.hpp"
@@ -34,6 +35,12 @@ struct Restarter {
 };
 struct Camera {
     static constexpr const DeviceKind& device_kind = udp::device_kind;
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+struct Eye {
+    static constexpr const DeviceKind& device_kind = camera::device_kind;
+    static constexpr std::array<std::string_view, 1> size{"160 x 120"};
+    static constexpr std::span<const std::string_view> device_lines() { return size; }
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 struct Trusted {
@@ -292,6 +299,37 @@ void rebind_hall(Table& m, std::string_view to, const auto&... options) {
     m.binding = binding(wired("main_encoder", "can0"), wired("hall", to, options...),
                         wired("panel", "io", line("red", 4), line("green", 5)));
 }
+
+/// Adds a camera with these words of the board and of the binding.
+void look(Table& m, const BoardDevice& camera, const auto&... bound) {
+    m.add(component<Eye>("eye", device("hall-camera")), "hall");
+    static_cast<void>(m.board.devices.push(camera));
+    m.binding.add(wired("hall-camera", "camera0", bound...));
+}
+constexpr BoardDevice camera_with(const auto&... words) {
+    return board_device("camera0", "camera", "/dev/video0", words...);
+}
+
+constexpr Fault camera_faults[] = {
+    {"camera_of_no_size", [](Table& m) { look(m, camera_with()); },
+     R"(loom: component "eye": binding to board "old box", wired("hall-camera"): device "camera0" states no size and rate; add frames(640, 480, 30), columns, rows and frames per second, to the board's row)"},
+    {"camera_of_a_size_that_none_has",
+     [](Table& m) { look(m, camera_with(frames(161, 120, 25), pixels(camera::Format::yuyv))); },
+     R"(loom: component "eye": binding to board "old box", wired("hall-camera"): device "camera0" states frames(161, 120, 25); write 2 to 4096 columns, an even number, as many rows at most, and 1 to 1000 frames per second)"},
+    {"camera_of_no_format", [](Table& m) { look(m, camera_with(frames(160, 120, 25))); },
+     R"(loom: component "eye": binding to board "old box", wired("hall-camera"): device "camera0" states no form of its pixels; add pixels(camera::Format::yuyv) or pixels(camera::Format::rgb24) to the board's row)"},
+    {"camera_of_another_size",
+     [](Table& m) { look(m, camera_with(frames(320, 240, 25), pixels(camera::Format::yuyv))); },
+     R"(loom: component "eye": binding to board "old box", wired("hall-camera"): device "camera0" gives images of 320 x 240 pixels and the component takes 160 x 120; write the same size in the board's frames(...) and in camera::Sensor<columns, rows>)"},
+    {"camera_exposed_for_too_long",
+     [](Table& m) {
+         look(m, camera_with(frames(160, 120, 25), pixels(camera::Format::rgb24)), exposure(41ms));
+     },
+     R"(loom: component "eye": binding to board "old box", wired("hall-camera"): exposure(41000us) is less than 100us or longer than a frame at 25 frames per second; write one between)"},
+    {"camera_of_a_chip_s_words", [](Table& m) { look(m, camera_with(lines(8))); },
+     R"(loom: board "old box", device "camera0": lines(...) is for a gpio device, and this is a camera device; remove it)"},
+};
+INSTANTIATE_TEST_SUITE_P(cameras, Refusal, planted_into(loom_on_an_old_box, camera_faults), name_of);
 
 constexpr Fault board_faults[] = {
     {"line_twice", [](Table& m) { rebind(m, wired("panel", "io", line("red", 4), line("green", 4))); },

@@ -3,6 +3,8 @@
 
 #include "board/bench/board.hpp"
 #include "board/host/board.hpp"
+#include "drivers/camera/far_end.hpp"
+#include "drivers/camera/sensor.hpp"
 #include "drivers/can/bus.hpp"
 #include "drivers/can/far_end.hpp"
 #include "drivers/can/restarter.hpp"

@@ -1,5 +1,6 @@
 // The reference: components of the library and the drivers by their interfaces, words of tables and maps by
 // their headers, commands of the browser by their table.
+#include "drivers/camera/sensor.hpp"
 #include "drivers/can/bus.hpp"
 #include "drivers/can/clock.hpp"
 #include "drivers/can/restarter.hpp"
@@ -95,6 +96,8 @@ const Described components[] = {
     {"drivers/gpio/line_port.hpp", "LinePort", "gpio::LinePort<line_map>",
      component_type<gpio::LinePort<lines>>},
     {"drivers/can/bus.hpp", "Bus", "can::Bus<signal_map>", component_type<can::Bus<frames>>},
+    {"drivers/camera/sensor.hpp", "Sensor", "camera::Sensor<columns, rows>",
+     component_type<camera::Sensor<160, 120>>},
     {"drivers/udp/peer_clock.hpp", "ClockAnswers", "udp::ClockAnswers", component_type<udp::ClockAnswers>},
     {"drivers/udp/peer_clock.hpp", "PeerClock", "udp::PeerClock", component_type<udp::PeerClock>},
     {"drivers/can/clock.hpp", "ClockTeller", "can::ClockTeller<row>",
