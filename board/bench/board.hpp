@@ -3,6 +3,7 @@
 // machine is bound to.
 #pragma once
 
+#include "drivers/camera/kind.hpp"
 #include "drivers/can/kind.hpp"
 #include "drivers/gpio/kind.hpp"
 #include "kernel/machine/table/board.hpp"
@@ -16,12 +17,15 @@ inline constexpr Board bench{
     .heap_bytes = 160 * 1024,
     .processors = 1, // the emulator counts instructions for one processor only
     .highest_priority = 80,
-    .devices = board_devices(board_device("can0", "can", "can0", bit_rate(1'000'000, 5'000'000)),
-                             board_device("can1", "can", "can1", bit_rate(1'000'000, 5'000'000)),
-                             board_device("can2", "can", "can2", bit_rate(500'000)), // as on 100 m cable
-                             board_device("io", "gpio", "/dev/io", lines(32)),
-                             board_device("panel", "gpio", "/dev/panel", lines(32)),
-                             board_device("line", "serial", "/dev/line")), // a pseudo-terminal's end
+    .devices = board_devices(
+        board_device("can0", "can", "can0", bit_rate(1'000'000, 5'000'000)),
+        board_device("can1", "can", "can1", bit_rate(1'000'000, 5'000'000)),
+        board_device("can2", "can", "can2", bit_rate(500'000)), // as on 100 m cable
+        board_device("io", "gpio", "/dev/io", lines(32)),
+        board_device("panel", "gpio", "/dev/panel", lines(32)),
+        // Linux's vivid, in guests that ask for it.
+        board_device("camera0", "camera", "/dev/video0", frames(320, 180, 25), pixels(camera::Format::yuyv)),
+        board_device("line", "serial", "/dev/line")), // a pseudo-terminal's end
     // The emulator has neither a frequency governor nor a clock that Linux trusts.
     .only_warned = warn_only("clock-source", "cpu-governor"),
     .kernel_command_line = "quiet panic=-1 sysctl.kernel.sched_rt_runtime_us=-1 cryptomgr.notests",

@@ -303,6 +303,8 @@ void set_up(const std::string& kind, const std::string& rest) {
     } else if (kind == "gpio") {
         const std::size_t blank = rest.find(' ');
         must(create_gpio_chip(rest.substr(0, blank), rest.substr(blank + 1)));
+    } else if (kind == "camera") { // one, as on USB: its other devices would only take time
+        must(load_module(rest, "node_types=1 num_inputs=1 input_types=0"));
     } else if (kind == "unthrottled") {
         if (const auto stopped = stop_throttling(); !stopped) {
             give_up(stopped.error());

@@ -1,6 +1,8 @@
 // One judgement of each frame: number, mark, size, time.
 #include "drivers/camera/checked_frames.hpp"
 
+#include <algorithm>
+
 namespace tappet::camera {
 
 void CheckedFrames::expect(Format format, Size size, std::size_t row_bytes) noexcept {
@@ -21,7 +23,7 @@ Taken CheckedFrames::take(Frame& frame, Time oldest, Time now) noexcept TAPPET_R
     }
     if (!is_good(raw, oldest, now)) return give_back() ? Taken::refused : Taken::failed;
     ++count_.frames;
-    frame = {raw.bytes, format_, row_bytes_, raw.stamp};
+    frame = {raw.bytes, format_, row_bytes_, std::min(raw.stamp, now)};
     return Taken::frame;
 }
 
@@ -47,7 +49,7 @@ bool CheckedFrames::is_good(const Raw& raw, Time oldest, Time now) noexcept TAPP
     count_.lost += ahead - 1;
     sequence_ = raw.sequence;
     if (!is_first_ && raw.stamp <= stamp_) return false;
-    if (raw.is_flawed || raw.bytes.size() < bytes_ || raw.stamp > now) {
+    if (raw.is_flawed || raw.bytes.size() < bytes_ || raw.stamp > now + ahead_at_most) {
         ++count_.flawed;
         return false;
     }

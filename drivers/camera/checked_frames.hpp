@@ -9,6 +9,9 @@ namespace tappet::camera {
 class CheckedFrames : public Device {
 public:
     static constexpr std::size_t most_waiting = 8; ///< frames that a device holds for its component
+    /// Linux converts the clock of a USB camera to its own, with an error of some ms. A stamp that is ahead
+    /// by no more becomes the present; a later one is of the future.
+    static constexpr Duration ahead_at_most = 10ms;
 
     Taken take(Frame& frame, Time oldest, Time now) noexcept TAPPET_REALTIME final;
     bool give_back() noexcept TAPPET_REALTIME final;

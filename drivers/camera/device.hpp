@@ -47,7 +47,8 @@ class Device {
 public:
     virtual ~Device() = default;
 
-    /// Takes the next frame, oldest first. One with a stamp before `oldest` is late, one after `now` flawed.
+    /// Takes the next frame, oldest first. One with a stamp before `oldest` is late, one of the future, as
+    /// seen at `now`, flawed.
     virtual Taken take(Frame& frame, Time oldest, Time now) noexcept TAPPET_REALTIME = 0;
     /// Returns the memory of the frame taken last. Returns false when the device refuses.
     virtual bool give_back() noexcept TAPPET_REALTIME = 0;

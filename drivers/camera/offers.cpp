@@ -114,16 +114,20 @@ Sentence set_rate(int fd, const CameraFacts& wanted) {
     asked.parm.capture.timeperframe = {1, wanted.per_second};
     const int error = request(fd, VIDIOC_S_PARM, &asked);
     const double rate = rate_of(asked.parm.capture.timeperframe);
-    if (error == 0 && std::abs(rate - wanted.per_second) < 0.01 * wanted.per_second) return {};
+    const auto is = [](double found, double whole) { return std::abs(found - whole) < 0.01 * whole; };
+    if (error == 0 && is(rate, wanted.per_second)) return {};
     Sentence offers;
     v4l2_frmivalenum offered{};
     offered.pixel_format = code_of(wanted.format);
     offered.width = static_cast<std::uint32_t>(wanted.size.columns);
     offered.height = static_cast<std::uint32_t>(wanted.size.rows);
     each_offer(fd, VIDIOC_ENUM_FRAMEINTERVALS, offered, [&](const auto& each) {
+        const bool is_one = each.type == V4L2_FRMIVAL_TYPE_DISCRETE;
+        const double one = is_one ? rate_of(each.discrete) : 0.0;
+        if (is_one && !is(one, std::round(one))) return; // no board can say it
         offers.add(offers.empty() ? "" : ", ");
-        if (each.type == V4L2_FRMIVAL_TYPE_DISCRETE) {
-            offers.add(Sentence{std::lround(rate_of(each.discrete))}.view());
+        if (is_one) {
+            offers.add(Sentence{std::lround(one)}.view());
             return;
         }
         offers.add(

@@ -79,7 +79,6 @@ std::expected<void, Sentence> Video::share_memory() {
         void* const at = ::mmap(nullptr, each.length, PROT_READ, MAP_SHARED, fd_, each.m.offset);
         if (at == MAP_FAILED) return std::unexpected(refused("its memory cannot be mapped", errno));
         memory_[i] = {static_cast<std::byte*>(at), each.length};
-        ::madvise(at, each.length, MADV_DONTFORK); // a guardian would keep the device busy
         if (const int error = request(fd_, VIDIOC_QBUF, &each); error != 0)
             return std::unexpected(refused("it does not take its memory back", error));
     }

@@ -60,7 +60,7 @@ const std::vector<Row> house{
 
     {"board/init",        {}},
     {"board/box",         {"board/init", "kernel/os"}},
-    {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen", "drivers/instruments"}},
+    {"board",             {"board/init", "kernel/services", "kernel/limits", "kernel/control", "kernel/cam", "kernel/motion", "drivers/camera", "drivers/can", "drivers/gpio", "drivers/modbus", "drivers/canopen", "drivers/instruments"}},
     // A machine may include its claims for spin, its host's views, and the rules of its swarm; a plant may
     // contain another machine.
     {"apps",              {"board", "drivers/plant", "drivers/system", "kernel/pieces", "toolchain/tools/chart/model.hpp", "toolchain/machine/host.hpp", "toolchain/machine/host_hooks.hpp", "toolchain/machine/system_run.hpp", "toolchain/machine/bench/plant_program.hpp", "toolchain/command_line.hpp", "toolchain/version.hpp", "toolchain/svg.hpp", "toolchain/machine/swarm_rules.hpp"}},

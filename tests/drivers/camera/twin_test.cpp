@@ -106,6 +106,15 @@ TEST_F(Wire, refuses_a_late_image_and_one_of_the_future) {
     EXPECT_EQ(twin.counters(), (Counters{.frames = 1, .flawed = 1, .late = 1}));
 }
 
+TEST_F(Wire, corrects_a_time_that_is_ahead_by_the_error_of_a_conversion) {
+    EXPECT_TRUE(twin.show(grey(1).pixels, now + CheckedFrames::ahead_at_most));
+    EXPECT_EQ(taken(), 1);
+    EXPECT_EQ(frame.stamp, now);
+    now += 1ms;
+    EXPECT_TRUE(twin.show(grey(2).pixels, now + CheckedFrames::ahead_at_most + 1ns));
+    EXPECT_EQ(take(), Taken::refused);
+}
+
 TEST_F(Wire, begins_anew_without_what_arrived_before) {
     show(1);
     EXPECT_EQ(taken(), 1);

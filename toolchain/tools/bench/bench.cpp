@@ -59,6 +59,12 @@ void pack(const Scenario& scenario, const Architecture& architecture, const fs::
         root.add(kernel / "modules" / module, "/modules/" + module);
         manifest << "module /modules/" << module << '\n';
     }
+    std::ifstream of_camera;
+    if (scenario.camera) of_camera.open(kernel / "camera.order");
+    for (std::string module; std::getline(of_camera, module);) {
+        root.add(kernel / "modules" / module, "/modules/" + module);
+        manifest << (module == "vivid.ko" ? "camera" : "module") << " /modules/" << module << '\n';
+    }
     for (const std::string& name : scenario.can) {
         manifest << "can " << name << '\n';
     }
@@ -340,6 +346,10 @@ void check(const Scenario& scenario, const Architecture& architecture, const fs:
             throw BenchError("there is no driver of the CAN card '" + card + "' at " + driver.string() +
                              "; run " + architecture.set_up + " once as root");
         }
+    }
+    if (scenario.camera && !fs::exists(kernel / "modules/vivid.ko")) {
+        throw BenchError("there is no test camera at " + (kernel / "modules/vivid.ko").string() + "; run " +
+                         architecture.set_up + " once as root");
     }
     if (scenario.clock == Clock::instructions && scenario.processors != 1) {
         throw BenchError("the instruction clock drives one processor only, " +

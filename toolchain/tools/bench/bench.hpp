@@ -45,6 +45,7 @@ struct Scenario {
     // CAN FD. Linux's own drivers name the interfaces, which are down and have no bit rate.
     std::vector<std::string> can_cards;
     std::vector<GpioChip> gpio;
+    bool camera = false;           // Linux's test camera, vivid: /dev/video0
     std::vector<Setting> settings; // written before the first command
     bool unthrottled = false;      // no kernel throttles real-time threads
     // In order; the first that fails ends the scenario. "& " at the end: in the background, terminated at the

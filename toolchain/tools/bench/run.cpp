@@ -31,6 +31,7 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
   --can-card sja1000|ctucan   two emulated CAN controllers on one bus, of classical CAN or of CAN FD; Linux names
                          their interfaces, which are down
   --gpio-chip NAME:LINES simulated GPIO: /dev/NAME, its outside at /sim/NAME/sim_gpioN/pull and .../value
+  --camera               a camera, Linux's vivid: /dev/video0
   --set PATH=VALUE       written before the first command, e.g. /proc/sys/vm/swappiness=0
   --unthrottled          nothing takes the processor from real-time threads, on any kernel
   --collect GUEST=HOST   a file copied out at the end
@@ -129,6 +130,8 @@ Request parse(int count, char** arguments) {
             request.verbose = true;
         } else if (option == "--keep") {
             request.scenario.keep = true;
+        } else if (option == "--camera") {
+            request.scenario.camera = true;
         } else if (option == "--unthrottled") {
             request.scenario.unthrottled = true;
         } else if (option == "--board") {
