@@ -13,13 +13,15 @@ using tappet::fuzz::demand;
 
 std::array<char, 2 * max_cpf_bytes> written; // the values of a file may be longer in our spelling
 
+CpfListForms forms; // of the text's lists
+
 std::size_t write(every::Arm& arm, std::span<char> into) {
     static PropertyTransaction all;
     all.begin("arm", component_type<every::Arm>, &arm);
     all.change_all();
     all.capture();
     Sentence fault;
-    const std::size_t length = write_cpf(all, into, fault);
+    const std::size_t length = write_cpf(all, into, fault, forms);
     demand(length != 0 && fault.empty());
     return length;
 }
@@ -29,8 +31,10 @@ std::size_t write(every::Arm& arm, std::span<char> into) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static PropertyTransaction transaction;
     every::Arm arm;
+    forms.clear();
     transaction.begin("arm", component_type<every::Arm>, &arm);
-    const Sentence fault = read_cpf({reinterpret_cast<const char*>(data), size}, "fuzz.cpf", transaction);
+    const Sentence fault =
+        read_cpf({reinterpret_cast<const char*>(data), size}, "fuzz.cpf", transaction, nullptr, &forms);
     if (!fault.empty()) {
         demand(fault.view().starts_with("fuzz.cpf:"));
         return 0;

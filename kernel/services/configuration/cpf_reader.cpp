@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 namespace tappet {
 
@@ -64,8 +65,14 @@ struct Path {
 
 class Reader {
 public:
-    Reader(std::string_view text, std::string_view file, PropertyTransaction& into, LeftOut left_out) noexcept
-        : text_{text}, file_{file}, into_{into}, facets_{into.type().facets}, left_out_{left_out} {}
+    Reader(std::string_view text, std::string_view file, PropertyTransaction& into, LeftOut left_out,
+           CpfListForms* forms) noexcept
+        : text_{text},
+          file_{file},
+          into_{into},
+          facets_{into.type().facets},
+          left_out_{left_out},
+          forms_{forms} {}
 
     Sentence read() noexcept {
         if (const auto zero = text_.find('\0'); zero != text_.npos)
@@ -129,15 +136,14 @@ private:
                 Sentence{"names \"", name, "\" with a dot; put it into a <struct> for each bag"}.view());
         if (!path.add(name)) return at(node, "has a name that is too long for any property; correct it");
         const std::size_t index = find(path.view());
-        const FacetKind wanted = tag == "struct" ? FacetKind::bag : FacetKind::property;
-        if (index == facets_.size()) return unknown(node, path.view(), wanted);
+        if (index == facets_.size()) return unknown(node, path.view(), tag == "struct");
         const Facet& facet = facets_[index];
         if (facet.kind == FacetKind::bag && tag == "struct") {
             if (Sentence fault = note(node, index); !fault.empty()) return fault;
             return read_members(node, path);
         }
         const bool is_list = facet.kind == FacetKind::property && facet.property->is_list;
-        if (facet.kind != FacetKind::property || tag == "struct" || is_list != (tag == "sequence"))
+        if (facet.kind != FacetKind::property || is_list != (tag != "simple"))
             return at(node, Sentence{"has <", tag, "> for \"", path.view(), "\", which is ",
                                      is_list                             ? "a list; write a <sequence>"
                                      : facet.kind == FacetKind::bag      ? "a bag; write a <struct>"
@@ -157,12 +163,16 @@ private:
             return at(node, "has more properties than a transaction holds; divide the component");
         const std::size_t bytes = PropertyTransaction::bytes_for(facet);
         std::copy_n(place, bytes, before_.begin());
+        CpfListForm form{.component = into_.name(), .facet = index};
         Sentence fault =
-            is_list ? read_list(node, facet, place) : read_simple(node, facet, *facet.type, place);
+            is_list ? read_list(node, facet, place, form) : read_simple(node, facet, *facet.type, place);
         if (fault.empty())
             if (const Sentence range = check_range(facet, place); !range.empty())
                 fault = at(node, Sentence{"gives ", range}.view());
-        if (fault.empty()) return {};
+        if (fault.empty()) {
+            if (is_list) keep(form);
+            return {};
+        }
         if (was_changed)
             std::copy_n(before_.begin(), bytes, place);
         else
@@ -170,34 +180,140 @@ private:
         return fault;
     }
 
-    Sentence read_list(const pugi::xml_node& node, const Facet& facet, std::byte* place) noexcept {
-        std::size_t size = 0;
-        for (const pugi::xml_node& each : node.children()) size += view(each.name()) == "simple" ? 1u : 0u;
-        if (!facet.property->resize(place, size))
-            return at(node,
-                      Sentence{"gives \"", facet.name, "\" ", size, " elements, but it has ",
-                               facet.property->least_size == facet.property->most_size ? "" : "at most ",
-                               facet.property->most_size, "; write so many <simple> elements"}
-                          .view());
+    void keep(const CpfListForm& form) noexcept {
+        if (forms_ == nullptr) return;
+        const auto same = [&](const CpfListForm& each) {
+            return each.component == form.component && each.facet == form.facet;
+        };
+        if (const auto found = std::ranges::find_if(*forms_, same); found != forms_->end())
+            *found = form;
+        else
+            forms_->push_back(form);
+    }
+
+    Sentence read_list(const pugi::xml_node& node, const Facet& facet, std::byte* place,
+                       CpfListForm& form) noexcept {
+        const TypeTag& type = *facet.type;
+        const PropertyOperations& list = *facet.property;
+        const auto is_list = [](const pugi::xml_node& each) { return view(each.name()) != "simple"; };
+        const auto elements = node.children();
+        form.in_rows = type.kind == ValueKind::matrix && type.columns > 1 &&
+                       std::ranges::any_of(elements, [&](const pugi::xml_node& each) {
+                           return is_element(each) && is_list(each);
+                       });
+        const std::size_t count = count_elements(node);
+        const std::size_t least = form.in_rows ? type.rows : list.least_size;
+        const std::size_t most = form.in_rows ? type.rows : list.most_size;
+        if (Sentence fault = read_size(node, facet, count, form.list); !fault.empty()) return fault;
+        if (count < least || count > most || (!form.in_rows && !list.resize(place, count)))
+            return at(node, Sentence{"gives \"", facet.name, "\" ", count,
+                                     form.in_rows ? " rows, but it has " : " elements, but it has ",
+                                     least == most ? "" : "at most ", most, "; write so many ",
+                                     form.in_rows ? "of them" : "<simple> elements"}
+                                .view());
+        return read_layer(node, facet, form.list, [&](const pugi::xml_node& each, std::size_t r) {
+            if (!form.in_rows) return read_element(each, facet, list.at(place, r));
+            const std::size_t cells = is_list(each) ? count_elements(each) : 0;
+            if (cells != type.columns)
+                return at(each, Sentence{"gives row ", r, " of \"", facet.name, "\" ", cells,
+                                         " elements, but it has ", type.columns, "; write so many"}
+                                    .view());
+            form.row = {};
+            if (Sentence fault = read_size(each, facet, cells, form.row); !fault.empty()) return fault;
+            return read_layer(each, facet, form.row, [&](const pugi::xml_node& cell, std::size_t c) {
+                return read_element(
+                    cell, facet, list.at(place, type.row_major ? r * type.columns + c : c * type.rows + r));
+            });
+        });
+    }
+
+    static bool is_size(const pugi::xml_node& node) noexcept {
+        return view(node.name()) == "simple" && view(node.attribute("name").value()) == "Size";
+    }
+    static bool is_element(const pugi::xml_node& node) noexcept {
+        return node.type() == pugi::node_element && view(node.name()) != "description" && !is_size(node);
+    }
+    static std::size_t count_elements(const pugi::xml_node& list) noexcept {
+        return static_cast<std::size_t>(std::ranges::count_if(list.children(), is_element));
+    }
+
+    /// Compares the size that the list itself states, as Orocos writes it, with its elements.
+    Sentence read_size(const pugi::xml_node& list, const Facet& facet, std::size_t count,
+                       CpfListForm::Layer& layer) noexcept {
+        static constexpr Facet size_of_list{.name = "Size"};
+        for (const pugi::xml_node& each : list.children()) {
+            if (!is_size(each)) continue;
+            if (layer.has_size)
+                return at(each, Sentence{"gives \"", facet.name, "\" a second Size; keep one"}.view());
+            layer.has_size = true;
+            std::uint64_t size = 0;
+            if (Sentence fault = check_attributes(each, true); !fault.empty()) return fault;
+            if (Sentence fault = read_simple(each, size_of_list, *type_id<std::uint64_t>,
+                                             reinterpret_cast<std::byte*>(&size));
+                !fault.empty())
+                return fault;
+            if (size != count)
+                return at(each, Sentence{"gives \"", facet.name, "\" ", count, " elements, but its Size is ",
+                                         size, "; correct the Size, or what is missing"}
+                                    .view());
+        }
+        return {};
+    }
+
+    /// Reads the elements of a list or of a matrix' row, each by `read_one`, and notes their form.
+    template <class ReadOne>
+    Sentence read_layer(const pugi::xml_node& list, const Facet& facet, CpfListForm::Layer& layer,
+                        ReadOne&& read_one) noexcept {
+        layer.is_struct = view(list.name()) == "struct";
+        if (!layer.type.assign(view(list.attribute("type").value())))
+            return at(
+                list,
+                Sentence{"gives \"", facet.name, "\" a type of more than 95 characters; shorten it"}.view());
         std::size_t i = 0;
         bool described = false;
-        for (const pugi::xml_node& each : node.children()) {
-            if (is_blank(each)) continue;
+        for (const pugi::xml_node& each : list.children()) {
+            if (is_blank(each) || is_size(each)) continue;
             if (view(each.name()) == "description" && !described && description_.take(each)) {
                 described = true;
                 continue;
             }
-            if (view(each.name()) != "simple")
-                return at(each, Sentence{"has something in sequence \"", facet.name,
-                                         "\" that is not a <simple>; remove it"}
-                                    .view());
             if (Sentence fault = check_attributes(each, false); !fault.empty()) return fault;
-            if (Sentence fault =
-                    read_simple(each, facet, *facet.property->element, facet.property->at(place, i++));
-                !fault.empty())
-                return fault;
+            if (Sentence fault = read_one(each, i); !fault.empty()) return fault;
+            if (!is_in_order(view(each.attribute("name").value()), i, layer))
+                return at(each, Sentence{"names element ", i, " of \"", facet.name, "\" \"",
+                                         view(each.attribute("name").value()),
+                                         "\", but names count the elements in their order; write \"",
+                                         layer.stem.view(), layer.first + i, "\", or no name"}
+                                    .view());
+            ++i;
         }
+        layer.has_names |= i == 0 && layer.has_size;
         return {};
+    }
+
+    /// Whether the name is empty, or a word and a number that counts the elements. The first name decides the
+    /// word, and whether 0 or 1 is first.
+    static bool is_in_order(std::string_view name, std::size_t i, CpfListForm::Layer& layer) noexcept {
+        if (name.empty()) return true;
+        const std::string_view stem = name.substr(0, name.find_last_not_of("0123456789") + 1);
+        const std::string_view digits = name.substr(stem.size());
+        std::size_t number = 0;
+        const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        if (read.ec != std::errc{}) return false;
+        if (!layer.has_names) {
+            if (!layer.stem.assign(stem)) return false;
+            layer.has_names = true;
+            layer.first = number == i + 1 ? 1 : 0;
+        }
+        return stem == layer.stem.view() && number == layer.first + i;
+    }
+
+    Sentence read_element(const pugi::xml_node& node, const Facet& facet, std::byte* place) noexcept {
+        if (view(node.name()) != "simple")
+            return at(node,
+                      Sentence{"has something in list \"", facet.name, "\" that is not a <simple>; remove it"}
+                          .view());
+        return read_simple(node, facet, *facet.property->element, place);
     }
 
     Sentence read_simple(const pugi::xml_node& node, const Facet& facet, const TypeTag& type,
@@ -271,11 +387,13 @@ private:
         return {};
     }
 
-    Sentence unknown(const pugi::xml_node& node, std::string_view name, FacetKind kind) const noexcept {
+    Sentence unknown(const pugi::xml_node& node, std::string_view name, bool is_struct) const noexcept {
         Nearest nearest{name};
         for (const Facet& each : facets_)
-            if (each.kind == kind) nearest.consider(each.name);
-        Sentence text{"names ", kind == FacetKind::bag ? "bag" : "property", " \"", name,
+            if (each.kind == FacetKind::property ? !is_struct || each.property->is_list
+                                                 : is_struct && each.kind == FacetKind::bag)
+                nearest.consider(each.name);
+        Sentence text{"names ", is_struct ? "bag or list" : "property", " \"", name,
                       "\", which the component does not have"};
         if (nearest.best().empty())
             text.add("; remove it");
@@ -336,18 +454,19 @@ private:
     ElementText text_of_value_{};
     ElementText description_{};
     LeftOut left_out_;
+    CpfListForms* forms_;
     std::array<std::byte, PropertyTransaction::max_bytes> before_{};
 };
 
 } // namespace
 
-Sentence read_cpf(std::string_view text, std::string_view file, PropertyTransaction& into,
-                  LeftOut left_out) noexcept {
+Sentence read_cpf(std::string_view text, std::string_view file, PropertyTransaction& into, LeftOut left_out,
+                  CpfListForms* forms) noexcept {
     if (text.size() > max_cpf_bytes)
         return Sentence{file,          ": component \"",
                         into.name(),   "\": the file has more than ",
                         max_cpf_bytes, " bytes; check that it is a properties file, or shorten it"};
-    return Reader{text, file, into, left_out}.read();
+    return Reader{text, file, into, left_out, forms}.read();
 }
 
 } // namespace tappet

@@ -13,7 +13,8 @@ namespace {
 
 class Writer {
 public:
-    Writer(const PropertyTransaction& from, std::span<char> into) noexcept : from_{from}, into_{into} {}
+    Writer(const PropertyTransaction& from, std::span<char> into, std::span<const CpfListForm> forms) noexcept
+        : from_{from}, into_{into}, forms_{forms} {}
 
     std::size_t write(Sentence& fault) noexcept {
         put("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE properties SYSTEM "
@@ -57,31 +58,83 @@ private:
         const auto values = from_.values();
         const auto found = std::ranges::find(values, f, &ProposedValue::facet);
         if (found == values.end()) return;
-        const PropertyOperations& operations = *facet.property;
+        if (facet.property->is_list) return write_list(f, *found, depth);
         indent(depth);
-        put(operations.is_list ? "<sequence name=\"" : "<simple name=\"");
+        put("<simple name=\"");
         escape(own_name(facet));
         put("\" type=\"");
-        put(cpf::type_name(*operations.element));
+        put(cpf::type_name(*facet.property->element));
         put("\">");
         describe(facet);
-        if (!operations.is_list) {
-            write_value(facet, *facet.type, found->value);
-            put("</simple>\n");
-            return;
-        }
-        put("\n");
-        for (std::size_t i = 0; i < operations.size(found->value); ++i) {
-            indent(depth + 1);
-            put("<simple type=\"");
-            put(cpf::type_name(*operations.element));
+        write_value(facet, *facet.type, found->value);
+        put("</simple>\n");
+    }
+
+    void write_list(std::size_t f, const ProposedValue& found, std::size_t depth) noexcept {
+        const Facet& facet = from_.type().facets[f];
+        const TypeTag& type = *facet.type;
+        const auto known = std::ranges::find_if(forms_, [&](const CpfListForm& each) {
+            return each.component == from_.name() && each.facet == f;
+        });
+        const CpfListForm form = known == forms_.end() ? CpfListForm{} : *known;
+        const auto element = [&](const CpfListForm::Layer& layer, std::size_t number, std::size_t index,
+                                 std::size_t at_depth) {
+            indent(at_depth);
+            put("<simple ");
+            number_name(layer, number);
+            put("type=\"");
+            put(cpf::type_name(*facet.property->element));
             put("\">");
             // The element is only read.
-            write_value(facet, *operations.element, operations.at(const_cast<std::byte*>(found->value), i));
+            write_value(facet, *facet.property->element,
+                        facet.property->at(const_cast<std::byte*>(found.value), index));
             put("</simple>\n");
-        }
+        };
+        const std::size_t count = form.in_rows ? type.rows : facet.property->size(found.value);
         indent(depth);
-        put("</sequence>\n");
+        put(form.list.is_struct ? "<struct name=\"" : "<sequence name=\"");
+        escape(own_name(facet));
+        put("\" ");
+        open(form.list, facet);
+        describe(facet);
+        put("\n");
+        write_size(form.list, count, depth + 1);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!form.in_rows) {
+                element(form.list, i, i, depth + 1);
+                continue;
+            }
+            indent(depth + 1);
+            put(form.row.is_struct ? "<struct " : "<sequence ");
+            number_name(form.list, i);
+            open(form.row, facet);
+            put("\n");
+            write_size(form.row, type.columns, depth + 2);
+            for (std::size_t c = 0; c < type.columns; ++c)
+                element(form.row, c, type.row_major ? i * type.columns + c : c * type.rows + i, depth + 2);
+            close(form.row, depth + 1);
+        }
+        close(form.list, depth);
+    }
+    void open(const CpfListForm::Layer& layer, const Facet& facet) noexcept {
+        put("type=\"");
+        escape(layer.type.length != 0 ? layer.type.view() : cpf::type_name(*facet.property->element));
+        put("\">");
+    }
+    void close(const CpfListForm::Layer& layer, std::size_t depth) noexcept {
+        indent(depth);
+        put(layer.is_struct ? "</struct>\n" : "</sequence>\n");
+    }
+    void number_name(const CpfListForm::Layer& layer, std::size_t i) noexcept {
+        if (!layer.has_names) return;
+        put("name=\"");
+        escape(layer.stem.view());
+        put(Sentence{layer.first + i, "\" "}.view());
+    }
+    void write_size(const CpfListForm::Layer& layer, std::size_t size, std::size_t depth) noexcept {
+        if (!layer.has_size) return;
+        indent(depth);
+        put(Sentence{"<simple name=\"Size\" type=\"long\"><value>", size, "</value></simple>\n"}.view());
     }
 
     void write_value(const Facet& facet, const TypeTag& type, const std::byte* value) noexcept {
@@ -149,6 +202,7 @@ private:
 
     const PropertyTransaction& from_;
     std::span<char> into_;
+    std::span<const CpfListForm> forms_;
     std::size_t length_ = 0;
     bool overflow_ = false;
     Sentence fault_{};
@@ -156,8 +210,9 @@ private:
 
 } // namespace
 
-std::size_t write_cpf(const PropertyTransaction& from, std::span<char> into, Sentence& fault) noexcept {
-    return Writer{from, into}.write(fault);
+std::size_t write_cpf(const PropertyTransaction& from, std::span<char> into, Sentence& fault,
+                      std::span<const CpfListForm> forms) noexcept {
+    return Writer{from, into, forms}.write(fault);
 }
 
 } // namespace tappet

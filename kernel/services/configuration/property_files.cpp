@@ -115,7 +115,7 @@ std::expected<bool, Sentence> PropertyFiles::load_from(std::string_view director
     const os::FileText read = os::read_file(path_.data(), text_);
     switch (read.result) {
     case os::FileRead::good:
-        if (const Sentence fault = read_cpf({text_.data(), read.length}, path, into, left_out);
+        if (const Sentence fault = read_cpf({text_.data(), read.length}, path, into, left_out, &forms_);
             !fault.empty())
             return std::unexpected(fault);
         return true;
@@ -144,7 +144,7 @@ Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction&
                         refused,
                         "; its properties are not saved and the old file remains"};
     Sentence fault;
-    const std::size_t length = write_cpf(from, text_, fault);
+    const std::size_t length = write_cpf(from, text_, fault, forms_);
     if (!fault.empty()) return fault;
     if (os::replace_file(path_.data(), {text_.data(), length})) return {};
     return Sentence{

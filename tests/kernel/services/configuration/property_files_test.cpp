@@ -35,6 +35,7 @@ struct Band {
 struct Tension {
     Band band;
     Property<double> gain{1.0}, offset{0.0};
+    Property<Sequence<double, 4>> taps;
     std::uint64_t steps = 0;
     std::uint64_t out_of_order = 0;
     int changes = 0;
@@ -63,6 +64,7 @@ struct Tension {
         return facets(bag<&Tension::band>("band", "that is wanted"),
                       property<&Tension::gain>("gain", "", "of the loop", range(0, 10)),
                       property<&Tension::offset>("offset", "N", "of the cell; it has no range"),
+                      property<&Tension::taps>("taps", "", "of the filter"),
                       event<&Tension::torn>("torn", "an end broke"),
                       operation<&Tension::relax>("relax", "lets go"));
     }
@@ -225,6 +227,20 @@ TEST_F(PropertyFilesOfAMachine, are_replaced_after_the_machine_has_stopped) {
     EXPECT_FALSE(there("warp.cpf.tappet-new")) << "nothing is left beside it";
     ASSERT_EQ(configure(), "");
     EXPECT_EQ(tension("warp").gain_when_configured, 4.5);
+}
+
+TEST_F(PropertyFilesOfAMachine, keep_the_form_of_their_lists) {
+    const std::string list = "<struct name=\"taps\" type=\"std::vector&lt;double&gt;\">";
+    put("warp.cpf", cpf(list + "<simple name=\"Size\" type=\"long\"><value>1</value></simple>"
+                               "<simple name=\"0\" type=\"double\"><value>2</value></simple></struct>"));
+    put("weft.cpf", cpf("<sequence name=\"taps\" type=\"array\"/>"));
+    ASSERT_EQ(configure(), "");
+    ASSERT_EQ(tension("warp").taps.get().size(), 1u);
+    ASSERT_TRUE(instance.save_properties(instance.standing()).empty());
+    EXPECT_THAT(get("warp.cpf"),
+                AllOf(HasSubstr(list), HasSubstr("<simple name=\"Size\" type=\"long\"><value>1</value>"),
+                      HasSubstr("<simple name=\"0\" type=\"double\"><value>2</value>")));
+    EXPECT_THAT(get("weft.cpf"), HasSubstr("<sequence name=\"taps\" type=\"array\">")) << "each its own";
 }
 
 TEST_F(PropertyFilesOfAMachine, stay_unchanged_when_they_cannot_be_replaced) {
