@@ -25,6 +25,7 @@ struct Logged {
 struct Fault {
     std::size_t column = 0; ///< counted from 1
     std::string_view what{};
+    bool is_cut = false; ///< the line is the beginning of a right one
 };
 
 namespace detail {
@@ -57,7 +58,7 @@ struct Rest {
         return taken;
     }
     [[nodiscard]] constexpr std::unexpected<Fault> refuse(std::string_view what) const noexcept {
-        return std::unexpected(Fault{column(), what});
+        return std::unexpected(Fault{column(), what, text.empty()});
     }
 };
 
@@ -99,7 +100,9 @@ constexpr std::expected<void, Fault> take_identifier(Rest& rest, Logged& logged)
     logged.frame.id = static_cast<std::uint32_t>(id);
     if ((digits.size() != 3 && digits.size() != 8) ||
         !valid(Identifier{logged.frame.id, logged.frame.extended}))
-        return before.refuse("an identifier is 3 hexadecimal digits up to 7FF, or 8 up to 1FFFFFFF");
+        return std::unexpected(Fault{before.column(),
+                                     "an identifier is 3 hexadecimal digits up to 7FF, or 8 up to 1FFFFFFF",
+                                     rest.text.empty() && digits.size() < 8});
     return {};
 }
 
@@ -162,13 +165,17 @@ constexpr std::expected<Logged, Fault> read(std::string_view line) noexcept {
     const detail::Rest contents = rest;
     if (!frame.remote)
         if (auto taken = detail::take_data(rest, frame); !taken) return std::unexpected(taken.error());
-    if (!valid(frame)) return contents.refuse("CAN FD has no frame of this length");
+    if (!valid(frame))
+        return std::unexpected(
+            Fault{contents.column(), "CAN FD has no frame of this length", rest.text.empty()});
     // Eight bytes with a length code above eight.
     if (!frame.fd && frame.length == 8 && rest.take('_') &&
         (detail::hex_digit(rest.front()) < 9 || !rest.take(rest.front())))
         return rest.refuse("expected a length code from 9 to F after _");
     if (rest.text == " R" || rest.text == " T") rest.text = {}; // candump -x: received, or sent
-    if (!rest.text.empty()) return rest.refuse("expected nothing after the frame's bytes");
+    if (!rest.text.empty())
+        return std::unexpected(
+            Fault{rest.column(), "expected nothing after the frame's bytes", rest.text == " "});
     return logged;
 }
 

@@ -10,6 +10,9 @@ namespace {
 
 /// candump counts in microseconds: times this close may be the same moment.
 constexpr Duration tick = 1us;
+/// Time servers set a clock back by more than this, and otherwise slow it down. Lines in disorder, as those
+/// of two sockets, are closer.
+constexpr Duration least_set_back = 100ms;
 
 constexpr std::uint32_t key_of(const can::Frame& frame) {
     return frame.id | (frame.extended ? 0x8000'0000u : 0u);
@@ -85,38 +88,63 @@ Sentence CanReplay::open(std::string_view bus, const std::string& path, Duration
     file_.clear();
     file_.seekg(0);
     line_ = 0;
-    last_ = first_;
+    interface_.clear();
+    counts_.set_back = 0;
     is_over_ = !read_line();
     return fault_;
 }
 
-bool CanReplay::read_line() {
-    const auto refuse = [this](std::size_t column, std::string_view what, std::string_view more = {},
-                               std::string_view end = {}) {
-        fault_ = Sentence{path_, ":", line_, ":", column, ": ", what, more, end};
-        return false;
-    };
+bool CanReplay::refuse(std::size_t column, std::string_view what, std::string_view more,
+                       std::string_view end) {
+    fault_ = Sentence{path_, ":", line_, ":", column, ": ", what, more, end};
+    return false;
+}
+
+bool CanReplay::read_text() {
     do {
-        if (!std::getline(file_, text_)) return file_.bad() ? refuse(1, "the file cannot be read") : false;
+        if (!std::getline(file_, text_)) return false;
         ++line_;
         if (text_.ends_with('\r')) text_.pop_back();
+        // A file system fills a file with zeros when power fails.
+        while (file_.eof() && text_.ends_with('\0')) text_.pop_back(), counts_.is_cut = true;
     } while (text_.empty());
+    return true;
+}
+
+bool CanReplay::read_line() {
+    if (!read_text()) return file_.bad() ? refuse(1, "the file cannot be read") : false;
     const auto read = can::candump::read(text_);
-    if (!read && file_.eof()) return counts_.is_cut = true, false;
-    if (!read) return refuse(read.error().column, read.error().what);
+    if (!read) {
+        refuse(read.error().column, read.error().what);
+        if (read.error().is_cut && !read_text()) counts_.is_cut = true, fault_ = {};
+        return false;
+    }
     read_ = *read;
     if (interface_.empty()) {
         interface_ = read_.interface;
-        first_ = last_ = read_.frame.stamp;
+        since_first_ = {};
+        last_ = read_.frame.stamp;
     }
     if (read_.interface != interface_)
         return refuse(
             static_cast<std::size_t>(read_.interface.data() - text_.data()) + 1,
             "here is a frame of another interface; a bus is replayed from a log of its own: grep ' ",
             interface_, " '");
-    if (read_.frame.stamp < last_)
-        return refuse(2, "this time is before that of the line above; put them in order: sort -s");
+    return add_time();
+}
+
+bool CanReplay::add_time() {
+    constexpr Duration longest{9'000'000'000s};
+    const Duration step = read_.frame.stamp - last_;
     last_ = read_.frame.stamp;
+    if (step >= Duration{}) {
+        since_first_ += step;
+        return since_first_ <= longest || refuse(2, "the log lasts more than 9000000000 seconds; divide it");
+    }
+    if (-step < least_set_back)
+        return refuse(
+            2, "this time is before that of the line above; put them in order: LC_ALL=C sort -s -k1.2n");
+    if (counts_.set_back++ == 0) counts_.set_back_line = line_, counts_.set_back_by = -step;
     return true;
 }
 
@@ -166,7 +194,7 @@ bool CanReplay::waits_for_machine(Time now) const {
 void CanReplay::play(can::TwinBus& bus, Time now) {
     if (begun_ == never) begun_ = now;
     while (!is_over_ && !waits_for_machine(now)) {
-        next_ = begun_ + begins_at_ + (read_.frame.stamp - first_);
+        next_ = begun_ + begins_at_ + since_first_;
         if (next_ > now) return;
         switch (kind_of(read_)) {
         case Kind::played: bus.put(read_.frame, now); break;
@@ -199,6 +227,15 @@ Sentence CanReplay::report() const {
     else
         told.add(path_).add(" replayed up to its line ").add(line_);
     if (c.is_cut) told.add("; its last line is cut off, and left out");
+    if (c.set_back != 0)
+        told.add("; its clock was set back ")
+            .add(c.set_back)
+            .add(c.set_back == 1 ? " time (line " : " times (first in line ")
+            .add(c.set_back_line)
+            .add(", by ")
+            .add(seconds(c.set_back_by))
+            .add(" s): there a new stretch begins (were these lines in disorder, sort them: LC_ALL=C sort -s "
+                 "-k1.2n)");
     told.add("; left out ")
         .add(c.unknown)
         .add(" of other identifiers, ")

@@ -32,9 +32,10 @@ private:
     Time begun_ = never, first_{};
 };
 
-/// Replays the frames that the machine receives, each at its time since the log's first frame. Compares the
-/// frames that the machine sends with those of the log: the n-th of an identifier with the n-th. Not
-/// real-time; only the plant's thread.
+/// Replays the frames that the machine receives, each at its time since the log's first frame. If the clock
+/// of the log is set back, a new stretch begins: its first frame follows the frame before it at once.
+/// Compares the frames that the machine sends with those of the log: the n-th of an identifier with the n-th.
+/// Not real-time; only the plant's thread.
 class CanReplay {
 public:
     /// Reads and checks the whole file. The error names file, line and column, and the cure.
@@ -58,6 +59,9 @@ public:
         /// Frames not sent by the machine; and sent frames not in the log, though their identifier is.
         std::uint64_t only_in_log = 0, only_sent = 0;
         bool is_cut = false; ///< its last line is incomplete: the recording was interrupted
+        /// How often its clock was set back; the first line after that, and by how much.
+        std::uint64_t set_back = 0, set_back_line = 0;
+        Duration set_back_by{};
     };
     [[nodiscard]] Counts counts() const;
     /// Returns the counts as text.
@@ -72,6 +76,12 @@ private:
     };
     /// Reads a line. Returns false at the end of the file, and on an error: see fault_.
     bool read_line();
+    /// Reads the text of the next line that is not empty. False at the end.
+    bool read_text();
+    /// Adds the time since the line before. False, with fault_, where lines are in disorder.
+    bool add_time();
+    bool refuse(std::size_t column, std::string_view what, std::string_view more = {},
+                std::string_view end = {});
     [[nodiscard]] Kind kind_of(const can::candump::Logged& logged) const;
     void count(Kind kind);
     void meet(const can::Frame& frame, bool is_logged);
@@ -86,7 +96,8 @@ private:
     std::map<std::uint32_t, Waiting> own_{}; // by identifier: frames of the log that the machine sends
     can::candump::Logged read_{};
     Duration begins_at_{};
-    Time first_{}, last_{}, begun_ = never, next_ = Time::min();
+    Duration since_first_{}; ///< of the frame that was read
+    Time last_{}, begun_ = never, next_ = Time::min();
     bool is_over_ = false;
     std::uint32_t asked_ = 0;
     Time asked_until_ = Time::min();

@@ -15,8 +15,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto read = candump::read(line);
     if (!read) {
         demand(!read.error().what.empty() && read.error().column >= 1 && read.error().column <= size + 1);
+        demand(size != 0 || read.error().is_cut);
         return 0;
     }
+    // The beginning of a right line is cut, or right by itself.
+    const auto cut = candump::read(line.substr(0, line.size() - 1));
+    demand(cut.has_value() || cut.error().is_cut);
     Frame frame = read->frame;
     demand(frame.stamp >= tappet::Time{} && !read->interface.empty());
     if (read->is_error) return 0;

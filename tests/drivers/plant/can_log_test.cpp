@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -246,12 +247,73 @@ TEST_F(CanLog, skips_and_reports_a_truncated_last_line) {
     EXPECT_NE(replay.report().view().find("its last line is cut off, and left out"), std::string_view::npos);
 }
 
+TEST_F(CanLog, ends_at_a_last_line_that_is_cut_anywhere) {
+    const std::string whole = "(1.0) can0 181#01\n";
+    const std::string last = "(1700000000.123456) can0 18FF0102##3001122334455667788 R";
+    for (std::size_t length = 1; length < last.size() - 2; ++length)
+        for (const std::string end : {"", "\n", "\r\n\n"}) {
+            const std::string said = refusal(whole + last.substr(0, length) + end);
+            EXPECT_EQ(said, "") << last.substr(0, length);
+        }
+    EXPECT_EQ(refusal(whole + "(1.1) can0 181#0" + std::string(100, '\0')), "");
+    EXPECT_EQ(refusal(whole + "(1.1) can0 181#1\n(1.2) can0 181#01\n"),
+              "a.log:2:17: a byte is two hexadecimal digits; the line is cut off")
+        << "not the last one";
+    EXPECT_EQ(refusal(whole + "(1.1) can0 181#1X\n"),
+              "a.log:2:17: a byte is two hexadecimal digits; the line is cut off")
+        << "wrong, not cut";
+    ASSERT_TRUE(open(whole + "(1.1) can0 181#1\n").empty());
+    for (const Duration at : {0ms, 100ms}) move(Time{at});
+    EXPECT_EQ(arrived(machine).size(), 1u);
+    EXPECT_NE(replay.report().view().find("its last line is cut off, and left out"), std::string_view::npos);
+    CanReplay zeros;
+    ASSERT_TRUE(
+        zeros.open("can", file(whole + std::string(64, '\0')), {}, machine_receives, machine_sends).empty());
+    EXPECT_TRUE(zeros.counts().is_cut);
+}
+
+TEST_F(CanLog, begins_a_new_stretch_where_its_clock_was_set_back) {
+    ASSERT_TRUE(open("(1000.0) can0 181#01\n(1001.0) can0 181#02\n(501.0) can0 181#03\n"
+                     "(501.5) can0 181#04\n(500.25) can0 181#05\n")
+                    .empty());
+    std::vector<std::size_t> frames;
+    for (const Duration at : {0ms, 999ms, 1000ms, 1499ms, 1500ms}) {
+        move(Time{at});
+        frames.push_back(arrived(machine).size());
+    }
+    EXPECT_EQ(frames, (std::vector<std::size_t>{1, 0, 2, 0, 2}));
+    EXPECT_TRUE(replay.is_over());
+    EXPECT_EQ(replay.counts().set_back, 2u);
+    EXPECT_NE(replay.report().view().find(
+                  "; its clock was set back 2 times (first in line 3, by 500.000000 s): there a new stretch "
+                  "begins (were these lines in disorder, sort them: LC_ALL=C sort -s -k1.2n); left out"),
+              std::string_view::npos)
+        << replay.report().view();
+}
+
+// The order of GNU sort, where digits differ: sort -s alone puts 9.5 behind 10.1.
+TEST_F(CanLog, is_in_order_after_its_cure) {
+    const std::string path = file("(10.10) can0 181#01\n(10.05) can0 181#02\n(9.99) can0 181#03\n"
+                                  "(10.05) can0 181#04\n");
+    CanReplay fresh;
+    const std::string said{fresh.open("can", path, {}, machine_receives, machine_sends).view()};
+    const std::size_t cure = said.find("LC_ALL=C sort");
+    ASSERT_NE(cure, said.npos) << said;
+    const std::string sorted = (folder / "sorted.log").string();
+    ASSERT_EQ(std::system((said.substr(cure) + " " + path + " > " + sorted).c_str()), 0);
+    std::ifstream log{sorted};
+    EXPECT_EQ((std::string{std::istreambuf_iterator<char>{log}, {}}),
+              "(9.99) can0 181#03\n(10.05) can0 181#02\n(10.05) can0 181#04\n(10.10) can0 181#01\n");
+}
+
 TEST_F(CanLog, refuses_a_file_with_line_column_and_cure) {
     EXPECT_EQ(refusal(""), "a.log: there is no frame in it; name a log of candump -L or -l");
-    EXPECT_EQ(refusal("(1.0) can0 181#01\n(1.1) can0 181#1\n"),
-              "a.log:2:17: a byte is two hexadecimal digits; the line is cut off");
-    EXPECT_EQ(refusal("(1.0) can0 181#01\n(0.9) can0 181#01\n"),
-              "a.log:2:2: this time is before that of the line above; put them in order: sort -s");
+    EXPECT_EQ(refusal("(1.0) can0 181#01\n(0.901) can0 181#01\n"),
+              "a.log:2:2: this time is before that of the line above; put them in order: LC_ALL=C sort -s "
+              "-k1.2n");
+    EXPECT_EQ(refusal("(9000000000) can0 181#01\n(0) can0 181#01\n(9000000000) can0 181#01\n(0) can0 181#01\n"
+                      "(1) can0 181#01\n"),
+              "a.log:5:2: the log lasts more than 9000000000 seconds; divide it");
     EXPECT_EQ(
         refusal("(1.0) can0 181#01\n(1.0) can1 181#01\n"),
         "a.log:2:7: here is a frame of another interface; a bus is replayed from a log of its own: grep ' "
