@@ -234,8 +234,7 @@ Sentence CanReplay::report() const {
             .add(c.set_back_line)
             .add(", by ")
             .add(seconds(c.set_back_by))
-            .add(" s): there a new stretch begins (were these lines in disorder, sort them: LC_ALL=C sort -s "
-                 "-k1.2n)");
+            .add(" s), each a new stretch (in disorder? LC_ALL=C sort -s -k1.2n)");
     told.add("; left out ")
         .add(c.unknown)
         .add(" of other identifiers, ")

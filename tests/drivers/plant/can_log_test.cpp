@@ -285,8 +285,8 @@ TEST_F(CanLog, begins_a_new_stretch_where_its_clock_was_set_back) {
     EXPECT_TRUE(replay.is_over());
     EXPECT_EQ(replay.counts().set_back, 2u);
     EXPECT_NE(replay.report().view().find(
-                  "; its clock was set back 2 times (first in line 3, by 500.000000 s): there a new stretch "
-                  "begins (were these lines in disorder, sort them: LC_ALL=C sort -s -k1.2n); left out"),
+                  "; its clock was set back 2 times (first in line 3, by 500.000000 s), each a new stretch "
+                  "(in disorder? LC_ALL=C sort -s -k1.2n); left out"),
               std::string_view::npos)
         << replay.report().view();
 }
