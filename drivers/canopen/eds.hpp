@@ -1,5 +1,5 @@
-// An object dictionary read from an EDS or DCF file (CiA 306) in a constant expression; a fault in the file
-// is a build error that names the file's own line.
+// An object dictionary read from an EDS or DCF file (CiA 306) in a constant expression. A fault in the file
+// is noted; it is a build error, with the file's own line, in a row that needs what is wrong.
 //
 //     tappet_file(<target> servo.eds)                                       in CMakeLists.txt
 //     #include "<path>/servo.eds.hpp"                                      tappet::files::servo_eds, the text
@@ -15,6 +15,13 @@
 #include <array>
 
 namespace tappet::canopen {
+
+/// The machine builder's word on an object, in place of its file's: see despite().
+struct Belief {
+    Address at{};
+    DataType type = DataType::unsigned32;
+    Access access = Access::read_write;
+};
 
 namespace detail {
 
@@ -63,8 +70,8 @@ constexpr std::size_t eds_room(std::string_view text) noexcept {
     return room;
 }
 
-/// Reads the text once, and a second time for references to other sections.
-template <std::size_t N> class EdsReader {
+/// Reads the text once, and a second time for references to other sections. Holds N objects and M notes.
+template <std::size_t N, std::size_t M = 64> class EdsReader {
 public:
     constexpr explicit EdsReader(const SourceText& source) : source_{source} {
         for (const auto step :
@@ -74,10 +81,11 @@ public:
     }
 
     Bounded<Object, N> objects{};
+    Bounded<FileNote, M> notes{};
     Identity identity{};
     std::string_view product{};
     std::uint8_t node = 0;
-    Sentence fault{};
+    Sentence fault{}; ///< the file describes no device
 
 private:
     enum Key : std::uint8_t {
@@ -104,6 +112,9 @@ private:
         "ParameterName", "ObjectType",     "DataType",    "AccessType", "DefaultValue",  "ParameterValue",
         "LowLimit",      "HighLimit",      "PDOMapping",  "SubNumber",  "CompactSubObj", "VendorNumber",
         "ProductNumber", "RevisionNumber", "ProductName", "CompactPDO", "NodeID"};
+    /// What is unknown of an object when an entry of it is wrong.
+    static constexpr std::array<std::uint8_t, key_count> flaws_of{
+        0, flaw::type, flaw::type, flaw::access, 0, flaw::value, flaw::limits, flaw::limits, flaw::mapping};
     struct Entry {
         std::string_view text{};
         std::uint32_t line = 0;
@@ -113,6 +124,7 @@ private:
         SectionName meant{};
         std::string_view name{};
         std::uint32_t line = 0;
+        std::uint8_t flaws = 0;
         std::array<Entry, key_count> entries{};
     };
     /// An object with sub-indices.
@@ -125,30 +137,24 @@ private:
         bool operator==(const Record&) const = default;
     };
 
+    using Kind = FileNote::Kind;
     template <class... Pieces> constexpr void refuse(std::uint32_t line, const Pieces&... pieces) {
-        if (fault.empty()) fault = Sentence{source_.name, ":", line, ": ", shown(pieces)...};
+        if (fault.empty()) fault = Sentence{source_.name, ":", line, ": ", pieces...};
     }
-    /// Quotes at most 60 characters: a name or value in the file may be longer than a sentence.
-    template <class Piece> static constexpr auto shown(const Piece& piece) {
-        if constexpr (std::is_same_v<Piece, std::string_view>) {
-            Sentence text;
-            add_readable(text, piece.substr(0, 60));
-            return text;
-        } else if constexpr (std::is_array_v<Piece>) {
-            return std::string_view{piece};
-        } else {
-            return piece;
-        }
+    constexpr void note(const FileNote& each) { static_cast<void>(notes.push(each)); }
+    constexpr void note(Section& section, Kind kind, Key key) {
+        const Entry& entry = section.entries[key];
+        section.flaws |= flaws_of[key];
+        note({kind, flaws_of[key], section.meant.at, entry.line != 0 ? entry.line : section.line, 0,
+              keys[key], entry.line != 0 ? entry.text : section.name});
     }
 
     constexpr void read_sections() {
         Section section;
         IniLines lines{source_.text};
-        for (IniLine line = lines.next(); fault.empty(); line = lines.next()) {
+        for (IniLine line = lines.next();; line = lines.next()) {
             switch (line.kind) {
-            case IniLine::Kind::nonsense:
-                return refuse(line.line, "\"", line.name,
-                              "\" is neither a [section] nor an entry Key=Value; begin a comment with ;");
+            case IniLine::Kind::nonsense: note({Kind::no_line, 0, {}, line.line, 0, {}, line.name}); break;
             case IniLine::Kind::entry: read_entry(section, line); break;
             case IniLine::Kind::section:
             case IniLine::Kind::end:
@@ -157,72 +163,71 @@ private:
                 section.meant = section_name(line.name);
                 section.name = line.name;
                 section.line = line.line;
+                section.flaws = 0;
                 if (line.kind == IniLine::Kind::end) return;
             }
         }
     }
 
     constexpr void read_entry(Section& section, const IniLine& line) {
-        using Kind = SectionName::Kind;
-        if (section.meant.kind == Kind::other || section.meant.kind == Kind::list ||
-            section.meant.kind == Kind::values)
+        using Name = SectionName::Kind;
+        if (section.meant.kind == Name::other || section.meant.kind == Name::list ||
+            section.meant.kind == Name::values)
             return;
         for (std::size_t k = 0; k < key_count; ++k) {
             if (!same(line.name, keys[k])) continue;
-            if (section.entries[k].line != 0)
-                return refuse(line.line, keys[k], " is there twice in [", section.name, "], first in line ",
-                              section.entries[k].line, "; keep one of them");
-            section.entries[k] = {line.value, line.line};
+            Entry& entry = section.entries[k];
+            if (entry.line == 0) {
+                entry = {line.value, line.line};
+                continue;
+            }
+            const std::uint8_t flaws = entry.text == line.value ? std::uint8_t{0} : flaws_of[k];
+            section.flaws |= flaws;
+            note({Kind::entry_twice, flaws, section.meant.at, line.line, entry.line, keys[k], section.name});
         }
     }
 
     /// Returns a number of an entry that is not a value of the device.
-    constexpr std::uint32_t count_of(const Section& section, Key key, std::uint32_t otherwise,
+    constexpr std::uint32_t count_of(Section& section, Key key, std::uint32_t otherwise,
                                      std::uint32_t most = ~0u) {
         const Entry& entry = section.entries[key];
         if (entry.text.empty()) return otherwise;
         const auto number = to_whole(entry.text);
         if (number && !number->negative && number->size <= most)
             return static_cast<std::uint32_t>(number->size);
-        refuse(entry.line, keys[key], " is \"", entry.text, "\"; write a number up to ", std::size_t{most});
+        note(section, Kind::not_a_choice, key);
         return otherwise;
     }
 
-    constexpr void finish(const Section& section) {
-        using Kind = SectionName::Kind;
+    constexpr void finish(Section& section) {
+        using Name = SectionName::Kind;
         switch (section.meant.kind) {
-        case Kind::object: finish_object(section); break;
-        case Kind::sub_object: add(section, section.meant.at); break;
-        case Kind::commissioning: node = static_cast<std::uint8_t>(count_of(section, node_id, 0, 127)); break;
-        case Kind::device:
+        case Name::object: finish_object(section); break;
+        case Name::sub_object: add(section); break;
+        case Name::commissioning: node = static_cast<std::uint8_t>(count_of(section, node_id, 0, 127)); break;
+        case Name::device:
             identity.vendor = count_of(section, vendor_number, 0);
             identity.product = count_of(section, product_number, 0);
             identity.revision = count_of(section, revision_number, 0);
             product = section.entries[product_name].text;
             device_line_ = section.line;
-            if (count_of(section, compact_pdo, 0) != 0)
-                refuse(
-                    section.entries[compact_pdo].line,
-                    "CompactPDO stands for PDO objects that are not written; let its editor write them and "
-                    "set it to 0");
+            if (count_of(section, compact_pdo, 0) != 0) note(section, Kind::compact_pdo, compact_pdo);
             break;
         default: break;
         }
     }
 
-    constexpr void finish_object(const Section& section) {
+    constexpr void finish_object(Section& section) {
         constexpr std::uint32_t domain = 2, variable = 7, array = 8, record = 9;
         const std::uint32_t type = count_of(section, object_type, variable);
         const std::uint16_t index = section.meant.at.index;
         const std::uint32_t compact = count_of(section, compact_sub_obj, 0, 254);
         if (type != domain && type != variable && type != array && type != record)
-            return refuse(section.entries[object_type].line, "ObjectType is ",
-                          section.entries[object_type].text,
-                          ", which is not an object type of a device; write 0x2, 0x7, 0x8 or 0x9");
+            return note(section, Kind::not_a_choice, object_type);
         const bool plain = type == domain || type == variable;
         static_cast<void>(
             records_.push({index, section.line, section.entries[sub_number], compact != 0, plain}));
-        if (plain) return add(section, index);
+        if (plain) return add(section);
         if (compact == 0) return;
         Object count;
         count.at = index;
@@ -232,39 +237,51 @@ private:
         count.name = "Number of entries";
         count.line = section.line;
         static_cast<void>(objects.push(count));
-        for (std::uint32_t sub = 1; sub <= compact && fault.empty(); ++sub)
-            add(section, {index, static_cast<std::uint8_t>(sub)});
+        section.meant.at.sub = 1;
+        add(section);
+        for (std::uint32_t sub = 2; sub <= compact && !objects.full(); ++sub) {
+            Object next = objects[objects.size() - 1];
+            next.at.sub = static_cast<std::uint8_t>(sub);
+            static_cast<void>(objects.push(next));
+        }
     }
 
-    constexpr void add(const Section& section, Address at) {
+    constexpr void add(Section& section) {
         Object object;
-        object.at = at;
+        object.at = section.meant.at;
         object.line = section.line;
         object.name = section.entries[parameter_name].text;
         const Entry& type = section.entries[data_type];
-        if (type.line == 0) return refuse(section.line, "[", section.name, "] has no DataType; write it");
+        if (type.line == 0) note(section, Kind::no_entry, data_type);
         const std::uint32_t number = count_of(section, data_type, 0);
-        object.type = static_cast<DataType>(number);
-        const bool is_text = number == 9 || number == 10 || number == 11 || number == 15;
-        if (!is_text && (number > 0x1B || bits_of(object.type) == 0))
-            return refuse(type.line, "DataType ", type.text,
-                          " is not one of CiA 301; write the number of a basic type");
+        constexpr std::array<std::uint32_t, 4> texts{9, 10, 11, 15};
+        const bool is_text = std::ranges::find(texts, number) != texts.end();
+        const bool is_known = is_text || (number <= 0x1B && bits_of(static_cast<DataType>(number)) != 0);
+        object.type = static_cast<DataType>(is_known ? number : 0);
+        if (!is_known && type.line != 0 && (section.flaws & flaw::type) == 0)
+            note(section, Kind::not_a_choice, data_type);
         read_access(section, object);
-        const std::uint32_t may_map = count_of(section, pdo_mapping, 0, 1);
-        object.mappable = may_map != 0;
-        const Entry& wanted = section.entries[parameter_value];
-        object.is_parameter = !wanted.text.empty();
-        const Entry& value = object.is_parameter ? wanted : section.entries[default_value];
-        object.text = value.text;
-        if (!is_text) {
-            object.value = number_of(section, object.is_parameter ? parameter_value : default_value, object);
-            object.low = number_of(section, low_limit, object);
-            object.high = number_of(section, high_limit, object);
+        object.mappable = count_of(section, pdo_mapping, 0, 1) != 0;
+        const Key value = section.entries[parameter_value].text.empty() ? default_value : parameter_value;
+        object.is_parameter = value == parameter_value;
+        object.text = section.entries[value].text;
+        if (bits_of(object.type) != 0) {
+            const NumberRead read = to_number(object.text, object.type);
+            object.value = read.number;
+            if (read.fault != NumberFault::none) note(section, kind_of(read.fault), value);
+            read_limits(section, object);
+        } else if (!is_known && object.is_parameter) {
+            section.flaws |= flaw::value; // unknown like its type
         }
+        object.flaws = section.flaws;
         static_cast<void>(objects.push(object));
     }
 
-    constexpr void read_access(const Section& section, Object& object) {
+    static constexpr Kind kind_of(NumberFault fault) {
+        return fault == NumberFault::no_number ? Kind::not_a_number : Kind::does_not_fit;
+    }
+
+    constexpr void read_access(Section& section, Object& object) {
         struct Name {
             std::string_view text;
             Access access;
@@ -276,39 +293,60 @@ private:
                                              {"rww", Access::read_write_write},
                                              {"const", Access::constant}}};
         const Entry& entry = section.entries[access_type];
-        if (entry.line == 0) return refuse(section.line, "[", section.name, "] has no AccessType; write it");
+        if (entry.line == 0) return note(section, Kind::no_entry, access_type);
         for (const Name& each : names)
             if (same(entry.text, each.text)) {
                 object.access = each.access;
                 return;
             }
-        refuse(entry.line, "AccessType is \"", entry.text, "\"; write ro, wo, rw, rwr, rww or const");
+        note(section, Kind::not_a_choice, access_type);
     }
 
-    constexpr Number number_of(const Section& section, Key key, const Object& object) {
-        return number_of(section.entries[key], keys[key], object);
-    }
-    constexpr Number number_of(const Entry& entry, std::string_view key, const Object& object) {
-        const NumberRead read = to_number(entry.text, object.type);
-        if (read.fault == NumberFault::no_number)
-            refuse(entry.line, key, " \"", entry.text.substr(0, 40),
-                   is_real(object.type) ? "\" is not a number of up to 15 digits; write one"
-                                        : "\" is not a number; write 0x1F, 31 or $NODEID+0x1F");
-        if (read.fault == NumberFault::does_not_fit)
-            refuse(entry.line, key, " ", entry.text, " does not fit the ", bits_of(object.type), " bits of ",
-                   to_text(object.at), is_signed(object.type) ? ", which has a sign" : "",
-                   "; correct it or its DataType");
-        return read.number;
+    /// Reads the limits. One beyond the type bounds nothing; contradictory ones are dropped, as a flaw.
+    constexpr void read_limits(Section& section, Object& object) {
+        const std::string_view low = section.entries[low_limit].text, high = section.entries[high_limit].text;
+        for (const Key key : {low_limit, high_limit}) {
+            const std::string_view text = section.entries[key].text;
+            const NumberRead read = to_number(text, object.type);
+            (key == low_limit ? object.low : object.high) = read.number;
+            if (read.fault == NumberFault::none) continue;
+            const bool is_beyond =
+                read.fault == NumberFault::does_not_fit && text.starts_with('-') == (key == low_limit);
+            if (is_beyond)
+                note({Kind::bounds_nothing, 0, object.at, section.entries[key].line, 0, keys[key], text});
+            else
+                note(section, kind_of(read.fault), key);
+        }
+        if (is_real(object.type) || !object.high.given) return;
+        Object bounded = object;
+        bounded.high = {};
+        // 0xFF of eight bits with a sign: -1, or 255?
+        const bool is_pattern = is_signed(object.type) && !high.starts_with('-') &&
+                                object.high.bits >> (bits_of(object.type) - 1) != 0;
+        if (!within_limits(bounded, object.high.of(1), 1))
+            note(section, Kind::limits_contradict, high_limit);
+        else if (is_pattern && (low.empty() || low.starts_with('-')))
+            note(section, Kind::ambiguous_limit, high_limit);
+        if ((section.flaws & flaw::limits) != 0) object.low = object.high = {};
     }
 
     constexpr void order() {
         std::ranges::sort(objects.begin(), objects.end(), [](const Object& a, const Object& b) {
             return a.at != b.at ? a.at < b.at : a.line < b.line;
         });
-        for (std::size_t i = 1; i < objects.size(); ++i)
-            if (objects[i].at == objects[i - 1].at)
-                return refuse(objects[i].line, "object ", to_text(objects[i].at),
-                              " is there twice, first in line ", objects[i - 1].line, "; keep one of them");
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < objects.size(); ++i) {
+            if (kept == 0 || objects[i].at != objects[kept - 1].at) {
+                if (kept != i) objects[kept] = objects[i];
+                ++kept;
+                continue;
+            }
+            constexpr std::uint8_t all =
+                flaw::type | flaw::access | flaw::mapping | flaw::value | flaw::limits;
+            objects[kept - 1].flaws = all;
+            note({Kind::object_twice, all, objects[i].at, objects[i].line, objects[kept - 1].line, {}, {}});
+        }
+        objects.used = kept;
         if (objects.empty()) refuse(1, "it has no object; is it an EDS or DCF file of CiA 306?");
     }
 
@@ -316,24 +354,19 @@ private:
         for (const Object& object : objects) {
             const Record* const record = record_of(object.at.index);
             if (record == nullptr)
-                return refuse(object.line, "object ", to_text(object.at), " is a part of ",
-                              hex(object.at.index, 4), ", which has no section; write it");
-            if (record->plain && object.at.sub != 0)
-                return refuse(object.line, "object ", to_text(object.at), " is a part of ",
-                              hex(object.at.index, 4),
-                              ", which is a variable; make it ObjectType 0x8 or 0x9");
+                note({Kind::no_section, 0, object.at, object.line, 0, {}, {}});
+            else if (record->plain && object.at.sub != 0)
+                note({Kind::part_of_variable, 0, object.at, object.line, 0, {}, {}});
         }
         for (const Record& record : records_) {
             if (record.plain || record.compact) continue;
-            std::size_t subs = 0;
+            std::uint32_t subs = 0;
             for (const Object& object : objects) subs += object.at.index == record.index ? 1u : 0u;
             const auto said = to_whole(record.sub_number.text);
-            if (!said || said->size != subs)
-                return refuse(record.sub_number.line != 0 ? record.sub_number.line : record.line,
-                              "SubNumber of ", hex(record.index, 4), " is ",
-                              record.sub_number.text.empty() ? "not written" : record.sub_number.text,
-                              " and ", subs, subs == 1 ? " sub-index is" : " sub-indices are",
-                              " there; correct it, or what is missing");
+            if (said && said->size == subs) continue;
+            const std::uint32_t line = record.sub_number.line;
+            note({Kind::sub_number, 0, record.index, line != 0 ? line : record.line, subs, keys[sub_number],
+                  record.sub_number.text});
         }
     }
     constexpr const Record* record_of(std::uint16_t index) const {
@@ -346,8 +379,7 @@ private:
     constexpr void read_references() {
         SectionName in{};
         IniLines lines{source_.text};
-        for (IniLine line = lines.next(); line.kind != IniLine::Kind::end && fault.empty();
-             line = lines.next()) {
+        for (IniLine line = lines.next(); line.kind != IniLine::Kind::end; line = lines.next()) {
             if (line.kind == IniLine::Kind::section) {
                 in = section_name(line.name);
                 continue;
@@ -356,21 +388,24 @@ private:
             if (!place || place->size == 0 || place->size > 0xFFFF) continue; // the number of entries
             if (in.kind == SectionName::Kind::list) {
                 const auto index = to_whole(line.value);
-                if (!index ||
+                if (!index || index->size > 0xFFFF ||
                     (index->size >= 0x1000 && record_of(static_cast<std::uint16_t>(index->size)) == nullptr))
-                    refuse(line.line, "the list names object ", line.value.substr(0, 20),
-                           ", which has no section; write it or take it off the list");
+                    note({Kind::not_in_file, 0, {}, line.line, 0, {}, line.value});
             }
-            if (in.kind == SectionName::Kind::values) {
-                Object* const object = find({in.at.index, static_cast<std::uint8_t>(place->size)});
-                if (place->size > 254 || object == nullptr)
-                    return refuse(line.line, "it is a value of ", hex(in.at.index, 4), ":", line.name,
-                                  ", which is not there; correct CompactSubObj");
-                object->value = number_of({line.value, line.line}, "Value", *object);
-                object->is_parameter = true;
-                object->line = line.line;
-            }
+            if (in.kind == SectionName::Kind::values) read_value(in.at.index, place->size, line);
         }
+    }
+    constexpr void read_value(std::uint16_t index, std::uint64_t sub, const IniLine& line) {
+        Object* const object = sub > 254 ? nullptr : find({index, static_cast<std::uint8_t>(sub)});
+        if (object == nullptr) return note({Kind::no_such_element, 0, index, line.line, 0, {}, line.name});
+        const NumberRead read = to_number(line.value, object->type);
+        object->value = read.number;
+        object->text = line.value;
+        object->is_parameter = true;
+        object->line = line.line;
+        if (read.fault == NumberFault::none) return;
+        object->flaws |= flaw::value;
+        note({kind_of(read.fault), flaw::value, object->at, line.line, 0, "Value", line.value});
     }
     constexpr Object* find(Address at) {
         for (Object& object : objects)
@@ -379,18 +414,11 @@ private:
     }
 
     constexpr void check_values() {
-        for (const Object& object : objects) {
-            if (object.low.given && object.high.given && !is_real(object.type)) {
-                Object bounded = object;
-                bounded.high = {};
-                if (!within_limits(bounded, object.high.of(1), 1))
-                    return refuse(object.line, "LowLimit of ", to_text(object.at),
-                                  " is above its HighLimit; exchange them");
-            }
-            if (object.value.given && !within_limits(object, object.value.of(1), 1))
-                return refuse(object.line, "the value ", object.text.substr(0, 20), " of ",
-                              to_text(object.at),
-                              " is outside of its own limits; correct it, LowLimit or HighLimit");
+        for (Object& object : objects) {
+            if (!object.value.given || within_limits(object, object.value.of(1), 1)) continue;
+            const std::uint8_t flaws = object.is_parameter ? flaw::value : std::uint8_t{0};
+            object.flaws |= flaws;
+            note({Kind::outside_of_limits, flaws, object.at, object.line, 0, {}, object.text});
         }
     }
 
@@ -425,19 +453,48 @@ private:
 
 template <const auto& Source> inline constexpr EdsReader<eds_room(Source.text)> eds_read{Source};
 
-/// Copies the objects to an array of exact size, as part of the program that uses it.
-template <const auto& Source> struct CheckedDictionary {
+/// Copies the objects to an array of exact size, as part of the program that uses it, with those believed.
+template <const auto& Source, Belief... beliefs> struct CheckedDictionary {
     TAPPET_ACCEPTED(eds_read<Source>.fault);
-    static constexpr auto objects =
-        array_of<eds_read<Source>.objects.used>([](std::size_t i) { return eds_read<Source>.objects[i]; });
-    static constexpr Dictionary dictionary{Source.name, eds_read<Source>.product, eds_read<Source>.node,
-                                           eds_read<Source>.identity, objects};
+    static constexpr auto& read = eds_read<Source>;
+    static constexpr std::array<Belief, sizeof...(beliefs)> believed{beliefs...};
+    static constexpr bool in_file(Address at) {
+        return std::ranges::find(read.objects, at, &Object::at) != read.objects.end();
+    }
+    static constexpr std::size_t added = (std::size_t{0} + ... + (in_file(beliefs.at) ? 0u : 1u));
+    static constexpr auto objects = [] {
+        std::array<Object, read.objects.used + added> all{};
+        auto end = std::copy(read.objects.begin(), read.objects.end(), all.begin());
+        for (const Belief& each : believed) {
+            if (!in_file(each.at)) (end++)->at = each.at;
+            Object& object = *std::ranges::find(all, each.at, &Object::at);
+            if (bits_of(object.type) != bits_of(each.type)) object.value = {};
+            object.type = each.type;
+            object.access = each.access;
+            object.mappable = true;
+            object.flaws &= flaw::value;
+            object.low = object.high = {};
+        }
+        std::ranges::sort(all, {}, &Object::at);
+        return all;
+    }();
+    static constexpr auto notes = array_of<read.notes.used>([](std::size_t i) { return read.notes[i]; });
+    static constexpr Dictionary dictionary{Source.name,   read.product, read.node,
+                                           read.identity, objects,      notes};
 };
 
 } // namespace detail
 
-/// The dictionary of a constant SourceText at namespace scope.
-template <const auto& Source>
-inline constexpr const Dictionary& dictionary = detail::CheckedDictionary<Source>::dictionary;
+/// Takes the object as one of this type and access, which may be mapped and has no limits, in spite of the
+/// file: for a fault in a file, where the device's manual says otherwise.
+constexpr Belief despite(Address at, DataType type, Access access = Access::read_write) noexcept {
+    return {at, type, access};
+}
+
+/// The dictionary of a constant SourceText at namespace scope. A fault in what a network's rows need is
+/// refused there, and its cure is a despite() behind the file, also for the simulated device:
+///     canopen::dictionary<files::servo_eds, canopen::despite(0x6060, canopen::DataType::integer8)>
+template <const auto& Source, Belief... beliefs>
+inline constexpr const Dictionary& dictionary = detail::CheckedDictionary<Source, beliefs...>::dictionary;
 
 } // namespace tappet::canopen

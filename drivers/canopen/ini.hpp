@@ -33,7 +33,9 @@ constexpr std::string_view trimmed(std::string_view text) noexcept {
 /// Returns the lines with contents, one by one; comments begin with a semicolon. Lines end in LF or CR LF.
 class IniLines {
 public:
-    explicit constexpr IniLines(std::string_view text) noexcept : rest_{text} {}
+    explicit constexpr IniLines(std::string_view text) noexcept : rest_{text} {
+        if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3); // a byte-order mark
+    }
 
     constexpr IniLine next() noexcept {
         while (!rest_.empty()) {

@@ -2,6 +2,7 @@
 // devices' dictionaries.
 #pragma once
 
+#include "drivers/canopen/eds_notes.hpp"
 #include "drivers/canopen/network_rows.hpp"
 
 #include <algorithm>
@@ -30,6 +31,82 @@ constexpr PdoPlace pdo_place(can::Identifier identifier, std::uint8_t node) noex
 
 constexpr Sentence who(const NodeRow& node) noexcept {
     return Sentence{"node ", unsigned{node.id}, " \"", node.name, "\""};
+}
+
+constexpr bool is_configured_by_rows(std::uint16_t index) noexcept {
+    return (index >= 0x1000 && index <= 0x1019 && index != 0x1012) || (index >= 0x1400 && index < 0x1C00);
+}
+
+/// Collects the faults of a file in the objects that a node's rows need, for one sentence.
+class FlawsTold {
+public:
+    constexpr explicit FlawsTold(const NodeRow& node) noexcept : node_{node} {}
+
+    constexpr void need(Address at, std::uint8_t parts) noexcept {
+        const Object* const object = node_.dictionary.find(at);
+        if (object == nullptr || (object->flaws & parts) == 0) return;
+        if (told_.size() > 210) { // room for one of the longest
+            ++more_;
+            return;
+        }
+        told_.add(told_.empty() ? who(node_).add(": ") : Sentence{"; "});
+        const FileNote* const note = note_of(*object, static_cast<std::uint8_t>(object->flaws & parts));
+        told_.add(node_.dictionary.file).add(":").add(note != nullptr ? note->line : object->line).add(": ");
+        told_.add(note != nullptr ? meaning(*note) : Sentence{to_text(at), " has a fault"});
+        add_cure(*object, parts);
+    }
+    [[nodiscard]] constexpr Sentence told() const noexcept {
+        Sentence all = told_;
+        if (more_ != 0) all.add("; and ").add(more_).add(" more of its objects");
+        return all;
+    }
+
+private:
+    constexpr const FileNote* note_of(const Object& object, std::uint8_t flaws) const noexcept {
+        for (const bool exactly : {true, false}) // a compact array has one note for all
+            for (const FileNote& each : node_.dictionary.notes)
+                if ((each.flaws & flaws) != 0 &&
+                    (exactly ? each.at == object.at : each.at.index == object.at.index))
+                    return &each;
+        return nullptr;
+    }
+    constexpr void add_cure(const Object& object, std::uint8_t parts) noexcept {
+        const Sentence index = hex(object.at.index, 4);
+        Sentence at{"0x", index.view().substr(0, 4)};
+        if (object.at.sub != 0) at = Sentence{"{", at, ", ", unsigned{object.at.sub}, "}"};
+        if ((parts & object.flaws) == flaw::value) {
+            told_.add("; write the value meant: .write(").add(at).add(", ..)");
+            return;
+        }
+        const std::string_view type = name_of(object.type);
+        told_.add("; believe the device: canopen::dictionary<.., canopen::despite(")
+            .add(at)
+            .add(", canopen::DataType::");
+        told_.add((object.flaws & flaw::type) != 0 || type.empty() ? std::string_view{".."} : type).add(")>");
+    }
+
+    const NodeRow& node_;
+    Sentence told_{};
+    std::size_t more_ = 0;
+};
+
+/// Checks that the file has no fault in what the node's rows and its start-up need.
+constexpr Sentence flaw_fault(const NodeRow& node, bool counts_sync, bool beats) noexcept {
+    FlawsTold flaws{node};
+    constexpr std::uint8_t written = flaw::type | flaw::access;
+    flaws.need(0x1017, written);
+    if (beats) flaws.need({0x1016, 1}, written);
+    if (counts_sync) flaws.need(0x1019, written);
+    for (const PdoRow& row : node.pdos)
+        for (const Address& at : row.objects) flaws.need(at, flaw::type | flaw::access | flaw::mapping);
+    for (const ParameterRow& row : node.parameters) flaws.need(row.at, written | flaw::limits);
+    for (const Object& object : node.dictionary.objects) {
+        if (object.at.index >= 0x1400 && object.at.index < 0x1C00) flaws.need(object.at, written);
+        if (object.is_parameter && !is_configured_by_rows(object.at.index) &&
+            std::ranges::find(node.parameters, object.at, &ParameterRow::at) == node.parameters.end())
+            flaws.need(object.at, written | flaw::value);
+    }
+    return flaws.told();
 }
 
 /// Checks an object in a PDO against the dictionary.
@@ -164,10 +241,6 @@ constexpr Sentence moment_fault(const NodeRow& node) noexcept {
                     mode->frame, "\", at other times; map both into one frame, or let both be synchronous()"};
 }
 
-constexpr bool is_configured_by_rows(std::uint16_t index) noexcept {
-    return (index >= 0x1000 && index <= 0x1019 && index != 0x1012) || (index >= 0x1400 && index < 0x1C00);
-}
-
 constexpr Sentence parameter_fault(const NodeRow& node, const ParameterRow& row) noexcept {
     const Object* const object = node.dictionary.find(row.at);
     const Sentence subject{who(node), ": write(", to_text(row.at), ", ", row.value, ")"};
@@ -236,6 +309,10 @@ constexpr Sentence network_fault(const can::SignalMap<F, S>& signals, const Netw
                         "; the standard allows 2 to 240"};
     for (std::size_t n = 0; n < N; ++n) {
         const NodeRow& node = map.nodes[n];
+        if (const Sentence fault =
+                flaw_fault(node, manager.sync_every != Duration{}, manager.beats != Duration{});
+            !fault.empty())
+            return fault;
         if (const Sentence fault = node_fault(manager, node); !fault.empty()) return fault;
         for (std::size_t other = 0; other < n; ++other)
             if (map.nodes[other].id == node.id || map.nodes[other].name == node.name)

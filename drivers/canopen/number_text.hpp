@@ -3,7 +3,7 @@
 
 #include "drivers/canopen/ini.hpp"
 #include "drivers/canopen/object_dictionary.hpp"
-#include "kernel/base/digits.hpp"
+#include "drivers/canopen/real_text.hpp"
 
 #include <bit>
 #include <optional>
@@ -40,46 +40,6 @@ constexpr std::optional<Whole> to_whole(std::string_view text) noexcept {
     return number;
 }
 
-/// Returns a real: up to 15 digits and a power of ten up to 22, so that the result is exactly rounded.
-constexpr std::optional<double> to_real(std::string_view text) noexcept {
-    bool negative = false;
-    if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
-        negative = text.front() == '-';
-        text.remove_prefix(1);
-    }
-    std::uint64_t digits = 0;
-    int power = 0;
-    bool any = false, dot = false;
-    while (!text.empty() && lower(text.front()) != 'e') {
-        const char c = text.front();
-        text.remove_prefix(1);
-        if (c == '.' && !dot) {
-            dot = true;
-            continue;
-        }
-        if (c < '0' || c > '9' || digits >= 100'000'000'000'000) return {};
-        digits = digits * 10 + static_cast<unsigned>(c - '0');
-        power -= dot ? 1 : 0;
-        any = true;
-    }
-    if (!any) return {};
-    if (!text.empty()) {
-        text.remove_prefix(1);
-        const bool down = text.starts_with('-');
-        if (down || text.starts_with('+')) text.remove_prefix(1);
-        if (text.empty()) return {};
-        int exponent = 0;
-        for (const char c : text) {
-            if (c < '0' || c > '9' || exponent > 99) return {};
-            exponent = exponent * 10 + (c - '0');
-        }
-        power += down ? -exponent : exponent;
-    }
-    if (power > 22 || power < -22) return {};
-    const double size = real_of(digits, power);
-    return negative ? -size : size;
-}
-
 enum class NumberFault : std::uint8_t { none, no_number, does_not_fit };
 struct NumberRead {
     Number number{};
@@ -107,21 +67,25 @@ constexpr NumberRead to_number(std::string_view text, DataType type) noexcept {
     const unsigned wide = bits_of(type);
     const bool bit_pattern = text.size() > 2 && text[0] == '0' && lower(text[1]) == 'x';
     if (is_real(type) && !bit_pattern) {
-        const auto real = to_real(text);
+        const bool is_long = type == DataType::real64;
+        const auto real = is_long ? to_real<double>(text) : to_real<float>(text);
         if (!real) return {{}, NumberFault::no_number};
-        number.bits = type == DataType::real64 ? std::bit_cast<std::uint64_t>(*real)
-                                               : std::bit_cast<std::uint32_t>(static_cast<float>(*real));
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        if (*real == infinity || *real == -infinity) return {{}, NumberFault::does_not_fit};
+        number.bits = is_long ? std::bit_cast<std::uint64_t>(*real)
+                              : std::bit_cast<std::uint32_t>(static_cast<float>(*real));
         return {number, NumberFault::none};
     }
     const auto whole = to_whole(text);
     if (!whole) return {{}, NumberFault::no_number};
     const std::uint64_t most = low_bits(~std::uint64_t{0}, wide);
     // A negative number of a signed type, or its bit pattern.
-    const bool fits = whole->negative                   ? is_signed(type) && whole->size <= (most >> 1) + 1
+    const bool negative = whole->negative && whole->size != 0;
+    const bool fits = negative                          ? is_signed(type) && whole->size <= (most >> 1) + 1
                       : is_signed(type) && !bit_pattern ? whole->size <= most >> 1
                                                         : whole->size <= most;
     if (!fits) return {{}, NumberFault::does_not_fit};
-    number.bits = low_bits(whole->negative ? ~whole->size + 1 : whole->size, wide);
+    number.bits = low_bits(negative ? ~whole->size + 1 : whole->size, wide);
     return {number, NumberFault::none};
 }
 

@@ -119,12 +119,49 @@ struct Number {
     }
 };
 
+/// The parts of an object's description that a fault in the file makes unknown. A row that needs one of them
+/// is refused.
+namespace flaw {
+inline constexpr std::uint8_t type = 1, access = 2, mapping = 4, value = 8, limits = 16;
+} // namespace flaw
+
+/// A fault in the file, as data; eds_notes.hpp says it.
+struct FileNote {
+    enum class Kind : std::uint8_t {
+        no_line,
+        entry_twice,
+        no_entry,
+        not_a_choice,
+        not_a_number,
+        does_not_fit,
+        bounds_nothing,
+        limits_contradict,
+        ambiguous_limit,
+        outside_of_limits,
+        object_twice,
+        no_section,
+        part_of_variable,
+        sub_number,
+        not_in_file,
+        no_such_element,
+        compact_pdo,
+    };
+    Kind kind = Kind::no_line;
+    std::uint8_t flaws = 0; ///< of the object; 0: no row needs what is wrong
+    Address at{};
+    std::uint32_t line = 0;
+    std::uint32_t other = 0; ///< another line, or a count
+    std::string_view key{};  ///< in the file
+    std::string_view text{}; ///< in the file
+};
+
 struct Object {
     Address at{};
     DataType type = DataType::unsigned32;
     Access access = Access::read_only;
     bool mappable = false;
     bool is_parameter = false; ///< the value comes from a DCF, instead of the device's default
+    std::uint8_t flaws = 0;    ///< see flaw
     Number value{}, low{}, high{};
     std::string_view name{};
     std::string_view text{}; ///< the value as the file writes it; strings are kept here
@@ -165,6 +202,7 @@ struct Dictionary {
     std::uint8_t node = 0; ///< the only node that a DCF is for; 0: any
     Identity identity{};
     std::span<const Object> objects{}; ///< in the order of their addresses
+    std::span<const FileNote> notes{}; ///< on the file's faults, as far as there is room
 
     /// Finds an object; null when the device has none there. Real-time: binary search.
     [[nodiscard]] constexpr const Object* find(Address at) const noexcept TAPPET_REALTIME {

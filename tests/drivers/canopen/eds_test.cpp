@@ -1,9 +1,15 @@
-// Object dictionaries from EDS and DCF texts: their contents, and each refusal.
+// Object dictionaries from EDS and DCF texts: their contents, and the refusals of files without a device.
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "drivers/canopen/eds.hpp"
+#include "kernel/base/random.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
 #include <string>
 
 namespace tappet::canopen {
@@ -80,104 +86,56 @@ TEST(Eds, reads_files_as_vendors_write_them) {
     EXPECT_EQ(bits_of(at(d, 0x2006).type), 0u);
 }
 
-TEST(Eds, reads_floats_as_the_compiler_does) {
-    EXPECT_EQ(to_real("0.1"), 0.1);
-    EXPECT_EQ(to_real("-123.456e-05"), -123.456e-5);
-    EXPECT_EQ(to_real("1e22"), 1e22);
-    for (const char* none : {"", ".", "1e", "1e+", "1e23", "0x", "1.2.3", "1234567890123456", "nan"})
-        EXPECT_FALSE(to_real(none)) << none;
+TEST(Eds, reads_reals_as_the_compiler_does) {
+    EXPECT_EQ(to_real<double>("0.1"), 0.1);
+    EXPECT_EQ(to_real<double>("-123.456e-05"), -123.456e-5);
+    EXPECT_EQ(to_real<double>("1e22"), 1e22);
+    EXPECT_EQ(to_real<double>("0.10000000000000001"), 0.10000000000000001);
+    EXPECT_EQ(to_real<double>("4.9406564584124654e-324"), 4.9406564584124654e-324);
+    EXPECT_EQ(to_real<double>("2.4703282292062327e-324"), 0.0) << "half of the least one";
+    EXPECT_EQ(to_real<double>("1.7976931348623157e+308"), std::numeric_limits<double>::max());
+    EXPECT_EQ(to_real<double>("1e309"), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(to_real<float>("3.4028235E+38"), std::numeric_limits<float>::max());
+    EXPECT_EQ(to_real<float>("-3.4028236E+38"), -std::numeric_limits<double>::infinity());
+    for (const char* none : {"", ".", "1e", "1e+", "0x", "1.2.3", "nan", "1,5", "--1"})
+        EXPECT_FALSE(to_real<double>(none)) << none;
+    EXPECT_FALSE(to_real<double>(std::string(41, '1')));
 }
 
-/// The sentence for a text that is read at run time.
-template <std::size_t room = 64> std::string fault_of(const std::string& text) {
-    return std::string{detail::EdsReader<room>{SourceText{"x.eds", text}}.fault.view()};
+TEST(Eds, reads_any_real_as_the_library_does) {
+    Random random{20261129};
+    for (int round = 0; round < 3'000; ++round) {
+        const auto real = std::bit_cast<double>(random.next());
+        const auto small = std::bit_cast<float>(static_cast<std::uint32_t>(random.next()));
+        if (!std::isfinite(real) || !std::isfinite(small)) continue;
+        std::array<char, 64> text{};
+        const int digits = static_cast<int>(random.below(25));
+        std::snprintf(text.data(), text.size(), "%.*e", digits, real);
+        ASSERT_EQ(to_real<double>(text.data()), std::strtod(text.data(), nullptr)) << text.data();
+        std::snprintf(text.data(), text.size(), "%.*e", digits, static_cast<double>(small));
+        ASSERT_EQ(to_real<float>(text.data()), std::strtof(text.data(), nullptr)) << text.data();
+        // Halfway between two neighbours.
+        const double next = std::nextafter(small, std::numeric_limits<float>::max());
+        std::snprintf(text.data(), text.size(), "%.39e", (static_cast<double>(small) + next) / 2);
+        ASSERT_EQ(to_real<float>(text.data()), std::strtof(text.data(), nullptr)) << text.data();
+    }
 }
-std::string with(const std::string& more) { return fault_of(DEVICE_TYPE IDENTITY + more); }
-std::string variable(const std::string& entries) { return with("[2000]\n" + entries + "\n"); }
+
+std::string refusal(const std::string& text) {
+    return std::string{detail::EdsReader<64>{SourceText{"x.eds", text}}.fault.view()};
+}
 
 TEST(Eds, refuses_files_that_describe_no_device) {
-    EXPECT_EQ(fault_of(""), "x.eds:1: it has no object; is it an EDS or DCF file of CiA 306?");
-    EXPECT_EQ(fault_of("<xml>"),
-              "x.eds:1: \"<xml>\" is neither a [section] nor an entry Key=Value; begin a comment with ;");
-    EXPECT_EQ(fault_of("[1000\n"),
-              "x.eds:1: \"[1000\" is neither a [section] nor an entry Key=Value; begin a comment with ;");
-    EXPECT_EQ(fault_of("[2000]\nDataType=5\nAccessType=ro\n"),
+    EXPECT_EQ(refusal(""), "x.eds:1: it has no object; is it an EDS or DCF file of CiA 306?");
+    EXPECT_EQ(refusal("<xml>"), "x.eds:1: it has no object; is it an EDS or DCF file of CiA 306?");
+    EXPECT_EQ(refusal("[2000]\nDataType=5\nAccessType=ro\n"),
               "x.eds:1: object 1000h (device type) is missing, which each device has; write it");
     EXPECT_EQ(
-        fault_of("[DeviceInfo]\nCompactPDO=0x1\n"),
-        "x.eds:2: CompactPDO stands for PDO objects that are not written; let its editor write them and "
-        "set it to 0");
-}
-
-TEST(Eds, refuses_incomplete_objects) {
-    EXPECT_EQ(variable("AccessType=ro"), "x.eds:25: [2000] has no DataType; write it");
-    EXPECT_EQ(variable("DataType=5"), "x.eds:25: [2000] has no AccessType; write it");
-    EXPECT_EQ(variable("DataType=0x1C\nAccessType=ro"),
-              "x.eds:26: DataType 0x1C is not one of CiA 301; write the number of a basic type");
-    EXPECT_EQ(variable("DataType=0x17\nAccessType=ro"),
-              "x.eds:26: DataType 0x17 is not one of CiA 301; write the number of a basic type");
-    EXPECT_EQ(variable("DataType=byte\nAccessType=ro"),
-              "x.eds:26: DataType is \"byte\"; write a number up to 4294967295");
-    EXPECT_EQ(variable("DataType=5\nAccessType=r"),
-              "x.eds:27: AccessType is \"r\"; write ro, wo, rw, rwr, rww or const");
-    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nPDOMapping=2"),
-              "x.eds:28: PDOMapping is \"2\"; write a number up to 1");
-    EXPECT_EQ(variable("DataType=5\nDataType=6"),
-              "x.eds:27: DataType is there twice in [2000], first in line 26; keep one of them");
-    EXPECT_EQ(
-        variable("ObjectType=0x5\nDataType=5\nAccessType=ro"),
-        "x.eds:26: ObjectType is 0x5, which is not an object type of a device; write 0x2, 0x7, 0x8 or 0x9");
-}
-
-TEST(Eds, refuses_values_that_do_not_fit) {
-    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nDefaultValue=256"),
-              "x.eds:28: DefaultValue 256 does not fit the 8 bits of 2000h:0; correct it or its DataType");
-    EXPECT_EQ(
-        variable("DataType=2\nAccessType=ro\nDefaultValue=200"),
-        "x.eds:28: DefaultValue 200 does not fit the 8 bits of 2000h:0, which has a sign; correct it or "
-        "its DataType");
-    EXPECT_EQ(
-        variable("DataType=2\nAccessType=ro\nDefaultValue=-129"),
-        "x.eds:28: DefaultValue -129 does not fit the 8 bits of 2000h:0, which has a sign; correct it or "
-        "its DataType");
-    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nDefaultValue=0xC8"), "") << "a bit pattern";
-    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nParameterValue=08"),
-              "x.eds:28: ParameterValue \"08\" is not a number; write 0x1F, 31 or $NODEID+0x1F");
-    EXPECT_EQ(variable("DataType=7\nAccessType=ro\nDefaultValue=$NODEID-1"),
-              "x.eds:28: DefaultValue \"$NODEID-1\" is not a number; write 0x1F, 31 or $NODEID+0x1F");
-    EXPECT_EQ(variable("DataType=8\nAccessType=ro\nDefaultValue=1,5"),
-              "x.eds:28: DefaultValue \"1,5\" is not a number of up to 15 digits; write one");
-    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nLowLimit=9\nHighLimit=3"),
-              "x.eds:25: LowLimit of 2000h:0 is above its HighLimit; exchange them");
-    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=-3\nHighLimit=3\nDefaultValue=-4"),
-              "x.eds:25: the value -4 of 2000h:0 is outside of its own limits; correct it, LowLimit or "
-              "HighLimit");
-}
-
-TEST(Eds, refuses_contradictory_sections) {
-    EXPECT_EQ(with("[1000]\nDataType=7\nAccessType=ro\n"),
-              "x.eds:25: object 1000h:0 is there twice, first in line 4; keep one of them");
-    EXPECT_EQ(with("[1A00sub1]\nDataType=7\nAccessType=ro\n"),
-              "x.eds:25: object 1A00h:1 is a part of 1A00h, which has no section; write it");
-    EXPECT_EQ(
-        with("[1000sub1]\nDataType=7\nAccessType=ro\n"),
-        "x.eds:25: object 1000h:1 is a part of 1000h, which is a variable; make it ObjectType 0x8 or 0x9");
-    EXPECT_EQ(with("[1016]\nObjectType=8\nSubNumber=3\n[1016sub0]\nDataType=5\nAccessType=ro\n"),
-              "x.eds:27: SubNumber of 1016h is 3 and 1 sub-index is there; correct it, or what is missing");
-    EXPECT_EQ(
-        with("[1016]\nObjectType=8\n"),
-        "x.eds:25: SubNumber of 1016h is not written and 0 sub-indices are there; correct it, or what is "
-        "missing");
-    EXPECT_EQ(
-        with("[OptionalObjects]\nSupportedObjects=1\n1=0x1017\n"),
-        "x.eds:27: the list names object 0x1017, which has no section; write it or take it off the list");
-    EXPECT_EQ(with("[2001]\nObjectType=8\nDataType=5\nAccessType=rw\nCompactSubObj=2\n[2001Value]\n3=1\n"),
-              "x.eds:31: it is a value of 2001h:3, which is not there; correct CompactSubObj");
-    EXPECT_EQ(
-        fault_of(DEVICE_TYPE "[1018sub0]\nDataType=5\nAccessType=const\nDefaultValue=1\n"
-                             "[1018sub1]\nDataType=7\nAccessType=ro\nDefaultValue=17\n"),
+        refusal(DEVICE_TYPE "[1018sub0]\nDataType=5\nAccessType=const\nDefaultValue=1\n"
+                            "[1018sub1]\nDataType=7\nAccessType=ro\nDefaultValue=17\n"),
         "x.eds:21: 1018h:1 is 00000011h, but VendorNumber in line 1 and below is 00000010h; correct one of "
         "them");
+    EXPECT_EQ(refusal("\xEF\xBB\xBF[1000]\nDataType=7\nAccessType=ro\n"), "") << "a byte-order mark";
 }
 
 } // namespace

@@ -1,0 +1,266 @@
+// Faults of EDS and DCF files as makers write them: each is a note, and is refused only in a row that needs
+// what is wrong, with a cure in that row.
+#include "drivers/canopen/eds.hpp"
+#include "drivers/canopen/eds_faults.hpp"
+#include "drivers/canopen/network.hpp"
+#include "drivers/canopen/simulated_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace tappet::canopen {
+namespace {
+
+std::string faults_of(const std::string& text) {
+    std::string all;
+    for (const EdsFault& each : eds_faults({"x.eds", text}))
+        all += std::to_string(each.line) + ": " + each.meaning + " -> " + each.affects + "\n";
+    return all;
+}
+const std::string device = "[1000]\nDataType=7\nAccessType=ro\n";
+std::string with(const std::string& more) { return faults_of(device + more); }
+/// Of object 2000h, whose section is line 4.
+std::string variable(const std::string& entries) { return with("[2000]\n" + entries + "\n"); }
+
+TEST(EdsFaults, files_without_faults_have_no_notes) {
+    EXPECT_EQ(with(""), "");
+    EXPECT_EQ(variable("DataType=6\nAccessType=rw\nLowLimit=-0"), "");
+    EXPECT_EQ(variable("DataType=6\nAccessType=rw\nLowLimit=-0x0"), "");
+    EXPECT_EQ(variable("DataType=8\nAccessType=rw\nLowLimit=-3.4028235E+38\nHighLimit=3.4028235E+38\n"
+                       "DefaultValue=0.1"),
+              "");
+    EXPECT_EQ(variable("DataType=0x11\nAccessType=rw\nDefaultValue=0.10000000000000001"), "");
+    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nDefaultValue=0xC8"), "") << "a bit pattern";
+    EXPECT_EQ(variable("DataType=2\nAccessType=rw\nLowLimit=0x80\nHighLimit=0xFF"), "") << "-128 to -1";
+    EXPECT_EQ(
+        with("[0040]\nParameterName=Record\nObjectType=6\nSubNumber=1\n"
+             "[2000]\nObjectType=9\nDataType=0x40\nSubNumber=1\n[2000sub0]\nDataType=5\nAccessType=ro\n"),
+        "")
+        << "a record of a type of the file";
+}
+
+TEST(EdsFaults, that_nobody_needs_are_notes) {
+    EXPECT_EQ(with("<xml>\n"),
+              "4: \"<xml>\" is neither a [section] nor an entry Key=Value; it is skipped -> nobody\n");
+    EXPECT_EQ(variable("DataType=6\nAccessType=rw\nHighLimit=65536"),
+              "7: HighLimit 65536 of 2000h:0 lies beyond its DataType and bounds nothing -> nobody\n");
+    EXPECT_EQ(variable("DataType=6\nAccessType=rw\nLowLimit=-1"),
+              "7: LowLimit -1 of 2000h:0 lies beyond its DataType and bounds nothing -> nobody\n");
+    EXPECT_EQ(variable("DataType=8\nAccessType=rw\nHighLimit=1e39"),
+              "7: HighLimit 1e39 of 2000h:0 lies beyond its DataType and bounds nothing -> nobody\n");
+    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nDefaultValue=256"),
+              "7: DefaultValue 256 of 2000h:0 does not fit its DataType -> nobody\n");
+    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=-3\nHighLimit=3\nDefaultValue=-4"),
+              "4: the value -4 of 2000h:0 is outside of its own limits -> nobody\n");
+    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nAccessType=ro"),
+              "7: AccessType is there twice in [2000], first in line 6, which counts -> nobody\n")
+        << "they say the same";
+    EXPECT_EQ(with("[1A00sub1]\nDataType=7\nAccessType=ro\n"),
+              "4: 1A00h:1 is a part of 1A00h, which has no section -> nobody\n");
+    EXPECT_EQ(with("[1000sub1]\nDataType=7\nAccessType=ro\n"),
+              "4: 1000h:1 is a part of 1000h, which is a variable -> nobody\n");
+    EXPECT_EQ(with("[1016]\nObjectType=8\nSubNumber=3\n[1016sub0]\nDataType=5\nAccessType=ro\n"),
+              "6: SubNumber of 1016h is 3, and 1 sub-index is there -> nobody\n");
+    EXPECT_EQ(with("[1016]\nObjectType=8\n"),
+              "4: SubNumber of 1016h is not written, and 0 sub-indices are there -> nobody\n");
+    EXPECT_EQ(with("[OptionalObjects]\nSupportedObjects=1\n1=0x1017\n2=0x21000\n"),
+              "6: a list names object 0x1017, which has no section -> nobody\n"
+              "7: a list names object 0x21000, which has no section -> nobody\n");
+    EXPECT_EQ(with("[2001]\nObjectType=8\nDataType=5\nAccessType=rw\nCompactSubObj=2\n[2001Value]\n3=1\n"),
+              "10: it is a value of 2001h:3, which CompactSubObj does not make -> nobody\n");
+    EXPECT_EQ(
+        variable("ObjectType=0x6\nDataType=5\nAccessType=ro"),
+        "5: ObjectType \"0x6\" has no meaning there (CiA 301, CiA 306) -> rows that map or write 2000h:0\n");
+    EXPECT_EQ(
+        with("[DeviceInfo]\nCompactPDO=23\n"),
+        "5: CompactPDO 23 stands for PDO objects without sections; only those with sections are read -> "
+        "rows that map one of those PDOs\n");
+}
+
+TEST(EdsFaults, name_the_rows_that_they_affect) {
+    const std::string maps = " -> rows that map or write 2000h:0\n", writes = " -> rows that write 2000h:0\n";
+    const std::string no_meaning = "\" has no meaning there (CiA 301, CiA 306)" + maps;
+    EXPECT_EQ(variable("AccessType=ro"), "4: [2000] has no DataType" + maps);
+    EXPECT_EQ(variable("DataType=5"), "4: [2000] has no AccessType" + maps);
+    EXPECT_EQ(variable("DataType=0x40\nAccessType=ro"), "5: DataType \"0x40" + no_meaning);
+    EXPECT_EQ(variable("DataType=0x17\nAccessType=ro"), "5: DataType \"0x17" + no_meaning);
+    EXPECT_EQ(variable("DataType=byte\nAccessType=ro"), "5: DataType \"byte" + no_meaning);
+    EXPECT_EQ(variable("DataType=5\nAccessType=r"), "6: AccessType \"r" + no_meaning);
+    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nPDOMapping=2"), "7: PDOMapping \"2" + no_meaning);
+    EXPECT_EQ(variable("DataType=5\nDataType=6\nAccessType=ro"),
+              "6: DataType is there twice in [2000], first in line 5, which counts" + maps);
+    EXPECT_EQ(with(device),
+              "4: 1000h:0 is there twice, first in line 1, which counts -> rows that map or write "
+              "1000h:0\n");
+    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=0x00\nHighLimit=0xFF"),
+              "8: HighLimit 0xFF of 2000h:0 is under its LowLimit" + writes);
+    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=-5\nHighLimit=0xFF"),
+              "8: HighLimit 0xFF of 2000h:0 is a negative number for its DataType, or one beyond it" +
+                  writes);
+    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nHighLimit=0xFF"),
+              "7: HighLimit 0xFF of 2000h:0 is a negative number for its DataType, or one beyond it" +
+                  writes);
+    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nLowLimit=9\nHighLimit=3"),
+              "8: HighLimit 3 of 2000h:0 is under its LowLimit" + writes);
+    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nLowLimit=256"),
+              "7: LowLimit 256 of 2000h:0 does not fit its DataType" + writes);
+    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nHighLimit=many"),
+              "7: HighLimit \"many\" of 2000h:0 is not a number" + writes);
+    EXPECT_EQ(
+        variable("DataType=5\nAccessType=rw\nParameterValue=08"),
+        "7: ParameterValue \"08\" of 2000h:0 is not a number -> nodes of this file without .write(2000h:0, "
+        "..)\n");
+}
+
+TEST(EdsFaults, are_listed_all_at_once_in_order) {
+    EXPECT_EQ(
+        faults_of("[2000]\nDataType=5\nAccessType=r\nDefaultValue=x\n[2001]\nAccessType=ro\n"),
+        "1: object 1000h (device type) is missing, which each device has; write it -> every node of this "
+        "file\n"
+        "3: AccessType \"r\" has no meaning there (CiA 301, CiA 306) -> rows that map or write 2000h:0\n"
+        "4: DefaultValue \"x\" of 2000h:0 is not a number -> nobody\n"
+        "5: [2001] has no DataType -> rows that map or write 2001h:0\n");
+    std::string many = device;
+    for (int i = 0x2000; i < 0x2100; ++i)
+        many += "[" + std::string{hex(static_cast<unsigned>(i), 4).view().substr(0, 4)} + "]\n";
+    EXPECT_EQ(eds_faults({"x.eds", many}).size(), 2u * 256);
+}
+
+/// A device with its faults, as a network's rows see it.
+constexpr SourceText flawed{"flawed.eds", R"([DeviceInfo]
+CompactPDO=23
+[1000]
+DataType=7
+AccessType=ro
+[1017]
+DataType=6
+AccessType=rw
+[1400]
+ObjectType=9
+SubNumber=3
+[1400sub1]
+DataType=7
+AccessType=rw
+[1400sub2]
+DataType=5
+AccessType=rw
+[1600]
+ObjectType=9
+SubNumber=9
+[1600sub0]
+DataType=5
+AccessType=rw
+[1600sub1]
+DataType=7
+AccessType=rw
+[2000]
+DataType=2
+AccessType=rw
+LowLimit=0x00
+HighLimit=0xFF
+[2001]
+DataType=6
+AccessType=rw
+HighLimit=65536
+[2002]
+DataType=0x40
+AccessType=rw
+PDOMapping=1
+[2003]
+ObjectType=8
+SubNumber=4
+[2003sub1]
+DataType=6
+AccessType=rw
+PDOMapping=7
+)"};
+constexpr SourceText configured{"own.dcf", R"([1000]
+DataType=7
+AccessType=ro
+[1017]
+DataType=6
+AccessType=rw
+[2000]
+DataType=6
+AccessType=rw
+HighLimit=10
+ParameterValue=11
+)"};
+
+constexpr auto map = can::signal_map(can::transmit(can::standard(0x205), "out", can::bytes(2),
+                                                   can::every(5ms), can::signal("value", 0, 16).safe(0)));
+constexpr auto none = can::signal_map(
+    can::receive(can::extended(0x1234), "other", can::bytes(1), can::every(5ms), can::signal("value", 0, 8)));
+constexpr NodeRow node_of_flawed = node(5, "own", dictionary<flawed>).heartbeat(100ms);
+
+template <class Map> std::string fault_of(const Map& frames, const NodeRow& row) {
+    return std::string{network(frames, manager(127), row).fault.view()};
+}
+
+TEST(EdsFaults, in_objects_without_rows_are_no_fault_of_the_network) {
+    EXPECT_EQ(fault_of(none, node_of_flawed), "");
+    EXPECT_EQ(fault_of(none, node_of_flawed.write(0x2001, 65535)), "") << "a limit beyond the type";
+}
+
+TEST(EdsFaults, in_a_written_object_are_refused_with_a_cure_in_its_row) {
+    EXPECT_EQ(fault_of(none, node_of_flawed.write(0x2000, 5)),
+              "node 5 \"own\": flawed.eds:31: HighLimit 0xFF of 2000h:0 is under its LowLimit; believe the "
+              "device: canopen::dictionary<.., canopen::despite(0x2000, canopen::DataType::integer8)>");
+    constexpr NodeRow believed =
+        node(5, "own", dictionary<flawed, despite(0x2000, DataType::integer8)>).heartbeat(100ms);
+    EXPECT_EQ(fault_of(none, believed.write(0x2000, 5)), "");
+    EXPECT_EQ(fault_of(none, believed.write(0x2000, 128)), "") << "a bit pattern, as elsewhere";
+    EXPECT_NE(fault_of(none, believed.write(0x2000, 256)), "");
+    EXPECT_NE(fault_of(none, believed.write(0x2002, 1)), "") << "another object";
+}
+
+TEST(EdsFaults, in_mapped_objects_are_told_together) {
+    EXPECT_EQ(fault_of(map, node_of_flawed.pdo("out", {{0x2003, 1}}).write(0x2000, 5).write(0x2002, 1)),
+              "node 5 \"own\": flawed.eds:46: PDOMapping \"7\" has no meaning there (CiA 301, CiA 306); "
+              "believe the device: canopen::dictionary<.., canopen::despite({0x2003, 1}, "
+              "canopen::DataType::unsigned16)>; flawed.eds:31: HighLimit 0xFF of 2000h:0 is under its "
+              "LowLimit; believe the device: canopen::dictionary<.., canopen::despite(0x2000, "
+              "canopen::DataType::integer8)>; and 1 more of its objects");
+    EXPECT_EQ(fault_of(map, node_of_flawed.pdo("out", {0x2002})),
+              "node 5 \"own\": flawed.eds:37: DataType \"0x40\" has no meaning there (CiA 301, CiA 306); "
+              "believe the device: canopen::dictionary<.., canopen::despite(0x2002, canopen::DataType::..)>");
+    constexpr auto& believed = dictionary<flawed, despite(0x2002, DataType::unsigned16),
+                                          despite({0x1A00, 1}, DataType::unsigned32, Access::read_only)>;
+    static_assert(std::ranges::is_sorted(believed.objects, {}, &Object::at));
+    EXPECT_EQ(believed.objects.size(), dictionary<flawed>.objects.size() + 1);
+    ASSERT_NE(believed.find({0x1A00, 1}), nullptr) << "an object that the file lacks";
+    EXPECT_EQ(believed.find({0x1A00, 1})->access, Access::read_only);
+    constexpr auto net =
+        network(map, manager(127), node(5, "own", believed).heartbeat(100ms).pdo("out", {0x2002}));
+    ASSERT_EQ(net.fault.view(), "");
+    bool mapped = false;
+    for (const ConfigurationStep& step : net.steps)
+        mapped |= step.at == Address{0x1600, 1} && step.value == 0x2002'0010 && step.bytes == 4;
+    EXPECT_TRUE(mapped) << "with the bits of the believed type";
+}
+
+template <const Dictionary& of> SdoAbort maps_2002() {
+    SimulatedDevice<of> twin{5};
+    twin.set({0x1400, 1}, pdo_invalid);
+    std::array<std::uint8_t, 4> entry{};
+    to_bytes(0x2002'0010, entry);
+    return twin.write_object({0x1600, 1}, entry);
+}
+
+TEST(EdsFaults, are_cured_for_the_simulated_device_too) {
+    EXPECT_EQ(maps_2002<dictionary<flawed>>(), SdoAbort::not_mappable);
+    constexpr auto& believed = dictionary<flawed, despite(0x2002, DataType::unsigned16)>;
+    EXPECT_EQ(maps_2002<believed>(), SdoAbort::none);
+}
+
+TEST(EdsFaults, in_the_values_of_a_dcf_are_refused_unless_a_row_writes_them) {
+    constexpr NodeRow row = node(5, "own", dictionary<configured>).heartbeat(100ms);
+    EXPECT_EQ(fault_of(none, row), "node 5 \"own\": own.dcf:7: the value 11 of 2000h:0 is outside of its own "
+                                   "limits; write the value meant: "
+                                   ".write(0x2000, ..)");
+    EXPECT_EQ(fault_of(none, row.write(0x2000, 10)), "");
+}
+
+} // namespace
+} // namespace tappet::canopen
