@@ -112,7 +112,7 @@ private:
         "ParameterName", "ObjectType",     "DataType",    "AccessType", "DefaultValue",  "ParameterValue",
         "LowLimit",      "HighLimit",      "PDOMapping",  "SubNumber",  "CompactSubObj", "VendorNumber",
         "ProductNumber", "RevisionNumber", "ProductName", "CompactPDO", "NodeID"};
-    /// What is unknown of an object when an entry of it is wrong.
+    /// The flaws of an object by its wrong entry.
     static constexpr std::array<std::uint8_t, key_count> flaws_of{
         0, flaw::type, flaw::type, flaw::access, 0, flaw::value, flaw::limits, flaw::limits, flaw::mapping};
     struct Entry {

@@ -21,7 +21,7 @@ std::size_t write(every::Arm& arm, std::span<char> into) {
     all.change_all();
     all.capture();
     Sentence fault;
-    const std::size_t length = write_cpf(all, into, fault, forms);
+    const std::size_t length = write_cpf(all, into, fault, {forms.begin(), forms.size()});
     demand(length != 0 && fault.empty());
     return length;
 }

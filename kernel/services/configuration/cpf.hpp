@@ -25,13 +25,13 @@
 // of enumerations. Unknown names, which Orocos ignores, are errors here.
 #pragma once
 
+#include "kernel/base/bounded.hpp"
 #include "kernel/base/bounded_text.hpp"
 #include "kernel/component/property_transaction.hpp"
 
 #include <cstddef>
 #include <span>
 #include <string_view>
-#include <vector>
 
 namespace tappet {
 
@@ -39,7 +39,7 @@ inline constexpr std::size_t max_cpf_bytes = 64 * 1024;
 
 /// The form in which a file writes a list.
 struct CpfListForm {
-    /// Of the list, or of a matrix' rows.
+    /// The form of the list itself, or of each row of a matrix.
     struct Layer {
         bool is_struct = false; ///< otherwise a sequence
         bool has_size = false;
@@ -47,13 +47,15 @@ struct CpfListForm {
         std::size_t first = 0; ///< number of the first element's name
         Text<31> stem{};       ///< the names before their numbers
         Text<95> type{};       ///< of the struct or sequence; empty: that of its elements
+        bool operator==(const Layer&) const = default;
     };
     std::string_view component{}; ///< its row's name
     std::size_t facet = 0;        ///< the property, in the component's interface
     bool in_rows = false;
     Layer list{}, row{};
 };
-using CpfListForms = std::vector<CpfListForm>;
+/// Lists in another form than Tappet's own, of one machine.
+using CpfListForms = Bounded<CpfListForm, 128>;
 
 /// Receives the fault of a property that does not fit.
 using LeftOut = void (*)(const Sentence& fault);
@@ -62,7 +64,7 @@ using LeftOut = void (*)(const Sentence& fault);
 /// holds. Returns an empty sentence, or the first fault, with `file`, line, component and cure; the
 /// transaction is then useless. With `left_out`, for a file from another version of the machine: a property
 /// that this version does not know, or not with this type or value, is reported there and keeps its value;
-/// only a file that is no properties file is a fault. With `forms`, replaces there the form of each list that
+/// only a file that is no properties file is a fault. With `forms`, keeps there the form of each list that
 /// it reads. Allocates from the heap: only before arming.
 [[nodiscard]] Sentence read_cpf(std::string_view text, std::string_view file, PropertyTransaction& into,
                                 LeftOut left_out = nullptr, CpfListForms* forms = nullptr) noexcept;

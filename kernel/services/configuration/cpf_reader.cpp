@@ -169,10 +169,13 @@ private:
         if (fault.empty())
             if (const Sentence range = check_range(facet, place); !range.empty())
                 fault = at(node, Sentence{"gives ", range}.view());
-        if (fault.empty()) {
-            if (is_list) keep(form);
-            return {};
-        }
+        if (fault.empty() && is_list && !keep(form))
+            fault = at(node, Sentence{"gives \"", facet.name, "\" in a form of its own, as ",
+                                      CpfListForms::capacity(),
+                                      " other lists of the machine are; write a <sequence> of the type ",
+                                      cpf::type_name(*facet.property->element), " without Size and names"}
+                                 .view());
+        if (fault.empty()) return {};
         if (was_changed)
             std::copy_n(before_.begin(), bytes, place);
         else
@@ -180,15 +183,17 @@ private:
         return fault;
     }
 
-    void keep(const CpfListForm& form) noexcept {
-        if (forms_ == nullptr) return;
-        const auto same = [&](const CpfListForm& each) {
-            return each.component == form.component && each.facet == form.facet;
-        };
-        if (const auto found = std::ranges::find_if(*forms_, same); found != forms_->end())
-            *found = form;
-        else
-            forms_->push_back(form);
+    /// Keeps the form of a list for the next saving. False: there is no room.
+    bool keep(const CpfListForm& form) noexcept {
+        if (forms_ == nullptr) return true;
+        for (CpfListForm& each : *forms_)
+            if (each.component == form.component && each.facet == form.facet) {
+                each = form;
+                return true;
+            }
+        CpfListForm::Layer plain;
+        static_cast<void>(plain.type.assign(cpf::type_name(*facets_[form.facet].property->element)));
+        return (form.list == plain && !form.in_rows) || forms_->push(form);
     }
 
     Sentence read_list(const pugi::xml_node& node, const Facet& facet, std::byte* place,

@@ -144,7 +144,7 @@ Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction&
                         refused,
                         "; its properties are not saved and the old file remains"};
     Sentence fault;
-    const std::size_t length = write_cpf(from, text_, fault, forms_);
+    const std::size_t length = write_cpf(from, text_, fault, {forms_.begin(), forms_.size()});
     if (!fault.empty()) return fault;
     if (os::replace_file(path_.data(), {text_.data(), length})) return {};
     return Sentence{

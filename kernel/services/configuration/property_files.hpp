@@ -47,7 +47,7 @@ private:
     std::string_view directory_;
     std::string_view older_{};
     LeftOut left_out_ = nullptr;
-    CpfListForms forms_{}; ///< of the lists that were read: they are saved like that
+    CpfListForms forms_{}; ///< of the lists that were read
     std::array<char, longest_path + 1> path_{};
     std::array<char, max_cpf_bytes> text_{};
 };

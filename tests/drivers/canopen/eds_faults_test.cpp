@@ -20,7 +20,7 @@ std::string faults_of(const std::string& text) {
 }
 const std::string device = "[1000]\nDataType=7\nAccessType=ro\n";
 std::string with(const std::string& more) { return faults_of(device + more); }
-/// Of object 2000h, whose section is line 4.
+/// The faults of object 2000h, whose section is line 4.
 std::string variable(const std::string& entries) { return with("[2000]\n" + entries + "\n"); }
 
 TEST(EdsFaults, files_without_faults_have_no_notes) {

@@ -33,7 +33,7 @@ struct CpfLists : testing::Test {
         transaction.capture();
         std::array<char, max_cpf_bytes> text{};
         Sentence fault;
-        const std::size_t length = write_cpf(transaction, text, fault, forms);
+        const std::size_t length = write_cpf(transaction, text, fault, {forms.begin(), forms.size()});
         EXPECT_TRUE(fault.empty()) << fault.view();
         return {text.data(), length};
     }
@@ -152,6 +152,21 @@ TEST_F(CpfLists, that_are_refused_keep_value_and_form) {
     ASSERT_NE(read("<sequence name=\"axis\" type=\"x\">" + value("", "1") + "</sequence>"), "");
     EXPECT_THAT(write(), HasSubstr("<struct name=\"axis\" type=\"array\">"));
     EXPECT_EQ(arm.axis.get(), (Eigen::Vector3d{1, 0, 0}));
+}
+
+TEST_F(CpfLists, are_refused_when_their_form_cannot_be_kept) {
+    while (!forms.full()) ASSERT_TRUE(forms.push({.component = "other", .facet = forms.size()}));
+    const std::string three = value("", "1") + value("", "0") + value("", "0");
+    EXPECT_THAT(
+        read("<struct name=\"axis\" type=\"array\">" + three + "</struct>"),
+        HasSubstr("gives \"axis\" in a form of its own, as 128 other lists of the machine are; write a "
+                  "<sequence> of the type double without Size and names"));
+    EXPECT_EQ(arm.axis.get(), (Eigen::Vector3d{0, 0, 1}));
+    EXPECT_EQ(read("<sequence name=\"axis\" type=\"double\">" + three + "</sequence>"), "");
+    forms.used = 0;
+    ASSERT_EQ(read("<struct name=\"axis\" type=\"array\">" + three + "</struct>"), "");
+    ASSERT_EQ(read("<sequence name=\"axis\" type=\"double\">" + three + "</sequence>"), "");
+    EXPECT_THAT(write(), HasSubstr("<sequence name=\"axis\" type=\"double\">")) << "the last form";
 }
 
 struct WrongList {
