@@ -1,8 +1,8 @@
 // Reads an EDS or DCF file at run time, with room for all its faults.
 #include "drivers/canopen/eds_faults.hpp"
 
-#include "drivers/canopen/eds.hpp"
 #include "drivers/canopen/eds_notes.hpp"
+#include "drivers/canopen/eds_reader.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -81,6 +81,10 @@ constexpr Sentence meaning(const FileNote& note) noexcept {
     case Kind::compact_pdo:
         return Sentence{note.key, " ", text,
                         " stands for PDO objects without sections; only those with sections are read"};
+    case Kind::identity_twice:
+        return Sentence(at, " is ", text, ", but [DeviceInfo] (line ", note.other, ") says ", note.key);
+    case Kind::no_device_type:
+        return Sentence{"object 1000h (device type), which each device has, is missing"};
     }
     return {};
 }
@@ -88,6 +92,10 @@ constexpr Sentence meaning(const FileNote& note) noexcept {
 /// Says who is affected.
 constexpr Sentence effect(const FileNote& note) noexcept {
     if (note.kind == FileNote::Kind::compact_pdo) return Sentence{"rows that map one of those PDOs"};
+    if (note.kind == FileNote::Kind::identity_twice)
+        return Sentence{"nodes of this file without .identity(..)"};
+    if (note.kind == FileNote::Kind::no_device_type)
+        return Sentence{"nodes of this file: their device type is not compared"};
     if (note.flaws == 0) return Sentence{"nobody"};
     if (note.flaws == flaw::value)
         return Sentence{"nodes of this file without .write(", to_text(note.at), ", ..)"};

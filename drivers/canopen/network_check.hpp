@@ -42,26 +42,43 @@ class FlawsTold {
 public:
     constexpr explicit FlawsTold(const NodeRow& node) noexcept : node_{node} {}
 
+    constexpr void need_identity() noexcept {
+        for (const FileNote& each : node_.dictionary.notes) {
+            if (each.kind != FileNote::Kind::identity_twice || (node_.any_revision && each.at.sub == 3))
+                continue;
+            if ((node_.dictionary.doubted >> each.at.sub & 1) == 0 || !begin()) continue;
+            tell(each.line, meaning(each));
+            told_.add("; state the device's: .identity(vendor, product, revision)");
+        }
+    }
     constexpr void need(Address at, std::uint8_t parts) noexcept {
         const Object* const object = node_.dictionary.find(at);
         if (object == nullptr || (object->flaws & parts) == 0) return;
-        if (told_.size() > 210) { // room for one of the longest
-            ++more_;
-            return;
-        }
-        told_.add(told_.empty() ? who(node_).add(": ") : Sentence{"; "});
+        if (!begin()) return;
         const FileNote* const note = note_of(*object, static_cast<std::uint8_t>(object->flaws & parts));
-        told_.add(node_.dictionary.file).add(":").add(note != nullptr ? note->line : object->line).add(": ");
-        told_.add(note != nullptr ? meaning(*note) : Sentence{to_text(at), " has a fault"});
+        tell(note != nullptr ? note->line : object->line,
+             note != nullptr ? meaning(*note) : Sentence{to_text(at), " has a fault"});
         add_cure(*object, parts);
     }
     [[nodiscard]] constexpr Sentence told() const noexcept {
         Sentence all = told_;
-        if (more_ != 0) all.add("; and ").add(more_).add(" more of its objects");
+        if (more_ != 0) all.add("; and ").add(more_).add(" more of its faults");
         return all;
     }
 
 private:
+    /// False: there is no room for another fault.
+    constexpr bool begin() noexcept {
+        const bool has_room = told_.size() <= 210; // for one of the longest
+        if (has_room)
+            told_.add(told_.empty() ? who(node_).add(": ") : Sentence{"; "});
+        else
+            ++more_;
+        return has_room;
+    }
+    constexpr void tell(std::uint32_t line, const Sentence& fault) noexcept {
+        told_.add(node_.dictionary.file).add(":").add(line).add(": ").add(fault);
+    }
     constexpr const FileNote* note_of(const Object& object, std::uint8_t flaws) const noexcept {
         for (const bool exactly : {true, false}) // a compact array has one note for all
             for (const FileNote& each : node_.dictionary.notes)
@@ -93,6 +110,7 @@ private:
 /// Checks that the file has no fault in what the node's rows and its start-up need.
 constexpr Sentence flaw_fault(const NodeRow& node, bool counts_sync, bool beats) noexcept {
     FlawsTold flaws{node};
+    flaws.need_identity();
     constexpr std::uint8_t written = flaw::type | flaw::access;
     flaws.need(0x1017, written);
     if (beats) flaws.need({0x1016, 1}, written);

@@ -72,6 +72,14 @@ struct NodeRow {
         copy.too_many |= !copy.parameters.push({at, value});
         return copy;
     }
+    /// States the numbers of object 1018h, in place of the file's; 0: any.
+    constexpr NodeRow identity(std::uint32_t vendor, std::uint32_t product,
+                               std::uint32_t revision = 0) const noexcept {
+        NodeRow copy = *this;
+        copy.dictionary.identity = {dictionary.identity.device_type, vendor, product, revision};
+        copy.dictionary.doubted = 0;
+        return copy;
+    }
     /// Accepts a node of another revision, too.
     constexpr NodeRow of_any_revision() const noexcept {
         return copy_with(*this, &NodeRow::any_revision, true);

@@ -145,6 +145,8 @@ struct FileNote {
         not_in_file,
         no_such_element,
         compact_pdo,
+        identity_twice,
+        no_device_type,
     };
     Kind kind = Kind::no_line;
     std::uint8_t flaws = 0; ///< of the object; 0: no row needs what is wrong
@@ -201,6 +203,8 @@ struct Dictionary {
     std::string_view product{};
     std::uint8_t node = 0; ///< the only node that a DCF is for; 0: any
     Identity identity{};
+    /// Bit n: the file contradicts itself on 1018h:n of the identity, which is then that of the object.
+    std::uint8_t doubted = 0;
     std::span<const Object> objects{}; ///< in the order of their addresses
     std::span<const FileNote> notes{}; ///< on the file's faults, as far as there is room
 

@@ -17,8 +17,8 @@ AccessType=rw
 LowLimit=0x00
 HighLimit=0xFF
 )"};
-constexpr auto signals = can::signal_map(can::receive(
-    can::extended(0x1234), "other", can::bytes(1), can::every(5ms), can::signal("value", 0, 8)));
+constexpr auto signals = can::signal_map(
+    can::receive(can::extended(0x1234), "other", can::bytes(1), can::every(5ms), can::signal("value", 0, 8)));
 constexpr auto net =
     canopen::network(signals, canopen::manager(127),
                      canopen::node(5, "drive", canopen::dictionary<servo>).heartbeat(100ms).write(0x6060, 3));

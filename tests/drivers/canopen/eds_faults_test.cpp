@@ -116,16 +116,43 @@ TEST(EdsFaults, name_the_rows_that_they_affect) {
 TEST(EdsFaults, are_listed_all_at_once_in_order) {
     EXPECT_EQ(
         faults_of("[2000]\nDataType=5\nAccessType=r\nDefaultValue=x\n[2001]\nAccessType=ro\n"),
-        "1: object 1000h (device type) is missing, which each device has; write it -> every node of this "
-        "file\n"
+        "1: object 1000h (device type), which each device has, is missing -> nodes of this file: their "
+        "device type is not compared\n"
         "3: AccessType \"r\" has no meaning there (CiA 301, CiA 306) -> rows that map or write 2000h:0\n"
         "4: DefaultValue \"x\" of 2000h:0 is not a number -> nobody\n"
         "5: [2001] has no DataType -> rows that map or write 2001h:0\n");
+    EXPECT_EQ(faults_of("<xml>"),
+              "1: \"<xml>\" is neither a [section] nor an entry Key=Value; it is skipped -> "
+              "nobody\n"
+              "1: it has no object; is it an EDS or DCF file of CiA 306? -> every node of this "
+              "file\n");
     std::string many = device;
     for (int i = 0x2000; i < 0x2100; ++i)
         many += "[" + std::string{hex(static_cast<unsigned>(i), 4).view().substr(0, 4)} + "]\n";
     EXPECT_EQ(eds_faults({"x.eds", many}).size(), 2u * 256);
 }
+
+constexpr SourceText contradictory{"two.eds", R"([DeviceInfo]
+VendorNumber=0x10
+RevisionNumber=1
+[1000]
+DataType=7
+AccessType=ro
+[1017]
+DataType=6
+AccessType=rw
+[1018]
+ObjectType=9
+SubNumber=2
+[1018sub1]
+DataType=7
+AccessType=ro
+DefaultValue=17
+[1018sub3]
+DataType=7
+AccessType=ro
+DefaultValue=2
+)"};
 
 /// A device with its faults, as a network's rows see it.
 constexpr SourceText flawed{"flawed.eds", R"([DeviceInfo]
@@ -221,7 +248,7 @@ TEST(EdsFaults, in_mapped_objects_are_told_together) {
               "believe the device: canopen::dictionary<.., canopen::despite({0x2003, 1}, "
               "canopen::DataType::unsigned16)>; flawed.eds:31: HighLimit 0xFF of 2000h:0 is under its "
               "LowLimit; believe the device: canopen::dictionary<.., canopen::despite(0x2000, "
-              "canopen::DataType::integer8)>; and 1 more of its objects");
+              "canopen::DataType::integer8)>; and 1 more of its faults");
     EXPECT_EQ(fault_of(map, node_of_flawed.pdo("out", {0x2002})),
               "node 5 \"own\": flawed.eds:37: DataType \"0x40\" has no meaning there (CiA 301, CiA 306); "
               "believe the device: canopen::dictionary<.., canopen::despite(0x2002, canopen::DataType::..)>");
@@ -260,6 +287,25 @@ TEST(EdsFaults, in_the_values_of_a_dcf_are_refused_unless_a_row_writes_them) {
                                    "limits; write the value meant: "
                                    ".write(0x2000, ..)");
     EXPECT_EQ(fault_of(none, row.write(0x2000, 10)), "");
+}
+
+TEST(EdsFaults, of_an_identity_are_cured_in_the_row_of_the_node) {
+    EXPECT_EQ(
+        faults_of(std::string{contradictory.text}),
+        "13: 1018h:1 is 17, but [DeviceInfo] (line 1) says 0x10 -> nodes of this file without .identity(..)\n"
+        "17: 1018h:3 is 2, but [DeviceInfo] (line 1) says 1 -> nodes of this file without .identity(..)\n");
+    constexpr NodeRow row = node(5, "own", dictionary<contradictory>).heartbeat(100ms);
+    EXPECT_EQ(
+        fault_of(none, row),
+        "node 5 \"own\": two.eds:13: 1018h:1 is 17, but [DeviceInfo] (line 1) says 0x10; state the device's: "
+        ".identity(vendor, product, revision); two.eds:17: 1018h:3 is 2, but [DeviceInfo] (line 1) says 1; "
+        "state "
+        "the device's: .identity(vendor, product, revision)");
+    EXPECT_NE(fault_of(none, row.of_any_revision()), "");
+    constexpr auto net = network(none, manager(127), row.identity(0x11, 0, 2));
+    ASSERT_EQ(net.fault.view(), "");
+    EXPECT_EQ(net.steps[0].at, (Address{0x1018, 1}));
+    EXPECT_EQ(net.steps[0].value, 0x11u);
 }
 
 } // namespace
