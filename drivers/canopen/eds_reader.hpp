@@ -337,6 +337,9 @@ private:
             note({Kind::object_twice, all, objects[i].at, objects[i].line, objects[kept - 1].line, {}, {}});
         }
         objects.used = kept;
+        std::ranges::sort(records_.begin(), records_.end(), [](const Record& a, const Record& b) {
+            return a.index != b.index ? a.index < b.index : a.line < b.line;
+        });
         if (objects.empty()) refuse(1, "it has no object; is it an EDS or DCF file of CiA 306?");
     }
 
@@ -350,8 +353,9 @@ private:
         }
         for (const Record& record : records_) {
             if (record.plain || record.compact) continue;
-            std::uint32_t subs = 0;
-            for (const Object& object : objects) subs += object.at.index == record.index ? 1u : 0u;
+            const auto all = std::ranges::equal_range(objects, record.index, {},
+                                                      [](const Object& each) { return each.at.index; });
+            const auto subs = static_cast<std::uint32_t>(all.size());
             const auto said = to_whole(record.sub_number.text);
             if (said && said->size == subs) continue;
             const std::uint32_t line = record.sub_number.line;
@@ -360,9 +364,9 @@ private:
         }
     }
     constexpr const Record* record_of(std::uint16_t index) const {
-        for (const Record& record : records_)
-            if (record.index == index) return &record;
-        return nullptr;
+        const Record* const found =
+            std::ranges::lower_bound(records_.begin(), records_.end(), index, {}, &Record::index);
+        return found != records_.end() && found->index == index ? found : nullptr;
     }
 
     /// Checks references: lists name objects, and values of a compact array name its sub-indices.
@@ -398,9 +402,8 @@ private:
         note({kind_of(read.fault), flaw::value, object->at, line.line, 0, "Value", line.value});
     }
     constexpr Object* find(Address at) {
-        for (Object& object : objects)
-            if (object.at == at) return &object;
-        return nullptr;
+        Object* const found = std::ranges::lower_bound(objects.begin(), objects.end(), at, {}, &Object::at);
+        return found != objects.end() && found->at == at ? found : nullptr;
     }
 
     constexpr void check_values() {
