@@ -40,11 +40,18 @@ template <const auto& Source, Belief... beliefs> struct CheckedDictionary {
         for (const Belief& each : believed) {
             if (!in_file(each.at)) (end++)->at = each.at;
             Object& object = *std::ranges::find(all, each.at, &Object::at);
-            if (bits_of(object.type) != bits_of(each.type)) object.value = {};
+            const NumberRead value =
+                bits_of(each.type) != 0 ? to_number(object.text, each.type) : NumberRead{};
+            const bool is_readable = value.fault == NumberFault::none;
+            const bool was_untyped = object.flaws == (flaw::type | flaw::value);
+            object.flaws = was_untyped && is_readable ? std::uint8_t{0}
+                           : object.is_parameter && !is_readable
+                               ? flaw::value
+                               : static_cast<std::uint8_t>(object.flaws & flaw::value);
+            object.value = value.number;
             object.type = each.type;
             object.access = each.access;
             object.mappable = true;
-            object.flaws &= flaw::value;
             object.low = object.high = {};
         }
         std::ranges::sort(all, {}, &Object::at);

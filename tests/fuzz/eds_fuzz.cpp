@@ -40,7 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
     for (const FileNote& note : read.notes) {
-        demand(note.line >= 1 && note.line <= lines && note.other <= lines);
+        demand(note.line >= 1 && note.line <= lines);
+        demand(note.other <= lines || note.kind == FileNote::Kind::sub_number);
         demand(!meaning(note).empty() && meaning(note).size() < 300 && !effect(note).empty());
     }
     demand(!read.objects.empty());

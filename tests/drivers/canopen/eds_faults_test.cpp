@@ -215,6 +215,18 @@ HighLimit=10
 ParameterValue=11
 )"};
 
+constexpr SourceText untyped{"untyped.dcf", R"([1000]
+DataType=7
+AccessType=ro
+[1017]
+DataType=6
+AccessType=rw
+[2000]
+DataType=0x40
+AccessType=rw
+ParameterValue=700
+)"};
+
 constexpr auto map = can::signal_map(can::transmit(can::standard(0x205), "out", can::bytes(2),
                                                    can::every(5ms), can::signal("value", 0, 16).safe(0)));
 constexpr auto none = can::signal_map(
@@ -287,6 +299,25 @@ TEST(EdsFaults, in_the_values_of_a_dcf_are_refused_unless_a_row_writes_them) {
                                    "limits; write the value meant: "
                                    ".write(0x2000, ..)");
     EXPECT_EQ(fault_of(none, row.write(0x2000, 10)), "");
+}
+
+TEST(EdsFaults, of_a_type_make_its_value_unknown_until_it_is_believed) {
+    const auto fault = fault_of(none, node(5, "own", dictionary<untyped>).heartbeat(100ms));
+    EXPECT_NE(fault.find("untyped.dcf:8: DataType"), fault.npos) << fault;
+    constexpr auto net =
+        network(none, manager(127),
+                node(5, "own", dictionary<untyped, despite(0x2000, DataType::unsigned16)>).heartbeat(100ms));
+    ASSERT_EQ(net.fault.view(), "");
+    bool written = false;
+    for (const ConfigurationStep& step : net.steps)
+        written |= step.kind == ConfigurationStep::Kind::write && step.at == Address{0x2000} &&
+                   step.value == 700 && step.bytes == 2;
+    EXPECT_TRUE(written);
+    EXPECT_NE(
+        fault_of(none,
+                 node(5, "own", dictionary<untyped, despite(0x2000, DataType::unsigned8)>).heartbeat(100ms)),
+        "")
+        << "700 does not fit";
 }
 
 TEST(EdsFaults, of_an_identity_are_cured_in_the_row_of_the_node) {

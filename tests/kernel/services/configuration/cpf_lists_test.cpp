@@ -126,6 +126,13 @@ TEST_F(CpfLists, of_texts_are_lists_too) {
     EXPECT_EQ(arm.marks.get()[0].view(), "a b");
 }
 
+TEST_F(CpfLists, may_have_types_that_are_not_escaped) {
+    ASSERT_EQ(read("<struct name=\"axis\" type=\"std::vector<double>\">" + value("0", "1") + value("1", "0") +
+                   value("2", "0") + "</struct>"),
+              "");
+    EXPECT_THAT(write(), HasSubstr("<struct name=\"axis\" type=\"std::vector&lt;double&gt;\">")) << "XML";
+}
+
 TEST_F(CpfLists, matrix_is_a_list_of_its_rows) {
     const std::string turn = "<struct name=\"turn\" type=\"Matrix\">\n";
     const std::string rows = "<struct name=\"1\" type=\"RowVector\">\n" + value("1", "5") + value("2", "6") +
