@@ -220,9 +220,13 @@ constexpr Sentence pdo_fault(const can::SignalMap<F, S>& signals, const ManagerR
                         ", by its identifier; exchange can::receive and can::transmit"};
     if (node.dictionary.find({place.communication(), 1}) == nullptr ||
         node.dictionary.find({place.mapping(), 0}) == nullptr)
-        return Sentence(subject, " is a PDO that the device does not have: ", node.dictionary.file,
-                        " has no ", hex(place.communication(), 4), " or no ", hex(place.mapping(), 4),
-                        "; take another identifier");
+        return Sentence(
+            subject, " is a PDO that the device does not have: ", node.dictionary.file, " has no ",
+            hex(place.communication(), 4), " or no ", hex(place.mapping(), 4), "; take another identifier",
+            std::ranges::find(node.dictionary.notes, FileNote::Kind::compact_pdo, &FileNote::kind) ==
+                    node.dictionary.notes.end()
+                ? ""
+                : ", or believe that CompactPDO stands for them: a canopen::despite(..) for each");
     if (frame.format != can::Format::classical)
         return Sentence{subject, " is CAN FD, and CANopen has classical frames; write bytes(8) or less"};
     unsigned bits = 0;

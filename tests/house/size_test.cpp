@@ -42,7 +42,7 @@ const std::vector<Size> sizes{
     {"toolchain/machine",     6247},
     {"toolchain/tools",       13384},
     {"tests/kernel",         32734},
-    {"tests/drivers",         17897},
+    {"tests/drivers",         17919},
     {"tests/apps",            6182},
     {"tests/toolchain",       6229},
     {"tests/bench",           4779},

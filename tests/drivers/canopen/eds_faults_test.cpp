@@ -320,6 +320,28 @@ TEST(EdsFaults, of_a_type_make_its_value_unknown_until_it_is_believed) {
         << "700 does not fit";
 }
 
+TEST(EdsFaults, of_compact_pdos_are_cured_by_their_objects) {
+    constexpr auto second = can::signal_map(can::transmit(
+        can::standard(0x305), "out", can::bytes(2), can::every(5ms), can::signal("value", 0, 16).safe(0)));
+    const auto row = [](const Dictionary& of) {
+        return node(5, "own", of).heartbeat(100ms).pdo("out", {0x2002});
+    };
+    constexpr Belief word = despite(0x2002, DataType::unsigned16);
+    EXPECT_EQ(
+        fault_of(second, row(dictionary<flawed, word>)),
+        "node 5 \"own\": frame \"out\" is a PDO that the device does not have: flawed.eds has no 1401h or no "
+        "1601h; take another identifier, or believe that CompactPDO stands for them: a canopen::despite(..) "
+        "for "
+        "each");
+    EXPECT_EQ(
+        fault_of(
+            second,
+            row(dictionary<flawed, word, despite({0x1401, 1}, DataType::unsigned32),
+                           despite({0x1401, 2}, DataType::unsigned8), despite(0x1601, DataType::unsigned8),
+                           despite({0x1601, 1}, DataType::unsigned32)>)),
+        "");
+}
+
 TEST(EdsFaults, of_an_identity_are_cured_in_the_row_of_the_node) {
     EXPECT_EQ(
         faults_of(std::string{contradictory.text}),
