@@ -314,6 +314,8 @@ void set_up(const std::string& kind, const std::string& rest) {
         if (!write_text(rest.substr(0, blank), rest.substr(blank + 1))) {
             must(failed("set " + rest));
         }
+    } else {
+        give_up("the manifest's word \"" + kind + "\" is unknown; add it to set_up of board/bench/init.cpp");
     }
 }
 

@@ -10,7 +10,7 @@ namespace tappet::box {
 
 using Words = std::vector<std::string>;
 
-/// "can can0 500000" is the word "can" with two values.
+/// "device can can0 500000" is the word "device" with three values.
 class Facts {
 public:
     explicit Facts(std::string_view text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CAN, GPIO, serial, Ethernet; the processors; the interrupt threads.
+// Devices, Ethernet; the processors; the interrupt threads.
 #include "board/box/hardware.hpp"
 
 #include "board/init/devices.hpp"
@@ -87,15 +87,18 @@ Need network(const std::string& name, const std::string& address) {
 std::vector<Need> needs_of(const Facts& facts) {
     const bool is_emulated = facts.one("world") == "bench";
     std::vector<Need> needs;
-    for (const Words& each : facts.all("can")) needs.push_back(can_bus(each, is_emulated));
-    for (const Words& each : facts.all("gpio")) needs.push_back(gpio_chip(each[0], each[1], is_emulated));
-    for (const Words& each : facts.all("serial"))
-        needs.push_back(awaited("serial port " + each[0], "check the board's devices",
-                                [path = each[0]] { return exists(path); }));
-    for (const Words& each : facts.all("camera"))
-        needs.push_back(awaited("camera " + each[0],
-                                "check its cable, and that the board's modules name its driver",
-                                [path = each[0]] { return exists(path); }));
+    for (const Words& each : facts.all("device")) {
+        const std::string &kind = each[0], &address = each[1];
+        if (kind == "can")
+            needs.push_back(can_bus({each.begin() + 1, each.end()}, is_emulated));
+        else if (kind == "gpio")
+            needs.push_back(gpio_chip(address, each[2], is_emulated));
+        else // of any other kind a file; the firmware refuses what it finds at another address
+            needs.push_back(awaited(kind + " device " + address,
+                                    "check its cable, the board's devices, and that the board's modules "
+                                    "name its driver",
+                                    [address] { return !address.starts_with('/') || exists(address); }));
+    }
     return needs;
 }
 
@@ -144,22 +147,21 @@ void raise_interrupts(const Facts& facts, const Voice& voice) {
     if (priority.empty()) return;
     sched_param parameter{};
     parameter.sched_priority = std::atoi(priority.c_str());
-    for (const char* kind : {"can", "gpio"})
-        for (const Words& device : facts.all(kind)) {
-            int raised = 0;
-            for (const std::string& process : init::names_in("/proc")) {
-                const std::string name = init::read_line("/proc/" + process + "/comm");
-                if (!name.starts_with("irq/") ||
-                    !name.ends_with("-" + base_name(device[0]).substr(0, 15 - name.find('-') - 1)))
-                    continue;
-                raised += ::sched_setscheduler(std::atoi(process.c_str()), SCHED_FIFO, &parameter) == 0;
-            }
-            if (raised != 0)
-                voice.say("interrupts of " + device[0] + " have priority " + priority);
-            else
-                voice.say("no interrupt thread is named after " + device[0] +
-                          ", so none of it has priority " + priority + "; see /proc/interrupts for its name");
+    for (const Words& device : facts.all("device")) {
+        int raised = 0;
+        for (const std::string& process : init::names_in("/proc")) {
+            const std::string name = init::read_line("/proc/" + process + "/comm");
+            if (!name.starts_with("irq/") ||
+                !name.ends_with("-" + base_name(device[1]).substr(0, 15 - name.find('-') - 1)))
+                continue;
+            raised += ::sched_setscheduler(std::atoi(process.c_str()), SCHED_FIFO, &parameter) == 0;
         }
+        if (raised != 0)
+            voice.say("interrupts of " + device[1] + " have priority " + priority);
+        else
+            voice.say("no interrupt thread is named after " + device[1] + ", so none of it has priority " +
+                      priority + "; see /proc/interrupts for its name");
+    }
 }
 
 bool is_locked_down() {

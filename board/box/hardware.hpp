@@ -20,8 +20,8 @@ struct Need {
     bool is_up = false;
 };
 
-/// Returns the items that a machine needs to arm: CAN, GPIO, serial ports and cameras. On an emulated box
-/// ("world bench") CAN interfaces and GPIO chips are created instead of awaited.
+/// Returns the devices that a machine needs to arm. CAN interfaces are set up; devices of other kinds must
+/// exist. On an emulated box ("world bench") CAN interfaces and GPIO chips are created instead of awaited.
 [[nodiscard]] std::vector<Need> needs_of(const Facts& facts);
 /// Returns the Ethernet ports; the devices at their other end may come and go.
 [[nodiscard]] std::vector<Need> networks_of(const Facts& facts);

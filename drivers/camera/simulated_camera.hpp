@@ -9,6 +9,7 @@ namespace tappet::camera {
 class SimulatedCamera : public SimulatedDevice {
 public:
     static constexpr const DeviceKind& kind = device_kind;
+    static constexpr bool is_judged = false; // it has no outputs
 
     SimulatedCamera(std::string_view of, std::uint64_t seed) : SimulatedDevice{of}, twin{seed} {}
 

@@ -1,6 +1,7 @@
 // A CAN bus of the host: the machine's controller and the plant's, with the wire between them.
 #pragma once
 
+#include "drivers/can/sent_frames.hpp"
 #include "drivers/can/signal_map.hpp"
 #include "drivers/can/twin.hpp"
 #include "drivers/can/twin_bus.hpp"
@@ -11,6 +12,7 @@ namespace tappet::can {
 class SimulatedBus : public SimulatedDevice {
 public:
     static constexpr const DeviceKind& kind = device_kind;
+    static constexpr bool is_judged = true;
 
     SimulatedBus(std::string_view of, std::uint64_t seed) : SimulatedDevice{of}, wire{seed} {}
 
@@ -27,11 +29,22 @@ public:
     [[nodiscard]] bool is_still() const noexcept { return wire.is_still(); }
     void send_safe_frames(Time now) noexcept;
 
+    [[nodiscard]] std::vector<WireOutput> outputs() const { return sent.outputs(); }
+    [[nodiscard]] Sentence broken() const { return sent.fault(); }
+    [[nodiscard]] TwinFault strike(Random& random, Time now, bool with_any_values);
+    [[nodiscard]] bool is_off() const noexcept { return faulted(machine.state()); }
+    void repair() { static_cast<void>(machine.restart()); }
+
     TwinBus wire;
     Settings settings{}; ///< of the machine's controller
     Twin machine{}, plant{};
+    SentFrames sent{}; ///< by the machine, if somebody lets it hear them
 
 private:
+    [[nodiscard]] TwinFault say_anything(Random& random, Time now);
+    [[nodiscard]] TwinFault disturb_frames(Random& random, std::size_t what);
+
+    const Identifiers* map_ = nullptr;
     std::span<const Frame> safe_{};
 };
 

@@ -46,11 +46,14 @@ public:
     virtual std::size_t write_safe_registers(Duration within, const Meanwhile& meanwhile) noexcept = 0;
 };
 
-/// Returns whether a row's driver has a map by which its device can be opened. A component that shares
-/// another one's device has no map; nor has the driver of a device kind that the machine itself defines.
+/// Returns whether a row's driver has a map by which its device is opened. A component that shares another
+/// one's device has no map; nor has a driver that opens its device itself.
 constexpr bool drives(const ComponentRow& row, std::string_view kind) noexcept {
     return row.type->device_kind != nullptr && row.type->device_kind->name == kind &&
            row.type->device_map != nullptr;
 }
+
+/// Returns the refusal of a device that start-up should open and does not know; `list`: where it looked.
+Sentence unknown_kind(const ComponentRow& row, std::string_view list);
 
 } // namespace tappet

@@ -15,7 +15,7 @@ constexpr std::size_t count_devices(const MachineView& m, std::string_view kind)
     return count;
 }
 
-/// Does not open devices of the machine's own kinds, which the drivers here do not know.
+/// Refuses a device of a kind that is not in the list.
 template <const auto& table>
 class Hardware final : public OpenedDevices {
 public:

@@ -15,6 +15,19 @@ constexpr Duration look_every = 5ms; // period of polling for confirmations
 
 } // namespace
 
+Sentence unknown_kind(const ComponentRow& row, std::string_view list) {
+    return Sentence{"device \"",
+                    row.device,
+                    "\" of component \"",
+                    row.name,
+                    "\" is of kind ",
+                    row.type->device_kind->name,
+                    ", for which ",
+                    list,
+                    " has no class; add one, or write "
+                    "is_opened_by_driver = true in its DeviceKind"};
+}
+
 std::size_t send_safe_frames(std::span<OpenedDevice> devices, Duration within) noexcept {
     for (OpenedDevice& each : devices) each.device->begin_safe_frames();
     for (const Time end = os::Clock::monotonic() + within;;) {
@@ -89,7 +102,7 @@ std::expected<void, Sentence> OpenedDevices::open(const AcceptedMachine& machine
         const ComponentRow& row = machine.table.components[c];
         if (row.type->device_kind == nullptr || row.type->device_map == nullptr) continue;
         RealDevice* const device = take(*row.type->device_kind);
-        if (device == nullptr) continue;
+        if (device == nullptr) return std::unexpected(unknown_kind(row, "drivers/hardware/kinds.hpp"));
         DevicePlace place = place_of(row, *machine.board, *machine.binding);
         place.use =
             checks::use_of_device(machine.table, *machine.board, *machine.binding, machine.index, worst, c);

@@ -57,7 +57,7 @@ protected:
     /// The rooms have an entry for each device of the table.
     OpenedDevices(std::span<OpenedDevice> room, std::span<ProvidedDevice> provided) noexcept
         : room_{room}, provided_{provided} {}
-    /// Returns an unused device of that kind; null for the machine's own kinds, which are unknown here.
+    /// Returns an unused device of that kind; null for a kind that is unknown here.
     [[nodiscard]] virtual RealDevice* take(const DeviceKind& kind) noexcept = 0;
     virtual void give_back_all() noexcept = 0;
 

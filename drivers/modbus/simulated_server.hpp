@@ -3,13 +3,16 @@
 
 #include "drivers/modbus/register_map.hpp"
 #include "drivers/modbus/twin.hpp"
+#include "drivers/twin/judged.hpp"
 #include "drivers/twin/simulated_device.hpp"
+#include "kernel/base/random.hpp"
 
 namespace tappet::modbus {
 
 class SimulatedServer : public SimulatedDevice {
 public:
     static constexpr const DeviceKind& kind = device_kind;
+    static constexpr bool is_judged = true;
 
     SimulatedServer(std::string_view of, std::uint64_t) : SimulatedDevice{of} {}
 
@@ -30,9 +33,14 @@ public:
         twin.disconnect();
     }
 
+    [[nodiscard]] std::vector<WireOutput> outputs() const;
+    [[nodiscard]] TwinFault strike(Random& random, Time now, bool with_any_values);
+
     Twin twin{ServerFacts{}.answer_within};
 
 private:
+    [[nodiscard]] TwinFault say_anything(Random& random);
+
     const SafeWrites* safe_ = nullptr;
     std::uint32_t seen_ = 0;
 };

@@ -56,6 +56,9 @@ std::expected<void, Sentence> SimulatedDevices::open(const AcceptedMachine& mach
             static_cast<void>(((added = add<Kind>(row, plants_ends)) && ...));
         }(kinds_);
         if (!added) return added;
+        if (row.type->device_map != nullptr &&
+            std::ranges::none_of(provided_, [&](const auto& each) { return each.name == row.device; }))
+            return std::unexpected(unknown_kind(row, "drivers/plant/simulated_kinds.hpp"));
     }
     for (const auto& bus : buses()) {
         bus->wire.set_bit_rates(bit_rates_);
@@ -143,7 +146,10 @@ void SimulatedDevices::Log::drain(Time now, const Look& look) {
     if (!tap) return;
     if (recorder) recorder->begin(now);
     for (can::Frame frame; tap->pop(frame);) {
-        if (look) look(bus.name, frame);
+        if (look) {
+            bus.sent.hear(frame);
+            look(bus.name, frame);
+        }
         if (recorder) recorder->record(frame);
         if (replay) replay->heard(frame);
     }
@@ -202,6 +208,46 @@ Time SimulatedDevices::next_on_wires() {
     for (const Log& log : logs_)
         if (log.replay) next = std::min(next, log.replay->next());
     return next;
+}
+
+bool SimulatedDevices::is_judged(const ComponentRow& driver) noexcept {
+    return []<class... Kind>(const ComponentRow& row, std::type_identity<Lists<Kind...>>) {
+        return ((Kind::is_judged && drives(row, Kind::kind.name)) || ...);
+    }(driver, std::type_identity<decltype(kinds_)>{});
+}
+
+std::vector<WireOutput> SimulatedDevices::outputs(std::string_view device) const {
+    std::vector<WireOutput> all;
+    for_each(kinds_, [&](const auto& each) {
+        if constexpr (std::remove_cvref_t<decltype(each)>::is_judged)
+            if (each.name == device) all = each.outputs();
+    });
+    return all;
+}
+
+TwinFault SimulatedDevices::strike(std::string_view device, Random& random, Time now, bool with_any_values) {
+    TwinFault struck;
+    for_each(kinds_, [&](auto& each) {
+        if constexpr (std::remove_cvref_t<decltype(each)>::is_judged)
+            if (each.name == device) struck = each.strike(random, now, with_any_values);
+    });
+    return struck;
+}
+
+Sentence SimulatedDevices::broken() const {
+    Sentence why;
+    for_each(kinds_, [&](const auto& each) {
+        if (why.empty()) why = each.broken();
+    });
+    return why;
+}
+
+bool SimulatedDevices::is_off(std::string_view device) const noexcept {
+    return any_of(kinds_, [device](const auto& each) { return each.name == device && each.is_off(); });
+}
+
+void SimulatedDevices::repair_all() {
+    for_each(kinds_, [](auto& each) { each.repair(); });
 }
 
 can::TwinBus& SimulatedDevices::bus(std::string_view device) { return named<can::SimulatedBus>(device).wire; }

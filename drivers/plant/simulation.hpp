@@ -62,6 +62,15 @@ public:
     /// Returns when advance() is due.
     [[nodiscard]] Time next() const noexcept { return next_; }
 
+    // ---- for a swarm, after open(). A device that is not judged has no outputs, and nothing strikes it.
+    [[nodiscard]] static bool is_judged(const ComponentRow& driver) noexcept;
+    [[nodiscard]] std::vector<WireOutput> outputs(std::string_view device) const;
+    [[nodiscard]] TwinFault strike(std::string_view device, Random& random, Time now, bool with_any_values);
+    /// Returns what was wrong with something that the machine has sent; empty: nothing.
+    [[nodiscard]] Sentence broken() const;
+    [[nodiscard]] bool is_off(std::string_view device) const noexcept;
+    void repair_all();
+
     // ---- for tests: fault injection at one device. A name that is not in the table is a broken contract.
     [[nodiscard]] can::TwinBus& bus(std::string_view device);
     [[nodiscard]] can::Twin& controller(std::string_view device);

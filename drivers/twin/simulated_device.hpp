@@ -2,6 +2,7 @@
 // wires.
 #pragma once
 
+#include "drivers/twin/judged.hpp"
 #include "kernel/component/device_kind.hpp"
 #include "kernel/component/setup.hpp"
 #include "kernel/component/wire_counters.hpp"
@@ -16,6 +17,11 @@ namespace tappet {
 ///     explicit ..(std::string_view name, std::uint64_t seed)         `seed` selects what its faults strike
 ///     std::expected<void, Sentence> open(const void* device_map)
 ///     ProvidedDevice machine_end(), plant_end()
+///     static constexpr bool is_judged                                a swarm disturbs it and judges its
+///     outputs
+/// and, if it is judged,
+///     std::vector<WireOutput> outputs() const
+///     TwinFault strike(Random&, Time now, bool with_any_values)      with values that no plant would send
 /// and hides those of the following members that its kind needs. Not real-time; only the plant's thread.
 class SimulatedDevice {
 public:
@@ -43,6 +49,14 @@ public:
     void write_safe_lines() noexcept {}
     void send_safe_frames(Time) noexcept {}
     void write_safe_registers() noexcept {}
+
+    // ---- for a swarm
+    /// Returns what was wrong with something that the machine has sent; empty: nothing.
+    [[nodiscard]] Sentence broken() const { return {}; }
+    /// Returns whether it works for nobody until it is repaired or its driver restarts it.
+    [[nodiscard]] bool is_off() const noexcept { return false; }
+    /// Repairs it, as a person at the box does.
+    void repair() {}
 };
 
 } // namespace tappet

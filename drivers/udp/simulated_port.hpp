@@ -9,6 +9,7 @@ namespace tappet::udp {
 class SimulatedPort : public SimulatedDevice {
 public:
     static constexpr const DeviceKind& kind = device_kind;
+    static constexpr bool is_judged = false; // a datagram's component defines its format
 
     SimulatedPort(std::string_view of, std::uint64_t) : SimulatedDevice{of} {}
 

@@ -50,6 +50,8 @@ struct DeviceKind {
     std::string_view carrier{}; ///< kind of the board's device that carries it; "": its own name
     /// It may be bound to "192.168.7.2:502" in place of a device of the board.
     bool takes_address = false;
+    /// The components that drive it open it themselves; otherwise each has a `device_map` for start-up.
+    bool is_opened_by_driver = false;
     std::string_view cure = "add it to the board's devices"; ///< cure if the board has no device of that name
     /// Returns the first fault, with its cure; empty: none. Words for other kinds and repeated words are
     /// refused before.

@@ -51,7 +51,7 @@ struct Asked {
 };
 
 struct Drive {
-    static constexpr DeviceKind device_kind{.name = "test.drive"};
+    static constexpr DeviceKind device_kind{.name = "test.drive", .is_opened_by_driver = true};
     Input<double> driven;
     Output<double> place;
     void step(const Cycle&) noexcept TAPPET_REALTIME { place.write(driven.get()); }

@@ -13,6 +13,7 @@ using namespace tappet;
 
 struct Encoder {
     static constexpr const DeviceKind& device_kind = can::device_kind;
+    static constexpr int device_map = 0;
     Output<double> angle;
     Output<int> turns;
     BufferOutput<int> samples;
@@ -110,6 +111,7 @@ struct Weft {
 
 struct Climate {
     static constexpr const DeviceKind& device_kind = modbus::device_kind;
+    static constexpr int device_map = 0;
     Output<double> humidity;
     void work(const Cycle&) {}
     void log() noexcept TAPPET_REALTIME {}
@@ -121,6 +123,7 @@ struct Climate {
 
 struct Lamps {
     static constexpr const DeviceKind& device_kind = gpio::device_kind;
+    static constexpr int device_map = 0;
     static constexpr std::array<std::string_view, 2> lines{"red", "green"};
     static constexpr std::span<const std::string_view> device_lines() { return lines; }
     void red() noexcept TAPPET_REALTIME {}

@@ -58,7 +58,7 @@ void describe_board(const AcceptedMachine& machine, void* to, void (*line)(void*
     for (const std::string_view each : board.image.later_modules) say("later-module ", each);
     for (const BoundDevice& bound : machine.binding->devices)
         if (const BoardDevice* device = checks::find_named(board.devices, bound.at); device != nullptr) {
-            Sentence text{device->kind, " ", device->address};
+            Sentence text{"device ", device->kind, " ", device->address};
             for (const Fact& fact : device->facts)
                 for (const std::int64_t number : fact.numbers)
                     if (fact.word->is_for_box && number != 0) text.add(" ").add(number);

@@ -59,10 +59,6 @@ Board with_visitors(Board board) {
 
 } // namespace
 
-bool is_judged(const ComponentRow& driver) {
-    return drives(driver, "can") || drives(driver, "gpio") || drives(driver, "modbus");
-}
-
 std::vector<Duration> analysed_responses(const AcceptedMachine& machine) {
     const auto worst =
         checks::worst_responses_ns(machine.table, *machine.board, *machine.binding, machine.index);
@@ -94,7 +90,7 @@ SwarmRun::SwarmRun(const SwarmOf& of, std::uint64_t seed, Tell tell)
     if (service_ != nowhere) run_.browse_in(directory_);
     const auto rows = of.machine.table.components;
     for (std::size_t c = 0; c < rows.size(); ++c)
-        if (is_judged(rows[c])) drivers_.push_back(c);
+        if (SimulatedDevices::is_judged(rows[c])) drivers_.push_back(c);
     run_.judge_by([this](Time now) { judge(now); });
 }
 
@@ -119,9 +115,7 @@ SwarmVerdict SwarmRun::go() {
                 verdict_.broken = Sentence{"it does not work again and does not say why not"};
             stop();
             forget_faults();
-            for (const std::size_t c : drivers_) // somebody has checked the bus
-                if (const ComponentRow& row = of_.machine.table.components[c]; drives(row, "can"))
-                    static_cast<void>(run_.devices().controller(row.device).restart());
+            run_.devices().repair_all();
             if (verdict_.broken.empty() && start(true) && mend(first_work_within) &&
                 !run_until_works(first_work_within) && verdict_.broken.empty())
                 verdict_.broken = Sentence{"it does not work again after its restart; it waits for \"",

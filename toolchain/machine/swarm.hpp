@@ -106,11 +106,7 @@ private:
     void say(std::string_view text);
     void begin(std::string_view kind, Sentence text, Duration lasts, std::vector<std::size_t> components,
                std::function<bool()> end);
-    void strike_bus(std::size_t component, Duration lasts);
-    void garble_bus(std::string_view device, const can::Identifiers& map);
-    void garble_server(std::string_view device, modbus::Twin& server, const modbus::SafeWrites& map);
-    void strike_chip(std::size_t component, Duration lasts);
-    void strike_server(std::size_t component, Duration lasts);
+    void strike_device(std::string_view device, Duration lasts);
     void strike_component(Duration lasts);
     void strike_activity(Duration lasts);
     void hang(std::size_t activity, Duration lasts);
@@ -215,9 +211,6 @@ private:
     Lines lines_{};
     SwarmVerdict verdict_{};
 };
-
-/// Returns whether the swarm disturbs this component's device and judges its outputs.
-[[nodiscard]] bool is_judged(const ComponentRow& driver);
 
 /// Returns each activity's worst response by the table's analysis; zero for those that are not real-time.
 [[nodiscard]] std::vector<Duration> analysed_responses(const AcceptedMachine& machine);

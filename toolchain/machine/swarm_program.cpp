@@ -159,10 +159,10 @@ void print_timed(Time now, std::string_view text) {
 void tell_unjudged(const MachineView& table) {
     for (const ComponentRow& row : table.components)
         if (const DeviceKind* const kind = row.type->device_kind;
-            kind != nullptr && !row.type->shares_device && !is_judged(row))
+            kind != nullptr && !row.type->shares_device && !SimulatedDevices::is_judged(row))
             print(Sentence{table.name, ": the ", kind->name, " device \"", row.device, "\" of component \"",
                            row.name,
-                           "\" is neither disturbed nor judged: the swarm knows can, gpio, modbus\n"}
+                           "\" is neither disturbed nor judged: its twin has no outputs for a swarm\n"}
                       .view());
 }
 

@@ -1,5 +1,4 @@
 // A value at a driver's input must go out to the wire, or else the nearest value that the wire can express.
-#include "drivers/modbus/register_map.hpp"
 #include "toolchain/machine/swarm_wires.hpp"
 
 #include <algorithm>
@@ -14,12 +13,6 @@ namespace {
 constexpr Duration looks_every = 5ms;
 constexpr Duration looks_within = 2s; // for the restart of a bus that was off
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double largest_float = std::numeric_limits<float>::max();
-
-/// Orders the two ends: a factor may be negative.
-SwarmWires::Numbers between(double one, double other, double step) {
-    return {std::min(one, other), std::max(one, other), step};
-}
 
 /// True: a force hid that the writer stopped; the value is obsolete, its frame may be safe by silence.
 bool is_abandoned(const Facet& input, const void* place) {
@@ -30,35 +23,6 @@ bool is_abandoned(const Facet& input, const void* place) {
 }
 
 } // namespace
-
-SwarmWires::Numbers SwarmWires::numbers_of(const can::Signal& signal) {
-    const double wide = std::ldexp(1.0, static_cast<int>(signal.bits)), step = std::abs(signal.factor);
-    const auto physical = [&signal](double raw) { return raw * signal.factor + signal.offset; };
-    Numbers numbers;
-    switch (signal.kind) {
-    case can::Kind::unsigned_integer: numbers = between(physical(0), physical(wide - 1), step); break;
-    case can::Kind::signed_integer:
-        numbers = between(physical(-wide / 2), physical(wide / 2 - 1), step);
-        break;
-    default: numbers = between(physical(-largest_float), physical(largest_float), step);
-    }
-    if (signal.has_range) numbers = {signal.least, signal.most, step};
-    return numbers;
-}
-
-SwarmWires::Numbers SwarmWires::numbers_of(const modbus::Register& one) {
-    const double wide = one.width() == 2 ? 4294967296.0 : 65536.0, step = std::abs(one.factor);
-    const auto physical = [&one](double number) { return number * one.factor + one.offset; };
-    switch (one.kind) {
-    case modbus::Kind::bit: return between(physical(0), physical(1), step);
-    case modbus::Kind::unsigned_word:
-    case modbus::Kind::unsigned_double: return between(physical(0), physical(wide - 1), step);
-    case modbus::Kind::signed_word:
-    case modbus::Kind::signed_double: return between(physical(-wide / 2), physical(wide / 2 - 1), step);
-    case modbus::Kind::float_double: break;
-    }
-    return between(physical(-largest_float), physical(largest_float), step);
-}
 
 /// Groups outputs that go out in one frame or request; excludes groups in which a row allows staleness.
 void SwarmWires::find_together() {
@@ -100,17 +64,16 @@ Sentence SwarmWires::told_otherwise(Output& output, const std::optional<std::uin
         if (!std::isfinite(said(outputs_[o]))) wanted = none;
     const Duration recovers = output.settles + (value ? output.recovers : looks_within);
     const ComponentRow& driver = machine_.table.components[output.driver];
-    const bool is_off =
-        tappet::drives(driver, "can") && can::faulted(devices_.controller(driver.device).state());
-    const bool is_whole = instance_->life().state_of(output.driver) == ComponentState::running && !is_off &&
-                          now >= output.excused && struck_.whole_for(output.driver, now) >= recovers;
+    const bool is_whole = instance_->life().state_of(output.driver) == ComponentState::running &&
+                          !devices_.is_off(driver.device) && now >= output.excused &&
+                          struck_.whole_for(output.driver, now) >= recovers;
     if (!is_whole || wanted != output.wanted) {
         output.wanted = wanted;
         output.wanted_since = now;
         return {};
     }
     if (now - output.wanted_since < (value ? output.settles : recovers)) return {};
-    const Numbers& numbers = output.numbers;
+    const WireNumbers& numbers = output.numbers;
     const double nearest = std::clamp(wanted, numbers.least, numbers.most);
     Sentence text{"output \"", output.name, "\" "};
     if (!value) return text.add("is no longer sent, though its driver runs");

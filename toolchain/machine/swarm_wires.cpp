@@ -1,32 +1,12 @@
 // The outputs of a machine, found in its table and its maps, and the rules that hold for all of them.
 #include "toolchain/machine/swarm_wires.hpp"
 
-#include "drivers/gpio/line_map.hpp"
-#include "drivers/modbus/register_map.hpp"
-#include "drivers/modbus/session.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 namespace tappet {
-
-namespace {
-
-constexpr Duration usual_settling = 200ms; // periods, deadlines and queues on the way to a wire
-
-/// Returns whether a signal is in its frame: the selecting signal must have one of its values.
-bool is_in(const can::Identifiers& map, const can::FrameRow& row, const can::Signal& signal,
-           const can::Frame& frame) {
-    if (signal.multiplexor.empty()) return true;
-    for (const can::Signal& each : map.signals.subspan(row.first, row.values))
-        if (each.name == signal.multiplexor)
-            return is_in(map, row, each, frame) && signal.is_selected_by(can::extract(frame.data, each));
-    return false;
-}
-
-} // namespace
 
 SwarmWires::SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices, const Struck& struck,
                        const AllLeftBehind* left)
@@ -35,14 +15,14 @@ SwarmWires::SwarmWires(const AcceptedMachine& machine, SimulatedDevices& devices
 void SwarmWires::listen() {
     const auto rows = machine_.table.components;
     for (std::size_t c = 0; c < rows.size(); ++c) {
-        if (tappet::drives(rows[c], "gpio")) add_lines(c);
-        if (tappet::drives(rows[c], "can")) add_signals(c);
-        if (tappet::drives(rows[c], "modbus")) add_registers(c);
+        if (!SimulatedDevices::is_judged(rows[c])) continue;
+        for (WireOutput& each : devices_.outputs(rows[c].device)) add(c, std::move(each));
     }
     add_axes();
     find_together();
-    devices_.look_at_frames(
-        [this](std::string_view device, const can::Frame& frame) { hear(device, frame); });
+    devices_.look_at_frames([this](std::string_view device, const can::Frame& frame) {
+        for (Axis& axis : axes_) hear_axis(axis, device, frame);
+    });
 }
 
 void SwarmWires::begin(MachineInstance& instance) {
@@ -70,96 +50,19 @@ void SwarmWires::excuse(std::size_t driver, Time until) {
         }
 }
 
-void SwarmWires::add_lines(std::size_t c) {
-    const ComponentRow& row = machine_.table.components[c];
-    const auto& map = *static_cast<const std::span<const gpio::LineRow>*>(row.type->device_map);
-    gpio::Twin& chip = devices_.lines(row.device);
-    for (std::size_t i = 0; i < map.size(); ++i) {
-        if (map[i].line.role != gpio::Role::output) continue;
-        const std::string name{map[i].line.name};
-        Output output{.driver = c, .safe = map[i].line.safe_value, .is_switch = true, .is_line = true};
-        output.read = [&chip, i] { return std::optional<std::uint64_t>{chip.outputs() >> i & 1}; };
-        if (map[i].driven == gpio::Driven::by_port)
-            add(std::move(output), name);
-        else
-            add(std::move(output), name, {name + ".set", name + ".clear"});
-    }
-}
-
-void SwarmWires::add_signals(std::size_t c) {
-    const ComponentRow& row = machine_.table.components[c];
-    const auto& map = *static_cast<const can::Identifiers*>(row.type->device_map);
-    for (std::size_t f = 0; f < map.frames.size(); ++f) {
-        const can::FrameRow& frame = map.frames[f];
-        if (frame.direction != can::Direction::transmit) continue;
-        sent_.push_back({row.device, &map, f});
-        for (const can::Signal& signal : map.signals.subspan(frame.first, frame.values)) {
-            Output output{.driver = c, .is_switch = signal.bits == 1, .settles = frame.every, .goes_in = f};
-            // A multiplexed frame, or one that selects others, goes out in turns.
-            if (frame.every > Duration{} && !signal.is_bits && !frame.multiplexed) {
-                output.numbers = numbers_of(signal);
-                output.physical = [&signal](std::uint64_t raw) { return can::to_physical(signal, raw); };
-            }
-            if (signal.says_safe) output.safe = can::to_raw(signal, signal.safe_value).bits;
-            output.read = [this, at = sent_.size() - 1, &signal]() -> std::optional<std::uint64_t> {
-                const Sent& sent = sent_[at];
-                const bool is_cyclic = sent.map->frames[sent.row].every > Duration{};
-                if (!sent.last || !is_in(*sent.map, sent.map->frames[sent.row], signal, *sent.last))
-                    return {};
-                // A silent wire is the receiver's to detect.
-                if (is_cyclic && now_ - sent.last->stamp > usual_settling) return {};
-                return can::extract(sent.last->data, signal);
-            };
-            add(std::move(output), std::string{frame.name} + "." + std::string{signal.name});
-        }
-    }
-}
-
-void SwarmWires::add_registers(std::size_t c) {
-    const ComponentRow& row = machine_.table.components[c];
-    const auto& map = *static_cast<const modbus::SafeWrites*>(row.type->device_map);
-    modbus::Twin& server = devices_.server(row.device);
-    for (const modbus::Row& request : map.rows) {
-        if (!request.write) continue;
-        for (const modbus::Register& one : map.registers.subspan(request.first, request.values)) {
-            const auto whole = [width = one.width()](auto word) {
-                std::uint64_t all = 0;
-                for (unsigned w = 0; w < width; ++w) all = all << 16 | word(w);
-                return all;
-            };
-            Output output{.driver = c,
-                          .is_switch = one.kind == modbus::Kind::bit,
-                          .settles = request.every,
-                          .recovers = modbus::Backoff{}.most,
-                          .goes_in = request.first,
-                          .numbers = numbers_of(one)};
-            output.physical = [&one](std::uint64_t all) {
-                modbus::Words words{static_cast<std::uint16_t>(all), 0};
-                if (one.width() == 2)
-                    words = {static_cast<std::uint16_t>(all >> 16), static_cast<std::uint16_t>(all)};
-                return modbus::to_physical(one, words);
-            };
-            if (one.says_safe)
-                output.safe = whole(
-                    [words = modbus::to_words(one, one.safe_value)](unsigned w) { return words.words[w]; });
-            output.read = [whole, &server, table = request.run.table, at = request.run.address + one.at] {
-                return std::optional<std::uint64_t>{
-                    whole([&](unsigned w) { return server.get(table, at + w); })};
-            };
-            add(std::move(output), std::string{request.name} + "." + std::string{one.name});
-        }
-    }
-}
-
 /// Adds an output with all components that write to its facets, by any row of the table.
-void SwarmWires::add(Output output, std::string_view name, const std::vector<std::string>& events) {
+void SwarmWires::add(std::size_t c, WireOutput at_wire) {
     const MachineView& table = machine_.table;
+    Output output{std::move(at_wire), c};
+    const std::string name = output.name;
     const std::string driver{table.components[output.driver].name};
     const auto facets = table.components[output.driver].type->facets;
     const auto switches = [&](std::string_view facet) {
-        return events.empty() ? facet == name : std::ranges::find(events, facet) != events.end();
+        return output.operations.empty()
+                   ? facet == name
+                   : std::ranges::find(output.operations, facet) != output.operations.end();
     };
-    output.name = driver + "." + std::string{name};
+    output.name = driver + "." + name;
     for (std::size_t f = 0; f < facets.size(); ++f)
         if (switches(facets[f].name)) output.facets.push_back({output.driver, f});
     const auto is_meant = [&](End end) {
@@ -188,39 +91,6 @@ void SwarmWires::add(Output output, std::string_view name, const std::vector<std
     outputs_.push_back(std::move(output));
 }
 
-/// Judges the frames that the machine sends: numbers, within the range of the map.
-void SwarmWires::hear(std::string_view device, const can::Frame& frame) {
-    for (Axis& axis : axes_) hear_axis(axis, device, frame);
-    for (std::size_t at = 0; at < sent_.size(); ++at) {
-        Sent& sent = sent_[at];
-        const can::FrameRow& row = sent.map->frames[sent.row];
-        if (sent.device != device || row.identifier != can::Identifier{frame.id, frame.extended}) continue;
-        sent.last = frame;
-        for (const can::Signal& signal : sent.map->signals.subspan(row.first, row.values)) {
-            if (!is_in(*sent.map, row, signal, frame)) continue;
-            const std::uint64_t raw = can::extract(frame.data, signal);
-            const double value = can::to_physical(signal, raw);
-            const double rounding = std::abs(signal.factor);
-            const bool named = can::is_integer(signal) && signal.has_name(can::to_integer(signal, raw));
-            const bool is_safe = signal.says_safe && raw == can::to_raw(signal, signal.safe_value).bits;
-            if (!std::isfinite(value))
-                heard_ = Sentence{
-                    "\"", device, "\": ", row.name, ".", signal.name, " is sent and is not a number"};
-            else if (signal.has_range && !named && !is_safe &&
-                     (value < signal.least - rounding || value > signal.most + rounding))
-                heard_ = Sentence{"\"",
-                                  device,
-                                  "\": ",
-                                  row.name,
-                                  ".",
-                                  signal.name,
-                                  " is sent as ",
-                                  std::int64_t{std::llround(value)},
-                                  ", outside its range"};
-        }
-    }
-}
-
 bool SwarmWires::drives(const Output& output) const {
     return std::ranges::any_of(output.writers, [this](std::size_t c) {
         const ComponentState state = instance_->life().state_of(c);
@@ -246,7 +116,7 @@ Sentence SwarmWires::told(const Output& output, std::uint64_t value) const {
 /// A stopped component leaves what its stop() wrote, or the safe value, and moves no output any more.
 Sentence SwarmWires::broken(Output& output, Time now) const {
     if (output.writers.empty()) return {};
-    const auto value = output.read();
+    const auto value = output.read(now);
     if (Sentence why = told_otherwise(output, value, now); !why.empty()) return why;
     if (!value) return {};
     if (now >= output.excused && output.safe && *value == *output.safe) output.is_meddled = false;
@@ -292,6 +162,7 @@ Sentence SwarmWires::broken(Output& output, Time now) const {
 
 Sentence SwarmWires::broken(Time now) {
     if (!heard_.empty()) return heard_;
+    if (Sentence why = devices_.broken(); !why.empty()) return why;
     if (instance_ == nullptr) return {};
     now_ = now;
     for (Output& each : outputs_)
@@ -308,7 +179,7 @@ Sentence SwarmWires::broken_at_rest(bool by_guardian) const {
     for (const Output& each : outputs_) {
         // The receiver detects by itself when its device could not be reached.
         if (!each.safe || struck_.whole_for(each.driver, never) < Duration{}) continue;
-        if (const auto value = each.read(); value && *value != *each.safe)
+        if (const auto value = each.read(now_); value && *value != *each.safe)
             return told(each, *value)
                 .add(by_guardian ? ", though its guardian made it safe"
                                  : ", though the machine has stopped and reports every device as reached");
@@ -333,7 +204,7 @@ Duration SwarmWires::settles(const std::vector<std::size_t>& writers) const {
 
 void SwarmWires::note_left(const std::vector<std::size_t>& writers, AllLeftBehind& left) const {
     for (const Output& each : outputs_) {
-        const auto value = each.read();
+        const auto value = each.read(now_);
         if (each.writers != writers || !value || drives(each) || !each.left) continue;
         LeftBehind& known = left[each.name];
         if (each.safe && *value == *each.safe) continue;

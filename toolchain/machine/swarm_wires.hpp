@@ -15,10 +15,6 @@
 
 namespace tappet {
 
-namespace modbus {
-struct Register;
-}
-
 /// The value on an output's wire when all its writers were stopped while nothing else happened.
 struct LeftBehind {
     bool holds = false;                  ///< it keeps its previous value
@@ -55,45 +51,23 @@ public:
     /// Records what they left: they have been stopped that long, and nothing else happened.
     void note_left(const std::vector<std::size_t>& writers, AllLeftBehind& left) const;
 
-    /// The values that a wire can express.
-    struct Numbers {
-        double least = 0, most = 0, step = 0;
-    };
-
 private:
-    /// One output at the wires.
-    struct Output {
-        std::size_t driver = 0; ///< the component
-        std::string name{};
+    /// One output at the wires. `settles` is longer than any way from a writer to the wire.
+    struct Output : WireOutput {
+        std::size_t driver = 0;             ///< the component
         std::vector<End> facets{};          ///< of the driver: its input, or the operations that switch it
         std::vector<std::size_t> writers{}; ///< the components that write there, without the driver
-        std::optional<std::uint64_t> safe{};
-        bool is_switch = false; ///< one bit
-        bool is_line = false;
-        Duration settles{};  ///< longer than any way from a writer to the wire
-        Duration recovers{}; ///< additional time after a fault of its driver
-        std::function<std::optional<std::uint64_t>()> read{};
         // State of this machine's life.
         std::optional<std::uint64_t> before{}, left{}; ///< while a writer ran; when all had stopped
         Time since = never;                            ///< since when no writer runs
         Time excused{};
         bool is_meddled = false; ///< somebody sent a request to its driver, and it was not safe since
         // For an output that is sent cyclically from its input.
-        std::size_t goes_in = nowhere; ///< its frame's or request's number
-        bool grows_stale = false;      ///< by its row
-        Numbers numbers{};
-        std::function<double(std::uint64_t)> physical{}; ///< null: another kind of output
-        std::vector<std::size_t> together{};             ///< outputs that go out with it, including itself
+        bool grows_stale = false;            ///< by its row
+        std::vector<std::size_t> together{}; ///< outputs that go out with it, including itself
         double wanted = 0;
         Time wanted_since = never;
         Time told_looked{};
-    };
-    /// A frame that the machine sends: its last one on the wire.
-    struct Sent {
-        std::string_view device;
-        const can::Identifiers* map = nullptr;
-        std::size_t row = 0;
-        std::optional<can::Frame> last{};
     };
     /// An axis of the library, by its facets, and the messages of its drive at the wire.
     struct Axis {
@@ -127,18 +101,11 @@ private:
     void judge_place(Axis& axis, std::string_view device, const can::Frame& frame);
     void hear_homing(Axis& axis, std::string_view device, const can::Frame& frame);
     [[nodiscard]] std::string_view state_of(const Axis& axis) const;
-    void add_lines(std::size_t component);
-    void add_signals(std::size_t component);
-    void add_registers(std::size_t component);
-    /// `events`: what switches it, in place of an input of its name.
-    void add(Output output, std::string_view name, const std::vector<std::string>& events = {});
-    [[nodiscard]] static Numbers numbers_of(const can::Signal& signal);
-    [[nodiscard]] static Numbers numbers_of(const modbus::Register& one);
+    void add(std::size_t driver, WireOutput output);
     void find_together();
     [[nodiscard]] double said(const Output& output) const;
     [[nodiscard]] Sentence told_otherwise(Output& output, const std::optional<std::uint64_t>& value,
                                           Time now) const;
-    void hear(std::string_view device, const can::Frame& frame);
     [[nodiscard]] bool drives(const Output& output) const;
     [[nodiscard]] bool is_forced(const Output& output) const;
     [[nodiscard]] Sentence broken(Output& output, Time now) const;
@@ -151,9 +118,8 @@ private:
     MachineInstance* instance_ = nullptr;
     Time now_{};
     std::vector<Output> outputs_{};
-    std::vector<Sent> sent_{};
     std::vector<Axis> axes_{};
-    Sentence heard_{}; ///< the fault in a frame
+    Sentence heard_{}; ///< the fault in an axis' frame
 };
 
 } // namespace tappet

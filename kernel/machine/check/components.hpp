@@ -83,6 +83,17 @@ constexpr Sentence check_says_stopped_safely(const ComponentRow& row) {
                         "const noexcept TAPPET_REALTIME, which returns true if nothing is driven");
 }
 
+/// Checks that a driver has a device map: start-up opens no device without one.
+constexpr Sentence check_has_device_map(const ComponentRow& row) {
+    if (row.type->device_kind == nullptr || row.type->device_map != nullptr || row.type->shares_device ||
+        row.type->device_kind->is_opened_by_driver)
+        return {};
+    return of_component(row.name, " drives a ", row.type->device_kind->name,
+                        " device but has no device_map, by which start-up opens it; add static constexpr "
+                        "auto device_map, as the kind's classes read it, or shares_device = true if another "
+                        "component drives the device");
+}
+
 /// Checks each component; fills the list by name.
 constexpr Sentence check_components(const MachineView& m, const TableIndexView& r) {
     if (m.components.empty())
@@ -105,6 +116,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
             return of_component(row.name, " drives no device; remove device(\"", row.device, "\")");
         if (Sentence fault = check_says_at_rest(row); !fault.empty()) return fault;
         if (Sentence fault = check_says_stopped_safely(row); !fault.empty()) return fault;
+        if (Sentence fault = check_has_device_map(row); !fault.empty()) return fault;
     }
     if (Sentence fault = check_recorders(m); !fault.empty()) return fault;
     sort_by_name(m, r.by_name);

@@ -35,22 +35,29 @@ struct Restarter {
 };
 struct Camera {
     static constexpr const DeviceKind& device_kind = udp::device_kind;
+    static constexpr int device_map = 0;
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 struct Eye {
     static constexpr const DeviceKind& device_kind = camera::device_kind;
+    static constexpr int device_map = 0;
     static constexpr std::array<std::string_view, 1> size{"160 x 120"};
     static constexpr std::span<const std::string_view> device_lines() { return size; }
     static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 struct Trusted {
     static constexpr const DeviceKind& device_kind = can::device_kind;
+    static constexpr int device_map = 0;
     Output<bool> connected, level;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(output<&Trusted::level>("level", "", "of a line", as_it_was),
                       output<&Trusted::connected>("connected", "", "somebody answers"));
     }
+};
+struct Unopened {
+    static constexpr const DeviceKind& device_kind = can::device_kind;
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
 };
 struct Unsure {
     static constexpr const DeviceKind& device_kind = can::device_kind;
@@ -60,6 +67,7 @@ struct Unsure {
 };
 struct SlowBus {
     static constexpr const DeviceKind& device_kind = can::device_kind;
+    static constexpr int device_map = 0;
     static constexpr Sentence analyse(const DeviceUse& use, std::span<TrafficRow>) {
         return Sentence{"no frame comes through at ", can::bus_facts(use.facts).bit_rate,
                         " bit/s; run it faster"};
@@ -276,6 +284,9 @@ constexpr Fault device_faults[] = {
     {"device_left_as_it_may_be",
      [](Table& m) { m.put(component<Unsure>("encoder", device("main_encoder"))); },
      R"(loom: component "encoder" drives a can device but does not say whether stop() reached it; write bool stopped_safely() const noexcept TAPPET_REALTIME, which returns true if nothing is driven)"},
+    {"device_that_nobody_opens",
+     [](Table& m) { m.put(component<Unopened>("encoder", device("main_encoder"))); },
+     R"(loom: component "encoder" drives a can device but has no device_map, by which start-up opens it; add static constexpr auto device_map, as the kind's classes read it, or shares_device = true if another component drives the device)"},
     {"device_shared_with_nobody",
      [](Table& m) { m.add(component<Restarter>("restarter", device("spare_encoder")), "hall"); },
      R"(loom: component "restarter" shares device "spare_encoder", which no component drives; correct the name)"},

@@ -61,8 +61,10 @@ std::string told(const ProgramRun& run) {
 
 int write_report(const Run& run, const std::string& output) {
     const std::string html = output + "/report.html", json = output + "/figures.json";
-    if (!save(json, merged(run)) || !save(html, page(run, output + "/plots")))
-        return refuse("cannot write below " + output, not_run);
+    const std::string all = merged(run);
+    const auto shown = page(all);
+    if (!shown) return refuse(shown.error(), not_run);
+    if (!save(json, all) || !save(html, *shown)) return refuse("cannot write below " + output, not_run);
     std::cout << '\n' << summary_text(run) << "the page: " << html << "\nthe data: " << json << '\n';
     return score(run).failed == 0 ? all_well : a_program_failed;
 }

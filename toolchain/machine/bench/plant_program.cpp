@@ -116,7 +116,7 @@ public:
         for (const ComponentRow& row : machine.components) {
             if (row.type->device_map == nullptr || row.type->device_kind == nullptr) continue;
             std::unique_ptr<BenchEnd> end = BenchKinds<Kinds>::make(*row.type->device_kind);
-            if (end == nullptr) continue; // a kind of the machine's own, for which no driver exists here
+            if (end == nullptr) continue; // its kind has no end here: the plant refuses if it wants one
             if (auto opened = end->open(place_of(row, board, binding)); !opened)
                 return Sentence{"device \"", row.device, "\": ", opened.error()};
             wires_.push_back(end->provided(row.device));

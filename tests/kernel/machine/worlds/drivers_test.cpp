@@ -9,7 +9,7 @@ namespace {
 
 /// Receives the data written to its descriptor.
 struct Ear {
-    static constexpr DeviceKind device_kind{.name = "test.ear"};
+    static constexpr DeviceKind device_kind{.name = "test.ear", .is_opened_by_driver = true};
     std::atomic<std::uint64_t> heard{0};
     int descriptor = -1;
 
