@@ -15,12 +15,8 @@ Results results;
 void Results::write_all(std::string_view bytes) {
     while (descriptor_ >= 0 && !bytes.empty()) {
         const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-        if (count < 0 && errno == EINTR) {
-            continue;
-        }
-        if (count <= 0) {
-            return;
-        }
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return;
         bytes.remove_prefix(static_cast<std::size_t>(count));
     }
 }
@@ -32,9 +28,7 @@ void give_up(const std::string& reason) {
 }
 
 void must(const init::Done& done) {
-    if (!done) {
-        give_up(done.error());
-    }
+    if (!done) give_up(done.error());
 }
 
 int open_port(const std::string& wanted) {
@@ -43,9 +37,7 @@ int open_port(const std::string& wanted) {
         for (const std::string& port : init::names_in(folder)) {
             if (init::read_line(folder + "/" + port + "/name") == wanted) {
                 const int descriptor = ::open(("/dev/" + port).c_str(), O_RDWR | O_CLOEXEC);
-                if (descriptor >= 0) {
-                    return descriptor;
-                }
+                if (descriptor >= 0) return descriptor;
             }
         }
         init::pause_for(std::chrono::milliseconds(10));

@@ -49,18 +49,15 @@ std::vector<std::string> split(const std::string& line) {
     char quote = 0;
     for (const char c : line) {
         if (quote != 0) {
-            if (c == quote) {
+            if (c == quote)
                 quote = 0;
-            } else {
+            else
                 word += c;
-            }
         } else if (c == '\'' || c == '"') {
             quote = c;
             inside = true;
         } else if (c == ' ' || c == '\t') {
-            if (inside) {
-                words.push_back(word);
-            }
+            if (inside) words.push_back(word);
             word.clear();
             inside = false;
         } else {
@@ -68,9 +65,7 @@ std::vector<std::string> split(const std::string& line) {
             inside = true;
         }
     }
-    if (inside) {
-        words.push_back(word);
-    }
+    if (inside) words.push_back(word);
     return words;
 }
 
@@ -78,9 +73,7 @@ std::string base_name(const std::string& path) { return path.substr(path.rfind('
 
 pid_t start(const std::vector<std::string>& words) {
     const auto pid = init::start(words, console, "was it given to the bench with --file or --tool?");
-    if (!pid) {
-        give_up(pid.error());
-    }
+    if (!pid) give_up(pid.error());
     return *pid;
 }
 
@@ -99,14 +92,11 @@ int wait_for(pid_t wanted) {
     for (;;) {
         int status = 0;
         const pid_t pid = ::waitpid(-1, &status, 0);
-        if (pid == wanted) {
-            return to_exit_code(status);
-        }
-        if (pid > 0) {
+        if (pid == wanted) return to_exit_code(status);
+        if (pid > 0)
             note_end_of(pid, to_exit_code(status));
-        } else if (errno == ECHILD) {
+        else if (errno == ECHILD)
             return 127;
-        }
     }
 }
 
@@ -119,11 +109,8 @@ int report_misuse(const std::string& message) {
 
 BackgroundCommand* find_background(const std::string& name) {
     // Returns the last one with this name, so that a command can be started again.
-    for (auto command = background.rbegin(); command != background.rend(); ++command) {
-        if (command->name == name) {
-            return &*command;
-        }
-    }
+    for (auto command = background.rbegin(); command != background.rend(); ++command)
+        if (command->name == name) return &*command;
     return nullptr;
 }
 
@@ -131,13 +118,9 @@ BackgroundCommand* find_background(const std::string& name) {
 int wait_while(const BackgroundCommand& wanted, const BackgroundCommand& other) {
     while (wanted.pid > 0 && other.pid > 0) {
         int status = 0;
-        if (const pid_t pid = ::waitpid(-1, &status, 0); pid > 0) {
-            note_end_of(pid, to_exit_code(status));
-        }
+        if (const pid_t pid = ::waitpid(-1, &status, 0); pid > 0) note_end_of(pid, to_exit_code(status));
     }
-    if (wanted.pid < 0) {
-        return wanted.exit_code;
-    }
+    if (wanted.pid < 0) return wanted.exit_code;
     ::dprintf(console, "bench: '%s' ended with exit code %d while '%s' was still at work\n",
               other.name.c_str(), other.exit_code, wanted.name.c_str());
     return other.exit_code != 0 ? other.exit_code : 1;
@@ -163,29 +146,24 @@ int run_builtin(const std::vector<std::string>& words) {
         return 0;
     }
     if (name == "@write") {
-        if (write_text(first, second)) {
-            return 0;
-        }
+        if (write_text(first, second)) return 0;
         return report_misuse("@write " + first + ": " + std::strerror(errno));
     }
     if (name == "@link" && (second == "up" || second == "down")) {
-        if (!has_interface(first)) {
+        if (!has_interface(first))
             return report_misuse("@link: there is no interface '" + first + "'; ask for it with --can");
-        }
         must(set_link(first, second == "up"));
         return 0;
     }
     if (name == "@signal" || name == "@wait") {
         collect_ended();
         BackgroundCommand* command = find_background(first);
-        if (command == nullptr) {
+        if (command == nullptr)
             return report_misuse(name + ": no command '" + first + "' was started with '&'");
-        }
         if (name == "@wait" && second == "while") {
             const BackgroundCommand* other = find_background(words.size() > 3 ? words[3] : "");
-            if (other == nullptr) {
+            if (other == nullptr)
                 return report_misuse("@wait NAME while OTHER: OTHER was not started with '&'");
-            }
             return wait_while(*command, *other);
         }
         if (name == "@wait") {
@@ -227,17 +205,14 @@ int run(const std::string& line) {
         in_background = true;
         words.pop_back();
     }
-    if (words.empty()) {
-        return 0;
-    }
+    if (words.empty()) return 0;
     int code = 0;
-    if (words[0].front() == '@') {
+    if (words[0].front() == '@')
         code = run_builtin(words);
-    } else if (in_background) {
+    else if (in_background)
         background.push_back({base_name(words[0]), start(words), -1});
-    } else {
+    else
         code = wait_for(start(words));
-    }
     results.line("done " + std::to_string(code) + " " + line);
     return ignore ? 0 : code;
 }
@@ -256,9 +231,7 @@ void stop_background() {
                 ::kill(command.pid, SIGCONT);
             }
         }
-        for (int attempt = 0; attempt < 200 && running(); ++attempt) {
-            pause_for(milliseconds(10));
-        }
+        for (int attempt = 0; attempt < 200 && running(); ++attempt) pause_for(milliseconds(10));
     }
 }
 
@@ -284,15 +257,14 @@ Manifest read_manifest(const std::string& text) {
         const std::size_t blank = line.find(' ');
         const std::string kind = line.substr(0, blank);
         const std::string rest = blank == std::string::npos ? "" : line.substr(blank + 1);
-        if (kind == "module") {
+        if (kind == "module")
             wanted.modules.push_back(rest);
-        } else if (kind == "run") {
+        else if (kind == "run")
             wanted.commands.push_back(rest);
-        } else if (kind == "collect") {
+        else if (kind == "collect")
             wanted.files.push_back(rest);
-        } else {
+        else
             wanted.devices.emplace_back(kind, rest);
-        }
     }
     return wanted;
 }
@@ -306,14 +278,10 @@ void set_up(const std::string& kind, const std::string& rest) {
     } else if (kind == "camera") { // one, as on USB: its other devices would only take time
         must(load_module(rest, "node_types=1 num_inputs=1 input_types=0"));
     } else if (kind == "unthrottled") {
-        if (const auto stopped = stop_throttling(); !stopped) {
-            give_up(stopped.error());
-        }
+        if (const auto stopped = stop_throttling(); !stopped) give_up(stopped.error());
     } else if (kind == "set") {
         const std::size_t blank = rest.find(' ');
-        if (!write_text(rest.substr(0, blank), rest.substr(blank + 1))) {
-            must(failed("set " + rest));
-        }
+        if (!write_text(rest.substr(0, blank), rest.substr(blank + 1))) must(failed("set " + rest));
     } else {
         give_up("the manifest's word \"" + kind + "\" is unknown; add it to set_up of board/bench/init.cpp");
     }
@@ -331,23 +299,17 @@ void set_up(const std::string& kind, const std::string& rest) {
     console = open_port("tappet.console");
     results.open(open_port("tappet.results"));
     must(set_link("lo", true));
-    for (const auto& [kind, rest] : wanted.devices) {
-        set_up(kind, rest);
-    }
+    for (const auto& [kind, rest] : wanted.devices) set_up(kind, rest);
     results.line("booted");
     say_to_host(start_of_output);
 
     int code = 0;
     for (const std::string& command : wanted.commands) {
         code = run(command);
-        if (code != 0) {
-            break;
-        }
+        if (code != 0) break;
     }
     stop_background();
-    for (const std::string& file : wanted.files) {
-        hand_over(file);
-    }
+    for (const std::string& file : wanted.files) hand_over(file);
     results.line("exit " + std::to_string(code));
 
     // The host answers when it has read everything; only then may the power go.

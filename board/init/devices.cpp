@@ -62,9 +62,7 @@ public:
         std::memcpy(message.data() + NLMSG_LENGTH(0), &body_, sizeof body_);
         std::memcpy(message.data() + NLMSG_LENGTH(sizeof(Body)), attributes_.data(), attributes_.size());
         const int socket = ::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE);
-        if (socket < 0 || ::send(socket, message.data(), message.size(), 0) < 0) {
-            return false;
-        }
+        if (socket < 0 || ::send(socket, message.data(), message.size(), 0) < 0) return false;
         char answer[1024];
         const ssize_t count = ::recv(socket, answer, sizeof answer, 0);
         ::close(socket);
@@ -119,12 +117,9 @@ Done load_module(const std::string& path, const std::string& parameters, Signatu
 // A module fails while a dependency is missing. Dependencies change from kernel to kernel, so it is retried
 // after the others.
 Done load_modules(std::vector<std::string> paths) {
-    while (!paths.empty()) {
-        if (std::erase_if(paths, [](const std::string& path) { return load_module(path).has_value(); }) ==
-            0) {
+    while (!paths.empty())
+        if (std::erase_if(paths, [](const std::string& path) { return load_module(path).has_value(); }) == 0)
             return load_module(paths.front());
-        }
-    }
     return {};
 }
 
@@ -199,9 +194,7 @@ Done create_can(const std::string& name) {
     const std::size_t info = request.begin(IFLA_LINKINFO);
     request.text(IFLA_INFO_KIND, "vcan");
     request.end(info);
-    if (!request.send()) {
-        return failed("create CAN interface " + name);
-    }
+    if (!request.send()) return failed("create CAN interface " + name);
     return set_link(name, true);
 }
 
@@ -209,9 +202,8 @@ Done create_gpio_chip(const std::string& name, const std::string& lines) {
     ::mount("configfs", "/sys/kernel/config", "configfs", 0, nullptr); // it may already be mounted
     const std::string chip = "/sys/kernel/config/gpio-sim/" + name;
     const std::string bank = chip + "/bank0";
-    if (::mkdir(chip.c_str(), 0755) != 0 || ::mkdir(bank.c_str(), 0755) != 0) {
+    if (::mkdir(chip.c_str(), 0755) != 0 || ::mkdir(bank.c_str(), 0755) != 0)
         return failed("create GPIO chip " + name);
-    }
     if (!write_text(bank + "/label", name) || !write_text(bank + "/num_lines", lines) ||
         !write_text(chip + "/live", "1")) {
         return failed("start GPIO chip " + name + " with " + lines + " lines");

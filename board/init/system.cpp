@@ -32,17 +32,14 @@ void close_it(int descriptor) {
 void pause_for(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
 
 void make_folder(const std::string& path) {
-    for (std::size_t at = path.find('/', 1); at != std::string::npos; at = path.find('/', at + 1)) {
+    for (std::size_t at = path.find('/', 1); at != std::string::npos; at = path.find('/', at + 1))
         ::mkdir(path.substr(0, at).c_str(), 0755);
-    }
     ::mkdir(path.c_str(), 0755);
 }
 
 bool write_text(const std::string& path, std::string_view text) {
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        return false;
-    }
+    if (descriptor < 0) return false;
     const ssize_t count = ::write(descriptor, text.data(), text.size());
     close_it(descriptor);
     return count == static_cast<ssize_t>(text.size());
@@ -52,9 +49,8 @@ std::string read_text(const std::string& path) {
     std::string text;
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     char piece[4096];
-    for (ssize_t count = 0; descriptor >= 0 && (count = ::read(descriptor, piece, sizeof piece)) > 0;) {
+    for (ssize_t count = 0; descriptor >= 0 && (count = ::read(descriptor, piece, sizeof piece)) > 0;)
         text.append(piece, static_cast<std::size_t>(count));
-    }
     close_it(descriptor);
     return text;
 }
@@ -68,11 +64,8 @@ std::string read_line(const std::string& path) {
 std::vector<std::string> names_in(const std::string& folder) {
     std::vector<std::string> names;
     if (DIR* open = ::opendir(folder.c_str())) {
-        while (const dirent* entry = ::readdir(open)) {
-            if (entry->d_name[0] != '.') {
-                names.emplace_back(entry->d_name);
-            }
-        }
+        while (const dirent* entry = ::readdir(open))
+            if (entry->d_name[0] != '.') names.emplace_back(entry->d_name);
         ::closedir(open);
     }
     return names;
@@ -88,9 +81,8 @@ Done mount_kernel_files() {
           Place{"tmpfs", "/dev/shm"}, Place{"tmpfs", "/tmp"}, Place{"tmpfs", "/run"},
           Place{"devpts", "/dev/pts"}}) {
         make_folder(path);
-        if (::mount(type, path, type, 0, nullptr) != 0 && errno != EBUSY) {
+        if (::mount(type, path, type, 0, nullptr) != 0 && errno != EBUSY)
             return failed(std::string("mount ") + path);
-        }
     }
     return {};
 }
@@ -105,12 +97,11 @@ std::expected<int, std::string> stop_throttling() {
         return failed(std::string("mount ") + debug_files);
     const std::string servers = std::string(debug_files) + "/sched/fair_server";
     int stopped = 0;
-    for (const std::string& processor : names_in(servers)) {
+    for (const std::string& processor : names_in(servers))
         if (write_text(servers + "/" + processor + "/runtime", "0"))
             ++stopped;
         else if (errno != EBUSY) // the processor is offline
             return failed("write 0 to " + servers + "/" + processor + "/runtime");
-    }
     if (stopped == 0 && mounted) ::umount(debug_files); // nobody else needs it
     return stopped;
 }
@@ -118,12 +109,8 @@ std::expected<int, std::string> stop_throttling() {
 std::expected<pid_t, std::string> start(const std::vector<std::string>& words, int output,
                                         const std::string& cure) {
     const pid_t pid = ::fork();
-    if (pid < 0) {
-        return failed("fork");
-    }
-    if (pid > 0) {
-        return pid;
-    }
+    if (pid < 0) return failed("fork");
+    if (pid > 0) return pid;
     ::setsid();
     ::signal(SIGPIPE, SIG_DFL);
     sigset_t none;
@@ -132,9 +119,7 @@ std::expected<pid_t, std::string> start(const std::vector<std::string>& words, i
     ::dup2(output, STDOUT_FILENO);
     ::dup2(output, STDERR_FILENO);
     std::vector<char*> arguments;
-    for (const std::string& word : words) {
-        arguments.push_back(const_cast<char*>(word.c_str()));
-    }
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     ::execvp(arguments[0], arguments.data());
     ::dprintf(STDERR_FILENO, "cannot run '%s': %s; %s\n", words[0].c_str(), std::strerror(errno),
@@ -146,9 +131,8 @@ int to_exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 
 
 void reap(const std::function<void(pid_t, int)>& ended) {
     int status = 0;
-    for (pid_t pid = ::waitpid(-1, &status, WNOHANG); pid > 0; pid = ::waitpid(-1, &status, WNOHANG)) {
+    for (pid_t pid = ::waitpid(-1, &status, WNOHANG); pid > 0; pid = ::waitpid(-1, &status, WNOHANG))
         ended(pid, to_exit_code(status));
-    }
 }
 
 // The name may contain anything; state and parent follow it.

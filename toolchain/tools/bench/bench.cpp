@@ -42,9 +42,7 @@ double seconds_since(SteadyTime start) {
 // The box has the architecture for which its programs are built.
 const Architecture& architecture_for(const Scenario& scenario) {
     std::vector<fs::path> files;
-    for (const File& file : scenario.files) {
-        files.emplace_back(file.host);
-    }
+    for (const File& file : scenario.files) files.emplace_back(file.host);
     files.emplace_back(scenario.init);
     return architecture_of_first(files);
 }
@@ -65,24 +63,13 @@ void pack(const Scenario& scenario, const Architecture& architecture, const fs::
         root.add(kernel / "modules" / module, "/modules/" + module);
         manifest << (module == "vivid.ko" ? "camera" : "module") << " /modules/" << module << '\n';
     }
-    for (const std::string& name : scenario.can) {
-        manifest << "can " << name << '\n';
-    }
-    for (const GpioChip& chip : scenario.gpio) {
-        manifest << "gpio " << chip.name << ' ' << chip.lines << '\n';
-    }
-    if (scenario.unthrottled) {
-        manifest << "unthrottled\n";
-    }
-    for (const Setting& setting : scenario.settings) {
+    for (const std::string& name : scenario.can) manifest << "can " << name << '\n';
+    for (const GpioChip& chip : scenario.gpio) manifest << "gpio " << chip.name << ' ' << chip.lines << '\n';
+    if (scenario.unthrottled) manifest << "unthrottled\n";
+    for (const Setting& setting : scenario.settings)
         manifest << "set " << setting.path << ' ' << setting.value << '\n';
-    }
-    for (const std::string& command : scenario.commands) {
-        manifest << "run " << command << '\n';
-    }
-    for (const File& file : scenario.collect) {
-        manifest << "collect " << file.guest << '\n';
-    }
+    for (const std::string& command : scenario.commands) manifest << "run " << command << '\n';
+    for (const File& file : scenario.collect) manifest << "collect " << file.guest << '\n';
 
     const fs::path init = scenario.init.empty() ? fs::canonical("/proc/self/exe").parent_path() /
                                                       ("bench-init" + architecture.suffix)
@@ -92,15 +79,9 @@ void pack(const Scenario& scenario, const Architecture& architecture, const fs::
                          "'; build the target bench-init, or give --init");
     }
     root.add(init, "/init");
-    for (const File& file : scenario.files) {
-        root.add(file.host, file.guest);
-    }
-    for (const std::string& tool : scenario.tools) {
-        root.add_tool(tool);
-    }
-    for (const char* folder : {"/proc", "/sys", "/tmp", "/run", "/bench"}) {
-        root.add_folder(folder);
-    }
+    for (const File& file : scenario.files) root.add(file.host, file.guest);
+    for (const std::string& tool : scenario.tools) root.add_tool(tool);
+    for (const char* folder : {"/proc", "/sys", "/tmp", "/run", "/bench"}) root.add_folder(folder);
     root.add_text("/bench/manifest", manifest.str());
     root.finish();
 }
@@ -110,9 +91,7 @@ std::vector<std::string> emulator_arguments(const Scenario& scenario, const Arch
     // The self-tests of the kernel's ciphers would take half of the boot time.
     std::string kernel_arguments =
         "console=" + architecture.console + " quiet panic=-1 rdinit=/init cryptomgr.notests";
-    if (!scenario.kernel_arguments.empty()) {
-        kernel_arguments += " " + scenario.kernel_arguments;
-    }
+    if (!scenario.kernel_arguments.empty()) kernel_arguments += " " + scenario.kernel_arguments;
     std::vector<std::string> arguments = {
         architecture.emulator, "-nodefaults", "-no-user-config", "-display", "none", "-no-reboot",
         // Emulation, even when the host could virtualise: the same on every host, and required by the
@@ -172,22 +151,17 @@ struct Emulator {
     void start(const std::vector<std::string>& arguments, const std::string& package, const fs::path& log) {
         int to[2];
         int from[2];
-        if (::pipe2(to, O_CLOEXEC) != 0 || ::pipe2(from, O_CLOEXEC) != 0) {
+        if (::pipe2(to, O_CLOEXEC) != 0 || ::pipe2(from, O_CLOEXEC) != 0)
             throw BenchError("no pipe left on the host for the emulator");
-        }
         std::vector<char*> words;
-        for (const std::string& argument : arguments) {
-            words.push_back(const_cast<char*>(argument.c_str()));
-        }
+        for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
         words.push_back(nullptr);
         const pid_t parent = ::getpid();
         pid = ::fork();
         if (pid == 0) {
             // The bench may be killed at any time; an emulator left behind would occupy a processor for ever.
             ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-            if (::getppid() != parent) {
-                ::_exit(127);
-            }
+            if (::getppid() != parent) ::_exit(127);
             ::setpgid(0, 0); // the terminal's Ctrl-C is for the bench, which then ends the guest
             const int errors = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
             ::dup2(to[0], STDIN_FILENO);
@@ -202,9 +176,7 @@ struct Emulator {
         ::close(from[1]);
         input = to[1];
         output = from[0];
-        if (pid < 0) {
-            throw BenchError("cannot start another process on the host");
-        }
+        if (pid < 0) throw BenchError("cannot start another process on the host");
     }
 };
 
@@ -214,14 +186,11 @@ std::string tail_of(const fs::path& path) {
     std::vector<std::string> lines;
     for (std::string line; std::getline(file, line);) {
         std::erase_if(line, [](char c) { return static_cast<unsigned char>(c) < ' '; });
-        if (!line.empty()) {
-            lines.push_back(line);
-        }
+        if (!line.empty()) lines.push_back(line);
     }
     std::string text;
-    for (std::size_t i = lines.size() > 8 ? lines.size() - 8 : 0; i < lines.size(); ++i) {
+    for (std::size_t i = lines.size() > 8 ? lines.size() - 8 : 0; i < lines.size(); ++i)
         text += "\n    " + lines[i];
-    }
     return text;
 }
 
@@ -289,32 +258,22 @@ End stream(Emulator& emulator, SteadyTime start, double timeout_s, const Output&
            const Cancelled& cancelled, double& boot_wall_s) {
     std::array<char, 65536> piece{};
     for (;;) {
-        if (cancelled && cancelled()) {
-            return End::cancelled;
-        }
+        if (cancelled && cancelled()) return End::cancelled;
         const double left = (boot_wall_s > 0 ? boot_wall_s + timeout_s : boot_limit_s) - seconds_since(start);
-        if (left <= 0) {
-            return End::timeout;
-        }
+        if (left <= 0) return End::timeout;
         pollfd descriptor{emulator.output, POLLIN, 0};
         const double patience_s = cancelled ? 0.1 : 3600.0;
         const int ready = ::poll(&descriptor, 1, static_cast<int>(std::min(left, patience_s) * 1000) + 1);
-        if (ready <= 0) {
-            continue;
-        }
+        if (ready <= 0) continue;
         const ssize_t count = ::read(emulator.output, piece.data(), piece.size());
-        if (count <= 0) {
-            return End::emulator_gone;
-        }
+        if (count <= 0) return End::emulator_gone;
         std::string_view bytes(piece.data(), static_cast<std::size_t>(count));
         if (boot_wall_s <= 0 && bytes.front() == start_of_output) {
             boot_wall_s = seconds_since(start);
             bytes.remove_prefix(1);
         }
         const std::size_t end = bytes.find(end_of_output);
-        if (!bytes.substr(0, end).empty()) {
-            output(bytes.substr(0, end));
-        }
+        if (!bytes.substr(0, end).empty()) output(bytes.substr(0, end));
         if (end != std::string_view::npos) {
             const char answer = '\n';
             return ::write(emulator.input, &answer, 1) == 1 ? End::complete : End::emulator_gone;

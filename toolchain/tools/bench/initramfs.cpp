@@ -31,9 +31,7 @@ std::string read_file(const fs::path& path) {
 // The loader lists the libraries of a program; for a static program it prints nothing.
 std::string libraries_of(const fs::path& program) {
     int ends[2];
-    if (::pipe(ends) != 0) {
-        throw BenchError("no pipe left on the host to run ldd");
-    }
+    if (::pipe(ends) != 0) throw BenchError("no pipe left on the host to run ldd");
     const pid_t pid = ::fork();
     if (pid == 0) {
         ::dup2(ends[1], STDOUT_FILENO);
@@ -45,9 +43,8 @@ std::string libraries_of(const fs::path& program) {
     ::close(ends[1]);
     std::string text;
     std::array<char, 4096> piece{};
-    for (ssize_t count = 0; (count = ::read(ends[0], piece.data(), piece.size())) > 0;) {
+    for (ssize_t count = 0; (count = ::read(ends[0], piece.data(), piece.size())) > 0;)
         text.append(piece.data(), static_cast<std::size_t>(count));
-    }
     ::close(ends[0]);
     ::waitpid(pid, nullptr, 0);
     return text;
@@ -63,17 +60,13 @@ bool is_ballast(const std::string& folder) {
 } // namespace
 
 fs::path find_program(const std::string& name) {
-    if (name.find('/') != std::string::npos) {
-        return name;
-    }
+    if (name.find('/') != std::string::npos) return name;
     const char* variable = std::getenv("PATH");
     // The distribution's folders come first: other programs on a developer's path may be scripts around them.
     std::istringstream folders("/usr/bin:/usr/sbin:" + std::string(variable != nullptr ? variable : ""));
     for (std::string folder; std::getline(folders, folder, ':');) {
         const fs::path candidate = fs::path(folder) / name;
-        if (::access(candidate.c_str(), X_OK) == 0 && !fs::is_directory(candidate)) {
-            return candidate;
-        }
+        if (::access(candidate.c_str(), X_OK) == 0 && !fs::is_directory(candidate)) return candidate;
     }
     throw BenchError("the program '" + name + "' is not on this machine; run ci/setup once as root");
 }
@@ -90,9 +83,7 @@ Initramfs::Initramfs(const fs::path& archive, const Architecture& architecture)
 }
 
 Initramfs::~Initramfs() {
-    if (archive_ != nullptr) {
-        std::fclose(archive_);
-    }
+    if (archive_ != nullptr) std::fclose(archive_);
 }
 
 void Initramfs::entry(const std::string& guest, unsigned mode, std::string_view content, unsigned major,
@@ -111,24 +102,18 @@ void Initramfs::entry(const std::string& guest, unsigned mode, std::string_view 
 }
 
 void Initramfs::add_folder(const std::string& guest) {
-    if (guest.empty() || guest == "/" || !present_.insert(guest).second) {
-        return;
-    }
+    if (guest.empty() || guest == "/" || !present_.insert(guest).second) return;
     add_folder(guest.substr(0, guest.rfind('/')));
     entry(guest, S_IFDIR | 0755, {});
 }
 
 void Initramfs::add_text(const std::string& guest, std::string_view text) {
     add_folder(guest.substr(0, guest.rfind('/')));
-    if (present_.insert(guest).second) {
-        entry(guest, S_IFREG | 0644, text);
-    }
+    if (present_.insert(guest).second) entry(guest, S_IFREG | 0644, text);
 }
 
 void Initramfs::add_file(const fs::path& host, const std::string& guest) {
-    if (present_.contains(guest)) {
-        return;
-    }
+    if (present_.contains(guest)) return;
     add_folder(guest.substr(0, guest.rfind('/')));
     const std::string content = read_file(host);
     const std::uint16_t elf = elf_machine_of(host);
@@ -140,9 +125,7 @@ void Initramfs::add_file(const fs::path& host, const std::string& guest) {
     present_.insert(guest);
     // Not the file's own mode, which depends on its builder: the same files must give the same archive.
     entry(guest, S_IFREG | (::access(host.c_str(), X_OK) == 0 ? 0755U : 0644U), content);
-    if (elf != 0) {
-        add_libraries(host);
-    }
+    if (elf != 0) add_libraries(host);
 }
 
 void Initramfs::add_libraries(const fs::path& program) {
@@ -176,11 +159,10 @@ void Initramfs::add(const fs::path& host, const std::string& guest) {
     add_folder(guest);
     for (auto item = fs::recursive_directory_iterator(host); item != fs::recursive_directory_iterator();
          ++item) {
-        if (item->is_directory() && is_ballast(item->path().filename().string())) {
+        if (item->is_directory() && is_ballast(item->path().filename().string()))
             item.disable_recursion_pending();
-        } else if (item->is_regular_file()) {
+        else if (item->is_regular_file())
             add_file(item->path(), guest + "/" + fs::relative(item->path(), host).string());
-        }
     }
 }
 
@@ -188,18 +170,15 @@ void Initramfs::add_tool(const std::string& name) {
     const fs::path program = find_program(name);
     add(program, "/bin/" + program.filename().string());
     const std::string interpreter = fs::canonical(program).filename().string();
-    if (interpreter.starts_with("python3.")) {
-        add("/usr/lib/" + interpreter, "/usr/lib/" + interpreter);
-    }
+    if (interpreter.starts_with("python3.")) add("/usr/lib/" + interpreter, "/usr/lib/" + interpreter);
 }
 
 void Initramfs::finish() {
     entry("TRAILER!!!", 0, {});
     const bool complete = std::fclose(archive_) == 0;
     archive_ = nullptr;
-    if (!complete) {
+    if (!complete)
         throw BenchError("the guest's archive could not be written; check the space of the temporary folder");
-    }
 }
 
 } // namespace tappet::bench

@@ -54,9 +54,8 @@ constexpr std::string_view usage = R"(usage: tappet-bench OPTION...
 std::pair<std::string, std::string> parts(const std::string& option, const std::string& value,
                                           char separator) {
     const std::size_t at = value.find(separator);
-    if (at == std::string::npos || at == 0 || at + 1 == value.size()) {
+    if (at == std::string::npos || at == 0 || at + 1 == value.size())
         refuse(option + " needs two parts with '" + separator + "' between them, not '" + value + "'");
-    }
     return {value.substr(0, at), value.substr(at + 1)};
 }
 
@@ -142,9 +141,7 @@ Request parse(int count, char** arguments) {
             refuse("'" + option + " " + arguments[i] + "' is unknown");
         }
     }
-    if (request.scenario.commands.empty()) {
-        refuse("there is nothing to run; give --run");
-    }
+    if (request.scenario.commands.empty()) refuse("there is nothing to run; give --run");
     return request;
 }
 

@@ -53,18 +53,22 @@ public:
     }
     [[nodiscard]] const std::string& place() const { return place_; }
 
+    /// Returns the record at `offset` behind `base`; null: it is not inside the block, or not aligned.
+    template <class Record>
+    [[nodiscard]] const Record* at(std::uint64_t base, std::uint64_t offset) const {
+        const std::span<const std::byte> block = view_.block();
+        const std::uint64_t place = base + offset;
+        const bool inside =
+            offset < block.size() && place <= block.size() && sizeof(Record) <= block.size() - place;
+        return inside && place % alignof(Record) == 0 ? reinterpret_cast<const Record*>(block.data() + place)
+                                                      : nullptr;
+    }
+
     /// Returns "shaft.angle_deg", or "loom.shaft.angle_deg" when there are several machines.
     [[nodiscard]] std::string full_name(std::uint32_t facet) const;
     [[nodiscard]] std::optional<FoundFacet> find(std::string_view full_name) const;
     [[nodiscard]] std::optional<std::uint32_t> find_component(std::string_view name) const;
-    /// Returns ", did you mean \"shaft.angle\"?" or nothing; among the facets for which `wanted` is true.
-    template <class Wanted> [[nodiscard]] std::string suggestion(std::string_view written,
-                                                                 Wanted&& wanted) const {
-        std::vector<std::string> names;
-        for (std::uint32_t i = 0; i < facets_.size(); ++i)
-            if (wanted(facets_[i])) names.push_back(full_name(i));
-        return nearest_of(written, names);
-    }
+    /// Returns ", did you mean \"shaft.angle\"?" or nothing.
     static std::string nearest_of(std::string_view written, std::span<const std::string> names);
     /// Returns the row by which a device's driver gives an input its last value; null: no device does.
     [[nodiscard]] const map::Connection* device_row_of(std::uint32_t facet) const;

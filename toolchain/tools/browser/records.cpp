@@ -14,15 +14,6 @@ constexpr int attempts = 64;
 
 } // namespace
 
-template <class Record> const Record* RecordReader::at(std::uint64_t offset) const {
-    const std::span<const std::byte> block = map_->view().block();
-    const std::uint64_t place = map_->header().report_at + offset;
-    const bool inside =
-        offset < block.size() && place <= block.size() && sizeof(Record) <= block.size() - place;
-    return inside && place % alignof(Record) == 0 ? reinterpret_cast<const Record*>(block.data() + place)
-                                                  : nullptr;
-}
-
 std::expected<RecordReader, std::string> RecordReader::open(const MapReader& map) {
     if (map.header().report_at == 0)
         return std::unexpected("this machine records no values; write a section reporting(report(\"...\")) "

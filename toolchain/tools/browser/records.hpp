@@ -44,7 +44,10 @@ private:
     explicit RecordReader(const MapReader& map) : map_{&map} {}
     [[nodiscard]] std::string check();
     [[nodiscard]] std::string add_channel(const recorded::Channel& channel);
-    template <class Record> [[nodiscard]] const Record* at(std::uint64_t offset) const;
+    template <class Record>
+    [[nodiscard]] const Record* at(std::uint64_t offset) const {
+        return map_->at<Record>(map_->header().report_at, offset);
+    }
     /// Returns the channel's present value, with the number of its next sample; nothing: its activity is
     /// always busy.
     [[nodiscard]] std::optional<RecordedSample> standing(std::uint32_t channel) const;

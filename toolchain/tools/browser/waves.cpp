@@ -52,15 +52,6 @@ std::string WaveActivity::component_of(std::uint32_t function) const {
 
 std::string_view WaveActivity::kind_of(std::uint32_t function) { return kinds[function % kinds.size()]; }
 
-template <class Record> const Record* ScopeReader::at(std::uint64_t offset) const {
-    const std::span<const std::byte> block = map_->view().block();
-    const std::uint64_t place = map_->header().scope_at + offset;
-    const bool inside =
-        offset < block.size() && place <= block.size() && sizeof(Record) <= block.size() - place;
-    return inside && place % alignof(Record) == 0 ? reinterpret_cast<const Record*>(block.data() + place)
-                                                  : nullptr;
-}
-
 std::expected<ScopeReader, std::string> ScopeReader::open(const MapReader& map) {
     if (map.header().scope_at == 0)
         return std::unexpected("this machine records no cycles; add component<ThreadScope>(\"scope\") to its "

@@ -77,7 +77,10 @@ public:
 private:
     explicit ScopeReader(const MapReader& map) : map_{&map} {}
     [[nodiscard]] std::string check();
-    template <class Record> [[nodiscard]] const Record* at(std::uint64_t offset) const;
+    template <class Record>
+    [[nodiscard]] const Record* at(std::uint64_t offset) const {
+        return map_->at<Record>(map_->header().scope_at, offset);
+    }
     [[nodiscard]] bool copy_worst(std::vector<Kept>& into) const;
 
     const MapReader* map_;
