@@ -1,8 +1,8 @@
 // A CAN bus of the host: the machine's controller and the plant's, with the wire between them.
 #pragma once
 
-#include "drivers/can/sent_frames.hpp"
 #include "drivers/can/signal_map.hpp"
+#include "drivers/can/simulated_frames.hpp"
 #include "drivers/can/twin.hpp"
 #include "drivers/can/twin_bus.hpp"
 #include "drivers/twin/simulated_device.hpp"

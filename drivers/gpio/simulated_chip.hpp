@@ -3,8 +3,8 @@
 
 #include "drivers/gpio/line_map.hpp"
 #include "drivers/gpio/twin.hpp"
-#include "drivers/twin/judged.hpp"
 #include "drivers/twin/simulated_device.hpp"
+#include "drivers/twin/simulated_outputs.hpp"
 
 namespace tappet::gpio {
 

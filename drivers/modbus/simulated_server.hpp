@@ -3,8 +3,8 @@
 
 #include "drivers/modbus/register_map.hpp"
 #include "drivers/modbus/twin.hpp"
-#include "drivers/twin/judged.hpp"
 #include "drivers/twin/simulated_device.hpp"
+#include "drivers/twin/simulated_outputs.hpp"
 #include "kernel/base/random.hpp"
 
 namespace tappet::modbus {

@@ -2,7 +2,7 @@
 // wires.
 #pragma once
 
-#include "drivers/twin/judged.hpp"
+#include "drivers/twin/simulated_outputs.hpp"
 #include "kernel/component/device_kind.hpp"
 #include "kernel/component/setup.hpp"
 #include "kernel/component/wire_counters.hpp"

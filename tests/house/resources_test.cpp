@@ -148,8 +148,9 @@ Uses heap_users(const Tree& files) {
     Uses uses;
     for (const File& file : files) {
         if (!file.is_under("kernel") && !file.is_under("drivers")) continue;
-        if (file.is_under("drivers") && file.name().starts_with("bench_"))
-            continue; // part of the plant: no firmware contains them
+        if (file.is_under("drivers") &&
+            (file.name().starts_with("bench_") || file.name().starts_with("simulated_")))
+            continue; // part of a plant, or a twin of the host: no firmware contains them
         for (std::size_t i = 0; i < file.code.size(); ++i)
             for (const std::string_view word : words) {
                 if (!says(file.code[i], word)) continue;

@@ -7,8 +7,8 @@
 namespace tappet {
 
 /// Writes the tables of board and binding, one word and its values per line, without line end:
-/// "device can can0 500000". The image's writer stores them in the image. Lists only the board's devices that the machine is
-/// bound to.
+/// "device can can0 500000". The image's writer stores them in the image. Lists only the board's devices that
+/// the machine is bound to.
 void describe_board(const AcceptedMachine& machine, void* to, void (*line)(void* to, std::string_view));
 
 } // namespace tappet

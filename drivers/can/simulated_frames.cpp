@@ -1,5 +1,5 @@
 // The machine's map says what a frame may contain.
-#include "drivers/can/sent_frames.hpp"
+#include "drivers/can/simulated_frames.hpp"
 
 #include <cmath>
 #include <limits>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
-#include "drivers/twin/judged.hpp"
+#include "drivers/twin/simulated_outputs.hpp"
 
 #include <string_view>
 #include <vector>
