@@ -42,23 +42,23 @@ TwinFault SimulatedChip::strike(Random& random, Time now, bool /*with_any_values
 TwinFault SimulatedChip::strike_line(Random& random, Time now, std::uint64_t what, std::size_t line) {
     LineFaults& faults = twin.faults(line);
     const auto many = static_cast<std::uint32_t>(random.between(1, 4));
-    const auto struck = [&](std::string_view fault, const Sentence& what) {
+    const auto struck = [&](std::string_view fault, const auto&... words) {
         return TwinFault{fault,
-                         {Sentence{"lines \"", name, "\": \"", map_[line].line.name, "\" ", what}},
+                         {Sentence{"lines \"", name, "\": \"", map_[line].line.name, "\" ", words...}},
                          [&faults](Time) { return faults = {}, true; },
                          false};
     };
     switch (what) {
-    case 2: faults.lose_next = many; return struck("line loses edges", {"loses ", many, " edges"});
-    case 3: faults.lose_one_in = many; return struck("line loses edges", {"loses one edge in ", many});
-    case 4: faults.bounces = many; return struck("line bounces", {"bounces ", many, " times"});
+    case 2: faults.lose_next = many; return struck("line loses edges", "loses ", many, " edges");
+    case 3: faults.lose_one_in = many; return struck("line loses edges", "loses one edge in ", many);
+    case 4: faults.bounces = many; return struck("line bounces", "bounces ", many, " times");
     case 5:
         faults.delay = Duration{random.between(1'000, 10'000'000)};
-        return struck("line is late", {"is ", faults.delay / 1us, " us late"});
+        return struck("line is late", "is ", faults.delay / 1us, " us late");
     default: {
         const bool level = random.one_in(2);
         twin.stick(line, level, now);
-        TwinFault fault = struck("line sticks", {level ? "sticks active" : "sticks inactive"});
+        TwinFault fault = struck("line sticks", level ? "sticks active" : "sticks inactive");
         fault.end = [this, line](Time at) { return twin.release(line, at), true; };
         return fault;
     }
