@@ -20,10 +20,10 @@ constexpr auto weighing = machine("weighing", components(component<Scale>("scale
                                   activities(activity("scale", every(10ms), runs("scale"), budget(20us))),
                                   connections(), reactions(), behaviours());
 constexpr Board box = [] {
-    Board box = board;
-    box.simulated = false;
-    box.devices = board_devices(board_device("scale0", "test.scale", "/dev/null"));
-    return box;
+    Board real = board;
+    real.simulated = false;
+    real.devices = board_devices(board_device("scale0", "test.scale", "/dev/null"));
+    return real;
 }();
 constexpr Binding on_box = binding(wired("belt-scale", "scale0"));
 
