@@ -76,7 +76,7 @@ int write_on_serial(modbus_t* m, Table table, std::uint16_t address,
     const auto low = [](std::size_t number) { return static_cast<std::uint8_t>(number & 0xFF); };
     std::array<std::uint8_t, 7 + 2 * most_in_write> request{
         low(static_cast<std::size_t>(modbus_get_slave(m))),
-        low(table == Table::coils ? MODBUS_FC_WRITE_MULTIPLE_COILS : MODBUS_FC_WRITE_MULTIPLE_REGISTERS),
+        low(function_code(table, true)),
         low(address >> 8u),
         low(address),
         0,

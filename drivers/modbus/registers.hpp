@@ -24,6 +24,13 @@ constexpr std::string_view name_of(Table table) noexcept {
     return names[static_cast<std::size_t>(table)];
 }
 
+/// Returns the function code of the client's requests (Modbus application protocol 1.1b3, section 6).
+constexpr unsigned function_code(Table table, bool write) noexcept {
+    if (write) return holds_bits(table) ? 15 : 16;
+    constexpr std::array<unsigned, 4> reads{1, 2, 4, 3};
+    return reads[static_cast<std::size_t>(table)];
+}
+
 enum class Kind : std::uint8_t {
     bit,
     unsigned_word,

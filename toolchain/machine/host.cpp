@@ -8,6 +8,7 @@
 #include "toolchain/machine/host_options.hpp"
 #include "toolchain/machine/reasons.hpp"
 #include "toolchain/machine/summary.hpp"
+#include "toolchain/machine/wires_text.hpp"
 #include "toolchain/version.hpp"
 
 #include <cstdio>
@@ -246,6 +247,10 @@ int run_host(const AcceptedMachine& machine,
     if (options->has("--plan")) {
         describe_plan(machine, nullptr,
                       [](void*, std::string_view line) { os::print(Sentence{line, "\n"}.view()); });
+        return end_of_output(machine.table.name);
+    }
+    if (options->has("--wires")) {
+        os::print(describe_wires(machine.table));
         return end_of_output(machine.table.name);
     }
     if (options->has("--quiet") && std::freopen("/dev/null", "w", stdout) == nullptr) return wrong_set_up;

@@ -32,6 +32,7 @@ inline constexpr std::array host_options{
     Option{"--quiet", "", "hides what the machine's components print, but not faults"},
     Option{"--plan", "",
            "prints what the compiler derived from the table: priorities, order, mailboxes, memory"},
+    Option{"--wires", "", "prints a value of each CAN signal and Modbus register with its bytes on the wire"},
     Option{"--help", "", "this text"}};
 
 } // namespace tappet

@@ -212,6 +212,12 @@ int chart(const Given& given) {
     return become(program);
 }
 
+int wires(const Given& given) {
+    const std::string machine = machine_here(given);
+    if (machine.empty()) return wrong_use;
+    return is_built({machine}) ? become({"build/" + machine, "--wires"}) : 1;
+}
+
 /// Shows the figures; in a clone, those of the framework.
 int figures(const Given& given) {
     if (fs::exists("ci/figures")) return become(with({"ci/figures"}, given.words));
@@ -250,6 +256,7 @@ constexpr std::array<Option, n + 1> for_a_machine(const std::array<Option, n>& o
     std::ranges::copy(options, all.begin() + 1);
     return all;
 }
+constexpr std::array machine_options{machine_option};
 constexpr std::array new_options{Option{"--can", "", "a drive on a CAN bus"},
                                  Option{"--gpio", "", "digital lines, in every machine"},
                                  Option{"--modbus", "", "a unit behind Modbus TCP"},
@@ -290,6 +297,11 @@ constexpr Command commands[] = {
      .others = Others::words,
      .kinds = chart::chart_words,
      .run = &chart},
+    {.name = "wires",
+     .takes = "",
+     .help = "prints a value of each CAN signal and Modbus register with its bytes on the wire",
+     .options = machine_options,
+     .run = &wires},
     {.name = "figures",
      .takes = "",
      .help =

@@ -24,8 +24,8 @@ using testing::Not;
 using testing::StartsWith;
 namespace fs = std::filesystem;
 
-const std::vector<std::string> every_word{"new",   "build", "run",    "test", "chart",  "figures", "bench",
-                                          "image", "flash", "update", "box",  "browse", "scope"};
+const std::vector<std::string> every_word{"new",   "build", "run",   "test",   "chart", "wires",  "figures",
+                                          "bench", "image", "flash", "update", "box",   "browse", "scope"};
 
 /// Runs in a new machine's folder, which is removed after the test.
 struct Door : testing::Test {
