@@ -6,6 +6,7 @@
 
 #include "toolchain/machine/host.hpp"
 #include "toolchain/machine/on_host.hpp"
+#include "toolchain/machine/raw_wires.hpp"
 #include "toolchain/machine/test_names.hpp"
 
 #include <gtest/gtest.h>
@@ -25,6 +26,7 @@ struct MachineTest : testing::Test {
     void SetUp() override {
         const auto started = run.start();
         ASSERT_TRUE(started) << started.error().view();
+        raw_.look_at(run.devices());
     }
     void TearDown() override {
         run.judge_by({}); // its captures lived in the test's body
@@ -64,8 +66,28 @@ struct MachineTest : testing::Test {
         return run.run_until(is_there, within);
     }
 
+    /// Returns the data bytes of the last frame on the bus, whoever sent it, for a comparison with the
+    /// device's manual: EXPECT_EQ(frame_on("press-can", can::standard(0x201)), "98 3A"). A bus that the
+    /// machine lacks fails the case.
+    [[nodiscard]] std::string frame_on(std::string_view bus, tappet::can::Identifier id) {
+        const auto fault = tappet::check_device(run.instance(), bus, "can");
+        if (!fault.empty()) ADD_FAILURE() << fault.view();
+        return raw_.frame_on(bus, id);
+    }
+    /// Returns the words or bits of a Modbus server, written by the plant or by the machine:
+    /// EXPECT_EQ(words_at("press-unit", modbus::input_registers(0, 1)), "01A4"). A server that the machine
+    /// lacks fails the case.
+    [[nodiscard]] std::string words_at(std::string_view server, const tappet::modbus::Run& run_of_words) {
+        const auto fault = tappet::check_device(run.instance(), server, "modbus");
+        if (!fault.empty()) ADD_FAILURE() << fault.view();
+        return fault.empty() ? raw_.words_at(server, run_of_words) : std::string{};
+    }
+
     Plant plant;
     tappet::VirtualRun run;
+
+private:
+    tappet::RawWires raw_;
 };
 
 } // namespace TAPPET_NAMESPACE

@@ -1,6 +1,7 @@
 // Looks names up as the table's check does.
 #include "toolchain/machine/test_names.hpp"
 
+#include "drivers/hardware/devices.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/statechart/execution.hpp"
 
@@ -34,6 +35,18 @@ Sentence check_state(const MachineInstance& machine, std::string_view component,
     }
     Sentence fault{"the state machine of \"", component, "\" has no state \"", state, "\""};
     detail::add_suggestion(fault, nearest, "its rows state(...) list them");
+    return fault;
+}
+
+Sentence check_device(const MachineInstance& machine, std::string_view device, std::string_view kind) {
+    Nearest nearest{device};
+    for (const ComponentRow& each : machine.machine().table.components) {
+        if (!drives(each, kind)) continue;
+        if (each.device == device) return {};
+        nearest.consider(each.device);
+    }
+    Sentence fault{"the machine drives no ", kind, " device \"", device, "\""};
+    detail::add_suggestion(fault, nearest, "its table lists them, device(\"..\")");
     return fault;
 }
 

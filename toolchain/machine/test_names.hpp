@@ -14,6 +14,11 @@ namespace tappet {
 [[nodiscard]] Sentence check_state(const MachineInstance& machine, std::string_view component,
                                    std::string_view state);
 
+/// Returns why the machine drives no such device of that kind, "can" or "modbus"; empty: it does. Not
+/// real-time.
+[[nodiscard]] Sentence check_device(const MachineInstance& machine, std::string_view device,
+                                    std::string_view kind);
+
 /// Returns whether the state is active: the innermost one, or one that encloses it. Not real-time.
 [[nodiscard]] bool is_in_state(const MachineInstance& machine, std::string_view component,
                                std::string_view state);

@@ -22,11 +22,6 @@ std::string joined(const Parts&... parts) {
     (out << ... << parts);
     return out.str();
 }
-std::string hex(std::uint64_t number, int digits) {
-    std::ostringstream out;
-    out << std::hex << std::uppercase << std::setw(digits) << std::setfill('0') << number;
-    return out.str();
-}
 std::string padded(std::string words, std::size_t width) {
     words.resize(std::max(words.size() + 1, width), ' ');
     return words;
@@ -66,7 +61,7 @@ public:
                 is_covered[can::bit_place(map_.signals[s], i) / 8] = true;
         std::string bytes;
         for (std::size_t i = 0; i < frame.length; ++i)
-            bytes += is_covered[i] ? hex(frame.data[i], 2) + " " : "-- ";
+            bytes += is_covered[i] ? in_hex(frame.data[i], 2) + " " : "-- ";
         for (std::size_t s = 0; s + 1 < count_; ++s)
             bytes += joined(s == 0 ? " while " : " and ", map_.signals[s].name, " is ", store_.integer(s));
         return line_of(map_.signals[count_ - 1], store_.physical(count_ - 1), std::move(bytes));
@@ -100,7 +95,7 @@ std::string describe_bus(const can::Identifiers& map) {
         constexpr std::array way{"received", "sent", "between other nodes"};
         const auto [id, is_extended] = row.identifier;
         all += joined(
-            "  0x", hex(id, is_extended ? 8 : 3), is_extended ? " extended, " : " standard, ",
+            "  0x", in_hex(id, is_extended ? 8 : 3), is_extended ? " extended, " : " standard, ",
             unsigned{row.length}, row.format == can::Format::classical ? " bytes, " : " bytes CAN FD, ",
             way[static_cast<std::size_t>(row.direction)],
             row.every > Duration::zero() ? " every " + in_ms(row.every) : " on demand", ": ", row.name, "\n");
@@ -117,7 +112,8 @@ std::string describe_register(const modbus::Row& row, const modbus::Register& on
     if (encoded.words == modbus::Words{}) encoded = modbus::to_words(one, one.offset + one.factor);
     std::string wire = joined(row.run.address + one.at, ": ");
     for (unsigned w = 0; w < one.width(); ++w)
-        wire += modbus::holds_bits(row.run.table) ? joined(encoded.words[w]) : hex(encoded.words[w], 4) + " ";
+        wire +=
+            modbus::holds_bits(row.run.table) ? joined(encoded.words[w]) : in_hex(encoded.words[w], 4) + " ";
     return line_of(one, modbus::to_physical(one, encoded.words), std::move(wire));
 }
 
@@ -135,6 +131,12 @@ std::string describe_server(const modbus::SafeWrites& map) {
 }
 
 } // namespace
+
+std::string in_hex(std::uint64_t number, int digits) {
+    std::ostringstream out;
+    out << std::hex << std::uppercase << std::setw(digits) << std::setfill('0') << number;
+    return out.str();
+}
 
 std::string describe_wires(const MachineView& table) {
     std::string all;

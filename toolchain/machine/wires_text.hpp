@@ -12,4 +12,7 @@ namespace tappet {
 /// that the row can express. The drivers' own encoders compute the bytes. Not real-time.
 [[nodiscard]] std::string describe_wires(const MachineView& table);
 
+/// Returns the number in hexadecimal digits, with zeros before it. Not real-time.
+[[nodiscard]] std::string in_hex(std::uint64_t number, int digits);
+
 } // namespace tappet

@@ -37,9 +37,10 @@ std::string filled(std::string_view text, const Choice& choice) {
         bool stays;
     };
     const bool bus = choice.can || choice.cam; // the shaft's encoder is on CAN
-    const Tag tags[] = {{"@bus ", bus},           {"@nobus ", !bus},           {"@can ", choice.can},
-                        {"@nocan ", !choice.can}, {"@modbus ", choice.modbus}, {"@nomodbus ", !choice.modbus},
-                        {"@cam ", choice.cam},    {"@nocam ", !choice.cam}};
+    const Tag tags[] = {
+        {"@bus ", bus},           {"@nobus ", !bus},           {"@can ", choice.can},
+        {"@nocan ", !choice.can}, {"@modbus ", choice.modbus}, {"@nomodbus ", !choice.modbus},
+        {"@cam ", choice.cam},    {"@nocam ", !choice.cam},    {"@map ", bus || choice.modbus}};
     std::string result;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;

@@ -21,8 +21,8 @@ struct Choice {
 [[nodiscard]] std::string write_project(const std::filesystem::path& templates, const Choice& choice);
 
 /// Fills in a template's text for a choice: @NAME@ and @TITLE@ stand for its names. A line that begins with
-/// @can, @modbus, @cam or @bus (CAN, for one of the two) is kept if it was chosen, one with @nocan and so on
-/// if not; a line with several is kept if all apply.
+/// @can, @modbus, @cam, @bus (CAN, for a drive or a shaft) or @map (any of them) is kept if it was chosen,
+/// one with @nocan and so on if not; a line with several is kept if all apply.
 [[nodiscard]] std::string filled(std::string_view text, const Choice& choice);
 
 /// Returns the name of each tappet_machine(..) of a project, at least one. The error includes the cure.

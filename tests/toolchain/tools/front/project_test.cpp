@@ -50,10 +50,11 @@ TEST(Template, keeps_the_lines_of_a_choice_and_fills_its_names_in) {
 }
 
 TEST(Template, keeps_a_line_when_all_its_choices_were_made) {
-    constexpr std::string_view text = "@can @cam both\n@can @nocam drive\n@bus wire\n@nobus none\n";
-    EXPECT_EQ(filled(text, {.name = "a", .can = true, .cam = true}), "both\nwire\n");
-    EXPECT_EQ(filled(text, {.name = "a", .can = true}), "drive\nwire\n");
-    EXPECT_EQ(filled(text, {.name = "a", .cam = true}), "wire\n") << "a shaft's encoder is on the bus";
+    constexpr std::string_view text = "@can @cam both\n@can @nocam drive\n@bus wire\n@nobus none\n@map map\n";
+    EXPECT_EQ(filled(text, {.name = "a", .can = true, .cam = true}), "both\nwire\nmap\n");
+    EXPECT_EQ(filled(text, {.name = "a", .can = true}), "drive\nwire\nmap\n");
+    EXPECT_EQ(filled(text, {.name = "a", .cam = true}), "wire\nmap\n") << "a shaft's encoder is on the bus";
+    EXPECT_EQ(filled(text, {.name = "a", .modbus = true}), "none\nmap\n");
     EXPECT_EQ(filled(text, {.name = "a"}), "none\n");
 }
 
@@ -71,9 +72,9 @@ TEST_F(Folder, gets_a_whole_machine_in_few_lines) {
         Choice choice;
         std::ptrdiff_t lines;
     } projects[] = {{{"lines"}, 130},
-                    {{"on_can", true}, 150},
-                    {{"on_modbus", true, true}, 165},
-                    {{"with_all", true, true, true}, 185}};
+                    {{"on_can", true}, 155},
+                    {{"on_modbus", true, true}, 171},
+                    {{"with_all", true, true, true}, 193}};
     for (const auto& [choice, lines] : projects) {
         ASSERT_THAT(write_project(TAPPET_TEMPLATE, choice), IsEmpty());
         const auto written = lines_of(choice.name);
