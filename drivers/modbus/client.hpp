@@ -94,9 +94,10 @@ template <const auto& map> struct Client {
         std::size_t n = 0;
         for (std::size_t v = 0; v < count; ++v) {
             const std::string_view name = ValueNames<map>::all[v].view(), unit = map.registers[v].unit;
-            list[n++] = is_written(v) ? nth_input<&Client::wanted>(v, name, unit, "written to the server")
-                                      : nth_output<&Client::read>(v, name, unit, "read from the server",
-                                                                  comes_every(map.rows[map.row_of[v]].every));
+            const auto every = comes_every(map.rows[map.row_of[v]].every);
+            list[n++] = is_written(v)
+                            ? nth_input<&Client::wanted>(v, name, unit, "written to the server", every)
+                            : nth_output<&Client::read>(v, name, unit, "read from the server", every);
         }
         list[n++] = output<&Client::connected>("connected", "", "the server answers", while_stopped(false));
         list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");

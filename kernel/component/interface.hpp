@@ -46,7 +46,8 @@ inline constexpr GrowsStale grows_stale{};
 struct NeedsWake {};
 inline constexpr NeedsWake needs_wake{};
 /// States that an output's values come from outside in this period: its rows say stale_after(...), and a
-/// longer time. 0: they come at any time.
+/// longer time. An input's values go outside in this period. A periodic activity is at least as fast. 0: at
+/// any time.
 struct ComesEvery {
     Duration period;
 };

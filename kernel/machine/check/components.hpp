@@ -231,6 +231,17 @@ constexpr Sentence check_loop(const ActivityRow& row, std::string_view name, con
     return {};
 }
 
+/// Checks that the activity is as fast as a value of its map, "comes_every": a map's period that the activity
+/// does not keep is a promise without effect.
+constexpr Sentence check_outside(const ActivityRow& row, std::string_view component, const Facet& facet) {
+    if (facet.comes_every == Duration::zero() || !row.periodic() || row.period <= facet.comes_every)
+        return {};
+    return of_activity(
+        row.name, " runs every ", row.period.count() / 1000, " us, but \"", component, ".", facet.name,
+        "\" crosses the wire every ", facet.comes_every.count() / 1000,
+        " us by its map; shorten the activity's period, or lengthen the every(...) of the map");
+}
+
 /// Checks each activity; fills the activity of each component.
 constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
     for (auto& each : r.activity) each = nowhere;
@@ -250,12 +261,14 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
                 return of_component(name, " is run by activity \"", m.activities[r.activity[c]].name,
                                     "\" and by activity \"", row.name, "\"; keep it in one");
             r.activity[c] = a;
-            for (const auto& facet : m.components[c].type->facets)
+            for (const auto& facet : m.components[c].type->facets) {
+                if (Sentence fault = check_outside(row, name, facet); !fault.empty()) return fault;
                 if (facet.kind == FacetKind::timer && row.real_time && row.periodic())
                     return of_activity(row.name, " is periodic but component \"", name, "\" has the timer \"",
                                        facet.name,
                                        "\", which runs between periods; run it on_work() with at_most(n, "
                                        "per), so that the analysis counts it");
+            }
             if (Sentence fault = check_loop(row, name, *m.components[c].type); !fault.empty()) return fault;
             if (m.components[c].type->work != nullptr && row.real_time)
                 return of_activity(

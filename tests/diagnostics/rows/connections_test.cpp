@@ -134,6 +134,8 @@ constexpr Fault option_faults[] = {
          add_wire(m, data("wire.level", "hearer.loud", stale_after(10ms), hold));
      },
      R"(loom: connection "wire.level" -> "hearer.loud": stale_after(10000 us) is not longer than the 10000 us in which "wire.level" comes, so that good values would be stale; lengthen it)"},
+    {"row_from_outside_in_a_slower_activity", [](Table& m) { m.add(component<Wire>("wire"), "hall"); },
+     R"(loom: activity "hall" runs every 250000 us, but "wire.level" crosses the wire every 10000 us by its map; shorten the activity's period, or lengthen the every(...) of the map)"},
     {"row_stale_before_its_writer_writes_again",
      [](Table& m) { m.connections[1] = data("shaft.speed", "tension.speed", stale_after(1ms), hold); },
      R"(loom: connection "shaft.speed" -> "tension.speed": stale_after(1000 us) is not longer than the period of 1000 us of its writer's activity "motion", so that good values would be stale; lengthen it)"},
