@@ -98,6 +98,9 @@ struct PortFilter {
 /// counted here.
 using DroppedWrites = std::atomic<std::uint32_t>;
 
+/// The clock of a port before its machine connects the ports of the component's interface.
+inline constexpr Time no_clock{};
+
 /// An output port. Written only by its own component, from its own activity. From the end of the component's
 /// stop() to its next start() a write is dropped and counted: the values that stop() left stay. Real-time.
 template <class T>
@@ -204,7 +207,7 @@ private:
 
     alignas(place_alignment<Sample<T>>) Sample<T> last_{};
     std::uint64_t generation_ = 0;
-    const Time* now_ = &detail_epoch;
+    const Time* now_ = &no_clock;
     bool inside_only_ = false; ///< only readers of its own activity, and the value is the component's
     bool forced_ = false;
     DataObject<Sample<T>>* shared_ = nullptr;
@@ -216,8 +219,6 @@ private:
     Time hidden_stamp_{};   ///< and the time at which it was true
     Life hidden_life_ = never_lived;
     Life life_ = first_life; ///< of the values that its component writes
-
-    static constexpr Time detail_epoch{};
 };
 
 /// An input port. Read only by its own component, from its own activity. Real-time.
@@ -489,7 +490,7 @@ private:
     mutable Time ahead_{}, seen_ahead_at_{};  ///< the last stamp that was ahead, and when it was seen first
     mutable std::uint64_t ahead_of_ = 0;      ///< the number of that value
     Duration max_age_{};
-    const Time* now_ = &Output<T>::detail_epoch;
+    const Time* now_ = &no_clock;
     alignas(place_alignment<T>) T substitute_ = default_value<T>();
     alignas(place_alignment<T>) T before_first_ = default_value<T>();
 };

@@ -3,6 +3,7 @@
 #include "kernel/machine/plan/scope_layout.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <new>
 
 namespace tappet {
@@ -39,6 +40,7 @@ std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevi
     place_engines();
     place_scope();
     connect_clocks();
+    if (const Sentence fault = find_unlisted_port(); !fault.empty()) return std::unexpected(fault);
     connect_data();
     connect_extras();
     place_needed_inputs();
@@ -182,6 +184,49 @@ void MachineBuilder::connect_clocks() {
             if (facets[f].kind == FacetKind::input || facets[f].kind == FacetKind::output)
                 facets[f].port->set_clock(instance_.facet({c, f}), facets[f].kind == FacetKind::input, now);
     }
+}
+
+/// Finds a port that its component's interface() does not list: it still has the clock with which it was
+/// made. A driver has more ports than its map's rows need.
+Sentence MachineBuilder::find_unlisted_port() const {
+    for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
+        const ComponentRow& row = machine_.table.components[c];
+        if (row.type->device_kind != nullptr) continue;
+        const auto* const memory = static_cast<const std::byte*>(instance_.component(c));
+        for (std::size_t at = 0; at + sizeof(const Time*) <= row.type->size; at += alignof(const Time*)) {
+            const void* clock = nullptr;
+            std::memcpy(&clock, memory + at, sizeof clock);
+            if (clock == &no_clock)
+                return Sentence{"component \"",
+                                row.name,
+                                "\": its type ",
+                                row.type->tag->name,
+                                " has a port",
+                                place_among_members(c, memory + at),
+                                " that interface() does not list, so that no row can connect it; list it, "
+                                "input<..> or output<..>, or remove it"};
+        }
+    }
+    return {};
+}
+
+/// Describes an address in a component by the listed members around it.
+Sentence MachineBuilder::place_among_members(std::size_t c, const std::byte* address) const {
+    const auto facets = machine_.table.components[c].type->facets;
+    const auto* const memory = static_cast<const std::byte*>(instance_.component(c));
+    const std::byte* below = nullptr;
+    const std::byte* above = nullptr;
+    std::string_view before, behind;
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        const auto* const member = static_cast<const std::byte*>(instance_.place_of({c, f}));
+        if (member < memory || member >= memory + machine_.table.components[c].type->size) continue;
+        if (member < address && (below == nullptr || member > below)) below = member, before = facets[f].name;
+        if (member > address && (above == nullptr || member < above)) above = member, behind = facets[f].name;
+    }
+    Sentence text;
+    if (below != nullptr) text.add(" behind \"").add(before).add("\"");
+    if (above != nullptr) text.add(below != nullptr ? " and" : "").add(" before \"").add(behind).add("\"");
+    return text;
 }
 
 bool MachineBuilder::has_initial(std::size_t connection) const noexcept {

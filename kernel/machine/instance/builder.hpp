@@ -32,6 +32,8 @@ private:
     void place_engines();
     void place_scope();
     void connect_clocks();
+    [[nodiscard]] Sentence find_unlisted_port() const;
+    [[nodiscard]] Sentence place_among_members(std::size_t c, const std::byte* address) const;
 
     [[nodiscard]] Sentence check_constants() const;
     void connect_data();
