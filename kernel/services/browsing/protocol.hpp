@@ -69,7 +69,7 @@ using tappet::to_text;
     X(map,         observer,         0, 0,         "", \
       R"("bytes": n, and one file descriptor (SCM_RIGHTS), to be mapped read-only: kernel/machine/map/layout.hpp)") \
     X(get,         observer,         1, browsing::max_words, " NAME...", \
-      R"("values": [{"name": "...", "value": .., "flow": "fresh|stale|never_written", "forced": true|false, "time_ns": T}])") \
+      R"("values": [{"name": "...", "value": .., "flow": "fresh|stale|never_written|never_read", "forced": true|false, "time_ns": T}])") \
     X(subscribe,   observer,         1, 1,         " EVENT", "") \
     X(unsubscribe, observer,         1, 1,         " EVENT", "") \
     X(forced,      observer,         0, 0,         "", R"("forced": ["NAME", ..])") \

@@ -104,13 +104,21 @@ void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
     reply.value(*facet.type, value.data());
     if (facet.port != nullptr) {
         Duration max_age{};
-        for (const map::Connection& row : view->connections())
-            if (&view->facets()[row.to] == &record) max_age = Duration{row.max_age_ns};
+        bool was_written = false; // an input's `writes` counts only the values that its component read
+        for (const map::Connection& row : view->connections()) {
+            if (&view->facets()[row.to] != &record) continue;
+            max_age = Duration{row.max_age_ns};
+            was_written |= view->word<std::uint64_t>(view->facets()[row.from].writes_at) != 0;
+        }
         // A reader that is stopped, or hangs, reads nothing: its own time would keep a value fresh for ever.
         const std::int64_t seen = view->word<std::int64_t>(view->activities()[component.activity].now_at);
         const Duration age{std::max(seen, to_ns(now_)) - stamp};
         const bool stale = max_age > Duration::zero() && age > max_age;
-        json.field("flow", is_forced ? "fresh" : writes == 0 ? "never_written" : stale ? "stale" : "fresh");
+        json.field("flow", is_forced                    ? "fresh"
+                           : writes == 0 && was_written ? "never_read"
+                           : writes == 0                ? "never_written"
+                           : stale                      ? "stale"
+                                                        : "fresh");
         json.field("forced", is_forced).field("time_ns", stamp);
     }
     json.close('}');

@@ -69,10 +69,19 @@ std::vector<Reading> Observer::read(std::span<const std::uint32_t> facets) const
             if (!whole) readings[i].value.clear();
         }
     }
-    for (Reading& reading : readings) // after them: a value that comes in between is one more, not one less
+    for (Reading& reading : readings) { // after them: a value that comes in between is one more, not one less
+        reading.never_read = reading.is_initial() && was_written_to(reading.facet);
         if (const map::Connection* row = map_->device_row_of(reading.facet))
             reading.wire.push_back(read(row->from));
+    }
     return readings;
+}
+
+bool Observer::was_written_to(std::uint32_t input) const {
+    std::uint64_t writes = 0;
+    for (const map::Connection& row : map_->connections())
+        if (row.to == input && writes == 0) copy(map_->facets()[row.from].writes_at, writes);
+    return writes != 0;
 }
 
 FigureReading Observer::read_figure(std::uint32_t figure) const {

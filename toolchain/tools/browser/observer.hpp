@@ -13,8 +13,10 @@ struct Reading {
     std::uint32_t facet = 0;
     bool busy = false; ///< the activity was in its cycle at every attempt: no value
     bool forced = false;
-    bool has_writes = false;    ///< the machine counts this facet's values
-    std::uint64_t writes = 0;   ///< 0: never written; the value is the row's initial one
+    bool has_writes = false; ///< the machine counts this facet's values
+    std::uint64_t writes =
+        0; ///< of an input: that its component has read; 0: the value is the row's initial one
+    bool never_read = false;    ///< an input that was written, and that its component never read
     std::int64_t stamp_ns = -1; ///< the time at which the value was true; -1: not stored
     std::int64_t now_ns = -1;   ///< time of the cycle after which it was read; -1: no activity
     std::vector<std::byte> value{};
@@ -22,7 +24,8 @@ struct Reading {
     /// value. Otherwise empty.
     std::vector<Reading> wire{};
 
-    [[nodiscard]] bool never_written() const { return has_writes && writes == 0; }
+    /// Returns whether the value is the row's initial one: see never_read.
+    [[nodiscard]] bool is_initial() const { return has_writes && writes == 0; }
 };
 
 struct FigureReading {
@@ -58,6 +61,7 @@ private:
         if (at != 0) into = map_->view().word<Word>(at);
     }
     void copy_reading(Reading& reading) const;
+    [[nodiscard]] bool was_written_to(std::uint32_t input) const;
     /// Runs `copy_all` until it fell between two cycles; returns false after all attempts.
     template <class Copy> bool between_cycles(std::uint32_t activity, Copy&& copy_all) const;
 

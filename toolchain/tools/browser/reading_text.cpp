@@ -15,7 +15,7 @@ std::int64_t max_age_of(const MapReader& map, std::uint32_t facet) {
 } // namespace
 
 std::string_view flow_of(const MapReader& map, const Reading& reading) {
-    if (reading.never_written()) return "never_written";
+    if (reading.is_initial()) return reading.never_read ? "never_read" : "never_written";
     if (reading.forced || reading.stamp_ns < 0 || reading.now_ns < 0) return "fresh";
     const std::int64_t limit = max_age_of(map, reading.facet);
     return limit > 0 && reading.now_ns - reading.stamp_ns > limit ? "stale" : "fresh";
@@ -24,10 +24,11 @@ std::string_view flow_of(const MapReader& map, const Reading& reading) {
 std::string marks_of(const MapReader& map, const Reading& reading) {
     if (reading.busy) return "busy";
     const std::string_view flow = flow_of(map, reading);
-    std::string marks = reading.forced    ? "FORCED"
-                        : flow == "fresh" ? ""
-                        : flow == "stale" ? "stale"
-                                          : "never written";
+    std::string marks = reading.forced       ? "FORCED"
+                        : flow == "fresh"    ? ""
+                        : reading.never_read ? "never read"
+                        : flow == "stale"    ? "stale"
+                                             : "never written";
     const std::string wire = wire_of(map, reading);
     return marks + (marks.empty() || wire.empty() ? "" : ", ") + wire;
 }
@@ -47,7 +48,7 @@ std::string with_unit(const MapReader& map, const Reading& reading) {
 std::string wire_of(const MapReader& map, const Reading& reading) {
     if (reading.wire.empty() || reading.busy) return {};
     const Reading& wire = reading.wire.front();
-    if (wire.busy || wire.forced || wire.never_written()) return {};
+    if (wire.busy || wire.forced || wire.is_initial()) return {};
     const bool scaled = (map.device_row_of(reading.facet)->flags & map::connection_scaled) != 0;
     const bool same =
         scaled ? wire.stamp_ns == reading.stamp_ns && !reading.forced : wire.value == reading.value;
@@ -57,7 +58,7 @@ std::string wire_of(const MapReader& map, const Reading& reading) {
 std::string json_wire_of(const MapReader& map, const Reading& reading) {
     if (reading.wire.empty() || reading.wire.front().busy || reading.wire.front().forced) return {};
     const Reading& wire = reading.wire.front();
-    return ", \"wire\": " + (wire.never_written() ? "null" : value_of(map, wire, Style::json)) +
+    return ", \"wire\": " + (wire.is_initial() ? "null" : value_of(map, wire, Style::json)) +
            ", \"wire_time_ns\": " + std::to_string(wire.stamp_ns);
 }
 
@@ -76,7 +77,7 @@ std::string json_of(const MapReader& map, const Reading& reading) {
 std::string line_of(const MapReader& map, const Reading& reading) {
     const std::string line = map.full_name(reading.facet) + " = " + with_unit(map, reading);
     std::string marks = marks_of(map, reading);
-    if (!reading.never_written() && !wire_of(map, reading).empty())
+    if (!reading.is_initial() && !wire_of(map, reading).empty())
         if (const std::int64_t newer = reading.wire.front().stamp_ns - reading.stamp_ns; newer > 0)
             marks +=
                 ", " + duration_text(newer - newer % (newer < 10'000'000 ? 1'000 : 1'000'000)) + " newer";

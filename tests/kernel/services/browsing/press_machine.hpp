@@ -89,11 +89,13 @@ struct Table {
 /// Its operations block.
 struct Archive {
     int stored = 0;
+    Input<double> height; ///< never read
     bool store(double) noexcept { return ::usleep(1), ++stored < 2; }
     std::int64_t count() noexcept { return ::usleep(1), stored; }
     static constexpr auto interface() {
         return facets(command<&Archive::store>("store", "on the disk", may_block),
-                      method<&Archive::count>("count", "of what was stored", may_block));
+                      method<&Archive::count>("count", "of what was stored", may_block),
+                      input<&Archive::height>("height", "mm", "of the table"));
     }
 };
 
@@ -117,7 +119,8 @@ inline constexpr auto table = machine("press",
         activity("lamps",   on_work(), at_most(1, 10ms), deadline(10ms), budget(20us), runs("lamp")),
         activity("browser", every(20ms), not_real_time, runs("browser")),
         activity("archive", on_work(), not_real_time, runs("archive"))),
-    connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.light", "lamp.wanted", wakes)),
+    connections(data("table.height", "ram.limit", stale_after(1s), hold), data("table.light", "lamp.wanted", wakes),
+                data("table.height", "archive.height")),
     reactions(), behaviours());
 inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024,
                              .browsing = {.mode = 0666, .roles = roles(user(1001, Role::machine_operator))}};

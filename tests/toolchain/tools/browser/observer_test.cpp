@@ -67,6 +67,13 @@ TEST_F(Watching, the_device_value_is_shown_when_the_read_value_differs) {
     EXPECT_EQ(shown("shaft.angle"), "shaft.angle = 14 deg") << "nobody feeds it but its own device";
 }
 
+TEST_F(Watching, an_input_that_its_component_never_read_is_not_called_never_written) {
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 0 deg   never written");
+    machine.write("shaft.angle", 14.0, 3'000'000);
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 0 deg   never read, wire 14 deg");
+    EXPECT_EQ(flow_of(session->map(), session->observer().read(facet("loom.angle"))), "never_read");
+}
+
 TEST_F(Watching, a_value_forced_at_the_device_is_not_shown_as_the_wire) {
     machine.write("loom.angle", 12.5, 1'000'000);
     machine.write("shaft.angle", 14.0, 3'000'000);
