@@ -58,6 +58,9 @@ struct Bus {
     static Duration longest_seen(const void* bus, std::string_view frame) {
         return static_cast<const Bus*>(bus)->longest_response(frame);
     }
+    static Unsent unsent(const void* bus, std::size_t facet) noexcept {
+        return facet < signal_count ? static_cast<const Bus*>(bus)->store_.unsent(facet) : Unsent{};
+    }
     static constexpr DeviceTraffic device_traffic{AllFrames<map, protocol>::traffic.size(), &analyse_traffic,
                                                   &longest_seen};
     /// Most frames taken in one cycle; more are left to the next cycle, which follows at once.

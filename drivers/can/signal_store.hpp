@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
+#include "kernel/component/wire_counters.hpp"
 
 namespace tappet::can {
 
@@ -81,12 +82,16 @@ public:
         raw_[s] = bits & detail::mask_of(map_->signals[s]);
     }
 
+    /// Returns what was set of a signal and not encoded as it was. Any thread.
+    [[nodiscard]] Unsent unsent(std::size_t s) const noexcept { return unsent_[s].read(); }
     [[nodiscard]] constexpr const SignalMap<F, S>& map() const noexcept TAPPET_REALTIME { return *map_; }
 
     DecodeCounters count{};
 
 private:
     constexpr void set(std::size_t s, const Raw& raw) noexcept TAPPET_REALTIME {
+        if (raw.refused || raw.saturated) [[unlikely]]
+            unsent_[s].count(raw.saturated, raw.refused);
         if (raw.refused)
             ++count.refused;
         else
@@ -96,6 +101,7 @@ private:
 
     const SignalMap<F, S>* map_;
     std::array<std::uint64_t, S> raw_{};
+    std::array<Unsent, S> unsent_{};
 };
 
 } // namespace tappet::can

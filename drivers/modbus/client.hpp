@@ -41,13 +41,14 @@ template <const auto& map> struct Client {
     Sentence configure(Setup& setup) {
         transport_ = setup.device<Transport>();
         if (transport_ == nullptr) return setup.no_device();
-        session_.emplace(map, *transport_);
+        session_.emplace(map, *transport_, Backoff{}, unsent_);
         return {};
     }
 
     /// Starts fresh: opens its own connection and writes the wanted values again unless they became too old.
     void start(const Cycle&) noexcept TAPPET_REALTIME {
-        TAPPET_ESCAPE("this activity is not real-time", session_.emplace(map, *transport_));
+        TAPPET_ESCAPE("this activity is not real-time",
+                      session_.emplace(map, *transport_, Backoff{}, unsent_));
         is_set_ = {};
         was_lost_ = false;
         told_ = {};
@@ -88,6 +89,9 @@ template <const auto& map> struct Client {
     [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return stopped_safely_; }
 
     [[nodiscard]] Counters counters() const noexcept { return session_->counters(); }
+    static Unsent unsent(const void* client, std::size_t facet) noexcept {
+        return facet < count ? static_cast<const Client*>(client)->unsent_[facet].read() : Unsent{};
+    }
 
     static constexpr auto interface() {
         std::array<Facet, count + 8> list{};
@@ -182,6 +186,7 @@ private:
     Transport* transport_ = nullptr;
     std::optional<Session<map.rows.size(), map.registers.size()>> session_{};
     std::array<Time, count> seen_ = array_of<count>([](std::size_t) { return Time::min(); });
+    std::array<Unsent, count> unsent_{};
     std::array<bool, count> is_set_{};  ///< in the session, since start()
     std::array<double, count> taken_{}; ///< the last values set there
     bool was_lost_ = false, was_stopped_ = false, stopped_safely_ = true;

@@ -6,6 +6,7 @@
 #include "drivers/modbus/transport.hpp"
 #include "kernel/base/array_of.hpp"
 #include "kernel/component/port.hpp"
+#include "kernel/component/wire_counters.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -61,8 +62,11 @@ struct Backoff {
 /// `transport` must outlive the client.
 template <std::size_t R, std::size_t V> class Session {
 public:
-    Session(const RegisterMap<R, V>& map, Transport& transport, Backoff backoff = {}) noexcept
-        : map_{&map}, transport_{&transport}, backoff_{backoff}, wait_{backoff.first} {}
+    /// `unsent`: where values that are not encoded as they were set are counted, by their index; empty:
+    /// nowhere.
+    Session(const RegisterMap<R, V>& map, Transport& transport, Backoff backoff = {},
+            std::span<Unsent> unsent = {}) noexcept
+        : map_{&map}, transport_{&transport}, backoff_{backoff}, wait_{backoff.first}, unsent_{unsent} {}
     ~Session() { transport_->disconnect(); }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -119,6 +123,8 @@ public:
         TAPPET_CONTRACT(v < V, Contract::index_out_of_range, v, V);
         const std::size_t r = map_->row_of[v];
         const Encoded encoded = to_words(map_->registers[v], physical);
+        if ((encoded.refused || encoded.saturated) && v < unsent_.size())
+            unsent_[v].count(encoded.saturated, encoded.refused);
         if (encoded.refused) ++count_.saturated;
         if (encoded.refused || !map_->rows[r].write) return false;
         if (encoded.saturated) ++count_.saturated;
@@ -284,6 +290,7 @@ private:
     Transport* transport_;
     Backoff backoff_;
     Duration wait_;
+    std::span<Unsent> unsent_;
     Time busy_until_ = Time::min();
     bool connected_ = false;
     bool outage_ = false;

@@ -11,6 +11,7 @@
 #include "kernel/component/life_functions.hpp"
 #include "kernel/component/operation_interface.hpp"
 #include "kernel/component/peer_property.hpp"
+#include "kernel/component/wire_counters.hpp"
 
 #include <algorithm>
 #include <new>
@@ -94,7 +95,9 @@ struct ComponentType {
     const void* device_map =
         nullptr; ///< map of what is on that device; only a start-up that knows the kind reads it
     DeviceTraffic device_traffic{}; ///< the traffic of that device, and whether it can carry it
-    bool shares_device = false;     ///< it may share the device with its driver; what it calls is safe there
+    /// Returns what was not sent as written of an input of a driver; null: it has no such inputs. Any thread.
+    Unsent (*unsent)(const void* component, std::size_t facet) = nullptr;
+    bool shares_device = false; ///< it may share the device with its driver; what it calls is safe there
     bool behaviour_required = false;
     bool sees_machine = false;            ///< it gets the machine: a service that shows, stores or changes it
     bool records_cycles = false;          ///< it gets the tapes of all activities
@@ -154,6 +157,7 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
     if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;
     if constexpr (requires { T::device_traffic; }) type.device_traffic = T::device_traffic;
+    if constexpr (requires { &T::unsent; }) type.unsent = &T::unsent;
     if constexpr (requires { T::shares_device; }) type.shares_device = T::shares_device;
     if constexpr (requires { T::sees_machine; }) type.sees_machine = T::sees_machine;
     if constexpr (requires { T::line_functions; }) type.lines = &T::line_functions;

@@ -3,7 +3,9 @@
 
 #include "kernel/base/bounded.hpp"
 #include "kernel/base/contract.hpp"
+#include "kernel/base/realtime.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <string_view>
 
@@ -24,6 +26,28 @@ struct WireCounters {
             }
         TAPPET_CONTRACT(each.push({name, count}), Contract::index_out_of_range,
                         static_cast<std::int64_t>(each.size()), static_cast<std::int64_t>(each.capacity()));
+    }
+};
+
+/// How often a value that a driver was to send did not go to the wire as it was written.
+struct Unsent {
+    std::uint64_t clamped = 0;   ///< outside its row's range: the nearest bound was sent
+    std::uint64_t no_number = 0; ///< not a number: nothing was sent
+
+    /// Counts a value; one thread counts, any thread reads.
+    constexpr void count(bool is_clamped, bool is_no_number) noexcept TAPPET_REALTIME {
+        if consteval {
+            clamped += is_clamped;
+            no_number += is_no_number;
+        } else {
+            std::atomic_ref{clamped}.store(clamped + is_clamped, std::memory_order_relaxed);
+            std::atomic_ref{no_number}.store(no_number + is_no_number, std::memory_order_relaxed);
+        }
+    }
+    [[nodiscard]] Unsent read() const noexcept {
+        auto& self = const_cast<Unsent&>(*this); // atomic_ref takes no const before C++26
+        return {std::atomic_ref{self.clamped}.load(std::memory_order_relaxed),
+                std::atomic_ref{self.no_number}.load(std::memory_order_relaxed)};
     }
 };
 

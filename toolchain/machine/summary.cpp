@@ -174,6 +174,12 @@ std::size_t write_summary(MachineInstance& instance, const RunFacts& facts, std:
             json.field(instance.observation().counted(section, row).what,
                        instance.observation().counted(section, row).times);
     json.close('}');
+    json.key("unsent").open('{'); // by inputs of drivers
+    instance.each_unsent([&](std::string_view component, std::string_view input, const Unsent& seen) {
+        json.key(Sentence{component, ".", input}.view()).open('{');
+        json.field("clamped", seen.clamped).field("no_number", seen.no_number).close('}');
+    });
+    json.close('}');
     json.field("emissions_lost", instance.observation().lost_emissions())
         .field("forced_ports", instance.observation().forced_ports().load());
     if (os::heap::seal_counts())
@@ -206,6 +212,16 @@ void tell_overruns(MachineInstance& instance, std::string_view speaker) {
                                row.worst.count() / 1000,
                                " us at most: the map or the board states too little about the bus, or the "
                                "box is slower than the table claims\n"}
+                          .view());
+    });
+    instance.each_unsent([&](std::string_view component, std::string_view input, const Unsent& seen) {
+        if (seen.clamped != 0)
+            os::print(Sentence{speaker, ": \"", component, ".", input, "\": ", seen.clamped,
+                               " values were outside its range and sent as its nearest bound\n"}
+                          .view());
+        if (seen.no_number != 0)
+            os::print(Sentence{speaker, ": \"", component, ".", input, "\": ", seen.no_number,
+                               " values were not a number and not sent\n"}
                           .view());
     });
     for (const Engine& engine : instance.engines()) {

@@ -49,6 +49,18 @@ public:
         return facet_at(machine_.table, end).at == nullptr ? nullptr : facet(end);
     }
 
+    /// Visits each driver's input whose values did not all go to the wire as they were written:
+    /// tell(component, input, Unsent). Any thread.
+    template <class Tell>
+    void each_unsent(const Tell& tell) {
+        const auto rows = machine_.table.components;
+        for (std::size_t c = 0; c < rows.size(); ++c)
+            for (std::size_t f = 0; rows[c].type->unsent != nullptr && f < rows[c].type->facets.size(); ++f)
+                if (const Unsent seen = rows[c].type->unsent(component(c), f);
+                    seen.clamped + seen.no_number != 0)
+                    tell(rows[c].name, rows[c].type->facets[f].name, seen);
+    }
+
     /// Returns the behaviour that drives a component: that of the table's row, or the one loaded in its
     /// place; null: none.
     [[nodiscard]] const BehaviourUnit* behaviour_of(std::string_view component) const noexcept;

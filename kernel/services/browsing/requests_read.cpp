@@ -48,6 +48,11 @@ BrowserService::Verdict BrowserService::serve_counters(Client& client, const Req
             const SectionCount count = seen.counted(section, row);
             json.open('{').field("row", count.what).field("times", count.times).close('}');
         }
+    json.close(']').key("unsent").open('[');
+    machine_->each_unsent([&](std::string_view component, std::string_view input, const Unsent& seen) {
+        json.open('{').field("input", Sentence{component, ".", input}.view());
+        json.field("clamped", seen.clamped).field("no_number", seen.no_number).close('}');
+    });
     json.close(']');
     return finish(client, reply);
 }

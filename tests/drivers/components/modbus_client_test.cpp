@@ -39,6 +39,24 @@ TEST_F(Utility, writes_a_change_soon_and_nothing_that_was_never_set) {
     EXPECT_GE(server->counters().requests, before + 1);
 }
 
+TEST_F(Utility, counts_by_register_what_it_did_not_write_as_it_was_set) {
+    const auto of_pump = [this] {
+        Unsent of;
+        instance.each_unsent([&](std::string_view, std::string_view input, const Unsent& each) {
+            EXPECT_EQ(input, "pump.on");
+            of = each;
+        });
+        return of;
+    };
+    start_the_pump();
+    EXPECT_EQ(of_pump().clamped, 0u);
+    reader->pump_next = 5;
+    run(1s);
+    EXPECT_EQ(of_pump().clamped, 1u);
+    change_server(LifeChange::restart);
+    EXPECT_GE(of_pump().clamped, 1u) << "a client that starts again keeps its counts";
+}
+
 TEST_F(Utility, reads_and_writes_in_one_cycle_when_both_are_due) {
     run_until(1020ms);
     reader->pump_next = 1;

@@ -219,6 +219,13 @@ Result<void> tell_counters(Work& work) {
         else
             work.out << "limits held back " << row["row"].get<std::string>() << " " << row["times"]
                      << (row["times"] == 1 ? " time\n" : " times\n");
+    for (const auto& row : rows("unsent"))
+        if (work.line.json)
+            work.out << row << "\n";
+        else
+            work.out << row["input"].get<std::string>() << ": " << row["clamped"]
+                     << " values outside its range, sent as its nearest bound; " << row["no_number"]
+                     << " that were not a number, not sent\n";
     return {};
 }
 

@@ -358,7 +358,8 @@ TEST_F(Program, an_invalid_answer_is_reported_and_ends_nothing_else) {
 TEST_F(Program, describes_the_machine_and_a_single_name) {
     machine.answer("counters", {R"({"id": %, "ok": true,
         "stacks": [{"activity": "fast", "bytes": 65536, "used_bytes": 4096}, {"activity": "slow", "bytes": 65536, "used_bytes": 0}],
-        "held_back": [{"row": "loom.speed", "times": 3}]})"});
+        "held_back": [{"row": "loom.speed", "times": 3}],
+        "unsent": [{"input": "can.axis.speed", "clamped": 12, "no_number": 1}]})"});
     const Outcome machine_info = run({"info"});
     EXPECT_THAT(machine_info.out, HasSubstr("machine sample on board test"));
     EXPECT_THAT(machine_info.out, HasSubstr("you are its engineer"));
@@ -366,6 +367,9 @@ TEST_F(Program, describes_the_machine_and_a_single_name) {
     EXPECT_THAT(machine_info.out, HasSubstr("stack of fast: 4096 of 65536 bytes used at most\n"));
     EXPECT_THAT(machine_info.out, Not(HasSubstr("stack of slow"))) << "in virtual time it has none";
     EXPECT_THAT(machine_info.out, HasSubstr("limits held back loom.speed 3 times\n"));
+    EXPECT_THAT(machine_info.out,
+                HasSubstr("can.axis.speed: 12 values outside its range, sent as its nearest "
+                          "bound; 1 that were not a number, not sent\n"));
     machine.answer("counters", {R"({"id": %, "ok": true})"});
     EXPECT_THAT(run({"info", "--json"}).out, HasSubstr("\"role\": \"engineer\""));
     const Outcome facet = run({"info", "loom.angle"});
