@@ -170,35 +170,53 @@ namespace detail {
 
 inline constexpr MapWords words{.row = "frame", .value = "signal", .comes = "received", .goes = "sent"};
 
-/// A sentence with the row and the signal it is about; no_such: neither.
+/// A fault and its cure for a row that is written by hand. A row from a file has another cure.
+struct LayoutFault {
+    Sentence text{}, cure{};
+};
+/// A sentence with the row and the signal it is about; no_such: neither. Its cure may stand apart.
 struct MapFault {
-    Sentence text{};
+    Sentence text{}, cure{};
     std::size_t frame = no_such;
     std::size_t signal = no_such;
 };
 
-constexpr Sentence signal_fault(const FrameRow& frame, const Signal& s) noexcept {
+constexpr Sentence facet_fault(const FrameRow& frame, const Signal& s) noexcept {
     const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
     if (frame.name.size() + 1 + s.name.size() > FacetName::most)
         return Sentence{who, ": a facet's name has at most ", FacetName::most,
                         " characters; give it or its frame a shorter one with .called(\"..\")"};
     if (s.name == "received" && frame.direction == Direction::receive)
         return Sentence{who, " has the name of the event that its frame arrived: rename it"};
-    if (s.bits == 0 || s.bits > 64) return Sentence{who, " has ", unsigned{s.bits}, " bits: give it 1 to 64"};
+    return {};
+}
+/// Checks the signal's place in its frame, and its range.
+constexpr LayoutFault layout_fault(const FrameRow& frame, const Signal& s) noexcept {
+    const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
+    if (s.bits == 0 || s.bits > 64)
+        return {Sentence{who, " has ", unsigned{s.bits}, " bits"}, Sentence{": give it 1 to 64"}};
     const bool is_float = s.kind == Kind::float32 || s.kind == Kind::float64;
     if (is_float && s.bits != (s.kind == Kind::float64 ? 64 : 32))
-        return Sentence{who, " is a float of ", unsigned{s.bits}, " bits: give it 32 or 64"};
+        return {Sentence{who, " is a float of ", unsigned{s.bits}, " bits"}, Sentence{": give it 32 or 64"}};
     if (s.has_range && !(s.least <= s.most))
-        return Sentence{who, " has an empty range: put the lower bound first"};
+        return {Sentence{who, " has an empty range"}, Sentence{": put the lower bound first"}};
     const unsigned end = 8u * frame.length;
     const unsigned low = bit_place(s, 0);
     const unsigned high = bit_place(s, s.bits - 1u);
     if (s.start >= end || low >= end || high >= end)
-        return Sentence(who, " reaches outside its frame of ", unsigned{frame.length},
-                        " bytes: it starts at bit ", unsigned{s.start},
-                        s.order == Order::intel ? " (its lowest) and goes up "
-                                                : " (its highest) and goes down ",
-                        unsigned{s.bits}, " bits; move it or lengthen the frame");
+        return {
+            Sentence(who, " reaches outside its frame of ", unsigned{frame.length},
+                     " bytes: it starts at bit ", unsigned{s.start},
+                     s.order == Order::intel ? " (its lowest) and goes up " : " (its highest) and goes down ",
+                     unsigned{s.bits}, " bits"),
+            Sentence{"; move it or lengthen the frame"}};
+    return {};
+}
+/// Checks the names of its values.
+constexpr Sentence names_fault(const FrameRow& frame, const Signal& s) noexcept {
+    if (s.names.empty()) return {};
+    const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
+    const bool is_float = s.kind == Kind::float32 || s.kind == Kind::float64;
     for (std::size_t i = 0; i < s.names.size(); ++i) {
         const std::int64_t value = s.names[i].value;
         if (!is_float && to_integer(s, static_cast<std::uint64_t>(value) & mask_of(s)) != value)
@@ -236,8 +254,8 @@ constexpr Sentence rate_fault(const FrameRow& frame) noexcept {
 
 /// Checks the multiplexor of `s`. `before`: the signals of its frame ahead of it; the multiplexor must be
 /// among them.
-constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
-                                     std::span<const Signal> before) noexcept {
+constexpr LayoutFault multiplexor_fault(const FrameRow& frame, const Signal& s,
+                                        std::span<const Signal> before) noexcept {
     if (s.multiplexor.empty()) return {};
     const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
     Nearest nearest{s.multiplexor};
@@ -245,34 +263,45 @@ constexpr Sentence multiplexor_fault(const FrameRow& frame, const Signal& s,
         nearest.consider(each.name);
         if (each.name != s.multiplexor) continue;
         if (!is_integer(each) || each.bits > 32)
-            return Sentence("signal \"", frame.name, ".", each.name, "\" selects \"", s.name,
-                            "\" but is not an integer of at most 32 bits: remove factor and offset");
+            return {Sentence("signal \"", frame.name, ".", each.name, "\" selects \"", s.name,
+                             "\" but is not an integer of at most 32 bits"),
+                    Sentence{": remove factor and offset"}};
         for (const Selection& values : s.selections)
             if (values.from > values.to || values.to > mask_of(each))
-                return Sentence(who, " is selected by values that \"", each.name,
-                                "\" never has: ", values.from, " to ", values.to, "; correct them");
+                return {Sentence(who, " is selected by values that \"", each.name,
+                                 "\" never has: ", values.from, " to ", values.to),
+                        Sentence{"; correct them"}};
         return {};
     }
-    return Sentence{who, " is selected by \"", s.multiplexor,
-                    "\", which does not stand before it in its frame", or_meant(nearest, "; write it there")};
+    return {
+        Sentence{who, " is selected by \"", s.multiplexor, "\", which does not stand before it in its frame"},
+        or_meant(nearest, "; write it there")};
 }
 
-constexpr Sentence length_fault(const FrameRow& frame) noexcept {
+constexpr LayoutFault length_fault(const FrameRow& frame) noexcept {
     const Sentence who{"frame \"", frame.name, "\" has ", unsigned{frame.length}, " bytes: "};
-    if (frame.format == Format::classical)
-        return frame.length <= 8
-                   ? Sentence{}
-                   : Sentence{who, "a classical frame holds 8 at most; make it CAN FD by fd_bytes(..), "
-                                   "in a DBC file by VFrameFormat"};
+    if (frame.format == Format::classical) {
+        if (frame.length <= 8) return {};
+        return {Sentence{who, "a classical frame holds 8 at most"},
+                Sentence{"; make it CAN FD by fd_bytes(..), in a DBC file by VFrameFormat"}};
+    }
     const int padded = padded_length(frame.length);
     if (padded == frame.length) return {};
-    if (padded < 0) return Sentence{who, "a CAN FD frame holds 64 at most; make it two"};
-    return Sentence{who, "CAN FD has no such length; make it ", padded,
-                    ", and what no signal covers is padding"};
+    if (padded < 0) return {Sentence{who, "a CAN FD frame holds 64 at most"}, Sentence{"; make it two"}};
+    return {Sentence{who, "CAN FD has no such length"},
+            Sentence{"; make it ", padded, ", and what no signal covers is padding"}};
 }
 
 /// The bits of a signal in its frame.
 using Covered = std::array<std::uint64_t, sizeof(Payload) / 8>;
+constexpr Covered covered_by(const Signal& s) noexcept {
+    Covered covered{};
+    for (unsigned i = 0; i < s.bits; ++i) {
+        const unsigned bit = bit_place(s, i);
+        covered[bit / 64u] |= std::uint64_t{1} << bit % 64u;
+    }
+    return covered;
+}
 /// Returns the first bit in both, or the bit behind the frame's `bytes`.
 constexpr unsigned first_shared(const Covered& a, const Covered& b, unsigned bytes) noexcept {
     for (unsigned word = 0; 8u * word < bytes; ++word)
@@ -287,43 +316,47 @@ constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noe
     for (std::size_t f = 0; f < frames; ++f) {
         const FrameRow& row = map.frames[f];
         const Sentence who{"frame \"", row.name, "\""};
-        if (row.name.empty()) return {Sentence{"frame ", f + 1, " has no name: name it"}, f};
+        if (row.name.empty()) return {Sentence{"frame ", f + 1, " has no name: name it"}, {}, f};
         if (row.name.size() + 1 + std::string_view{"received"}.size() > FacetName::most)
             return {Sentence{who, ": its name is too long for a facet's, which has at most ", FacetName::most,
                              " characters; give it a shorter one with .called(\"..\")"},
+                    {},
                     f};
         if (!valid(row.identifier))
             return {Sentence{who, " has the identifier ", row.identifier.id,
                              ": a standard one ends at 2047, an extended one at 536870911"},
+                    {},
                     f};
-        if (const Sentence fault = length_fault(row); !fault.empty()) return {fault, f};
+        if (const LayoutFault fault = length_fault(row); !fault.text.empty())
+            return {fault.text, fault.cure, f};
         if (const Sentence fault = tappet::name_fault(words, map.frames, f); !fault.empty())
-            return {fault, f};
+            return {fault, {}, f};
         if (const std::size_t other = map.frame(row.identifier); other < f)
             return {Sentence{who, " has the identifier of \"", map.frames[other].name, "\": give it its own"},
+                    {},
                     f};
         for (std::size_t s = row.first; s < row.end(); ++s) {
             const Signal& signal = map.signals[s];
             const auto before = std::span{map.signals}.subspan(row.first, s - row.first);
             if (const Sentence fault = value_fault(words, row, map.signals, s); !fault.empty())
-                return {fault, f, s};
-            if (const Sentence fault = signal_fault(row, signal); !fault.empty()) return {fault, f, s};
-            if (const Sentence fault = multiplexor_fault(row, signal, before); !fault.empty())
-                return {fault, f, s};
-            if (const Sentence fault = safe_fault(row, signal); !fault.empty()) return {fault, f, s};
-            for (unsigned i = 0; i < signal.bits; ++i) {
-                const unsigned bit = bit_place(signal, i);
-                covered[s][bit / 64u] |= std::uint64_t{1} << bit % 64u;
-            }
+                return {fault, {}, f, s};
+            if (const Sentence fault = facet_fault(row, signal); !fault.empty()) return {fault, {}, f, s};
+            if (const LayoutFault fault = layout_fault(row, signal); !fault.text.empty())
+                return {fault.text, fault.cure, f, s};
+            if (const Sentence fault = names_fault(row, signal); !fault.empty()) return {fault, {}, f, s};
+            if (const LayoutFault fault = multiplexor_fault(row, signal, before); !fault.text.empty())
+                return {fault.text, fault.cure, f, s};
+            if (const Sentence fault = safe_fault(row, signal); !fault.empty()) return {fault, {}, f, s};
+            covered[s] = covered_by(signal);
             for (std::size_t other = row.first; other < s; ++other) {
                 const unsigned shared = first_shared(covered[s], covered[other], row.length);
                 if (shared < 8u * row.length && !map.multiplexing().exclude_each_other(s, other))
                     return {Sentence{"signal \"", row.name, ".", signal.name, "\" overlaps \"",
-                                     map.signals[other].name, "\" at bit ", shared, ": move one of them"},
-                            f, s};
+                                     map.signals[other].name, "\" at bit ", shared},
+                            Sentence{": move one of them"}, f, s};
             }
         }
-        if (const Sentence fault = rate_fault(row); !fault.empty()) return {fault, f};
+        if (const Sentence fault = rate_fault(row); !fault.empty()) return {fault, {}, f};
     }
     return {};
 }
@@ -400,6 +433,7 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
                                  most_safe_pages,
                                  " beside the first ones of all frames; make "
                                  "its receiver safe by silence, .safe_by_silence()"},
+                        {},
                         f};
         }
     return {};
@@ -411,7 +445,8 @@ constexpr MapFault complete(SignalMap<F, S>& map, std::size_t frames) noexcept {
 template <std::size_t... N> constexpr auto signal_map(const FrameWithSignals<N>&... rows) noexcept {
     SignalMap<sizeof...(N), (N + ... + 0)> map;
     flatten(map.frames, map.signals, rows...);
-    map.fault = detail::complete(map, map.frames.size()).text;
+    const detail::MapFault fault = detail::complete(map, map.frames.size());
+    map.fault = Sentence{fault.text, fault.cure};
     return map;
 }
 

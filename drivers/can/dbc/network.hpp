@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/can/dbc/scanner.hpp"
+#include "drivers/can/dbc/troubles.hpp"
 #include "drivers/can/signal_map.hpp"
 
 #include <optional>
@@ -10,6 +11,8 @@ namespace tappet::can::dbc {
 
 /// Vector's name for no node, as a sender and as a receiver.
 inline constexpr std::string_view nobody = "Vector__XXX";
+/// Vector's container for signals without a message.
+inline constexpr std::string_view independent = "VECTOR__INDEPENDENT_SIG_MSG";
 
 struct SignalRow {
     Signal shape{};     ///< its unit is as in the file
@@ -19,9 +22,11 @@ struct SignalRow {
     std::string_view long_name{};
     bool is_multiplexor = false;
     bool is_multiplexed = false;
-    bool too_many_selections = false;
-    std::uint32_t page = 0;            ///< m0: 0
-    std::size_t selected_by = no_such; ///< index of a signal
+    std::uint32_t page = 0;               ///< m0: 0
+    std::size_t selected_by = no_such;    ///< index of a signal
+    std::size_t trouble = no_such;        ///< position of its first fault
+    std::size_t limits_trouble = no_such; ///< position of a fault of its limits
+    std::size_t names_at = no_such;       ///< position of its VAL_
     std::size_t first_value = 0;
     std::size_t values = 0;
     bool is_taken = false;        ///< by the node in question
@@ -31,7 +36,7 @@ struct SignalRow {
 
 struct MessageRow {
     Identifier identifier{};
-    bool is_independent = false; ///< Vector's container for signals without a message
+    bool is_independent = false;
     std::string_view name{};
     std::string_view long_name{};
     std::size_t at = 0;
@@ -41,8 +46,10 @@ struct MessageRow {
     std::size_t first = 0;
     std::size_t signals = 0;
     bool says_every = false;
-    std::optional<bool> is_fd{}, switches{}; ///< empty: the file's default
+    std::optional<bool> is_fd{}, switches{}, on_demand{}; ///< empty: the file's default
     Duration every{};
+    std::size_t trouble = no_such;  ///< position of its first fault
+    bool shares_identifier = false; ///< with another message
     bool is_taken = false;
     Direction direction = Direction::receive;
     const FrameRow* row = nullptr;
@@ -52,20 +59,29 @@ struct MessageRow {
 struct Room {
     std::size_t messages = 0, signals = 0, values = 0;
 };
+constexpr bool is_keyword(std::string_view text, std::string_view word) noexcept {
+    return text.starts_with(word) && text.size() > word.size() && is_blank(text[word.size()]);
+}
 constexpr Room room_for(std::string_view text) noexcept {
+    text = without_mark(text);
     Room room;
     std::size_t quotes = 0;
     bool begins = true;
+    bool in_message = false; // the line begins with BO_: a signal may follow
     const char* const characters = text.data();
     const std::size_t size = text.size();
     for (std::size_t i = 0; i < size; ++i) {
         const char c = characters[i];
         quotes += c == '"';
-        if (begins && (c == 'B' || c == 'S')) {
-            room.messages += text.substr(i, 4) == "BO_ ";
-            room.signals += text.substr(i, 4) == "SG_ ";
+        if (begins && c == 'B' && is_keyword(text.substr(i), "BO_")) {
+            ++room.messages;
+            in_message = true;
+        } else if ((begins || in_message) && c == 'S') {
+            room.signals += is_keyword(text.substr(i), "SG_");
         }
-        begins = c == '\n' || c == '\r' || (begins && (c == ' ' || c == '\t'));
+        const bool ends = c == '\n' || c == '\r' || c == ';';
+        if (ends) in_message = false;
+        begins = ends || (begins && is_blank(c));
     }
     room.values = quotes / 2;
     return room;
@@ -81,6 +97,7 @@ struct Network {
     std::span<ValueName> values{}; ///< as in the file
     Room used{};
     Sentence fault{};
+    Troubles* troubles = nullptr; ///< where the reader tells what is wrong
 
     [[nodiscard]] constexpr std::span<MessageRow> all() const noexcept {
         return messages.first(used.messages);
@@ -96,16 +113,16 @@ struct Network {
     [[nodiscard]] constexpr bool sends(const MessageRow& message, std::string_view node) const noexcept {
         return message.sender == node || names(message.more_senders, node);
     }
+    [[nodiscard]] constexpr unsigned line_of(std::size_t at) const noexcept {
+        return static_cast<unsigned>(std::ranges::count(text.substr(0, at), '\n')) + 1;
+    }
 
     /// Records a fault; only the first one counts.
     template <class... Pieces> constexpr void fail(std::size_t at, const Pieces&... pieces) {
         if (!fault.empty()) return;
-        unsigned line = 1, column = 1;
-        for (std::size_t i = 0; i < at && i < text.size(); ++i) {
-            ++column;
-            if (text[i] == '\n') ++line, column = 1;
-        }
-        fault = Sentence{file, ":", line, ":", column, ": ", pieces...};
+        unsigned column = 1;
+        while (column <= at && text[at - column] != '\n') ++column;
+        fault = Sentence{file, ":", line_of(at), ":", column, ": ", pieces...};
     }
 };
 

@@ -8,9 +8,9 @@ namespace tappet::can {
 /// The rate of the file (GenMsgCycleTime).
 inline constexpr Rate as_in_file{Duration{-1}, Duration{-1}, {}};
 
-/// receive("drive", every(2ms)): states the rate where the file has no cycle time. A message without this
-/// node as a receiver is received all the same: with all of its signals if no signals are given, otherwise
-/// only with those.
+/// receive("drive", every(2ms)): states the rate where the file has no cycle time, or says that the message
+/// is sent on demand too. The message is received whether or not it names this node as a receiver: with all
+/// of its signals if no signals are given, otherwise only with those and their multiplexors.
 template <std::same_as<Signal>... Signals>
 constexpr auto receive(std::string_view name, Rate rate, const Signals&... signals) noexcept {
     return detail::row({}, name, Direction::receive, Bytes{}, rate, signals...);
@@ -30,6 +30,11 @@ constexpr auto transmit(std::string_view name, const Signals&... signals) noexce
     return transmit(name, as_in_file, signals...);
 }
 
+/// without("diagnosis"): the node neither sends nor receives this message, whatever the file says.
+constexpr auto without(std::string_view name) noexcept {
+    return detail::row({}, name, Direction::passing, Bytes{}, as_in_file);
+}
+
 struct NodeView {
     std::string_view name{};
     std::span<const FrameRow> frames{};
@@ -45,7 +50,8 @@ template <std::size_t F, std::size_t S> struct Node {
 };
 
 /// node("controller", rows...): sends the messages that the file says it sends, and receives those that name
-/// it as a receiver. Each message that it sends must have a row, with safe values.
+/// it as a receiver. Each message that it sends must have a row, with safe values. node("", rows...) sends
+/// and receives what its rows say.
 template <std::size_t... N>
 constexpr auto node(std::string_view name, const FrameWithSignals<N>&... rows) noexcept {
     Node<sizeof...(N), (N + ... + 0)> node;

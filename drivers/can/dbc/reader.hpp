@@ -1,133 +1,76 @@
 // Reads a DBC file, in a constant expression or on the host, with the same code and the same fault messages.
+// A fault marks the row that it concerns, and reading goes on: only a map that takes the row is refused.
 #pragma once
 
 #include "drivers/can/dbc/choice.hpp"
-#include "drivers/can/dbc/network.hpp"
-#include "drivers/can/dbc/scanner.hpp"
+#include "drivers/can/dbc/message_reader.hpp"
 #include "kernel/base/decimal.hpp"
 
 namespace tappet::can::dbc {
 
-class Reader {
+class Reader : MessageReader {
 public:
-    explicit constexpr Reader(Network& network) noexcept : net_{network}, in_{network.text} {}
+    explicit constexpr Reader(Network& network) noexcept : MessageReader{network} {}
 
-    /// Fills the network, or its fault.
+    /// Fills the network; its fault says why nothing of the file can be used.
     constexpr void read() {
-        while (ok() && !in_.at_end()) statement();
+        if (net_.text.size() != without_mark(net_.text).size())
+            note(0, "the file begins with a byte-order mark");
+        while (net_.fault.empty() && !in_.at_end()) statement();
+        begin(0);
         for (MessageRow& message : net_.all())
-            if (ok() && !message.is_independent) finish(message);
+            if (net_.fault.empty() && !message.is_independent) finish(message);
     }
 
 private:
-    static constexpr std::uint32_t extended_bit = 0x8000'0000, independent_id = 0xC000'0000;
-
-    // ---- expected items
-
-    [[nodiscard]] constexpr bool ok() const noexcept { return net_.fault.empty(); }
-    template <class... Pieces> constexpr void fail(std::size_t at, const Pieces&... pieces) {
-        net_.fail(at, pieces...);
+    constexpr void end_of_statement() {
+        if (!ok() || in_.take(';')) return;
+        if (!in_.at_end() && !begins_statement(in_)) return fail_expected("\";\", the end of the statement");
+        note(statement_at_, "the statement has no \";\"; it ends before the next one");
     }
-    constexpr void fail_expected(std::string_view what) {
-        if (in_.at_end())
-            fail(in_.at(), "the file ends, expected ", what, "; is it whole?");
-        else if (in_.next() == '"')
-            fail(in_.at(), "a text is unclosed or out of place, expected ", what,
-                 "; close the quotes in the same line");
-        else
-            fail(in_.at(), "found \"", in_.found(), "\", expected ", what, "; correct it");
-    }
-    constexpr void expect(char c, std::string_view what) {
-        if (ok() && !in_.take(c)) fail_expected(what);
-    }
-    constexpr std::string_view word(std::string_view what) {
-        const std::string_view word = ok() ? in_.word() : std::string_view{};
-        if (word.empty() && ok()) fail_expected(what);
-        return word;
-    }
-    /// Returns a number, or 0 after a fault.
-    constexpr std::uint32_t whole(std::uint64_t most, std::string_view what) {
-        const std::size_t at = in_.at();
-        std::uint64_t value = 0;
-        if (!ok()) return 0;
-        if (!in_.whole(value))
-            fail_expected(what);
-        else if (value > most)
-            fail(at, value, " is too large for ", what, ", which is ", most, " at most; correct it");
-        return ok() ? static_cast<std::uint32_t>(value) : 0;
-    }
-    constexpr double real(std::string_view what) {
-        double value = 0;
-        if (ok() && !in_.real(value)) fail_expected(what);
-        return value;
-    }
-    constexpr std::string_view text(std::string_view what, bool of_many_lines = false) {
-        std::string_view text;
-        if (ok() && !in_.text(text, of_many_lines)) fail_expected(what);
-        return text;
-    }
-    constexpr void end_of_statement() { expect(';', "\";\", the end of the statement"); }
     constexpr void skip_statement() {
-        if (!ok() || in_.skip_statement()) return;
-        if (in_.at_end())
-            fail(in_.at(), "the file ends, expected \";\", the end of a statement; is it whole?");
-        else
-            fail(in_.at(), "a text is unclosed; close its quotes");
+        std::size_t text_at = 0;
+        switch (in_.skip_statement(begins_statement, text_at)) {
+        case Scanner::End::semicolon: break;
+        case Scanner::End::none:
+            if (!failed_) note(statement_at_, "the statement has no \";\"; it ends before the next one");
+            break;
+        case Scanner::End::unclosed: note(text_at, "a text is unclosed; it ends with its line"); break;
+        case Scanner::End::cut: net_.fail(text_at, "a text is unclosed at the end of the file; is it whole?");
+        }
     }
 
-    // ---- look-up: an unknown message, or one in Vector's container, is nullptr
+    // ---- look-up of the row that a statement is about: false after a fault, and in Vector's container
 
-    constexpr MessageRow* message_of(std::uint32_t id) const noexcept {
-        for (MessageRow& each : net_.all())
-            if (each.is_independent ? id == independent_id : id == raw_id(each)) return &each;
-        return nullptr;
-    }
-    static constexpr std::uint32_t raw_id(const MessageRow& message) noexcept {
-        return message.identifier.id | (message.identifier.extended ? extended_bit : 0);
-    }
-    constexpr MessageRow* known_message() {
+    constexpr bool known_message() {
         const std::size_t at = in_.at();
         const std::uint32_t id = whole(0xffff'ffff, "a message's identifier");
-        MessageRow* const found = ok() ? message_of(id) : nullptr;
-        if (ok() && found == nullptr && id != independent_id)
-            fail(at, "no message has the identifier ", std::uint64_t{id},
-                 "; define it by BO_ before it is used");
-        return found;
-    }
-    constexpr SignalRow* known_signal(const MessageRow* message) {
-        const std::size_t at = in_.at();
-        const std::string_view name = word("a signal's name");
-        if (message == nullptr || message->is_independent || !ok()) return nullptr;
-        SignalRow* const found = net_.find(*message, name);
-        if (found != nullptr) return found;
-        Nearest nearest{name};
-        for (const SignalRow& each : net_.of(*message)) nearest.consider(each.shape.name);
-        fail(at, "message \"", message->name, "\" has no signal \"", name, "\"",
-             or_meant(nearest, "; define it by SG_ in its message"));
-        return nullptr;
-    }
-    constexpr void check_nodes(std::string_view list) {
-        if (list == checked_nodes_) return; // most lists equal the previous one
-        checked_nodes_ = list;
-        for_each_name(list, [&](std::string_view node) {
-            if (!ok() || node == nobody || names(net_.nodes, node)) return;
-            Nearest nearest{node};
-            for_each_name(net_.nodes, [&](std::string_view each) { nearest.consider(each); });
-            fail(static_cast<std::size_t>(node.data() - net_.text.data()), "BU_ names no node \"", node, "\"",
-                 or_meant(nearest, "; add it there"));
-        });
-    }
-    /// Returns the names up to the end of the line, or to something else.
-    constexpr std::string_view node_list() {
-        const std::size_t from = in_.at();
-        std::size_t end = from;
-        while (!in_.at_end() && !in_.begins_line() && !in_.word().empty()) {
-            in_.take(',');
-            end = in_.at();
+        if (!ok()) return false;
+        const std::size_t found = message_of(id);
+        if (found == no_such) {
+            if (id != independent_id) note(at, "no message has the identifier ", std::uint64_t{id});
+        } else if (!net_.messages[found].is_independent) {
+            message_ = found;
+            return true;
         }
-        return end == from ? std::string_view{} : in_.since(from);
+        failed_ = true;
+        return false;
     }
-
+    constexpr bool known_signal() {
+        const std::size_t at = in_.at();
+        const std::string_view name = label("a signal's name");
+        if (!ok()) return false;
+        for (std::size_t m = message_; m != no_such; m = message_of(raw_id(the_message()), m + 1))
+            if (const SignalRow* const found = net_.find(net_.messages[m], name); found != nullptr) {
+                about(*found);
+                return true;
+            }
+        Nearest nearest{name};
+        for (const SignalRow& each : net_.of(the_message())) nearest.consider(each.shape.name);
+        note(at, "message \"", the_message().name, "\" has no signal \"", name, "\"", or_meant(nearest, ""));
+        failed_ = true;
+        return false;
+    }
     // ---- statements
 
     /// Returns whether to skip the statement, because it has no effect on the wire.
@@ -144,30 +87,68 @@ private:
             "BO_ SG_ VAL_ BA_ BA_DEF_ BA_DEF_DEF_ BO_TX_BU_ SIG_VALTYPE_ SG_MUL_VAL_ BU_ NS_ BS_ VERSION";
         return names(read, keyword) || is_passed_over(keyword);
     }
+    static constexpr bool begins_statement(const Scanner& at) noexcept {
+        return at.begins_line() && is_statement(at.peek());
+    }
     constexpr void statement() {
-        const std::size_t at = in_.at();
+        if (in_.take(';')) return;
+        begin(in_.at());
         const std::string_view keyword = in_.word();
-        if (keyword == "SG_") return signal();
+        if (keyword == "SG_") return signal_statement();
+        if (keyword == "BO_") return message_statement();
+        if (keyword.empty() || !is_statement(keyword)) return unknown(keyword);
         takes_signals_ = false;
-        if (keyword == "BO_") return message(at);
-        if (keyword == "VAL_") return values();
-        if (keyword == "BA_") return attribute();
-        if (keyword == "BA_DEF_") return attribute_definition();
-        if (keyword == "BA_DEF_DEF_") return attribute_default();
-        if (keyword == "BO_TX_BU_") return senders();
-        if (keyword == "SIG_VALTYPE_") return value_type();
-        if (keyword == "SG_MUL_VAL_") return selections();
-        if (keyword == "BU_") return nodes(at);
-        if (keyword == "NS_") return new_symbols();
-        if (keyword == "BS_") return bit_timing();
-        if (keyword == "VERSION") return static_cast<void>(text("the version between quotes"));
-        if (is_passed_over(keyword)) return skip_statement();
-        fail(at, "found \"", keyword.empty() ? in_.found() : keyword,
-             "\", expected a statement, which begins with BO_, SG_, VAL_ or the like; correct it");
+        if (keyword == "VAL_")
+            values();
+        else if (keyword == "BA_")
+            attribute();
+        else if (keyword == "BA_DEF_")
+            attribute_definition();
+        else if (keyword == "BA_DEF_DEF_")
+            attribute_default();
+        else if (keyword == "BO_TX_BU_")
+            senders();
+        else if (keyword == "SIG_VALTYPE_")
+            value_type();
+        else if (keyword == "SG_MUL_VAL_")
+            selections();
+        else if (keyword == "BU_")
+            nodes();
+        else if (keyword == "NS_")
+            new_symbols();
+        else if (keyword == "BS_")
+            bit_timing();
+        else if (keyword == "VERSION")
+            text("the version between quotes");
+        else
+            skip_statement();
+        if (failed_) skip_statement();
+    }
+    constexpr void unknown(std::string_view keyword) {
+        // In a message it may be the rest of a signal, with its receivers.
+        const bool continues = takes_signals_ && !keyword.ends_with('_');
+        if (continues && net_.used.signals != 0 && is_of_last(net_.signals[net_.used.signals - 1]))
+            about(net_.signals[net_.used.signals - 1]);
+        else if (continues)
+            about(net_.messages[net_.used.messages - 1]);
+        fail(statement_at_, "found \"", keyword.empty() ? in_.found() : keyword,
+             "\", expected a statement, which begins with BO_, SG_, VAL_ or the like");
+        if (!continues) return skip_statement();
+        in_.skip_line();
+        if (signal_ == no_such) return;
+        const std::string_view receivers = the_signal().receivers;
+        the_signal().receivers =
+            in_.since(receivers.empty() ? statement_at_
+                                        : static_cast<std::size_t>(receivers.data() - net_.text.data()));
     }
     constexpr void new_symbols() {
         expect(':', "\":\" after NS_");
-        while (ok() && in_.peek() != "BS_" && in_.peek() != "BU_" && !in_.word().empty()) {
+        while (ok() && !in_.at_end()) {
+            Scanner ahead = in_;
+            const std::string_view symbol = ahead.word();
+            const bool is_next = symbol == "BS_" || symbol == "BU_" || is_digit(ahead.next());
+            if (symbol.empty() || is_next || ahead.next() == '"') return;
+            in_ = ahead;
         }
     }
     constexpr void bit_timing() {
@@ -176,206 +157,123 @@ private:
         while (ok() && (in_.whole(ignored) || in_.take(':') || in_.take(',') || in_.take(';'))) {
         }
     }
-    constexpr void nodes(std::size_t at) {
+    constexpr void nodes() {
         expect(':', "\":\" after BU_");
         if (!ok()) return;
-        if (has_nodes_) return fail(at, "BU_ is there twice; put all nodes into one");
-        has_nodes_ = true;
+        if (has_nodes_) note(statement_at_, "BU_ is there twice; the first one counts");
         // Nodes may continue on further lines: the next statement ends them.
         const std::size_t from = in_.at();
-        while (!in_.at_end() && !is_statement(in_.peek()) && !in_.word().empty()) in_.take(',');
-        net_.nodes = in_.since(from);
+        while (!in_.at_end() && !is_statement(in_.peek()) && !in_.name().empty()) in_.take(',');
+        in_.take(';');
+        if (!has_nodes_) net_.nodes = in_.since(from);
+        has_nodes_ = true;
     }
-    constexpr void message(std::size_t statement_at) {
-        const std::size_t id_at = in_.at();
-        const std::uint32_t id = whole(0xffff'ffff, "a message's identifier");
-        MessageRow row;
-        row.at = in_.at();
-        row.name = word("a message's name");
-        expect(':', "\":\" after the message's name");
-        row.length = static_cast<std::uint16_t>(whole(0xffff, "the message's length in bytes"));
-        const std::size_t sender_at = in_.at();
-        row.sender = word("the node that sends the message");
-        if (!ok()) return;
-        row.is_independent = id == independent_id;
-        row.identifier = {id & ~extended_bit, (id & extended_bit) != 0};
-        row.first = net_.used.signals;
-        if (!row.is_independent) {
-            check_nodes(net_.text.substr(sender_at, row.sender.size()));
-            if (!valid(row.identifier))
-                fail(id_at, "message \"", row.name, "\" has the identifier ", std::uint64_t{id},
-                     ": a standard one ends at 2047, an extended one has bit 31 set and 29 bits; correct it");
-            for (const MessageRow& each : net_.all()) {
-                if (!each.is_independent && each.identifier == row.identifier)
-                    fail(id_at, "message \"", row.name, "\" has the identifier of \"", each.name,
-                         "\"; give it its own");
-                if (each.name == row.name)
-                    fail(row.at, "message \"", row.name, "\" is there twice; rename one of them");
-            }
-        }
-        if (net_.used.messages == net_.messages.size())
-            return fail(statement_at, "BO_ is in the middle of a line; begin a new one");
-        net_.messages[net_.used.messages++] = row;
-        takes_signals_ = true;
-    }
-
-    constexpr void signal() {
-        if (net_.used.messages == 0) return fail(in_.at(), "a signal without a message; write BO_ before it");
-        MessageRow& owner = net_.messages[net_.used.messages - 1];
-        SignalRow row;
-        row.at = in_.at();
-        row.message = net_.used.messages - 1;
-        Signal& s = row.shape;
-        s.name = word("a signal's name");
-        const std::size_t multiplexing_at = in_.at();
-        if (const std::string_view written = in_.word(); !written.empty())
-            multiplexing(row, written, multiplexing_at);
-        expect(':', "\":\" after the signal's name");
-        s.start = static_cast<std::uint16_t>(whole(0xffff, "the signal's first bit"));
-        expect('|', "\"|\" after the signal's first bit");
-        const std::size_t bits_at = in_.at();
-        s.bits = static_cast<std::uint8_t>(whole(64, "the number of the signal's bits"));
-        if (ok() && s.bits == 0) fail(bits_at, "signal \"", s.name, "\" has 0 bits; give it 1 to 64");
-        expect('@', "\"@\" after the number of the signal's bits");
-        s.order = whole(1, "the byte order, 0 (Motorola) or 1 (Intel)") == 1 ? Order::intel : Order::motorola;
-        if (ok() && in_.take('-'))
-            s.kind = Kind::signed_integer;
-        else
-            expect('+', "\"+\" (unsigned) or \"-\" (signed)");
-        expect('(', "\"(\" before factor and offset");
-        s.factor = real("the factor");
-        expect(',', "\",\" between factor and offset");
-        s.offset = real("the offset");
-        expect(')', "\")\" after factor and offset");
-        expect('[', "\"[\" before the least value");
-        s.least = real("the least value");
-        expect('|', "\"|\" between the least and the greatest value");
-        s.most = real("the greatest value");
-        expect(']', "\"]\" after the greatest value");
-        s.has_range = s.least != 0 || s.most != 0; // [0|0] means no range
-        s.unit = text("the unit between quotes");
-        if (!ok()) return;
-        row.receivers = node_list();
-        if (owner.is_independent) return;
-        if (!takes_signals_)
-            return fail(row.at, "signal \"", s.name, "\" is not in its message; put it under its BO_");
-        check_nodes(row.receivers);
-        if (net_.find(owner, s.name) != nullptr)
-            fail(row.at, "message \"", owner.name, "\" has two signals \"", s.name, "\"; rename one of them");
-        if (net_.used.signals == net_.signals.size())
-            return fail(row.at, "SG_ is in the middle of a line; begin a new one");
-        net_.signals[net_.used.signals++] = row;
-        ++owner.signals;
-    }
-    /// Reads "M", "m12" or "m12M".
-    constexpr void multiplexing(SignalRow& row, std::string_view written, std::size_t at) {
-        std::string_view left = written;
-        row.is_multiplexed = left.starts_with('m');
-        if (row.is_multiplexed) {
-            left.remove_prefix(1);
-            std::uint64_t page = 0;
-            std::size_t digits = 0;
-            for (; digits < left.size() && digits < 10 && is_digit(left[digits]); ++digits)
-                page = 10 * page + static_cast<unsigned>(left[digits] - '0');
-            if (digits == 0 || page > 0xffff'ffff) left = "-";
-            row.page = static_cast<std::uint32_t>(page);
-            left.remove_prefix(digits < left.size() ? digits : left.size());
-        }
-        row.is_multiplexor = left == "M";
-        if (!left.empty() && !row.is_multiplexor)
-            fail(at, "found \"", written,
-                 "\", expected \":\" or M, m0 or m0M of a multiplexed signal; correct it");
-    }
-
     constexpr void senders() {
-        MessageRow* const message = known_message();
+        if (!known_message()) return;
         expect(':', "\":\" before the nodes that send the message");
         const std::string_view list = node_list();
         check_nodes(list);
         end_of_statement();
-        if (ok() && message != nullptr) message->more_senders = list;
+        if (ok()) the_message().more_senders = list;
     }
 
+    // A fault in the names of values is a note: the signal has none of them, and what uses one is refused.
     constexpr void values() {
+        weight_ = Weight::note;
         if (!in_.peek().empty()) return skip_statement(); // of an environment variable
-        SignalRow* const signal = known_signal(known_message());
-        if (!ok()) return;
-        if (signal != nullptr && signal->values != 0)
-            return fail(in_.at(), "signal \"", signal->shape.name,
-                        "\" has its values named twice; keep one VAL_");
-        if (signal != nullptr) signal->first_value = net_.used.values;
-        while (ok() && !in_.take(';')) {
-            ValueName value;
-            const std::size_t at = in_.at();
-            if (double real = 0; !in_.integer(value.value)) {
-                // Some tools write "3.0" for 3.
-                if (!in_.real(real) || real != static_cast<double>(static_cast<std::int64_t>(real)))
-                    return fail_expected("a value and its name, or \";\"");
-                value.value = static_cast<std::int64_t>(real);
-            }
-            value.name = text("the value's name between quotes");
-            if (!ok() || signal == nullptr) continue;
-            if (net_.used.values == net_.values.size())
-                return fail(at, "too many values; is the file whole?");
-            net_.values[net_.used.values++] = value;
-            ++signal->values;
+        if (!known_message() || !known_signal()) return;
+        SignalRow& row = the_signal();
+        const std::size_t at = in_.at();
+        const bool is_second = row.names_at != no_such;
+        if (is_second)
+            note(at, "signal \"", row.shape.name, "\" has its values named twice; none of the names counts");
+        row.names_at = statement_at_;
+        row.first_value = net_.used.values;
+        row.values = 0;
+        while (ok() && in_.next() != ';' && !in_.at_end() && !begins_statement(in_)) value(row);
+        end_of_statement();
+        if (failed_ || is_second) row.values = 0;
+    }
+    constexpr void value(SignalRow& row) {
+        ValueName value;
+        const std::size_t at = in_.at();
+        bool fits = true;
+        std::uint64_t large = 0;
+        double real = 0;
+        if (in_.integer(value.value)) {
+        } else if (in_.whole(large)) { // of 64 bits: kept as the facet has it
+            value.value = static_cast<std::int64_t>(large);
+            fits = row.shape.bits == 64 && row.shape.kind == Kind::unsigned_integer;
+        } else if (in_.real(real)) { // some tools write "3.0" for 3
+            fits = real > -9e18 && real < 9e18;
+            if (fits) value.value = static_cast<std::int64_t>(real);
+            fits = fits && real == static_cast<double>(value.value);
+        } else {
+            return fail_expected("a value and its name, or \";\"");
         }
+        value.name = text("the value's name between quotes");
+        if (!ok()) return;
+        if (!fits) return note(at, "signal \"", row.shape.name, "\" cannot have the value of this name");
+        if (net_.used.values == net_.values.size())
+            return net_.fail(at, "too many values; is the file whole?");
+        net_.values[net_.used.values++] = value;
+        ++row.values;
     }
 
     constexpr void value_type() {
-        SignalRow* const signal = known_signal(known_message());
+        if (!known_message() || !known_signal()) return;
         in_.take(':');
         const std::size_t at = in_.at();
         const std::uint32_t kind = whole(2, "0 (integer), 1 (float) or 2 (double)");
         end_of_statement();
-        if (!ok() || signal == nullptr || kind == 0) return;
-        if (signal->shape.bits != 32 * kind)
-            return fail(at, "signal \"", signal->shape.name, "\" has ", unsigned{signal->shape.bits},
-                        " bits, but a ", kind == 1 ? "float" : "double", " has ", 32 * kind,
-                        "; correct one of them");
-        signal->shape.kind = kind == 1 ? Kind::float32 : Kind::float64;
+        if (!ok() || kind == 0) return;
+        Signal& s = the_signal().shape;
+        if (s.bits != 32 * kind)
+            spoil(at, "signal \"", s.name, "\" has ", unsigned{s.bits}, " bits, but a ",
+                  kind == 1 ? "float" : "double", " has ", 32 * kind);
+        else
+            s.kind = kind == 1 ? Kind::float32 : Kind::float64;
     }
 
     constexpr void selections() {
-        const MessageRow* const message = known_message();
+        if (!known_message()) return;
         const std::size_t signal_at = in_.at();
-        SignalRow* const signal = known_signal(message);
+        if (!known_signal()) return;
+        SignalRow& row = the_signal();
         const std::size_t at = in_.at();
-        const SignalRow* const multiplexor = known_signal(message);
-        if (ok() && multiplexor != nullptr && !multiplexor->is_multiplexor)
-            return fail(at, "signal \"", multiplexor->shape.name,
-                        "\" selects others but is not a multiplexor; write M behind its name");
-        if (ok() && signal != nullptr && !signal->is_multiplexed)
-            return fail(signal_at, "signal \"", signal->shape.name,
-                        "\" is selected but not multiplexed; write m and a number behind its name");
+        if (!known_signal())
+            return tell(Weight::fault, at, "signal \"", row.shape.name, "\" has an unknown multiplexor");
+        const SignalRow& multiplexor = the_signal();
+        about(row);
+        if (!multiplexor.is_multiplexor)
+            return fail(at, "signal \"", multiplexor.shape.name,
+                        "\" selects others but is not a multiplexor");
+        if (!row.is_multiplexed)
+            return fail(signal_at, "signal \"", row.shape.name, "\" is selected but not multiplexed");
         do {
             const std::size_t from_at = in_.at();
             const std::uint32_t from = whole(0xffff'ffff, "the first value of a range");
             expect('-', "\"-\" between the ends of a range");
             const std::uint32_t to = whole(0xffff'ffff, "the last value of a range");
-            if (ok() && to < from) fail(from_at, "an empty range; exchange its bounds");
-            if (ok() && signal != nullptr) select(*signal, {from, to});
+            if (to < from) spoil(from_at, "an empty range");
+            if (ok()) select(row, {from, to});
         } while (ok() && in_.take(','));
         end_of_statement();
-        if (ok() && signal != nullptr)
-            signal->selected_by = static_cast<std::size_t>(multiplexor - net_.signals.data());
+        row.selected_by = static_cast<std::size_t>(&multiplexor - net_.signals.data());
     }
-    static constexpr void select(SignalRow& signal, const Selection& more) noexcept {
-        auto& all = signal.shape.selections;
-        if (!all.empty() && more.from != 0 && all[all.size() - 1].to == more.from - 1)
-            all[all.size() - 1].to = more.to;
-        else
-            signal.too_many_selections |= !all.push(more);
-    }
-
-    // ---- attributes: the cycle time, CAN FD, and names of more than 32 characters
+    // ---- attributes: rates, CAN FD, and names of more than 32 characters
 
     constexpr Choice* choice(std::string_view attribute) noexcept {
-        return attribute == fd_.attribute ? &fd_ : attribute == switch_.attribute ? &switch_ : nullptr;
+        for (Choice* const each : {&fd_, &switch_, &demand_})
+            if (each->attribute == attribute) return each;
+        return nullptr;
     }
     constexpr bool chosen(const Choice& among) {
         if (in_.next() == '"') return among.says_yes(text("the attribute's value"));
-        return among.says_yes(whole(63, "the number of the attribute's value"));
+        const std::size_t at = in_.at();
+        const std::uint32_t number = whole(63, "the number of the attribute's value");
+        if (among.is_unreadable) spoil(at, among.attribute, " has no readable definition");
+        return among.holds(number);
     }
     constexpr void attribute_definition() {
         if (in_.peek() == "BO_") in_.word();
@@ -388,13 +286,16 @@ private:
         do of->define(number++, text("a value's name between quotes"));
         while (ok() && in_.take(','));
         end_of_statement();
+        of->is_unreadable = !ok();
     }
 
     constexpr Duration cycle_time() {
+        weight_ = Weight::note;
         const std::size_t at = in_.at();
         const double ms = real("the cycle time in milliseconds");
-        if (ok() && !(ms >= 0 && ms < 1e9)) fail(at, "a cycle time of ", decimal(ms), " ms; correct it");
-        return ok() ? Duration{static_cast<std::int64_t>(ms * 1e6 + 0.5)} : Duration{};
+        if (ok() && ms >= 0 && ms < 1e9) return Duration{static_cast<std::int64_t>(ms * 1e6 + 0.5)};
+        spoil(at, "a cycle time of ", decimal(ms), " ms");
+        return {};
     }
     constexpr void attribute() {
         const std::string_view name = text("an attribute's name between quotes");
@@ -403,24 +304,21 @@ private:
         const bool is_message_name = name == "SystemMessageLongSymbol" && of == "BO_";
         const bool is_signal_name = name == "SystemSignalLongSymbol" && of == "SG_";
         const Choice* const among = of == "BO_" ? choice(name) : nullptr;
-        if (!ok() || (!is_period && !is_message_name && !is_signal_name && among == nullptr))
-            return skip_statement();
+        if (!ok()) return;
+        if (!is_period && !is_message_name && !is_signal_name && among == nullptr) return skip_statement();
         in_.word();
-        MessageRow* const message = known_message();
-        SignalRow* const signal = is_signal_name ? known_signal(message) : nullptr;
+        if (!known_message() || (is_signal_name && !known_signal())) return;
         if (among != nullptr) {
-            const bool yes = chosen(*among);
-            if (message != nullptr) (among == &fd_ ? message->is_fd : message->switches) = yes;
+            (among == &fd_       ? the_message().is_fd
+             : among == &switch_ ? the_message().switches
+                                 : the_message().on_demand) = chosen(*among);
         } else if (is_period) {
-            const Duration every = cycle_time();
-            if (ok() && message != nullptr) {
-                message->every = every;
-                message->says_every = true;
-            }
+            the_message().says_every = true;
+            the_message().every = cycle_time();
         } else {
+            weight_ = Weight::note;
             const std::string_view long_name = text("a name between quotes");
-            if (ok() && signal != nullptr) signal->long_name = long_name;
-            if (ok() && message != nullptr && is_message_name) message->long_name = long_name;
+            if (ok()) (is_signal_name ? the_signal().long_name : the_message().long_name) = long_name;
         }
         end_of_statement();
     }
@@ -437,10 +335,20 @@ private:
 
     // ---- a complete message
 
-    constexpr void finish(MessageRow& message) {
+    constexpr void take_defaults(MessageRow& message) {
+        if (message.shares_identifier) // attributes belong to the first one
+            if (const MessageRow& first = net_.messages[message_of(raw_id(message))]; &first != &message) {
+                message.every = first.every, message.says_every = first.says_every;
+                message.is_fd = first.is_fd, message.switches = first.switches;
+                message.on_demand = first.on_demand;
+            }
         if (!message.says_every) message.every = usual_every_;
         if (!message.is_fd) message.is_fd = fd_.usually;
         if (!message.switches) message.switches = switch_.usually;
+        if (!message.on_demand) message.on_demand = demand_.usually;
+    }
+    constexpr void finish(MessageRow& message) {
+        take_defaults(message);
         const auto signals = net_.of(message);
         std::size_t multiplexors = 0;
         std::size_t plain = no_such; // the one that is not multiplexed itself
@@ -451,39 +359,37 @@ private:
         }
         for (SignalRow& each : signals) {
             if (!each.is_multiplexed) continue;
+            about(each);
             if (each.selected_by == no_such) {
                 if (multiplexors > 1)
-                    return fail(each.at, "message \"", message.name,
-                                "\" has several multiplexors; say by SG_MUL_VAL_ which one selects \"",
-                                each.shape.name, "\"");
-                if (plain == no_such)
-                    return fail(each.at, "signal \"", each.shape.name,
-                                "\" is multiplexed but its message has no multiplexor; write M behind the "
-                                "name of one");
+                    spoil(each.at, "message \"", message.name,
+                          "\" has several multiplexors, and SG_MUL_VAL_ says not which one selects \"",
+                          each.shape.name, "\"");
+                else if (plain == no_such)
+                    spoil(each.at, "signal \"", each.shape.name,
+                          "\" is multiplexed but its message has no multiplexor");
+                if (multiplexors > 1) continue;
                 each.selected_by = plain;
                 select(each, each.page);
             }
             std::size_t steps = 0;
             for (std::size_t up = each.selected_by; up != no_such && steps <= signals.size(); ++steps)
                 up = net_.signals[up].selected_by;
-            if (steps > signals.size())
-                return fail(each.at, "signal \"", each.shape.name,
-                            "\" is selected by itself, through others; correct SG_MUL_VAL_");
+            if (steps <= signals.size()) continue;
+            spoil(each.at, "signal \"", each.shape.name, "\" is selected by itself, through others");
+            each.selected_by = no_such;
         }
         for (SignalRow& each : signals)
             if (!each.long_name.empty()) each.shape.name = each.long_name;
         for (SignalRow& each : signals)
-            if (each.is_multiplexed) each.shape.multiplexor = net_.signals[each.selected_by].shape.name;
+            if (each.selected_by != no_such)
+                each.shape.multiplexor = net_.signals[each.selected_by].shape.name;
         if (!message.long_name.empty()) message.name = message.long_name;
     }
 
-    Network& net_;
-    Scanner in_;
-    std::string_view checked_nodes_{};
     bool has_nodes_ = false;
-    bool takes_signals_ = false;
     Duration usual_every_{};
-    Choice fd_ = can_fd, switch_ = bit_rate_switch;
+    Choice fd_ = can_fd, switch_ = bit_rate_switch, demand_ = send_type;
 };
 
 } // namespace tappet::can::dbc

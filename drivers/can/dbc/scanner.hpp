@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 namespace tappet::can::dbc {
@@ -13,6 +14,12 @@ constexpr bool is_word_character(char c) noexcept {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit(c);
 }
 constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+/// Returns the text without the byte-order mark of UTF-8.
+constexpr std::string_view without_mark(std::string_view text) noexcept {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
 
 /// Calls visit(name) for each name of a list as in the file: "a, b c".
 template <class Visit> constexpr void for_each_name(std::string_view list, const Visit& visit) {
@@ -33,7 +40,10 @@ constexpr bool names(std::string_view list, std::string_view name) noexcept {
 class Scanner {
 public:
     constexpr Scanner() = default;
-    explicit constexpr Scanner(std::string_view text) noexcept : text_{text} { skip_blanks(); }
+    explicit constexpr Scanner(std::string_view text) noexcept
+        : text_{text}, at_{text.size() - without_mark(text).size()} {
+        skip_blanks();
+    }
 
     [[nodiscard]] constexpr std::size_t at() const noexcept { return at_; }
     [[nodiscard]] constexpr bool at_end() const noexcept { return at_ == text_.size(); }
@@ -50,10 +60,11 @@ public:
         skip_blanks();
         return true;
     }
-    /// Takes a name or a keyword; returns an empty one when there is none.
-    constexpr std::string_view word() noexcept {
+    /// Takes a keyword; returns an empty one when there is none.
+    constexpr std::string_view word() noexcept { return is_digit(next()) ? std::string_view{} : name(); }
+    /// Takes a name, which may begin with a digit; returns an empty one when there is none.
+    constexpr std::string_view name() noexcept {
         const std::size_t from = at_;
-        if (is_digit(next())) return {};
         const char* const characters = text_.data();
         const std::size_t size = text_.size();
         std::size_t i = from;
@@ -71,7 +82,7 @@ public:
             if (__builtin_mul_overflow(value, 10u, &value) ||
                 __builtin_add_overflow(value, static_cast<unsigned>(text_[i] - '0'), &value))
                 return false;
-        if (i == at_ || (i != text_.size() && is_word_character(text_[i]))) return false;
+        if (i == at_ || (i != text_.size() && (is_word_character(text_[i]) || text_[i] == '.'))) return false;
         at_ = i;
         skip_blanks();
         into = value;
@@ -89,7 +100,8 @@ public:
         into = static_cast<std::int64_t>(negative ? ~size + 1 : size);
         return true;
     }
-    /// Takes a real: "-40", "0.1", "1E-05". Returns false without one, or when a double cannot hold it.
+    /// Takes a real: "-40", "0.1", "1E-05"; it is infinite when a double cannot hold it. Returns false
+    /// without one.
     constexpr bool real(double& into) noexcept {
         std::size_t i = at_;
         const auto here = [&] { return i == text_.size() ? '\0' : text_[i]; };
@@ -128,8 +140,9 @@ public:
         if (is_word_character(here()) || here() == '.') return false;
         int magnitude = exponent; // the value is less than 10^magnitude
         for (std::uint64_t left = digits; left != 0; left /= 10) ++magnitude;
-        if (digits != 0 && magnitude > 308) return false;
-        const double size = magnitude < -300 ? 0 : real_of(digits, exponent);
+        const double size = digits == 0 || magnitude < -300 ? 0
+                            : magnitude > 308               ? huge(digits, exponent, magnitude)
+                                                            : real_of(digits, exponent);
         into = negative ? -size : size;
         at_ = i;
         skip_blanks();
@@ -150,20 +163,51 @@ public:
         skip_blanks();
         return true;
     }
-    /// Moves behind the next semicolon outside of texts. Returns false when a text or the statement does not
-    /// end; the position is then at that text, or at the end.
-    constexpr bool skip_statement() noexcept {
-        std::string_view ignored;
-        while (!at_end()) {
-            if (take(';')) return true;
-            if (next() == '"') {
-                if (!text(ignored, true)) return false;
-            } else {
+    /// Moves to the next line.
+    constexpr void skip_line() noexcept {
+        while (!at_end() && text_[at_] != '\n') ++at_;
+        skip_blanks();
+    }
+    /// Moves to the first of these characters in this line, or to its end.
+    constexpr void skip_to(std::string_view ends) noexcept {
+        while (!at_end() && text_[at_] != '\n' && !ends.contains(text_[at_])) ++at_;
+    }
+    enum class End : std::uint8_t {
+        semicolon, ///< the position is behind it
+        none,      ///< the next line begins a statement, or the file ends
+        unclosed,  ///< a text without its second quote, at `text_at`; the position is the next line
+        cut,       ///< the file ends in such a text
+    };
+    /// Moves behind the statement. begins(scanner): a statement begins here.
+    template <class Begins> constexpr End skip_statement(const Begins& begins,
+                                                         std::size_t& text_at) noexcept {
+        for (const std::size_t from = at_; !at_end();) {
+            if (at_ != from && begins_line() && begins(*this)) return End::none;
+            if (take(';')) return End::semicolon;
+            if (next() != '"') {
                 ++at_;
+                while (!at_end() && is_word_character(text_[at_])) ++at_;
                 skip_blanks();
+                continue;
             }
+            text_at = at_;
+            const Scanner opened{*this};
+            std::string_view ignored;
+            const bool is_closed = text(ignored, true);
+            if (is_closed && (next() == ';' || !ignored.contains('\n'))) continue;
+            // A text of many lines may have swallowed statements, up to the first quote of another text.
+            bool swallows = false;
+            Scanner line{opened};
+            for (line.skip_line(); !swallows && !line.at_end() && (line.at_ < at_ || !is_closed);
+                 line.skip_line())
+                swallows = begins(line);
+            if (is_closed && !swallows) continue;
+            *this = opened;
+            if (!swallows) return End::cut;
+            skip_line();
+            return End::unclosed;
         }
-        return false;
+        return End::none;
     }
     /// Returns the beginning of the next item, for messages.
     [[nodiscard]] constexpr std::string_view found() const noexcept {
@@ -183,12 +227,27 @@ private:
     static constexpr std::uint64_t most_size = 0x7fff'ffff'ffff'ffff;
     static constexpr int far = 9999;
 
+    /// A number near the end of double's range, or beyond it.
+    static constexpr double huge(std::uint64_t digits, int exponent, int magnitude) noexcept {
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        const double tenth = magnitude > 309 ? infinite : real_of(digits, exponent - 10); // of 10^10
+        // Tools write the last double with 15 digits, which are a little more.
+        if (tenth > 1.797693134862321e298) return infinite;
+        return tenth > 1.797693134862315e298 ? std::numeric_limits<double>::max() : tenth * 1e10;
+    }
+    /// Skips blanks and comments: // to the end of the line.
     constexpr void skip_blanks() noexcept {
         const char* const characters = text_.data(); // calls cost time in a constant expression
         const std::size_t size = text_.size();
         std::size_t i = at_;
-        for (; i != size; ++i)
-            if (const char c = characters[i]; c != ' ' && c != '\n' && c != '\t' && c != '\r') break;
+        for (; i != size; ++i) {
+            const char c = characters[i];
+            if (c == '/' && i + 1 != size && characters[i + 1] == '/') {
+                while (i + 1 != size && characters[i + 1] != '\n') ++i;
+                continue;
+            }
+            if (c != ' ' && c != '\n' && c != '\t' && c != '\r') break;
+        }
         at_ = i;
     }
     constexpr std::string_view ended(std::size_t from) noexcept {

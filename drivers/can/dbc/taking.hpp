@@ -1,11 +1,13 @@
-// Selects the part of a network that one node uses: its frames and signals as rows of a signal map.
+// Selects the part of a network that one node uses: its frames and signals as rows of a signal map. Only this
+// part must be free of faults.
 #pragma once
 
 #include "drivers/can/dbc/network.hpp"
 #include "drivers/can/dbc/node.hpp"
+#include "drivers/can/dbc/reader.hpp"
 #include "drivers/can/dbc/scanner.hpp"
 #include "drivers/can/dbc/texts.hpp"
-#include "kernel/base/decimal.hpp"
+#include "drivers/can/dbc/value_rows.hpp"
 
 namespace tappet::can::dbc {
 
@@ -28,6 +30,7 @@ public:
             take_message(message);
             if (message.is_taken && ok()) add(sizes, message);
         }
+        if (faults_ != 0 && ok()) refuse();
         return sizes;
     }
     /// Fills a map of at least these sizes.
@@ -57,8 +60,10 @@ public:
         }
         const detail::MapFault fault = detail::complete(map, f);
         if (fault.text.empty()) return;
-        net_.fail(fault.signal != no_such ? signals[fault.signal]->at : messages[fault.frame]->at,
-                  fault.text);
+        const MessageRow& message = *messages[fault.frame];
+        const SignalRow* const signal = fault.signal == no_such ? nullptr : signals[fault.signal];
+        net_.fail(signal != nullptr ? signal->at : message.at, fault.text,
+                  fault.cure.empty() ? Sentence{} : cure(message, signal));
     }
 
 private:
@@ -83,6 +88,12 @@ private:
         if (!ok() || node_.name.empty() || names(net_.nodes, node_.name)) return;
         Nearest nearest{node_.name};
         for_each_name(net_.nodes, [&](std::string_view each) { nearest.consider(each); });
+        for (const MessageRow& message : net_.all()) { // BU_ may lack it
+            if (net_.sends(message, node_.name)) return;
+            nearest.consider(message.sender);
+            for (const SignalRow& each : net_.of(message))
+                if (names(each.receivers, node_.name)) return;
+        }
         const std::size_t at =
             net_.nodes.empty() ? 0 : static_cast<std::size_t>(net_.nodes.data() - net_.text.data());
         net_.fail(at, "BU_ names no node \"", node_.name, "\"",
@@ -92,6 +103,7 @@ private:
         if (!ok()) return;
         const std::string_view name = in_file(row);
         Nearest nearest{name};
+        bool is_found = false;
         for (MessageRow& each : net_.all()) {
             if (each.is_independent) continue;
             nearest.consider(each.name);
@@ -105,8 +117,10 @@ private:
             each.row = &row;
             for (const Signal& signal : node_.signals.subspan(row.first, row.values))
                 find_signal(each, signal);
-            return;
+            is_found = true;
+            if (row.direction != Direction::passing) return;
         }
+        if (is_found) return;
         net_.fail(0, "it has no message \"", name, "\", which a row of \"", node_.name, "\" names",
                   or_meant(nearest, "; take the row away"));
     }
@@ -134,45 +148,111 @@ private:
 
     constexpr void take_message(MessageRow& message) {
         const bool is_ours = !node_.name.empty() && net_.sends(message, node_.name);
-        const bool sends = message.row != nullptr && message.row->direction == Direction::transmit;
-        if (is_ours && message.row == nullptr)
+        const FrameRow* const row = message.row;
+        const bool sends = row != nullptr && row->direction == Direction::transmit;
+        const bool is_left_out = row != nullptr && row->direction == Direction::passing;
+        if (is_left_out || (row == nullptr && another_has_row(message))) return;
+        if (is_ours && row == nullptr)
             return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", node_.name,
                              "\" but has no safe values; write transmit(\"", message.name,
                              "\", signal(\"..\").safe(..)) into its node, or .safe_by_silence() behind that");
-        if (message.row != nullptr && is_ours != sends && (is_ours || message.sender != nobody))
+        const bool is_others = message.sender != nobody && !node_.name.empty();
+        if (row != nullptr && is_ours != sends && (is_ours || is_others))
             return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", message.sender,
                              is_ours ? "\", so \"" : "\", not by \"", node_.name,
                              is_ours ? "\" does not receive it; write transmit(..)"
                                      : "\"; write receive(..)");
         message.direction = sends ? Direction::transmit : Direction::receive;
-        const bool takes_all = sends || (message.row != nullptr && message.row->values == 0);
+        const bool takes_all = sends || (row != nullptr && row->values == 0);
         for (SignalRow& each : net_.of(message))
-            if (takes_all || each.row != nullptr ||
-                (!node_.name.empty() && names(each.receivers, node_.name)))
+            if (takes_all || each.row != nullptr || (row == nullptr && names(each.receivers, node_.name)))
                 for (SignalRow* up = &each; up != nullptr && !up->is_taken;
                      up = up->selected_by == no_such ? nullptr : &net_.signals[up->selected_by])
                     up->is_taken = true;
-        message.is_taken = message.row != nullptr || count(message) != 0;
-        if (message.is_taken) check_rate(message);
-        for (const SignalRow& each : net_.of(message))
-            if (each.is_taken && each.too_many_selections)
-                net_.fail(each.at, "signal \"", each.shape.name, "\" is selected by more than ",
-                          Signal::most_selections, " ranges; leave some to a second signal");
-        if (message.is_taken && message.length > 64)
+        message.is_taken = row != nullptr || count(message) != 0;
+        if (message.is_taken) check(message);
+    }
+    /// Returns whether a row says that another message with this identifier is on the bus.
+    [[nodiscard]] constexpr bool another_has_row(const MessageRow& message) const noexcept {
+        if (!message.shares_identifier) return false;
+        for (const MessageRow& each : net_.all())
+            if (&each != &message && each.identifier == message.identifier && each.row != nullptr)
+                return true;
+        return false;
+    }
+
+    // ---- faults of what is taken
+
+    constexpr void check(MessageRow& message) {
+        const std::size_t before = faults_;
+        if (message.shares_identifier && message.row == nullptr)
+            net_.fail(message.at, "message \"", message.name,
+                      "\" has the identifier of another one; write the one that is on the bus as a row, "
+                      "receive(\"",
+                      message.name, "\", ..)");
+        if (message.length > 64)
             net_.fail(message.at, "message \"", message.name, "\" has ", std::size_t{message.length},
-                      " bytes, which no frame holds; a transport protocol is needed for it");
+                      " bytes, which no frame holds, only a transport protocol", cure(message, nullptr));
+        if (message.trouble != no_such) found_fault(message.trouble, message, nullptr);
+        for (SignalRow& each : net_.of(message)) {
+            if (!each.is_taken) continue;
+            const bool lacks_limits =
+                message.direction == Direction::transmit && each.limits_trouble != no_such;
+            if (each.trouble != no_such || lacks_limits)
+                found_fault(each.trouble != no_such ? each.trouble : each.limits_trouble, message, &each);
+            keep_good_names(net_, each, [](const ValueName&, std::string_view) {});
+        }
+        if (faults_ == before) check_rate(message);
+    }
+    constexpr void found_fault(std::size_t at, const MessageRow& message, const SignalRow* signal) {
+        if (faults_++ != 0) return;
+        fault_at_ = at;
+        cure_ = cure(message, signal);
+    }
+    /// Reads the file again for the sentence of the first fault.
+    constexpr void refuse() {
+        for (MessageRow& each : net_.all()) each = {};
+        for (SignalRow& each : net_.signals.first(net_.used.signals)) each = {};
+        net_.used = {};
+        Trouble found{};
+        Troubles troubles{.rows = {&found, 1}, .wanted = fault_at_};
+        net_.troubles = &troubles;
+        Reader{net_}.read();
+        net_.troubles = nullptr;
+        const Sentence more =
+            faults_ == 1 ? Sentence{}
+                         : Sentence{" (and ", faults_ - 1, " more: tappet check ", net_.file, " lists all)"};
+        net_.fail(fault_at_, found.text, cure_, more);
+    }
+    /// Returns the end of a sentence about a fault of the file: how the node's rows go around it.
+    constexpr Sentence cure(const MessageRow& message, const SignalRow* signal) const {
+        const Sentence leave{"; leave it out by a row, without(\"", message.name, "\")"};
+        if (signal == nullptr) return leave;
+        const Sentence leave_message{"; leave its message out by a row, without(\"", message.name, "\")"};
+        if (message.direction == Direction::transmit) return leave_message;
+        for (const SignalRow& each : net_.of(message))
+            if (&each != signal && each.trouble == no_such && !each.shape.name.empty())
+                return Sentence{"; take other signals alone, receive(\"", message.name, "\", signal(\"",
+                                each.shape.name, "\"), ..)"};
+        return leave_message;
     }
     static constexpr bool says_rate(const MessageRow& message) noexcept {
         return message.row != nullptr && message.row->every != as_in_file.every;
     }
     constexpr void check_rate(const MessageRow& message) {
+        const std::string_view word = message.direction == Direction::transmit ? "transmit(\"" : "receive(\"";
         if (!says_rate(message) && message.every <= Duration::zero())
             net_.fail(
                 message.at, "message \"", message.name,
                 "\" has no cycle time (GenMsgCycleTime); write can::every(..) or can::on_demand(..) into ",
-                message.direction == Direction::transmit ? "transmit(\"" : "receive(\"", message.name,
-                "\", ..)");
-        if (says_rate(message) && message.every > Duration::zero() && message.row->every != message.every)
+                word, message.name, "\", ..)");
+        else if (!says_rate(message) && *message.on_demand)
+            net_.fail(message.at, "message \"", message.name,
+                      "\" is sent on demand, too (GenMsgSendType), not only in its cycle time; write "
+                      "can::on_demand(..) with the least time between two, or can::every(..), into ",
+                      word, message.name, "\", ..)");
+        if (says_rate(message) && !*message.on_demand && message.every > Duration::zero() &&
+            message.row->every != message.every)
             net_.fail(message.at, "message \"", message.name, "\" has a cycle time of ",
                       decimal(static_cast<double>(message.every.count()) / 1e6),
                       " ms and a row with another one; leave it out of the row");
@@ -247,6 +327,8 @@ private:
     std::span<char> characters_{};
     std::size_t used_values_ = 0;
     std::size_t used_characters_ = 0;
+    std::size_t faults_ = 0, fault_at_ = no_such; ///< of the file, in what is taken
+    Sentence cure_{};
 };
 
 } // namespace tappet::can::dbc

@@ -1,0 +1,192 @@
+// Reads messages and signals of a DBC file: BO_ and SG_.
+#pragma once
+
+#include "drivers/can/dbc/items.hpp"
+
+namespace tappet::can::dbc {
+
+class MessageReader : protected Items {
+protected:
+    static constexpr std::uint32_t extended_bit = 0x8000'0000, independent_id = 0xC000'0000;
+
+    using Items::Items;
+
+    static constexpr std::uint32_t raw_id(const MessageRow& message) noexcept {
+        return message.identifier.id | (message.identifier.extended ? extended_bit : 0);
+    }
+    /// Returns the first message from `first` on with this identifier; no_such: none.
+    [[nodiscard]] constexpr std::size_t message_of(std::uint32_t id, std::size_t first = 0) const noexcept {
+        while (first < net_.used.messages && raw_id(net_.messages[first]) != id) ++first;
+        return first < net_.used.messages ? first : no_such;
+    }
+    [[nodiscard]] constexpr bool is_of_last(const SignalRow& row) const noexcept {
+        return row.message + 1 == net_.used.messages;
+    }
+
+    // ---- nodes
+
+    constexpr void check_nodes(std::string_view list) {
+        if (net_.troubles == nullptr || list == checked_nodes_) return;
+        checked_nodes_ = list; // most lists equal the previous one
+        for_each_name(list, [&](std::string_view node) {
+            if (node == nobody || names(net_.nodes, node)) return;
+            Nearest nearest{node};
+            for_each_name(net_.nodes, [&](std::string_view each) { nearest.consider(each); });
+            note(static_cast<std::size_t>(node.data() - net_.text.data()), "BU_ names no node \"", node, "\"",
+                 or_meant(nearest, ""));
+        });
+    }
+    /// Returns the names up to the end of the line, or to something else.
+    constexpr std::string_view node_list() {
+        const std::size_t from = in_.at();
+        std::size_t end = from;
+        while (!in_.at_end() && !in_.begins_line() && !in_.name().empty()) {
+            in_.take(',');
+            end = in_.at();
+        }
+        return end == from ? std::string_view{} : in_.since(from);
+    }
+
+    // ---- statements
+
+    constexpr void message_statement() {
+        if (net_.used.messages == net_.messages.size())
+            return net_.fail(statement_at_, "BO_ is in the middle of a line; begin a new one");
+        MessageRow& row = net_.messages[net_.used.messages++];
+        about(row);
+        takes_signals_ = true;
+        row.first = net_.used.signals;
+        const std::size_t id_at = row.at = in_.at();
+        const std::uint32_t id = whole(0xffff'ffff, "a message's identifier");
+        row.at = in_.at();
+        row.name = label("a message's name");
+        row.identifier = {id & ~extended_bit, (id & extended_bit) != 0};
+        row.is_independent = id == independent_id || row.name == independent;
+        expect(':', "\":\" after the message's name");
+        row.length = static_cast<std::uint16_t>(whole(0xffff, "the message's length in bytes"));
+        const std::size_t sender_at = in_.at();
+        row.sender = label("the node that sends the message");
+        if (failed_) return in_.skip_line();
+        if (row.is_independent) return;
+        check_nodes(net_.text.substr(sender_at, row.sender.size()));
+        if (!valid(row.identifier))
+            spoil(id_at, "message \"", row.name, "\" has the identifier ", std::uint64_t{id},
+                  ": a standard one ends at 2047, an extended one has bit 31 set and 29 bits");
+        for (MessageRow& each : net_.all().first(net_.used.messages - 1)) {
+            if (each.is_independent) continue;
+            if (each.identifier == row.identifier) {
+                if (net_.troubles != nullptr) // either may be taken, so none is spoilt
+                    net_.troubles->add({id_at, Weight::fault, message_, no_such, {}}, "message \"", row.name,
+                                       "\" has the identifier of \"", each.name, "\"");
+                each.shares_identifier = row.shares_identifier = true;
+            }
+            if (each.name == row.name) {
+                spoil(row.at, "message \"", row.name, "\" is there twice");
+                mark(each.trouble, row.at);
+            }
+        }
+    }
+
+    constexpr void signal_statement() {
+        if (net_.used.messages == 0)
+            return net_.fail(in_.at(), "a signal without a message; write BO_ before it");
+        MessageRow& owner = net_.messages[net_.used.messages - 1];
+        if (owner.is_independent) return in_.skip_line();
+        if (net_.used.signals == net_.signals.size())
+            return net_.fail(in_.at(), "SG_ is in the middle of a line; begin a new one");
+        SignalRow& row = net_.signals[net_.used.signals++];
+        row.at = in_.at();
+        row.message = net_.used.messages - 1;
+        ++owner.signals;
+        about(row);
+        shape(row);
+        if (failed_) { // its receivers are somewhere in the rest
+            const std::size_t from = in_.at();
+            in_.skip_line();
+            row.receivers = in_.since(from);
+            return;
+        }
+        row.receivers = node_list();
+        check_nodes(row.receivers);
+        const Signal& s = row.shape;
+        if (!takes_signals_) spoil(row.at, "signal \"", s.name, "\" is not in its message");
+        if (SignalRow* const other = net_.find(owner, s.name); other != &row) {
+            spoil(row.at, "message \"", owner.name, "\" has two signals \"", s.name, "\"");
+            mark(other->trouble, row.at);
+        }
+    }
+    /// Reads a signal up to its unit.
+    constexpr void shape(SignalRow& row) {
+        Signal& s = row.shape;
+        s.name = label("a signal's name");
+        const std::size_t multiplexing_at = in_.at();
+        if (const std::string_view written = in_.word(); !written.empty())
+            multiplexing(row, written, multiplexing_at);
+        expect(':', "\":\" after the signal's name");
+        s.start = static_cast<std::uint16_t>(whole(0xffff, "the signal's first bit"));
+        expect('|', "\"|\" after the signal's first bit");
+        const std::size_t bits_at = in_.at();
+        s.bits = static_cast<std::uint8_t>(whole(64, "the number of the signal's bits"));
+        if (s.bits == 0 && row.trouble == no_such)
+            spoil(bits_at, "signal \"", s.name, "\" has 0 bits instead of 1 to 64");
+        expect('@', "\"@\" after the number of the signal's bits");
+        s.order = whole(1, "the byte order, 0 (Motorola) or 1 (Intel)") == 1 ? Order::intel : Order::motorola;
+        if (ok() && in_.take('-'))
+            s.kind = Kind::signed_integer;
+        else
+            expect('+', "\"+\" (unsigned) or \"-\" (signed)");
+        expect('(', "\"(\" before factor and offset");
+        const std::size_t factor_at = in_.at();
+        s.factor = real("the factor");
+        if (s.factor == 0 && ok())
+            spoil(factor_at, "signal \"", s.name, "\" has the factor 0: every value would be the offset");
+        expect(',', "\",\" between factor and offset");
+        s.offset = real("the offset");
+        expect(')', "\")\" after factor and offset");
+        expect('[', "\"[\" before the least value");
+        const std::size_t limits_at = in_.at();
+        s.least = limit("the least value", '|');
+        expect('|', "\"|\" between the least and the greatest value");
+        s.most = limit("the greatest value", ']');
+        expect(']', "\"]\" after the greatest value");
+        s.has_range = s.least != 0 || s.most != 0; // [0|0] means no range
+        if (ok() && s.least > s.most && row.limits_trouble == no_such)
+            tell(Weight::limits, limits_at, "signal \"", s.name, "\" has an empty range");
+        if (row.limits_trouble != no_such) s.least = s.most = 0, s.has_range = false;
+        s.unit = text("the unit between quotes");
+    }
+    /// Reads "M", "m12" or "m12M".
+    constexpr void multiplexing(SignalRow& row, std::string_view written, std::size_t at) {
+        std::string_view left = written;
+        row.is_multiplexed = left.starts_with('m');
+        if (row.is_multiplexed) {
+            left.remove_prefix(1);
+            std::uint64_t page = 0;
+            std::size_t digits = 0;
+            for (; digits < left.size() && digits < 10 && is_digit(left[digits]); ++digits)
+                page = 10 * page + static_cast<unsigned>(left[digits] - '0');
+            if (digits == 0 || page > 0xffff'ffff) left = "-";
+            row.page = static_cast<std::uint32_t>(page);
+            left.remove_prefix(digits < left.size() ? digits : left.size());
+        }
+        row.is_multiplexor = left == "M";
+        if (!left.empty() && !row.is_multiplexor)
+            fail(at, "found \"", written, "\", expected \":\" or M, m0 or m0M of a multiplexed signal");
+    }
+
+    constexpr void select(SignalRow& signal, const Selection& more) {
+        auto& all = signal.shape.selections;
+        if (!all.empty() && more.from != 0 && all[all.size() - 1].to == more.from - 1)
+            all[all.size() - 1].to = more.to;
+        else if (!all.push(more))
+            spoil(signal.at, "signal \"", signal.shape.name, "\" is selected by more than ",
+                  Signal::most_selections, " ranges");
+    }
+
+    bool takes_signals_ = false; ///< no other statement came since BO_
+
+private:
+    std::string_view checked_nodes_{};
+};
+
+} // namespace tappet::can::dbc

@@ -1,0 +1,192 @@
+// DBC files as the field has them: faults of no consequence are read past, to the right values; what a map
+// takes is refused with a cure in the node's own rows.
+#include "drivers/can/from_dbc.hpp"
+#include "drivers/can/signal_store.hpp"
+#include "tests/drivers/can/dbc_on_host.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tappet::can {
+namespace {
+
+template <class Node> std::string fault(const std::string& text, const Node& node) {
+    return std::string{DbcMap{text, node.view()}.map.fault.view()};
+}
+/// The value of a signal of map row 0 in a frame with these bytes.
+double decoded(const DbcMap& read, std::string_view path, Payload data) {
+    EXPECT_EQ(read.map.fault.view(), "");
+    SignalStore store{read.map};
+    Frame frame{.id = read.map.frames[0].identifier.id, .extended = read.map.frames[0].identifier.extended};
+    frame.length = read.map.frames[0].length;
+    frame.data = data;
+    EXPECT_EQ(store.decode(frame), Decoded::yes);
+    const std::size_t s = read.map.signal(path);
+    return is_integer(read.map.signals[s]) ? static_cast<double>(store.integer(s)) : store.physical(s);
+}
+
+constexpr auto us = node("us");
+constexpr auto receiver = node("", receive("M", every(10ms)));
+
+// A reader that goes on must read the same in the compiler and on the host.
+constexpr char swallowed_text[] = "\xEF\xBB\xBF"
+                                  R"(BU_: A us // "none" BO_ 9 X: 8 A
+CM_ "no semicolon"
+BO_ 1 M: 8 A
+ SG_ s : 0|8@1+ (1,0) [0|0] "" us
+ SG_ t : 0|1600@1+ (1,0) [0|1E+481] "" A
+BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX
+ SG_ lost : 0|99@1+ (1,0) [0|0] "" us
+BO_ 2 2nd: 8 A
+ SG_ 2t : 0|8@1+ (1,0) [0|0] "" us, robot
+CM_ "never closed;
+BO_ 3 O: 8 robot
+ SG_ u : 0|8@1+ (1,0) [0|0] "" us
+VAL_ 1 s 255 "SNA"
+BA_DEF_DEF_ "GenMsgCycleTime" 10;
+BA_ "GenMsgCycleTime" BO_ 7 20;
+CM_ "end";
+)";
+constexpr SourceText swallowed{"swallowed.dbc", {swallowed_text, sizeof swallowed_text - 1}};
+constexpr auto map = from_dbc<swallowed, us>;
+TAPPET_ACCEPTED(map.fault);
+static_assert(map.frames.size() == 3 && map.signals.size() == 3);
+static_assert(map.signal("M.s") == 0 && map.signal("2nd.2t") == 1 && map.signal("O.u") == 2);
+static_assert(map.signals[0].names.size() == 1 && map.frames[2].every == 10ms);
+
+TEST(DbcField, reads_past_faults_of_no_consequence) {
+    const DbcMap read{swallowed.text, us.view()};
+    EXPECT_EQ(decoded(read, "M.s", {7}), 7.0);
+    EXPECT_EQ(read.sizes.frames, 3u);
+    EXPECT_EQ(read.sizes.signals, 3u);
+}
+
+const std::string one = "BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" us\n"
+                        "BA_DEF_DEF_ \"GenMsgCycleTime\" 100;\n";
+
+TEST(DbcField, does_not_take_a_message_on_demand_for_a_cyclic_one) {
+    const std::string types =
+        "BA_DEF_ BO_ \"GenMsgSendType\" ENUM \"cyclic\",\"spontaneous\",\"IfActive\";\n";
+    const std::string refused =
+        "t.dbc:2:7: message \"M\" is sent on demand, too (GenMsgSendType), not only in its cycle time; write "
+        "can::on_demand(..) with the least time between two, or can::every(..), into receive(\"M\", ..)";
+    EXPECT_EQ(fault(one + "BA_DEF_DEF_ \"GenMsgSendType\" \"spontaneous\";\n", us), refused);
+    EXPECT_EQ(fault(one + types + "BA_ \"GenMsgSendType\" BO_ 1 1;\n", us), refused);
+    EXPECT_EQ(fault(one + types + "BA_ \"GenMsgSendType\" BO_ 1 2;\n", us), refused);
+    EXPECT_EQ(fault(one + "BA_DEF_DEF_ \"GenMsgSendType\" \"cyclicAndSpontaneous\";\n", us), refused);
+    EXPECT_EQ(fault(one + types + "BA_ \"GenMsgSendType\" BO_ 1 0;\n", us), "");
+    EXPECT_EQ(fault(one + "BA_DEF_DEF_ \"GenMsgSendType\" \"NoMsgSendType\";\n", us), "");
+    const std::string spontaneous = one + types + "BA_ \"GenMsgSendType\" BO_ 1 \"spontaneous\";\n";
+    constexpr auto on = node("us", receive("M", on_demand(20ms)));
+    constexpr auto cyclic = node("us", receive("M", every(50ms)));
+    EXPECT_EQ(fault(spontaneous, on), "");
+    EXPECT_EQ(fault(spontaneous, cyclic), "");
+    const DbcMap read{spontaneous, on.view()};
+    EXPECT_EQ(read.map.frames[0].every, 0ms);
+    EXPECT_EQ(read.map.frames[0].apart, 20ms);
+    EXPECT_EQ(fault(one, on),
+              "t.dbc:2:7: message \"M\" has a cycle time of 100 ms and a row with another one; "
+              "leave it out of the row");
+}
+
+TEST(DbcField, keeps_values_of_64_bits) {
+    const DbcMap read{"BU_: A B\nBO_ 1 M: 8 A\n SG_ s : 0|64@1+ (1,0) [0|0] \"\" B\n"
+                      "VAL_ 1 s 18446744073709551615 \"SNA\" 9223372036854775807 \"most\" 1.0 \"one\";",
+                      receiver.view()};
+    ASSERT_EQ(read.map.fault.view(), "");
+    ASSERT_EQ(read.map.signals[0].names.size(), 3u);
+    EXPECT_TRUE(read.map.signals[0].has_name(to_integer(read.map.signals[0], ~std::uint64_t{0})));
+}
+
+TEST(DbcField, drops_names_that_cannot_be_believed) {
+    const auto names = [](const std::string& values) {
+        const DbcMap read{one + values, us.view()};
+        EXPECT_EQ(read.map.fault.view(), "");
+        std::string all;
+        for (const ValueName& each : read.map.signals[0].names) all += std::string{each.name} + " ";
+        return all;
+    };
+    EXPECT_EQ(names("VAL_ 1 s 0 \"off\" 300 \"far\" 1 \"on\";"), "off on ");
+    EXPECT_EQ(names("VAL_ 1 s 18446744073709551615 \"SNA\" 1e99 \"x\" 1.5 \"y\" 1 \"on\";"), "on ");
+    EXPECT_EQ(names("VAL_ 1 s 0 \"off\" 1 \"on\" 0 \"OFF\" 2 \"two\";"), "on two ");
+    EXPECT_EQ(names("VAL_ 1 s 0 \"off\" 1 \"on\" 0 \"off\" 0 \"off\";"), "off on ");
+    EXPECT_EQ(names("VAL_ 1 s 0 \"off\";\nVAL_ 1 s 1 \"on\";"), "");
+    EXPECT_EQ(names("VAL_ 1 s 0 \"off\" 1 on;\nCM_ \"x\";"), "");
+}
+
+TEST(DbcField, takes_some_signals_of_a_message) {
+    const std::string overlapping =
+        "BU_: A us\nBO_ 1 M: 8 A\n SG_ a : 0|16@1+ (1,0) [0|0] \"\" us\n"
+        " SG_ b : 8|8@1+ (0.5,0) [0|0] \"\" us\n SG_ c : 60|8@1+ (1,0) [0|0] \"\" us\n";
+    constexpr auto whole = node("us", receive("M", every(10ms)));
+    constexpr auto some = node("us", receive("M", every(10ms), signal("b")));
+    constexpr auto far = node("us", receive("M", every(10ms), signal("c")));
+    constexpr auto none = node("us", without("M"));
+    EXPECT_EQ(fault(overlapping, whole),
+              "t.dbc:4:6: signal \"M.b\" overlaps \"a\" at bit 8; take other signals "
+              "alone, receive(\"M\", signal(\"a\"), ..)");
+    EXPECT_EQ(decoded({overlapping, some.view()}, "M.b", {1, 8}), 4.0);
+    EXPECT_EQ(
+        fault(overlapping, far),
+        "t.dbc:5:6: signal \"M.c\" reaches outside its frame of 8 bytes: it starts at bit 60 (its lowest) "
+        "and goes up 8 bits; take other signals alone, receive(\"M\", signal(\"a\"), ..)");
+    EXPECT_EQ(fault(overlapping, none), "");
+    const DbcMap read{overlapping, none.view()};
+    EXPECT_EQ(read.sizes.frames, 0u);
+}
+
+TEST(DbcField, sends_for_a_node_without_a_name) {
+    constexpr auto sender = node("", transmit("M", every(100ms), signal("s").safe(3)));
+    EXPECT_EQ(fault("BU_:\nBO_ 1 M: 8 Vector__XXX\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n", sender),
+              "");
+    EXPECT_EQ(fault("BO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" B\n", sender), "");
+    constexpr auto named = node("B", transmit("M", every(100ms), signal("s").safe(3)));
+    EXPECT_EQ(fault("BO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" B\n", named),
+              "t.dbc:1:7: message \"M\" is sent by \"A\", not by \"B\"; write receive(..)");
+}
+
+TEST(DbcField, leaves_out_one_of_two_messages_with_an_identifier) {
+    const std::string two = one + "BO_ 1 N: 8 A\n SG_ n : 8|8@1+ (1,0) [0|0] \"\" A\n"
+                                  "VAL_ 1 n 1 \"on\";\nBA_ \"GenMsgCycleTime\" BO_ 1 30;\n";
+    constexpr auto second = node("us", receive("N"));
+    const DbcMap read{two, second.view()};
+    EXPECT_EQ(decoded(read, "N.n", {1, 2}), 2.0);
+    EXPECT_EQ(read.sizes.frames, 1u);
+    EXPECT_EQ(read.map.frames[0].every, 30ms);
+    EXPECT_EQ(read.map.signals[0].names.size(), 1u);
+    EXPECT_EQ(fault(two, us),
+              "t.dbc:2:7: message \"M\" has the identifier of another one; write the one that is "
+              "on the bus as a row, receive(\"M\", ..)");
+}
+
+TEST(DbcField, asks_for_limits_only_where_it_sends) {
+    const std::string limits =
+        "BU_: us\nBO_ 1 M: 8 us\n SG_ s : 0|8@1+ (1,0) [0|1E+481] \"\" A\n"
+        " SG_ t : 8|8@1+ (1,0) [5|2] \"\" A\n SG_ u : 16|8@1+ (1,0) [-inf|NaN] \"\" A\n"
+        " SG_ v : 24|8@1+ (1,0) [-1.79769313486232E+308|1.7976931348623157E+308] \"\" A\n";
+    constexpr auto them = node("A", receive("M", every(10ms)));
+    EXPECT_EQ(fault(limits, them), "");
+    const DbcMap read{limits, them.view()};
+    EXPECT_FALSE(read.map.signals[0].has_range);
+    EXPECT_TRUE(read.map.signals[3].has_range);
+    EXPECT_EQ(read.map.signals[3].most, std::numeric_limits<double>::max());
+    constexpr auto sender = node("us", transmit("M", every(10ms)).safe_by_silence());
+    EXPECT_EQ(
+        fault(limits, sender),
+        "t.dbc:3:26: the greatest value is beyond a double; leave its message out by a row, without(\"M\") "
+        "(and 2 more: tappet check t.dbc lists all)");
+}
+
+TEST(DbcField, finds_the_receiver_of_a_signal_that_it_cannot_read) {
+    EXPECT_EQ(
+        fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" us\n", us),
+        "t.dbc:3:11: found \";8@1+\", expected \"|\" after the signal's first bit; leave its message out by "
+        "a row, without(\"M\")");
+    EXPECT_EQ(
+        fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\"\n  us\n", us),
+        "t.dbc:4:3: found \"us\", expected a statement, which begins with BO_, SG_, VAL_ or the like; leave "
+        "its message out by a row, without(\"M\")");
+    EXPECT_EQ(fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" A\n", us), "");
+}
+
+} // namespace
+} // namespace tappet::can
