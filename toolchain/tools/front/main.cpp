@@ -3,6 +3,7 @@
 // also works by itself.
 #include "toolchain/machine/host_options.hpp"
 #include "toolchain/tools/chart/options.hpp"
+#include "toolchain/tools/check/check.hpp"
 #include "toolchain/tools/front/commands.hpp"
 #include "toolchain/tools/front/figures.hpp"
 #include "toolchain/tools/front/project.hpp"
@@ -235,6 +236,13 @@ int figures(const Given& given) {
     return 0;
 }
 
+int check_files(const Given& given) {
+    const check::Report report = check::report_on({given.line.words.begin(), given.line.words.end()});
+    if (!report.failure.empty()) return fail("check: " + report.failure);
+    std::cout << report.text;
+    return report.has_faults ? 1 : 0;
+}
+
 int browse(const Given& given) {
     return become(with({(beside_us() / "tappet-browse").string()}, given.words));
 }
@@ -302,6 +310,11 @@ constexpr Command commands[] = {
      .help = "prints a value of each CAN signal and Modbus register with its bytes on the wire",
      .options = machine_options,
      .run = &wires},
+    {.name = "check",
+     .takes = "FILE...",
+     .help = "lists all that is wrong in DBC files or folders of them, and who is affected; 0: nobody",
+     .others = Others::words,
+     .run = &check_files},
     {.name = "figures",
      .takes = "",
      .help =

@@ -1,0 +1,157 @@
+// Checks all messages of a DBC file, whoever takes them.
+#include "drivers/can/dbc/reader.hpp"
+#include "drivers/can/dbc/value_rows.hpp"
+#include "toolchain/tools/check/check.hpp"
+
+#include <algorithm>
+
+namespace tappet::check {
+
+namespace {
+
+using can::dbc::MessageRow;
+using can::dbc::SignalRow;
+using can::dbc::Trouble;
+using can::detail::LayoutFault;
+
+class DbcCheck {
+public:
+    explicit DbcCheck(std::string_view text) {
+        const can::dbc::Room room = can::dbc::room_for(text);
+        messages_.resize(room.messages);
+        signals_.resize(room.signals);
+        values_.resize(room.values);
+        net_ = {"", text, {}, messages_, signals_, values_};
+        // As many troubles as lines, or as the first reading told.
+        for (std::size_t size = 64; size != 0;) {
+            told_.resize(size);
+            can::dbc::Troubles troubles{.rows = told_};
+            net_.used = {}, net_.fault = {}, net_.troubles = &troubles;
+            std::ranges::fill(messages_, MessageRow{});
+            std::ranges::fill(signals_, SignalRow{});
+            can::dbc::Reader{net_}.read();
+            size = troubles.count > size ? troubles.count : 0;
+            told_.resize(std::min(told_.size(), troubles.count));
+        }
+        for (const MessageRow& message : net_.all())
+            if (net_.fault.empty() && !message.is_independent) check(message);
+    }
+    [[nodiscard]] std::vector<Finding> findings() {
+        std::ranges::sort(told_, [](const Trouble& a, const Trouble& b) {
+            return a.at != b.at ? a.at < b.at : a.text.view() < b.text.view();
+        });
+        std::vector<Finding> found;
+        for (const Trouble& each : told_) {
+            Finding one{net_.line_of(each.at), Weight::note, std::string{each.text.view()},
+                        affected_by(each)};
+            if (each.weight != can::dbc::Weight::note && !one.affects.empty()) one.weight = Weight::fault;
+            const auto same = std::ranges::find_if(found, [&](const Finding& before) {
+                return before.meaning == one.meaning && before.weight == one.weight &&
+                       before.affects == one.affects;
+            });
+            if (same == found.end())
+                found.push_back(std::move(one));
+            else
+                ++same->more;
+        }
+        if (!net_.fault.empty()) found.push_back(fatal());
+        return found;
+    }
+
+private:
+    /// "file:line:column: sentence"; the name of the file is empty.
+    [[nodiscard]] Finding fatal() const {
+        const std::string text{net_.fault.view()};
+        const std::size_t meaning = text.find(": ") + 2;
+        return {
+            static_cast<unsigned>(std::stoul(text.substr(1))), Weight::unreadable, text.substr(meaning), {}};
+    }
+    static void add(std::vector<std::string>& nodes, std::string_view list) {
+        can::dbc::for_each_name(list, [&](std::string_view node) {
+            if (node != can::dbc::nobody && std::ranges::find(nodes, node) == nodes.end())
+                nodes.emplace_back(node);
+        });
+    }
+    /// The nodes that send or receive the row; a signal's limits concern its senders only.
+    [[nodiscard]] std::vector<std::string> affected_by(const Trouble& trouble) const {
+        std::vector<std::string> nodes;
+        if (trouble.weight == can::dbc::Weight::note || trouble.message == no_such) return nodes;
+        const MessageRow& message = net_.messages[trouble.message];
+        add(nodes, message.sender);
+        add(nodes, message.more_senders);
+        if (trouble.weight == can::dbc::Weight::limits) return nodes;
+        for (const SignalRow& each : net_.of(message))
+            if (trouble.signal == no_such || &each == &net_.signals[trouble.signal])
+                add(nodes, each.receivers);
+        return nodes;
+    }
+
+    void tell(can::dbc::Weight weight, const MessageRow& message, const SignalRow* signal,
+              const Sentence& what) {
+        if (what.empty()) return;
+        const auto m = static_cast<std::size_t>(&message - net_.messages.data());
+        const auto s = signal == nullptr ? no_such : static_cast<std::size_t>(signal - net_.signals.data());
+        told_.push_back({signal == nullptr ? message.at : signal->at, weight, m, s, what});
+    }
+    /// Checks what the map checks, for each signal that reads well.
+    void check(const MessageRow& message) {
+        constexpr auto fault = can::dbc::Weight::fault;
+        can::FrameRow frame;
+        frame.name = message.name;
+        frame.length = static_cast<std::uint8_t>(std::min<std::size_t>(message.length, 255));
+        if (*message.is_fd) frame.format = can::Format::flexible;
+        if (message.length > 64)
+            tell(fault, message, nullptr,
+                 Sentence{"message \"", message.name, "\" has ", std::size_t{message.length},
+                          " bytes, which no frame holds, only a transport protocol"});
+        else
+            tell(fault, message, nullptr, can::detail::length_fault(frame).text);
+        std::vector<can::Signal> all;
+        std::vector<std::size_t> multiplexors;
+        for (SignalRow& each : net_.of(message)) {
+            all.push_back(each.shape);
+            multiplexors.push_back(each.selected_by == no_such ? no_such : each.selected_by - message.first);
+            if (each.names_at == no_such) continue;
+            keep_good_names(net_, each, [&](const can::ValueName& name, std::string_view why) {
+                tell(can::dbc::Weight::note, message, &each,
+                     Sentence{"signal \"", each.shape.name, "\" names the value ", name.value, ", ", why});
+                told_.back().at = each.names_at;
+            });
+        }
+        for (std::size_t s = 0; s < all.size(); ++s) check(message, frame, all, multiplexors, s);
+    }
+    void check(const MessageRow& message, const can::FrameRow& frame, const std::vector<can::Signal>& all,
+               const std::vector<std::size_t>& multiplexors, std::size_t s) {
+        const auto rows = net_.of(message);
+        if (message.length > 64 || rows[s].trouble != no_such) return;
+        const auto what = [&](const LayoutFault& fault) {
+            tell(can::dbc::Weight::fault, message, &rows[s], fault.text);
+            return !fault.text.empty();
+        };
+        if (what(can::detail::layout_fault(frame, all[s]))) return;
+        if (multiplexors[s] != no_such)
+            what(can::detail::multiplexor_fault(frame, all[s], std::span{&all[multiplexors[s]], 1}));
+        const can::Multiplexing multiplexing{all, multiplexors};
+        for (std::size_t other = 0; other < s; ++other) {
+            if (rows[other].trouble != no_such) continue;
+            const unsigned shared = can::detail::first_shared(
+                can::detail::covered_by(all[s]), can::detail::covered_by(all[other]), frame.length);
+            if (shared < 8u * frame.length && !multiplexing.exclude_each_other(s, other))
+                tell(can::dbc::Weight::fault, message, &rows[s],
+                     Sentence{"signal \"", message.name, ".", all[s].name, "\" overlaps \"", all[other].name,
+                              "\" at bit ", shared});
+        }
+    }
+
+    std::vector<MessageRow> messages_;
+    std::vector<SignalRow> signals_;
+    std::vector<can::ValueName> values_;
+    std::vector<Trouble> told_;
+    can::dbc::Network net_{};
+};
+
+} // namespace
+
+std::vector<Finding> check_dbc(std::string_view text) { return DbcCheck{text}.findings(); }
+
+} // namespace tappet::check

@@ -1,0 +1,122 @@
+// Finds the files, checks each by the reader of its kind, and writes the table.
+#include "toolchain/tools/check/check.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace tappet::check {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Reader {
+    std::string_view extension;
+    std::vector<Finding> (*check)(std::string_view text);
+};
+constexpr Reader readers[] = {{".dbc", &check_dbc}};
+
+const Reader* reader_of(const fs::path& file) {
+    std::string extension = file.extension().string();
+    for (char& each : extension)
+        each = each >= 'A' && each <= 'Z' ? static_cast<char>(each - 'A' + 'a') : each;
+    const auto* const found = std::ranges::find(readers, extension, &Reader::extension);
+    return found == std::end(readers) ? nullptr : found;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& each : names) text += (text.empty() ? "" : ", ") + each;
+    return text;
+}
+std::string count_of(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+constexpr std::string_view word_of(Weight weight) {
+    return weight == Weight::note ? "note" : weight == Weight::fault ? "fault" : "unreadable";
+}
+
+std::string verdict_on(const std::vector<Finding>& findings) {
+    const auto count = [&](Weight weight) {
+        return static_cast<std::size_t>(std::ranges::count(findings, weight, &Finding::weight));
+    };
+    if (count(Weight::unreadable) != 0) return "unreadable";
+    const std::string notes = count(Weight::note) == 0 ? "" : ", " + count_of(count(Weight::note), "note");
+    if (count(Weight::fault) == 0) return "good" + notes;
+    std::vector<std::string> nodes;
+    for (const Finding& each : findings)
+        for (const std::string& node : each.affects)
+            if (std::ranges::find(nodes, node) == nodes.end()) nodes.push_back(node);
+    std::ranges::sort(nodes);
+    return count_of(count(Weight::fault), "fault") + notes + "; leave these parts out of the maps of " +
+           joined(nodes);
+}
+
+/// The columns are as wide as their widest cell.
+std::string table_of(const std::string& file, const std::vector<Finding>& findings) {
+    std::vector<std::vector<std::string>> rows;
+    for (const Finding& each : findings) {
+        std::string meaning = each.meaning;
+        if (each.more != 0) meaning += " (and in " + count_of(each.more, "more line") + ")";
+        rows.push_back({file + ":" + std::to_string(each.line), std::string{word_of(each.weight)},
+                        each.weight == Weight::unreadable ? "all"
+                        : each.affects.empty()            ? "nobody"
+                                                          : joined(each.affects),
+                        std::move(meaning)});
+    }
+    std::size_t widths[3] = {};
+    for (const auto& row : rows)
+        for (std::size_t c = 0; c < 3; ++c) widths[c] = std::max(widths[c], row[c].size());
+    std::string text;
+    for (const auto& row : rows) {
+        for (std::size_t c = 0; c < 3; ++c) text += row[c] + std::string(widths[c] - row[c].size() + 2, ' ');
+        text += row[3] + "\n";
+    }
+    return text;
+}
+
+/// Adds the files that a path names; returns why not.
+std::string add_files(const std::string& path, std::vector<fs::path>& files) {
+    std::error_code failed;
+    if (!fs::is_directory(path, failed)) {
+        if (!fs::exists(path, failed)) return "there is no file \"" + path + "\"";
+        if (reader_of(path) == nullptr)
+            return "\"" + path + "\" is no file that it reads; name files that end in .dbc, or a folder";
+        files.emplace_back(path);
+        return {};
+    }
+    const std::size_t before = files.size();
+    for (auto each =
+             fs::recursive_directory_iterator{path, fs::directory_options::skip_permission_denied, failed};
+         !failed && each != fs::recursive_directory_iterator{}; each.increment(failed))
+        if (each->is_regular_file(failed) && reader_of(each->path()) != nullptr)
+            files.push_back(each->path());
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
+    return files.size() == before ? "folder \"" + path + "\" has no .dbc file" : "";
+}
+
+} // namespace
+
+Report report_on(const std::vector<std::string>& paths) {
+    Report report;
+    std::vector<fs::path> files;
+    if (paths.empty()) report.failure = "name files or folders: tappet check press.dbc";
+    for (const std::string& path : paths)
+        if (report.failure.empty()) report.failure = add_files(path, files);
+    if (!report.failure.empty()) return report;
+    for (const fs::path& path : files) {
+        std::ifstream file{path, std::ios::binary};
+        const std::string text{std::istreambuf_iterator<char>{file}, {}};
+        if (!file) return {.text = {}, .failure = "\"" + path.string() + "\" cannot be read"};
+        const std::vector<Finding> findings = reader_of(path)->check(text);
+        report.text += table_of(path.string(), findings) + path.string() + ": " + verdict_on(findings) + "\n";
+        report.has_faults |=
+            std::ranges::any_of(findings, [](const Finding& each) { return each.weight != Weight::note; });
+    }
+    return report;
+}
+
+} // namespace tappet::check
