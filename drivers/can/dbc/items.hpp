@@ -10,7 +10,7 @@ class Items {
 protected:
     explicit constexpr Items(Network& network) noexcept : net_{network}, in_{network.text} {}
 
-    [[nodiscard]] constexpr bool ok() const noexcept { return !failed_ && net_.fault.empty(); }
+    [[nodiscard]] constexpr bool ok() const noexcept { return !failed_; }
 
     /// Begins a statement, which is about no row yet.
     constexpr void begin(std::size_t at) noexcept {
@@ -59,9 +59,14 @@ protected:
         spoil(at, pieces...);
         failed_ = true;
     }
+    /// Makes the whole file unreadable.
+    template <class... Pieces> constexpr void give_up(std::size_t at, const Pieces&... pieces) {
+        net_.fail(at, pieces...);
+        failed_ = true;
+    }
     constexpr void fail_expected(std::string_view what) {
         if (in_.at_end())
-            net_.fail(in_.at(), "the file ends, expected ", what, "; is it whole?");
+            give_up(in_.at(), "the file ends, expected ", what, "; is it whole?");
         else if (in_.next() == '"')
             fail(in_.at(), "a text is unclosed or out of place, expected ", what);
         else

@@ -14,10 +14,18 @@ protected:
     static constexpr std::uint32_t raw_id(const MessageRow& message) noexcept {
         return message.identifier.id | (message.identifier.extended ? extended_bit : 0);
     }
-    /// Returns the first message from `first` on with this identifier; no_such: none.
-    [[nodiscard]] constexpr std::size_t message_of(std::uint32_t id, std::size_t first = 0) const noexcept {
-        while (first < net_.used.messages && raw_id(net_.messages[first]) != id) ++first;
-        return first < net_.used.messages ? first : no_such;
+    /// Returns the first message with this identifier, from `first` on; no_such: none. Most statements are
+    /// about the message of the statement before.
+    constexpr std::size_t message_of(std::uint32_t id, std::size_t first = 0) noexcept {
+        if (first == 0 && found_ != no_such && id == found_id_) return found_;
+        std::size_t m = first;
+        for (const MessageRow& each : net_.all().subspan(first)) {
+            if (raw_id(each) == id) break;
+            ++m;
+        }
+        if (m == net_.used.messages) return no_such;
+        if (first == 0) found_ = m, found_id_ = id;
+        return m;
     }
     [[nodiscard]] constexpr bool is_of_last(const SignalRow& row) const noexcept {
         return row.message + 1 == net_.used.messages;
@@ -51,7 +59,7 @@ protected:
 
     constexpr void message_statement() {
         if (net_.used.messages == net_.messages.size())
-            return net_.fail(statement_at_, "BO_ is in the middle of a line; begin a new one");
+            return give_up(statement_at_, "BO_ is in the middle of a line; begin a new one");
         MessageRow& row = net_.messages[net_.used.messages++];
         about(row);
         takes_signals_ = true;
@@ -89,11 +97,11 @@ protected:
 
     constexpr void signal_statement() {
         if (net_.used.messages == 0)
-            return net_.fail(in_.at(), "a signal without a message; write BO_ before it");
+            return give_up(in_.at(), "a signal without a message; write BO_ before it");
         MessageRow& owner = net_.messages[net_.used.messages - 1];
         if (owner.is_independent) return in_.skip_line();
         if (net_.used.signals == net_.signals.size())
-            return net_.fail(in_.at(), "SG_ is in the middle of a line; begin a new one");
+            return give_up(in_.at(), "SG_ is in the middle of a line; begin a new one");
         SignalRow& row = net_.signals[net_.used.signals++];
         row.at = in_.at();
         row.message = net_.used.messages - 1;
@@ -187,6 +195,8 @@ protected:
 
 private:
     std::string_view checked_nodes_{};
+    std::size_t found_ = no_such;
+    std::uint32_t found_id_ = 0;
 };
 
 } // namespace tappet::can::dbc

@@ -60,7 +60,7 @@ struct Room {
     std::size_t messages = 0, signals = 0, values = 0;
 };
 constexpr bool is_keyword(std::string_view text, std::string_view word) noexcept {
-    return text.starts_with(word) && text.size() > word.size() && is_blank(text[word.size()]);
+    return text.starts_with(word) && (text.size() == word.size() || is_blank(text[word.size()]));
 }
 constexpr Room room_for(std::string_view text) noexcept {
     text = without_mark(text);

@@ -36,7 +36,7 @@ private:
             if (!failed_) note(statement_at_, "the statement has no \";\"; it ends before the next one");
             break;
         case Scanner::End::unclosed: note(text_at, "a text is unclosed; it ends with its line"); break;
-        case Scanner::End::cut: net_.fail(text_at, "a text is unclosed at the end of the file; is it whole?");
+        case Scanner::End::cut: give_up(text_at, "a text is unclosed at the end of the file; is it whole?");
         }
     }
 
@@ -122,7 +122,7 @@ private:
             text("the version between quotes");
         else
             skip_statement();
-        if (failed_) skip_statement();
+        if (failed_ && net_.fault.empty()) skip_statement();
     }
     constexpr void unknown(std::string_view keyword) {
         // In a message it may be the rest of a signal, with its receivers.
@@ -214,8 +214,7 @@ private:
         value.name = text("the value's name between quotes");
         if (!ok()) return;
         if (!fits) return note(at, "signal \"", row.shape.name, "\" cannot have the value of this name");
-        if (net_.used.values == net_.values.size())
-            return net_.fail(at, "too many values; is the file whole?");
+        if (net_.used.values == net_.values.size()) return give_up(at, "too many values; is the file whole?");
         net_.values[net_.used.values++] = value;
         ++row.values;
     }

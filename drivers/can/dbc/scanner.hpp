@@ -21,12 +21,14 @@ constexpr std::string_view without_mark(std::string_view text) noexcept {
     return text.starts_with(mark) ? text.substr(mark.size()) : text;
 }
 
-/// Calls visit(name) for each name of a list as in the file: "a, b c".
+/// Calls visit(name) for each name of a list as in the file: "a, b c", and comments.
 template <class Visit> constexpr void for_each_name(std::string_view list, const Visit& visit) {
     std::size_t from = 0;
     for (std::size_t i = 0; i <= list.size(); ++i) {
         if (i < list.size() && is_word_character(list[i])) continue;
         if (i > from) visit(list.substr(from, i - from));
+        if (i + 1 < list.size() && list[i] == '/' && list[i + 1] == '/')
+            while (i + 1 < list.size() && list[i + 1] != '\n') ++i;
         from = i + 1;
     }
 }
@@ -55,7 +57,7 @@ public:
         return i == 0 || text_[i - 1] == '\n' || text_[i - 1] == '\r';
     }
     constexpr bool take(char c) noexcept {
-        if (next() != c || at_end()) return false;
+        if (at_ == text_.size() || text_[at_] != c) return false;
         ++at_;
         skip_blanks();
         return true;
@@ -152,12 +154,16 @@ public:
     /// does not end in its line, or, with `of_many_lines`, in the file.
     constexpr bool text(std::string_view& into, bool of_many_lines = false) noexcept {
         if (next() != '"') return false;
+        const char* const characters = text_.data();
+        const std::size_t size = text_.size();
         std::size_t i = at_ + 1;
-        for (; i != text_.size() && text_[i] != '"'; ++i) {
-            if (text_[i] == '\n' && !of_many_lines) return false;
-            if (text_[i] == '\\' && i + 1 != text_.size() && text_[i + 1] == '"') ++i;
+        for (; i != size; ++i) {
+            const char c = characters[i];
+            if (c == '"') break;
+            if (c == '\n' && !of_many_lines) return false;
+            if (c == '\\' && i + 1 != size && characters[i + 1] == '"') ++i;
         }
-        if (i == text_.size()) return false;
+        if (i == size) return false;
         into = text_.substr(at_ + 1, i - at_ - 1);
         at_ = i + 1;
         skip_blanks();
@@ -242,11 +248,9 @@ private:
         std::size_t i = at_;
         for (; i != size; ++i) {
             const char c = characters[i];
-            if (c == '/' && i + 1 != size && characters[i + 1] == '/') {
-                while (i + 1 != size && characters[i + 1] != '\n') ++i;
-                continue;
-            }
-            if (c != ' ' && c != '\n' && c != '\t' && c != '\r') break;
+            if (c == ' ' || c == '\n' || c == '\t' || c == '\r') continue;
+            if (c != '/' || i + 1 == size || characters[i + 1] != '/') break;
+            while (i + 1 != size && characters[i + 1] != '\n') ++i;
         }
         at_ = i;
     }

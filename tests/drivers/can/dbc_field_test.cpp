@@ -176,6 +176,12 @@ TEST(DbcField, asks_for_limits_only_where_it_sends) {
         "(and 2 more: tappet check t.dbc lists all)");
 }
 
+TEST(DbcField, takes_no_receiver_from_a_comment) {
+    const DbcMap read{"BU_: A // C\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" A // us\n", us.view()};
+    EXPECT_EQ(read.map.fault.view(),
+              "t.dbc:1:6: BU_ names no node \"us\"; name one of its nodes, or none: node(\"\", ..)");
+}
+
 TEST(DbcField, finds_the_receiver_of_a_signal_that_it_cannot_read) {
     EXPECT_EQ(
         fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" us\n", us),

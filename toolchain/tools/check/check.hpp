@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tappet::check {
+namespace tappet::checking {
 
 enum class Weight {
     note,       ///< no machine suffers from it
@@ -31,7 +31,7 @@ struct Report {
     bool has_faults = false;
 };
 /// Checks these files, and in folders all files of known kinds. The text is a table and a verdict for each
-/// file.
-[[nodiscard]] Report report_on(const std::vector<std::string>& paths);
+/// file. `node`: the machine's own; faults that affect only others are notes. Empty: all nodes count.
+[[nodiscard]] Report report_on(const std::vector<std::string>& paths, const std::string& node = {});
 
-} // namespace tappet::check
+} // namespace tappet::checking

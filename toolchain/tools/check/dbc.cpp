@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace tappet::check {
+namespace tappet::checking {
 
 namespace {
 
@@ -68,7 +68,9 @@ private:
     }
     static void add(std::vector<std::string>& nodes, std::string_view list) {
         can::dbc::for_each_name(list, [&](std::string_view node) {
-            if (node != can::dbc::nobody && std::ranges::find(nodes, node) == nodes.end())
+            // The rest of an unreadable line may have numbers.
+            if (node != can::dbc::nobody && !is_digit(node[0]) &&
+                std::ranges::find(nodes, node) == nodes.end())
                 nodes.emplace_back(node);
         });
     }
@@ -154,4 +156,4 @@ private:
 
 std::vector<Finding> check_dbc(std::string_view text) { return DbcCheck{text}.findings(); }
 
-} // namespace tappet::check
+} // namespace tappet::checking

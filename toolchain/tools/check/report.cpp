@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace tappet::check {
+namespace tappet::checking {
 
 namespace {
 
@@ -39,6 +39,10 @@ constexpr std::string_view word_of(Weight weight) {
     return weight == Weight::note ? "note" : weight == Weight::fault ? "fault" : "unreadable";
 }
 
+bool concerns(const Finding& finding, const std::string& node) {
+    return std::ranges::find(finding.affects, node) != finding.affects.end();
+}
+
 std::string verdict_on(const std::vector<Finding>& findings) {
     const auto count = [&](Weight weight) {
         return static_cast<std::size_t>(std::ranges::count(findings, weight, &Finding::weight));
@@ -48,9 +52,9 @@ std::string verdict_on(const std::vector<Finding>& findings) {
     if (count(Weight::fault) == 0) return "good" + notes;
     std::vector<std::string> nodes;
     for (const Finding& each : findings)
-        for (const std::string& node : each.affects)
-            if (std::ranges::find(nodes, node) == nodes.end()) nodes.push_back(node);
+        if (each.weight == Weight::fault) nodes.insert(nodes.end(), each.affects.begin(), each.affects.end());
     std::ranges::sort(nodes);
+    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
     return count_of(count(Weight::fault), "fault") + notes + "; leave these parts out of the maps of " +
            joined(nodes);
 }
@@ -100,7 +104,7 @@ std::string add_files(const std::string& path, std::vector<fs::path>& files) {
 
 } // namespace
 
-Report report_on(const std::vector<std::string>& paths) {
+Report report_on(const std::vector<std::string>& paths, const std::string& node) {
     Report report;
     std::vector<fs::path> files;
     if (paths.empty()) report.failure = "name files or folders: tappet check press.dbc";
@@ -111,7 +115,10 @@ Report report_on(const std::vector<std::string>& paths) {
         std::ifstream file{path, std::ios::binary};
         const std::string text{std::istreambuf_iterator<char>{file}, {}};
         if (!file) return {.text = {}, .failure = "\"" + path.string() + "\" cannot be read"};
-        const std::vector<Finding> findings = reader_of(path)->check(text);
+        std::vector<Finding> findings = reader_of(path)->check(text);
+        for (Finding& each : findings)
+            if (each.weight == Weight::fault && !node.empty() && !concerns(each, node))
+                each.weight = Weight::note;
         report.text += table_of(path.string(), findings) + path.string() + ": " + verdict_on(findings) + "\n";
         report.has_faults |=
             std::ranges::any_of(findings, [](const Finding& each) { return each.weight != Weight::note; });
@@ -119,4 +126,4 @@ Report report_on(const std::vector<std::string>& paths) {
     return report;
 }
 
-} // namespace tappet::check
+} // namespace tappet::checking

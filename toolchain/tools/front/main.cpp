@@ -237,7 +237,8 @@ int figures(const Given& given) {
 }
 
 int check_files(const Given& given) {
-    const check::Report report = check::report_on({given.line.words.begin(), given.line.words.end()});
+    const checking::Report report = checking::report_on({given.line.words.begin(), given.line.words.end()},
+                                                        std::string{given.line.text("--node")});
     if (!report.failure.empty()) return fail("check: " + report.failure);
     std::cout << report.text;
     return report.has_faults ? 1 : 0;
@@ -271,6 +272,8 @@ constexpr std::array new_options{Option{"--can", "", "a drive on a CAN bus"},
                                  Option{"--cam", "", "a shaft with its encoder on CAN, and a cam"}};
 constexpr auto run_options = for_a_machine(host_options);
 constexpr std::array test_options{Option{"--only", "REGEX", "tests whose names match"}};
+constexpr std::array check_options{
+    Option{"--node", "NAME", "the machine's node: faults that affect only others are notes"}};
 constexpr auto timed_options = for_a_machine(std::array{time_option});
 constexpr auto box_image_options = for_a_machine(image::image_options);
 constexpr auto chart_options = for_a_machine(chart::chart_options);
@@ -312,7 +315,8 @@ constexpr Command commands[] = {
      .run = &wires},
     {.name = "check",
      .takes = "FILE...",
-     .help = "lists all that is wrong in DBC files or folders of them, and who is affected; 0: nobody",
+     .help = "lists all that is wrong in DBC files or folders of them, and who is affected",
+     .options = check_options,
      .others = Others::words,
      .run = &check_files},
     {.name = "figures",
