@@ -1,8 +1,12 @@
 // Any bytes as a DBC file: the reader refuses with a sentence that names a line, or gives a map whose frames
-// encode back as they were decoded; it never reads outside its text and always ends.
+// encode back as they were decoded; it never reads outside its text and always ends. The check of the whole
+// file tells each fault with a line of the file, and one for each map that is refused for an unreadable file.
 #include "drivers/can/signal_store.hpp"
 #include "tests/drivers/can/dbc_on_host.hpp"
 #include "tests/fuzz/input.hpp"
+#include "toolchain/tools/check/check.hpp"
+
+#include <algorithm>
 
 namespace {
 
@@ -15,7 +19,15 @@ constexpr auto us = node("us");
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static_assert(us.frames.empty());
-    const DbcMap read{{reinterpret_cast<const char*>(data), size}, us.view()};
+    const std::string_view text{reinterpret_cast<const char*>(data), size};
+    const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
+    bool is_readable = true;
+    for (const tappet::checking::Finding& each : tappet::checking::check_dbc(text)) {
+        demand(each.line >= 1 && each.line <= lines && !each.meaning.empty());
+        is_readable &= each.weight != tappet::checking::Weight::unreadable;
+    }
+    const DbcMap read{text, us.view()};
+    demand(is_readable || !read.map.fault.empty());
     if (!read.map.fault.empty()) {
         demand(read.map.fault.view().starts_with("t.dbc:") ||
                read.map.fault.view() == "too large for this test");

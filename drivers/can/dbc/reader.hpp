@@ -240,10 +240,14 @@ private:
         if (!known_signal()) return;
         SignalRow& row = the_signal();
         const std::size_t at = in_.at();
-        if (!known_signal())
-            return tell(Weight::fault, at, "signal \"", row.shape.name, "\" has an unknown multiplexor");
+        const bool is_known = known_signal() && the_signal().message == row.message;
         const SignalRow& multiplexor = the_signal();
         about(row);
+        if (!is_known) {
+            tell(Weight::fault, at, "signal \"", row.shape.name, "\" has an unknown multiplexor");
+            failed_ = true;
+            return;
+        }
         if (!multiplexor.is_multiplexor)
             return fail(at, "signal \"", multiplexor.shape.name,
                         "\" selects others but is not a multiplexor");

@@ -12,7 +12,6 @@ namespace {
 using can::dbc::MessageRow;
 using can::dbc::SignalRow;
 using can::dbc::Trouble;
-using can::detail::LayoutFault;
 
 class DbcCheck {
 public:
@@ -120,28 +119,31 @@ private:
                 told_.back().at = each.names_at;
             });
         }
-        for (std::size_t s = 0; s < all.size(); ++s) check(message, frame, all, multiplexors, s);
+        if (message.length <= 64) check(message, frame, {all, multiplexors});
     }
-    void check(const MessageRow& message, const can::FrameRow& frame, const std::vector<can::Signal>& all,
-               const std::vector<std::size_t>& multiplexors, std::size_t s) {
+    void check(const MessageRow& message, const can::FrameRow& frame, const can::Multiplexing& among) {
         const auto rows = net_.of(message);
-        if (message.length > 64 || rows[s].trouble != no_such) return;
-        const auto what = [&](const LayoutFault& fault) {
-            tell(can::dbc::Weight::fault, message, &rows[s], fault.text);
-            return !fault.text.empty();
-        };
-        if (what(can::detail::layout_fault(frame, all[s]))) return;
-        if (multiplexors[s] != no_such)
-            what(can::detail::multiplexor_fault(frame, all[s], std::span{&all[multiplexors[s]], 1}));
-        const can::Multiplexing multiplexing{all, multiplexors};
-        for (std::size_t other = 0; other < s; ++other) {
-            if (rows[other].trouble != no_such) continue;
-            const unsigned shared = can::detail::first_shared(
-                can::detail::covered_by(all[s]), can::detail::covered_by(all[other]), frame.length);
-            if (shared < 8u * frame.length && !multiplexing.exclude_each_other(s, other))
-                tell(can::dbc::Weight::fault, message, &rows[s],
-                     Sentence{"signal \"", message.name, ".", all[s].name, "\" overlaps \"", all[other].name,
-                              "\" at bit ", shared});
+        std::vector<std::size_t> inside; // signals that lie in their frame
+        std::vector<can::detail::Covered> covered;
+        for (std::size_t s = 0; s < rows.size(); ++s) {
+            if (rows[s].trouble != no_such) continue;
+            const auto is_told = [&](const Sentence& fault) {
+                tell(can::dbc::Weight::fault, message, &rows[s], fault);
+                return !fault.empty();
+            };
+            const can::Signal& signal = among.signals[s];
+            if (is_told(can::detail::layout_fault(frame, signal).text)) continue;
+            if (const std::size_t m = among.multiplexor_of[s]; m != no_such)
+                is_told(can::detail::multiplexor_fault(frame, signal, among.signals.subspan(m, 1)).text);
+            const can::detail::Covered own = can::detail::covered_by(signal);
+            for (std::size_t i = 0; i < inside.size(); ++i) {
+                const unsigned shared = can::detail::first_shared(own, covered[i], frame.length);
+                if (shared < 8u * frame.length && !among.exclude_each_other(s, inside[i]))
+                    is_told(Sentence{"signal \"", message.name, ".", signal.name, "\" overlaps \"",
+                                     among.signals[inside[i]].name, "\" at bit ", shared});
+            }
+            inside.push_back(s);
+            covered.push_back(own);
         }
     }
 
