@@ -65,6 +65,7 @@ struct Signal : ScaledValue<Signal> {
     Bounded<Selection, most_selections> selections{};
     std::span<const ValueName> names{}; ///< of some of its values
     std::string_view in_file{};         ///< its name in its DBC file, when the row gives it another
+    bool despite_file = false;          ///< the row is believed instead of its DBC file
 
     // Written as a row: signal("speed", 16, 32).as_signed().times(0.1).in("rpm").safe(0)
     constexpr Signal as_signed() const noexcept {

@@ -33,6 +33,7 @@ struct FrameRow : MapRow, Rate {
     Format format = Format::classical;
     bool multiplexed = false;   ///< a frame holds only some of its signals
     std::string_view in_file{}; ///< its name in its DBC file, when the row gives it another
+    bool despite_file = false;  ///< its identifier or length is believed instead of its DBC file's
     bool is_proven = false;     ///< of another node whose own proof shows it is in time: only load here
 };
 

@@ -13,8 +13,8 @@ constexpr bool names_fd(std::string_view value) noexcept { return value == "1" |
 constexpr bool names_one(std::string_view value) noexcept { return value == "1"; }
 /// The names differ from maker to maker: "Cyclic", "cyclicAndSpontaneous", "OnChange", "IfActive", "Event".
 constexpr bool names_demand(std::string_view value) noexcept {
-    constexpr std::string_view parts[] = {"spont",  "event",  "change", "write",  "trigger",
-                                          "demand", "active", "repet",  "request"};
+    constexpr std::string_view parts[] = {"spont",   "event",  "change", "write",
+                                          "trigger", "demand", "active", "request"};
     for (const std::string_view part : parts)
         for (std::size_t i = 0; i + part.size() <= value.size(); ++i) {
             std::size_t same = 0;

@@ -29,6 +29,7 @@ struct SignalRow {
     std::size_t names_at = no_such;       ///< position of its VAL_
     std::size_t first_value = 0;
     std::size_t values = 0;
+    bool is_replaced = false;     ///< by a row of the machine for another one of this name
     bool is_taken = false;        ///< by the node in question
     const Signal* row = nullptr;  ///< the machine's row for it
     std::size_t placed = no_such; ///< index in the node's map

@@ -35,6 +35,26 @@ constexpr auto without(std::string_view name) noexcept {
     return detail::row({}, name, Direction::passing, Bytes{}, as_in_file);
 }
 
+/// A signal that is wrong in the file: place, sign, scale and range are as written here,
+/// despite(signal("load", 24, 16).times(0.1)). So is its multiplexor, if .when(..) names one.
+constexpr Signal despite(const Signal& signal) noexcept {
+    return copy_with(signal, &Signal::despite_file, true);
+}
+/// A message whose identifier is wrong in the file: despite(extended(0x18FEF101), receive("engine")).
+template <std::size_t N>
+constexpr auto despite(Identifier identifier, FrameWithSignals<N> message) noexcept {
+    message.row.identifier = identifier;
+    message.row.despite_file = true;
+    return message;
+}
+/// A message whose length or format is wrong in the file: despite(fd_bytes(16), receive("scan")).
+template <std::size_t N> constexpr auto despite(Bytes length, FrameWithSignals<N> message) noexcept {
+    message.row.length = length.count;
+    message.row.format = length.format;
+    message.row.despite_file = true;
+    return message;
+}
+
 struct NodeView {
     std::string_view name{};
     std::span<const FrameRow> frames{};

@@ -111,10 +111,11 @@ private:
             if (each.row != nullptr)
                 return net_.fail(each.at, "message \"", name, "\" has two rows of \"", node_.name,
                                  "\"; keep one");
-            if (row.length != 0 || row.identifier.id != 0)
+            if (!row.despite_file && (row.length != 0 || row.identifier.id != 0))
                 return net_.fail(each.at, "the row of message \"", name,
                                  "\" repeats its file; leave identifier and length out");
             each.row = &row;
+            if (row.despite_file) believe(each, row);
             for (const Signal& signal : node_.signals.subspan(row.first, row.values))
                 find_signal(each, signal);
             is_found = true;
@@ -134,6 +135,11 @@ private:
             return net_.fail(message.at, "message \"", message.name, "\" has no signal \"", name,
                              "\", which its row names", or_meant(nearest, "; take it away"));
         }
+        if (row.despite_file && row.bits == 0)
+            return net_.fail(found->at, "the row of signal \"", name,
+                             "\" does not say its place; write despite(signal(\"", name,
+                             "\", first bit, bits))");
+        if (row.despite_file) return believe(message, *found, row);
         if (row.bits != 0 || row.start != 0 || row.factor != 1 || row.offset != 0 || row.has_range ||
             row.order != Order::intel || row.kind != Kind::unsigned_integer || !row.multiplexor.empty())
             return net_.fail(found->at, "the row of signal \"", name, "\" repeats its file; write signal(\"",
@@ -142,6 +148,39 @@ private:
             return net_.fail(found->at, "the row of message \"", message.name, "\" names \"", name,
                              "\" twice; keep one");
         found->row = &row;
+    }
+    /// Takes from the row what the file has wrong.
+    static constexpr void believe(MessageRow& message, const FrameRow& row) noexcept {
+        if (row.length != 0) {
+            message.length = row.length;
+            message.is_fd = row.format != Format::classical;
+            message.switches = row.format == Format::flexible_faster;
+        }
+        if (row.identifier == Identifier{}) return;
+        if (!valid(message.identifier) || row.length != 0) message.trouble = no_such;
+        message.identifier = row.identifier;
+        message.shares_identifier = false;
+    }
+    constexpr void believe(const MessageRow& message, SignalRow& file, const Signal& row) {
+        const Signal in_file = file.shape;
+        file.shape = row;
+        file.shape.name = in_file.name;
+        file.shape.unit = in_file.unit;
+        file.row = &row;
+        file.trouble = file.limits_trouble = no_such;
+        for (SignalRow& each : net_.of(message))
+            each.is_replaced |= &each != &file && each.shape.name == in_file.name;
+        if (row.multiplexor.empty()) {
+            file.shape.multiplexor = in_file.multiplexor;
+            file.shape.selections = in_file.selections;
+            return;
+        }
+        const SignalRow* const multiplexor = net_.find(message, row.multiplexor);
+        if (multiplexor == nullptr || multiplexor == &file || multiplexor->selected_by != no_such)
+            return net_.fail(file.at, "the row of signal \"", in_file.name, "\" has the multiplexor \"",
+                             row.multiplexor,
+                             "\"; name a signal of its message that is in every frame of it");
+        file.selected_by = static_cast<std::size_t>(multiplexor - net_.signals.data());
     }
 
     // ---- selection
@@ -164,11 +203,13 @@ private:
                                      : "\"; write receive(..)");
         message.direction = sends ? Direction::transmit : Direction::receive;
         const bool takes_all = sends || (row != nullptr && row->values == 0);
-        for (SignalRow& each : net_.of(message))
-            if (takes_all || each.row != nullptr || (row == nullptr && names(each.receivers, node_.name)))
-                for (SignalRow* up = &each; up != nullptr && !up->is_taken;
-                     up = up->selected_by == no_such ? nullptr : &net_.signals[up->selected_by])
-                    up->is_taken = true;
+        for (SignalRow& each : net_.of(message)) {
+            const bool is_asked = row == nullptr && names(each.receivers, node_.name);
+            if (each.is_replaced || !(takes_all || is_asked || each.row != nullptr)) continue;
+            for (SignalRow* up = &each; up != nullptr && !up->is_taken;
+                 up = up->selected_by == no_such ? nullptr : &net_.signals[up->selected_by])
+                up->is_taken = true;
+        }
         message.is_taken = row != nullptr || count(message) != 0;
         if (message.is_taken) check(message);
     }
@@ -226,15 +267,26 @@ private:
     }
     /// Returns the end of a sentence about a fault of the file: how the node's rows go around it.
     constexpr Sentence cure(const MessageRow& message, const SignalRow* signal) const {
-        const Sentence leave{"; leave it out by a row, without(\"", message.name, "\")"};
-        if (signal == nullptr) return leave;
-        const Sentence leave_message{"; leave its message out by a row, without(\"", message.name, "\")"};
-        if (message.direction == Direction::transmit) return leave_message;
-        for (const SignalRow& each : net_.of(message))
-            if (&each != signal && each.trouble == no_such && !each.shape.name.empty())
-                return Sentence{"; take other signals alone, receive(\"", message.name, "\", signal(\"",
-                                each.shape.name, "\"), ..)"};
-        return leave_message;
+        const bool is_sent = message.direction == Direction::transmit;
+        const std::string_view word = is_sent ? "transmit(\"" : "receive(\"";
+        const bool is_long = message.length > 8 && message.length <= 64;
+        const std::string_view wrong = !valid(message.identifier) ? "extended(..), "
+                                       : is_long                  ? "fd_bytes(..), "
+                                                                  : "";
+        if (signal == nullptr && wrong.empty())
+            return Sentence{"; leave it out by a row, without(\"", message.name, "\")"};
+        if (signal == nullptr)
+            return Sentence{"; state it in its row, despite(",       wrong,        word, message.name,
+                            "\", ..)), or leave it out, without(\"", message.name, "\")"};
+        const Sentence state{"; state it in the message's row, despite(signal(\"", signal->shape.name,
+                             "\", first bit, bits)), or "};
+        if (!is_sent)
+            for (const SignalRow& each : net_.of(message))
+                if (&each != signal && each.trouble == no_such && !each.shape.name.empty())
+                    return Sentence{state,           "take other signals alone, receive(\"",
+                                    message.name,    "\", signal(\"",
+                                    each.shape.name, "\"), ..)"};
+        return Sentence{state, "leave its message out by a row, without(\"", message.name, "\")"};
     }
     static constexpr bool says_rate(const MessageRow& message) noexcept {
         return message.row != nullptr && message.row->every != as_in_file.every;

@@ -121,14 +121,14 @@ TEST(DbcField, takes_some_signals_of_a_message) {
     constexpr auto some = node("us", receive("M", every(10ms), signal("b")));
     constexpr auto far = node("us", receive("M", every(10ms), signal("c")));
     constexpr auto none = node("us", without("M"));
-    EXPECT_EQ(fault(overlapping, whole),
-              "t.dbc:4:6: signal \"M.b\" overlaps \"a\" at bit 8; take other signals "
-              "alone, receive(\"M\", signal(\"a\"), ..)");
+    EXPECT_EQ(fault(overlapping, whole), "t.dbc:4:6: signal \"M.b\" overlaps \"a\" at bit 8; state it in the "
+                                         "message's row, despite(signal(\"b\", first bit, bits)), or take "
+                                         "other signals alone, receive(\"M\", signal(\"a\"), ..)");
     EXPECT_EQ(decoded({overlapping, some.view()}, "M.b", {1, 8}), 4.0);
-    EXPECT_EQ(
-        fault(overlapping, far),
-        "t.dbc:5:6: signal \"M.c\" reaches outside its frame of 8 bytes: it starts at bit 60 (its lowest) "
-        "and goes up 8 bits; take other signals alone, receive(\"M\", signal(\"a\"), ..)");
+    EXPECT_EQ(fault(overlapping, far),
+              "t.dbc:5:6: signal \"M.c\" reaches outside its frame of 8 bytes: it starts at bit 60 (its "
+              "lowest) and goes up 8 bits; state it in the message's row, despite(signal(\"c\", first bit, "
+              "bits)), or take other signals alone, receive(\"M\", signal(\"a\"), ..)");
     EXPECT_EQ(fault(overlapping, none), "");
     const DbcMap read{overlapping, none.view()};
     EXPECT_EQ(read.sizes.frames, 0u);
@@ -170,10 +170,60 @@ TEST(DbcField, asks_for_limits_only_where_it_sends) {
     EXPECT_TRUE(read.map.signals[3].has_range);
     EXPECT_EQ(read.map.signals[3].most, std::numeric_limits<double>::max());
     constexpr auto sender = node("us", transmit("M", every(10ms)).safe_by_silence());
+    EXPECT_EQ(fault(limits, sender),
+              "t.dbc:3:26: the greatest value is beyond a double; state it in the message's row, "
+              "despite(signal(\"s\", first bit, bits)), or leave its message out by a row, without(\"M\") "
+              "(and 2 more: tappet check t.dbc lists all)");
+}
+
+TEST(DbcField, believes_a_row_despite_the_file) {
+    const std::string wrong = "BU_: us A\nBO_ 1 M: 8 us\n SG_ a : 0|16@1+ (1,0) [0|0] \"\" A\n"
+                              " SG_ b : 8|8@1+ (0,0) [9|1] \"Nm\" A\nVAL_ 1 b 3 \"three\";\n"
+                              "BO_ 419361537 N: 12 A\n SG_ n m1 : 0|8@1+ (1,0) [0|0] \"\" us\n"
+                              " SG_ m : 8|8@1+ (1,0) [0|0] \"\" us\n";
+    constexpr auto believing = node(
+        "us",
+        transmit("M", every(10ms), signal("a").safe(0), despite(signal("b", 16, 8).times(0.5)).safe("three")),
+        despite(extended(0x18FEF101),
+                despite(fd_bytes(12),
+                        receive("N", every(10ms), signal("m"), despite(signal("n", 0, 8).when("m", 2))))));
+    const DbcMap read{wrong, believing.view()};
+    ASSERT_EQ(read.map.fault.view(), "");
+    EXPECT_EQ(read.map.safe_frames()[0].data, (Payload{0, 0, 3}));
+    EXPECT_EQ(read.map.signals[1].unit, "N m");
+    EXPECT_EQ(read.map.frames[1].identifier, extended(0x18FEF101));
+    EXPECT_EQ(read.map.frames[1].format, Format::flexible_faster);
+    EXPECT_EQ(read.map.frames[1].length, 12);
+    EXPECT_EQ(read.map.multiplexor_of[read.map.signal("N.n")], read.map.signal("N.m"));
+    constexpr auto silent =
+        transmit("M", every(10ms), signal("a").safe(0), despite(signal("b", 16, 8)).safe(0));
     EXPECT_EQ(
-        fault(limits, sender),
-        "t.dbc:3:26: the greatest value is beyond a double; leave its message out by a row, without(\"M\") "
-        "(and 2 more: tappet check t.dbc lists all)");
+        fault(wrong, node("us", silent)),
+        "t.dbc:6:5: message \"N\" has the identifier 419361537: a standard one ends at 2047, an extended one "
+        "has bit 31 set and 29 bits; state it in its row, despite(extended(..), receive(\"N\", ..)), or "
+        "leave "
+        "it out, without(\"N\") (and 1 more: tappet check t.dbc lists all)");
+    EXPECT_EQ(fault(wrong, node("us", silent, despite(extended(1), receive("N", every(10ms), signal("m"))))),
+              "t.dbc:6:15: frame \"N\" has 12 bytes: a classical frame holds 8 at most; state it in its row, "
+              "despite(fd_bytes(..), receive(\"N\", ..)), or leave it out, without(\"N\")");
+    EXPECT_EQ(
+        fault(wrong, node("us", transmit("M", every(10ms), despite(signal("b")).safe(0)))),
+        "t.dbc:4:6: the row of signal \"b\" does not say its place; write despite(signal(\"b\", first bit, "
+        "bits))");
+    EXPECT_EQ(
+        fault(wrong, node("us", silent, receive("N", despite(signal("n", 0, 8).when("x", 2))))),
+        "t.dbc:7:6: the row of signal \"n\" has the multiplexor \"x\"; name a signal of its message that is "
+        "in every frame of it");
+}
+
+TEST(DbcField, believes_one_row_for_two_signals_of_a_name) {
+    const std::string twins = "BU_: us A\nBO_ 1 M: 8 us\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" A\n"
+                              " SG_ a : 8|8@1+ (1,0) [0|0] \"\" A\n";
+    constexpr auto believing = node("us", transmit("M", every(10ms), despite(signal("a", 16, 8)).safe(7)));
+    const DbcMap read{twins, believing.view()};
+    ASSERT_EQ(read.map.fault.view(), "");
+    EXPECT_EQ(read.sizes.signals, 1u);
+    EXPECT_EQ(read.map.safe_frames()[0].data, (Payload{0, 0, 7}));
 }
 
 TEST(DbcField, takes_no_receiver_from_a_comment) {
@@ -185,12 +235,12 @@ TEST(DbcField, takes_no_receiver_from_a_comment) {
 TEST(DbcField, finds_the_receiver_of_a_signal_that_it_cannot_read) {
     EXPECT_EQ(
         fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" us\n", us),
-        "t.dbc:3:11: found \";8@1+\", expected \"|\" after the signal's first bit; leave its message out by "
-        "a row, without(\"M\")");
-    EXPECT_EQ(
-        fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\"\n  us\n", us),
-        "t.dbc:4:3: found \"us\", expected a statement, which begins with BO_, SG_, VAL_ or the like; leave "
-        "its message out by a row, without(\"M\")");
+        "t.dbc:3:11: found \";8@1+\", expected \"|\" after the signal's first bit; state it in the message's "
+        "row, despite(signal(\"s\", first bit, bits)), or leave its message out by a row, without(\"M\")");
+    EXPECT_EQ(fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\"\n  us\n", us),
+              "t.dbc:4:3: found \"us\", expected a statement, which begins with BO_, SG_, VAL_ or the like; "
+              "state it in the message's row, despite(signal(\"s\", first bit, bits)), or leave its message "
+              "out by a row, without(\"M\")");
     EXPECT_EQ(fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" A\n", us), "");
 }
 
