@@ -1,7 +1,10 @@
 // DBC files as the field has them: faults of no consequence are read past, to the right values; what a map
 // takes is refused with a cure in the node's own rows.
+#include "drivers/can/dbc/writer.hpp"
 #include "drivers/can/from_dbc.hpp"
 #include "drivers/can/signal_store.hpp"
+#include "tests/drivers/can/awkward_dbc.hpp"
+#include "tests/drivers/can/dbc_generator.hpp"
 #include "tests/drivers/can/dbc_on_host.hpp"
 
 #include <gtest/gtest.h>
@@ -58,6 +61,26 @@ TEST(DbcField, reads_past_faults_of_no_consequence) {
     EXPECT_EQ(decoded(read, "M.s", {7}), 7.0);
     EXPECT_EQ(read.sizes.frames, 3u);
     EXPECT_EQ(read.sizes.signals, 3u);
+}
+
+/// The map of node "us" as a file again, or its fault.
+std::string map_of(const std::string& text, const std::vector<std::string>& own) {
+    std::vector<FrameRow> rows;
+    for (const std::string& each : own) rows.push_back(transmit(each).safe_by_silence().row);
+    const DbcMap read{text, NodeView{"us", rows, {}}};
+    if (!read.map.fault.empty()) return std::string{read.map.fault.view()};
+    return dbc::to_dbc("us", std::span{read.map.frames}.first(read.sizes.frames),
+                       std::span{read.map.signals}.first(read.sizes.signals));
+}
+
+TEST(DbcField, means_the_same_when_it_is_awkward) {
+    for (std::uint64_t seed = 1; seed <= 256; ++seed) {
+        DbcGenerator generator{seed};
+        const std::string text = generator.file();
+        const std::string plain = map_of(text, generator.own);
+        ASSERT_TRUE(plain.starts_with("VERSION")) << plain;
+        EXPECT_EQ(map_of(more_awkward(text, seed), generator.own), plain) << more_awkward(text, seed);
+    }
 }
 
 const std::string one = "BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" us\n"

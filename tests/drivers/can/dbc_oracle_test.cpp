@@ -2,6 +2,7 @@
 #include "apps/carpet_loom/maps.hpp"
 #include "drivers/can/dbc/writer.hpp"
 #include "drivers/can/signal_store.hpp"
+#include "tests/drivers/can/awkward_dbc.hpp"
 #include "tests/drivers/can/dbc_generator.hpp"
 #include "tests/drivers/can/hex.hpp"
 #include "tests/drivers/can/same_map.hpp"
@@ -20,7 +21,7 @@
 namespace tappet::can {
 namespace {
 
-constexpr std::size_t files = 300, frames_of_each = 8;
+constexpr std::size_t files = 300, awkward_files = 64, frames_of_each = 8;
 
 std::vector<std::string> parts_of(const std::string& text, char between) {
     std::vector<std::string> parts;
@@ -46,9 +47,10 @@ struct Taken {
     std::vector<FrameRow> rows{};
     std::unique_ptr<DbcMap> read{};
 
-    explicit Taken(std::uint64_t seed) : node{"us"} {
+    /// `faults`: selects those of an awkward file; 0: none.
+    explicit Taken(std::uint64_t seed, std::uint64_t faults = 0) : node{"us"} {
         DbcGenerator generator{seed};
-        text = generator.file();
+        text = awkward(generator.file(), faults);
         own = generator.own;
         for (const std::string& each : own) add(each, Direction::transmit, as_in_file);
         read = std::make_unique<DbcMap>(text, NodeView{node, rows, {}});
@@ -113,6 +115,7 @@ struct Asked {
         taken.push_back(std::make_unique<Taken>(by_hand));
         taken.push_back(std::make_unique<Taken>(carpet::can_signals));
         taken.push_back(std::make_unique<Taken>(of_can_fd));
+        for (std::size_t i = 0; i < awkward_files; ++i) taken.push_back(std::make_unique<Taken>(1000 + i, i));
         for (std::size_t i = 0; i < taken.size(); ++i) {
             const std::string path = (folder / (std::to_string(i) + ".dbc")).string();
             std::ofstream{path, std::ios::binary} << taken[i]->text;
