@@ -96,7 +96,7 @@ private:
         const std::string_view keyword = in_.word();
         if (keyword == "SG_") return signal_statement();
         if (keyword == "BO_") return message_statement();
-        if (keyword.empty() || !is_statement(keyword)) return unknown(keyword);
+        const bool in_message = takes_signals_;
         takes_signals_ = false;
         if (keyword == "VAL_")
             values();
@@ -120,13 +120,16 @@ private:
             bit_timing();
         else if (keyword == "VERSION")
             text("the version between quotes");
-        else
+        else if (is_passed_over(keyword))
             skip_statement();
+        else
+            return unknown(keyword, in_message);
         if (failed_ && net_.fault.empty()) skip_statement();
     }
-    constexpr void unknown(std::string_view keyword) {
+    constexpr void unknown(std::string_view keyword, bool in_message) {
         // In a message it may be the rest of a signal, with its receivers.
-        const bool continues = takes_signals_ && !keyword.ends_with('_');
+        const bool continues = in_message && !keyword.ends_with('_');
+        takes_signals_ = continues;
         if (continues && net_.used.signals != 0 && is_of_last(net_.signals[net_.used.signals - 1]))
             about(net_.signals[net_.used.signals - 1]);
         else if (continues)
