@@ -278,7 +278,7 @@ private:
         if (signal == nullptr)
             return Sentence{"; state it in its row, despite(",       wrong,        word, message.name,
                             "\", ..)), or leave it out, without(\"", message.name, "\")"};
-        const Sentence state{"; state it in the message's row, despite(signal(\"", signal->shape.name,
+        const Sentence state{"; state it in its row, despite(signal(\"", signal->shape.name,
                              "\", first bit, bits)), or "};
         if (!is_sent)
             for (const SignalRow& each : net_.of(message))

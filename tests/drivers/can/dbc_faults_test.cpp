@@ -80,63 +80,61 @@ TEST(DbcFaults, name_unexpected_words) {
     EXPECT_EQ(fault(with("BO_ 3")), "t.dbc:7:6: the file ends, expected a message's name; is it whole?");
     EXPECT_EQ(
         fault(with_signal("c 0|8@1+ (1,0) [0|0] \"\" us")),
-        "t.dbc:8:8: found \"0|8@1+\", expected \":\" after the signal's name; state it in the message's row, "
+        "t.dbc:8:8: found \"0|8@1+\", expected \":\" after the signal's name; state it in its row, "
         "despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
     EXPECT_EQ(fault(with_signal("c : 0|8@2+ (1,0) [0|0] \"\" us")),
               "t.dbc:8:14: 2 is too large for the byte order, 0 (Motorola) or 1 (Intel), which is 1 at most; "
-              "state it in the message's row, despite(signal(\"c\", first bit, bits)), or leave its message "
-              "out by a row, without(\"more\")");
+              "state it in its row, despite(signal(\"c\", first bit, bits)), or leave its message out by a "
+              "row, without(\"more\")");
     EXPECT_EQ(
         fault(with_signal("c : 0|8@1 (1,0) [0|0] \"\" us")),
-        "t.dbc:8:16: found \"(1,0)\", expected \"+\" (unsigned) or \"-\" (signed); state it in the message's "
+        "t.dbc:8:16: found \"(1,0)\", expected \"+\" (unsigned) or \"-\" (signed); state it in its row, "
+        "despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
+    EXPECT_EQ(
+        fault(with_signal("c k0 : 0|8@1+ (1,0) [0|0] \"\" us")),
+        "t.dbc:8:8: found \"k0\", expected \":\" or M, m0 or m0M of a multiplexed signal; state it in its "
         "row, despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
-    EXPECT_EQ(fault(with_signal("c k0 : 0|8@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:8:8: found \"k0\", expected \":\" or M, m0 or m0M of a multiplexed signal; state it in "
-              "the message's row, despite(signal(\"c\", first bit, bits)), or leave its message out by a "
-              "row, without(\"more\")");
     EXPECT_EQ(fault(" SG_ c : 0|8@1+ (1,0) [0|0] \"\" us"),
               "t.dbc:1:6: a signal without a message; write BO_ before it");
-    EXPECT_EQ(
-        fault(with("CM_ \"x\";\n SG_ c : 16|8@1+ (1,0) [0|0] \"\" us")),
-        "t.dbc:8:6: signal \"c\" is not in its message; state it in the message's row, despite(signal(\"c\", "
-        "first bit, bits)), or leave its message out by a row, without(\"ours\")");
+    EXPECT_EQ(fault(with("CM_ \"x\";\n SG_ c : 16|8@1+ (1,0) [0|0] \"\" us")),
+              "t.dbc:8:6: signal \"c\" is not in its message; state it in its row, despite(signal(\"c\", "
+              "first bit, bits)), or leave its message out by a row, without(\"ours\")");
 }
 
 TEST(DbcFaults, name_invalid_numbers) {
     EXPECT_EQ(
         fault(with_signal("c : 0|8@1+ (1.2.3,0) [0|0] \"\" us")),
-        "t.dbc:8:18: found \"1.2.3,0)\", expected the factor; state it in the message's row, "
-        "despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
-    EXPECT_EQ(
-        fault(with_signal("c : 0|8@1+ (1,1e999) [0|0] \"\" us")),
-        "t.dbc:8:20: the offset is beyond a double; state it in the message's row, despite(signal(\"c\", "
+        "t.dbc:8:18: found \"1.2.3,0)\", expected the factor; state it in its row, despite(signal(\"c\", "
         "first bit, bits)), or leave its message out by a row, without(\"more\")");
+    EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,1e999) [0|0] \"\" us")),
+              "t.dbc:8:20: the offset is beyond a double; state it in its row, despite(signal(\"c\", first "
+              "bit, bits)), or leave its message out by a row, without(\"more\")");
     EXPECT_EQ(fault(with_signal("c : 0|65@1+ (1,0) [0|0] \"\" us")),
               "t.dbc:8:12: 65 is too large for the number of the signal's bits, which is 64 at most; state "
-              "it in the message's row, despite(signal(\"c\", first bit, bits)), or leave its message out by "
-              "a row, without(\"more\")");
+              "it in its row, despite(signal(\"c\", first bit, bits)), or leave its message out by a row, "
+              "without(\"more\")");
     EXPECT_EQ(
         fault(with_signal("c : 0|0@1+ (1,0) [0|0] \"\" us")),
-        "t.dbc:8:12: signal \"c\" has 0 bits instead of 1 to 64; state it in the message's row, "
-        "despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
-    EXPECT_EQ(fault(with_signal("c : 99999999999999999999|8@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:8:10: found \"99999999999999999999|8@1\", expected the signal's first bit; state it in "
-              "the message's row, despite(signal(\"c\", first bit, bits)), or leave its message out by a "
-              "row, without(\"more\")");
+        "t.dbc:8:12: signal \"c\" has 0 bits instead of 1 to 64; state it in its row, despite(signal(\"c\", "
+        "first bit, bits)), or leave its message out by a row, without(\"more\")");
+    EXPECT_EQ(
+        fault(with_signal("c : 99999999999999999999|8@1+ (1,0) [0|0] \"\" us")),
+        "t.dbc:8:10: found \"99999999999999999999|8@1\", expected the signal's first bit; state it in its "
+        "row, despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
     EXPECT_EQ(fault(with("BA_ \"GenMsgCycleTime\" BO_ 1 -5;")),
               "t.dbc:2:7: message \"theirs\" has no cycle time (GenMsgCycleTime); write can::every(..) or "
               "can::on_demand(..) into receive(\"theirs\", ..)");
-    EXPECT_EQ(fault(with_signal("c : 0|8@1+ (0,0) [0|0] \"\" us")),
-              "t.dbc:8:18: signal \"c\" has the factor 0: every value would be the offset; state it in the "
-              "message's row, despite(signal(\"c\", first bit, bits)), or leave its message out by a row, "
-              "without(\"more\")");
+    EXPECT_EQ(
+        fault(with_signal("c : 0|8@1+ (0,0) [0|0] \"\" us")),
+        "t.dbc:8:18: signal \"c\" has the factor 0: every value would be the offset; state it in its row, "
+        "despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
 }
 
 TEST(DbcFaults, name_unclosed_texts) {
-    EXPECT_EQ(fault(with_signal("c : 0|8@1+ (1,0) [0|0] \"mm us\n")),
-              "t.dbc:8:29: a text is unclosed or out of place, expected the unit between quotes; state it in "
-              "the message's row, despite(signal(\"c\", first bit, bits)), or leave its message out by a "
-              "row, without(\"more\")");
+    EXPECT_EQ(
+        fault(with_signal("c : 0|8@1+ (1,0) [0|0] \"mm us\n")),
+        "t.dbc:8:29: a text is unclosed or out of place, expected the unit between quotes; state it in its "
+        "row, despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
     EXPECT_EQ(fault(with("CM_ \"never ends;\n")),
               "t.dbc:7:5: a text is unclosed at the end of the file; is it whole?");
 }
@@ -150,20 +148,20 @@ TEST(DbcFaults, name_unknown_and_duplicate_names) {
     EXPECT_EQ(fault(with("BO_ 3 theirs: 8 them")),
               "t.dbc:7:7: message \"theirs\" is there twice; leave it out by a row, without(\"theirs\")");
     EXPECT_EQ(fault(with(" SG_ a : 16|8@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:7:6: message \"ours\" has two signals \"a\"; state it in the message's row, "
-              "despite(signal(\"a\", first bit, bits)), or leave its message out by a row, without(\"ours\") "
-              "(and 1 more: tappet check t.dbc lists all)");
+              "t.dbc:7:6: message \"ours\" has two signals \"a\"; state it in its row, despite(signal(\"a\", "
+              "first bit, bits)), or leave its message out by a row, without(\"ours\") (and 1 more: tappet "
+              "check t.dbc lists all)");
 }
 
 TEST(DbcFaults, name_signals_that_overlap_or_exceed_their_frame) {
     EXPECT_EQ(fault(with_signal("c : 30|4@1+ (1,0) [0|0] \"\" us")),
               "t.dbc:8:6: signal \"more.c\" reaches outside its frame of 4 bytes: it starts at bit 30 (its "
-              "lowest) and goes up 4 bits; state it in the message's row, despite(signal(\"c\", first bit, "
-              "bits)), or leave its message out by a row, without(\"more\")");
-    EXPECT_EQ(fault(with_signal("c : 0|16@1+ (1,0) [0|0] \"\" us\n SG_ d : 11|4@0+ (1,0) [0|0] \"\" us")),
-              "t.dbc:9:6: signal \"more.d\" overlaps \"c\" at bit 8; state it in the message's row, "
-              "despite(signal(\"d\", first bit, bits)), or take other signals alone, receive(\"more\", "
-              "signal(\"c\"), ..)");
+              "lowest) and goes up 4 bits; state it in its row, despite(signal(\"c\", first bit, bits)), or "
+              "leave its message out by a row, without(\"more\")");
+    EXPECT_EQ(
+        fault(with_signal("c : 0|16@1+ (1,0) [0|0] \"\" us\n SG_ d : 11|4@0+ (1,0) [0|0] \"\" us")),
+        "t.dbc:9:6: signal \"more.d\" overlaps \"c\" at bit 8; state it in its row, despite(signal(\"d\", "
+        "first bit, bits)), or take other signals alone, receive(\"more\", signal(\"c\"), ..)");
     EXPECT_EQ(fault(with_signal("c : 0|16@1+ (1,0) [0|0] \"\" them\n SG_ d : 11|4@0+ (1,0) [0|0] \"\" them")),
               "")
         << "what the node does not take is not its business";
@@ -175,59 +173,59 @@ TEST(DbcFaults, name_signals_that_overlap_or_exceed_their_frame) {
               "leave it out by a row, without(\"more\")");
     EXPECT_EQ(
         fault(with_signal("c : 0|16@1+ (1,0) [0|0] \"\" us\nSIG_VALTYPE_ 3 c : 1;")),
-        "t.dbc:9:20: signal \"c\" has 16 bits, but a float has 32; state it in the message's row, "
+        "t.dbc:9:20: signal \"c\" has 16 bits, but a float has 32; state it in its row, "
         "despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
 }
 
 TEST(DbcFaults, name_invalid_multiplexors) {
-    EXPECT_EQ(fault(with_signal("c m0 : 0|8@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:8:6: signal \"c\" is multiplexed but its message has no multiplexor; state it in the "
-              "message's row, despite(signal(\"c\", first bit, bits)), or leave its message out by a row, "
-              "without(\"more\")");
+    EXPECT_EQ(
+        fault(with_signal("c m0 : 0|8@1+ (1,0) [0|0] \"\" us")),
+        "t.dbc:8:6: signal \"c\" is multiplexed but its message has no multiplexor; state it in its row, "
+        "despite(signal(\"c\", first bit, bits)), or leave its message out by a row, without(\"more\")");
     const std::string two =
         "p M : 0|8@1+ (1,0) [0|0] \"\" us\n SG_ q m1M : 8|8@1+ (1,0) [0|0] \"\" us\n SG_ c m0 : 16|8@1+ "
         "(1,0) [0|0] \"\" us\n";
     EXPECT_EQ(
         fault(with_signal(two)),
         "t.dbc:9:6: message \"more\" has several multiplexors, and SG_MUL_VAL_ says not which one selects "
-        "\"q\"; state it in the message's row, despite(signal(\"q\", first bit, bits)), or take other "
-        "signals alone, receive(\"more\", signal(\"p\"), ..) (and 1 more: tappet check t.dbc lists all)");
+        "\"q\"; state it in its row, despite(signal(\"q\", first bit, bits)), or take other signals alone, "
+        "receive(\"more\", signal(\"p\"), ..) (and 1 more: tappet check t.dbc lists all)");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 q p 1-1;\nSG_MUL_VAL_ 3 c q 0-0, 7-9;")), "");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 q q 1-1;\nSG_MUL_VAL_ 3 c q 0-0;")),
-              "t.dbc:9:6: signal \"q\" is selected by itself, through others; state it in the message's row, "
+              "t.dbc:9:6: signal \"q\" is selected by itself, through others; state it in its row, "
               "despite(signal(\"q\", first bit, bits)), or take other signals alone, receive(\"more\", "
               "signal(\"p\"), ..)");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 c p 3-1;\nSG_MUL_VAL_ 3 q p 1-1;")),
-              "t.dbc:11:19: an empty range; state it in the message's row, despite(signal(\"c\", first bit, "
-              "bits)), or take other signals alone, receive(\"more\", signal(\"p\"), ..)");
+              "t.dbc:11:19: an empty range; state it in its row, despite(signal(\"c\", first bit, bits)), or "
+              "take other signals alone, receive(\"more\", signal(\"p\"), ..)");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 c c 1-1;\nSG_MUL_VAL_ 3 q p 1-1;")),
-              "t.dbc:11:17: signal \"c\" selects others but is not a multiplexor; state it in the message's "
-              "row, despite(signal(\"c\", first bit, bits)), or take other signals alone, receive(\"more\", "
+              "t.dbc:11:17: signal \"c\" selects others but is not a multiplexor; state it in its row, "
+              "despite(signal(\"c\", first bit, bits)), or take other signals alone, receive(\"more\", "
               "signal(\"p\"), ..)");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 p q 1-1;")),
-              "t.dbc:11:15: signal \"p\" is selected but not multiplexed; state it in the message's row, "
+              "t.dbc:11:15: signal \"p\" is selected but not multiplexed; state it in its row, "
               "despite(signal(\"p\", first bit, bits)), or leave its message out by a row, without(\"more\") "
               "(and 2 more: tappet check t.dbc lists all)");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 q p 1-1;\nSG_MUL_VAL_ 3 c p 300-300;")),
               "t.dbc:10:6: signal \"more.c\" is selected by values that \"p\" never has: 300 to 300; state "
-              "it in the message's row, despite(signal(\"c\", first bit, bits)), or take other signals "
-              "alone, receive(\"more\", signal(\"p\"), ..)");
+              "it in its row, despite(signal(\"c\", first bit, bits)), or take other signals alone, "
+              "receive(\"more\", signal(\"p\"), ..)");
     EXPECT_EQ(fault(with_signal(two + "SG_MUL_VAL_ 3 q p 1-1;\nSG_MUL_VAL_ 3 c p "
                                       "0-0,2-2,4-4,6-6,8-8,10-10,12-12,14-14,16-16;")),
-              "t.dbc:10:6: signal \"c\" is selected by more than 8 ranges; state it in the message's row, "
+              "t.dbc:10:6: signal \"c\" is selected by more than 8 ranges; state it in its row, "
               "despite(signal(\"c\", first bit, bits)), or take other signals alone, receive(\"more\", "
               "signal(\"p\"), ..)");
     EXPECT_EQ(
         fault(with_signal("p M : 0|8@1+ (0.5,0) [0|0] \"\" us\n SG_ c m0 : 8|8@1+ (1,0) [0|0] \"\" us")),
         "t.dbc:9:6: signal \"more.p\" selects \"c\" but is not an integer of at most 32 bits; state it in "
-        "the message's row, despite(signal(\"c\", first bit, bits)), or take other signals alone, "
-        "receive(\"more\", signal(\"p\"), ..)");
-    EXPECT_EQ(fault(with_signal(
-                  "p M : 0|8@1+ (1,0) [0|0] \"\" us\n SG_ c m0 : 8|8@1+ (1,0) [0|0] \"\" us\n SG_ d m1 : "
-                  "8|16@1+ (1,0) [0|0] \"\" us\n SG_ e m0 : 12|8@1+ (1,0) [0|0] \"\" us")),
-              "t.dbc:11:6: signal \"more.e\" overlaps \"c\" at bit 12; state it in the message's row, "
-              "despite(signal(\"e\", first bit, bits)), or take other signals alone, receive(\"more\", "
-              "signal(\"p\"), ..)");
+        "its row, despite(signal(\"c\", first bit, bits)), or take other signals alone, receive(\"more\", "
+        "signal(\"p\"), ..)");
+    EXPECT_EQ(
+        fault(with_signal(
+            "p M : 0|8@1+ (1,0) [0|0] \"\" us\n SG_ c m0 : 8|8@1+ (1,0) [0|0] \"\" us\n SG_ d m1 : "
+            "8|16@1+ (1,0) [0|0] \"\" us\n SG_ e m0 : 12|8@1+ (1,0) [0|0] \"\" us")),
+        "t.dbc:11:6: signal \"more.e\" overlaps \"c\" at bit 12; state it in its row, despite(signal(\"e\", "
+        "first bit, bits)), or take other signals alone, receive(\"more\", signal(\"p\"), ..)");
 }
 
 TEST(DbcFaults, name_invalid_rows_of_the_node) {

@@ -144,14 +144,14 @@ TEST(DbcField, takes_some_signals_of_a_message) {
     constexpr auto some = node("us", receive("M", every(10ms), signal("b")));
     constexpr auto far = node("us", receive("M", every(10ms), signal("c")));
     constexpr auto none = node("us", without("M"));
-    EXPECT_EQ(fault(overlapping, whole), "t.dbc:4:6: signal \"M.b\" overlaps \"a\" at bit 8; state it in the "
-                                         "message's row, despite(signal(\"b\", first bit, bits)), or take "
-                                         "other signals alone, receive(\"M\", signal(\"a\"), ..)");
+    EXPECT_EQ(fault(overlapping, whole),
+              "t.dbc:4:6: signal \"M.b\" overlaps \"a\" at bit 8; state it in its row, despite(signal(\"b\", "
+              "first bit, bits)), or take other signals alone, receive(\"M\", signal(\"a\"), ..)");
     EXPECT_EQ(decoded({overlapping, some.view()}, "M.b", {1, 8}), 4.0);
     EXPECT_EQ(fault(overlapping, far),
               "t.dbc:5:6: signal \"M.c\" reaches outside its frame of 8 bytes: it starts at bit 60 (its "
-              "lowest) and goes up 8 bits; state it in the message's row, despite(signal(\"c\", first bit, "
-              "bits)), or take other signals alone, receive(\"M\", signal(\"a\"), ..)");
+              "lowest) and goes up 8 bits; state it in its row, despite(signal(\"c\", first bit, bits)), or "
+              "take other signals alone, receive(\"M\", signal(\"a\"), ..)");
     EXPECT_EQ(fault(overlapping, none), "");
     const DbcMap read{overlapping, none.view()};
     EXPECT_EQ(read.sizes.frames, 0u);
@@ -193,10 +193,9 @@ TEST(DbcField, asks_for_limits_only_where_it_sends) {
     EXPECT_TRUE(read.map.signals[3].has_range);
     EXPECT_EQ(read.map.signals[3].most, std::numeric_limits<double>::max());
     constexpr auto sender = node("us", transmit("M", every(10ms)).safe_by_silence());
-    EXPECT_EQ(fault(limits, sender),
-              "t.dbc:3:26: the greatest value is beyond a double; state it in the message's row, "
-              "despite(signal(\"s\", first bit, bits)), or leave its message out by a row, without(\"M\") "
-              "(and 2 more: tappet check t.dbc lists all)");
+    EXPECT_EQ(fault(limits, sender), "t.dbc:3:26: the greatest value is beyond a double; state it in its "
+                                     "row, despite(signal(\"s\", first bit, bits)), or leave its message out "
+                                     "by a row, without(\"M\") (and 2 more: tappet check t.dbc lists all)");
 }
 
 TEST(DbcField, believes_a_row_despite_the_file) {
@@ -258,12 +257,12 @@ TEST(DbcField, takes_no_receiver_from_a_comment) {
 TEST(DbcField, finds_the_receiver_of_a_signal_that_it_cannot_read) {
     EXPECT_EQ(
         fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" us\n", us),
-        "t.dbc:3:11: found \";8@1+\", expected \"|\" after the signal's first bit; state it in the message's "
-        "row, despite(signal(\"s\", first bit, bits)), or leave its message out by a row, without(\"M\")");
+        "t.dbc:3:11: found \";8@1+\", expected \"|\" after the signal's first bit; state it in its row, "
+        "despite(signal(\"s\", first bit, bits)), or leave its message out by a row, without(\"M\")");
     EXPECT_EQ(fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\"\n  us\n", us),
               "t.dbc:4:3: found \"us\", expected a statement, which begins with BO_, SG_, VAL_ or the like; "
-              "state it in the message's row, despite(signal(\"s\", first bit, bits)), or leave its message "
-              "out by a row, without(\"M\")");
+              "state it in its row, despite(signal(\"s\", first bit, bits)), or leave its message out by a "
+              "row, without(\"M\")");
     EXPECT_EQ(fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" A\n", us), "");
 }
 
