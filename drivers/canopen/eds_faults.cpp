@@ -14,7 +14,7 @@ namespace tappet::canopen {
 namespace {
 
 EdsFault whole_file(const SourceText& file, std::string_view fault) {
-    EdsFault told{0, {}, "every node of this file"};
+    EdsFault told{0, {}, "every node of this file", true};
     fault.remove_prefix(file.name.size() + 1); // FILE:LINE: SENTENCE
     std::from_chars(fault.data(), fault.data() + fault.size(), told.line);
     told.meaning = fault.substr(fault.find(": ") + 2);
@@ -25,7 +25,8 @@ template <std::size_t most> std::vector<EdsFault> read(const SourceText& file) {
     const auto read = std::make_unique<detail::EdsReader<most, most>>(file);
     std::vector<EdsFault> all;
     for (const FileNote& note : read->notes)
-        all.push_back({note.line, std::string{meaning(note).view()}, std::string{effect(note).view()}});
+        all.push_back(
+            {note.line, std::string{meaning(note).view()}, std::string{effect(note).view()}, false});
     if (!read->fault.empty()) all.push_back(whole_file(file, read->fault.view()));
     std::ranges::sort(all, {}, [](const EdsFault& each) { return std::tie(each.line, each.meaning); });
     return all;
@@ -38,7 +39,7 @@ std::vector<EdsFault> eds_faults(const SourceText& file) {
     const std::size_t room = detail::eds_room(file.text);
     if (room > most)
         return {{1, std::string{Sentence{"it may have ", room, " objects, more than ", most}.view()},
-                 "every node of this file"}};
+                 "every node of this file", true}};
     return room > few ? read<most>(file) : read<few>(file);
 }
 

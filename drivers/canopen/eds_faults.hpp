@@ -13,6 +13,7 @@ struct EdsFault {
     std::uint32_t line = 0;
     std::string meaning{};
     std::string affects{}; ///< the rows that it matters to; "nobody": it is a note
+    bool is_fatal = false; ///< nothing can be read from the file
 };
 
 /// Returns the faults in the order of their lines; empty: none. Not real-time; allocates.

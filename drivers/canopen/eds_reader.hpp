@@ -113,6 +113,7 @@ private:
         std::string_view name{};
         std::uint32_t line = 0;
         std::uint8_t flaws = 0;
+        bool is_read_only = false, has_wrong_limits = false;
         std::array<Entry, key_count> entries{};
     };
     /// An object with sub-indices.
@@ -132,9 +133,12 @@ private:
     constexpr void note(const FileNote& each) { static_cast<void>(notes.push(each)); }
     constexpr void note(Section& section, Kind kind, Key key) {
         const Entry& entry = section.entries[key];
-        section.flaws |= flaws_of[key];
-        note({kind, flaws_of[key], section.meant.at, entry.line != 0 ? entry.line : section.line, 0,
-              keys[key], entry.line != 0 ? entry.text : section.name});
+        std::uint8_t flaws = flaws_of[key];
+        if (flaws == flaw::limits) section.has_wrong_limits = true;
+        if (flaws == flaw::limits && section.is_read_only) flaws = 0; // nobody asks for them
+        section.flaws |= flaws;
+        note({kind, flaws, section.meant.at, entry.line != 0 ? entry.line : section.line, 0, keys[key],
+              entry.line != 0 ? entry.text : section.name});
     }
 
     constexpr void read_sections() {
@@ -287,6 +291,7 @@ private:
         for (const Name& each : names)
             if (same(entry.text, each.text)) {
                 object.access = each.access;
+                section.is_read_only = each.access == Access::read_only || each.access == Access::constant;
                 return;
             }
         note(section, Kind::not_a_choice, access_type);
@@ -317,7 +322,7 @@ private:
             note(section, Kind::limits_contradict, high_limit);
         else if (is_pattern && (low.empty() || low.starts_with('-')))
             note(section, Kind::ambiguous_limit, high_limit);
-        if ((section.flaws & flaw::limits) != 0) object.low = object.high = {};
+        if (section.has_wrong_limits) object.low = object.high = {};
     }
 
     constexpr void order() {

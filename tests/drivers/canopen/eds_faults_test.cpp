@@ -43,6 +43,9 @@ TEST(EdsFaults, files_without_faults_have_no_notes) {
 TEST(EdsFaults, that_nobody_needs_are_notes) {
     EXPECT_EQ(with("<xml>\n"),
               "4: \"<xml>\" is neither a [section] nor an entry Key=Value; it is skipped -> nobody\n");
+    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=0x00\nHighLimit=0xFF"),
+              "8: HighLimit 0xFF of 2000h:0 is under its LowLimit -> nobody\n")
+        << "nobody writes it";
     EXPECT_EQ(variable("DataType=6\nAccessType=rw\nHighLimit=65536"),
               "7: HighLimit 65536 of 2000h:0 lies beyond its DataType and bounds nothing -> nobody\n");
     EXPECT_EQ(variable("DataType=6\nAccessType=rw\nLowLimit=-1"),
@@ -93,19 +96,19 @@ TEST(EdsFaults, name_the_rows_that_they_affect) {
     EXPECT_EQ(with(device),
               "4: 1000h:0 is there twice, first in line 1, which counts -> rows that map or write "
               "1000h:0\n");
-    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=0x00\nHighLimit=0xFF"),
+    EXPECT_EQ(variable("DataType=2\nAccessType=rw\nLowLimit=0x00\nHighLimit=0xFF"),
               "8: HighLimit 0xFF of 2000h:0 is under its LowLimit" + writes);
-    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nLowLimit=-5\nHighLimit=0xFF"),
+    EXPECT_EQ(variable("DataType=2\nAccessType=rw\nLowLimit=-5\nHighLimit=0xFF"),
               "8: HighLimit 0xFF of 2000h:0 is a negative number for its DataType, or one beyond it" +
                   writes);
-    EXPECT_EQ(variable("DataType=2\nAccessType=ro\nHighLimit=0xFF"),
+    EXPECT_EQ(variable("DataType=2\nAccessType=rw\nHighLimit=0xFF"),
               "7: HighLimit 0xFF of 2000h:0 is a negative number for its DataType, or one beyond it" +
                   writes);
-    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nLowLimit=9\nHighLimit=3"),
+    EXPECT_EQ(variable("DataType=5\nAccessType=rw\nLowLimit=9\nHighLimit=3"),
               "8: HighLimit 3 of 2000h:0 is under its LowLimit" + writes);
-    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nLowLimit=256"),
+    EXPECT_EQ(variable("DataType=5\nAccessType=rw\nLowLimit=256"),
               "7: LowLimit 256 of 2000h:0 does not fit its DataType" + writes);
-    EXPECT_EQ(variable("DataType=5\nAccessType=ro\nHighLimit=many"),
+    EXPECT_EQ(variable("DataType=5\nAccessType=rw\nHighLimit=many"),
               "7: HighLimit \"many\" of 2000h:0 is not a number" + writes);
     EXPECT_EQ(
         variable("DataType=5\nAccessType=rw\nParameterValue=08"),

@@ -18,12 +18,14 @@ struct Finding {
     unsigned line = 0;
     Weight weight = Weight::note;
     std::string meaning{};
-    std::vector<std::string> affects{}; ///< nodes; empty: nobody
+    std::vector<std::string> affects{}; ///< nodes of a DBC file; rows, for an EDS file; empty: nobody
     unsigned more = 0;                  ///< further lines with the same meaning
 };
 
 /// Returns what is wrong in a DBC file, in the order of its lines; equal notes are one.
 [[nodiscard]] std::vector<Finding> check_dbc(std::string_view text);
+/// Returns what is wrong in an EDS or DCF file, in the order of its lines.
+[[nodiscard]] std::vector<Finding> check_eds(std::string_view text);
 
 struct Report {
     std::string text{};
@@ -31,7 +33,8 @@ struct Report {
     bool has_faults = false;
 };
 /// Checks these files, and in folders all files of known kinds. The text is a table and a verdict for each
-/// file. `node`: the machine's own; faults that affect only others are notes. Empty: all nodes count.
+/// file. `node`: the machine's own; faults of a DBC file that affect only others are notes.
+/// Empty: all nodes count.
 [[nodiscard]] Report report_on(const std::vector<std::string>& paths, const std::string& node = {});
 
 } // namespace tappet::checking

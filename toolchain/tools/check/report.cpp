@@ -15,8 +15,11 @@ namespace fs = std::filesystem;
 struct Reader {
     std::string_view extension;
     std::vector<Finding> (*check)(std::string_view text);
+    bool names_nodes; ///< the findings say which nodes they affect
 };
-constexpr Reader readers[] = {{".dbc", &check_dbc}};
+constexpr Reader readers[] = {
+    {".dbc", &check_dbc, true}, {".eds", &check_eds, false}, {".dcf", &check_eds, false}};
+constexpr std::string_view kinds = ".dbc, .eds or .dcf";
 
 const Reader* reader_of(const fs::path& file) {
     std::string extension = file.extension().string();
@@ -50,13 +53,7 @@ std::string verdict_on(const std::vector<Finding>& findings) {
     if (count(Weight::unreadable) != 0) return "unreadable";
     const std::string notes = count(Weight::note) == 0 ? "" : ", " + count_of(count(Weight::note), "note");
     if (count(Weight::fault) == 0) return "good" + notes;
-    std::vector<std::string> nodes;
-    for (const Finding& each : findings)
-        if (each.weight == Weight::fault) nodes.insert(nodes.end(), each.affects.begin(), each.affects.end());
-    std::ranges::sort(nodes);
-    nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
-    return count_of(count(Weight::fault), "fault") + notes + "; leave these parts out of the maps of " +
-           joined(nodes);
+    return count_of(count(Weight::fault), "fault") + notes + "; a row that takes such a part is refused";
 }
 
 /// The columns are as wide as their widest cell.
@@ -88,7 +85,8 @@ std::string add_files(const std::string& path, std::vector<fs::path>& files) {
     if (!fs::is_directory(path, failed)) {
         if (!fs::exists(path, failed)) return "there is no file \"" + path + "\"";
         if (reader_of(path) == nullptr)
-            return "\"" + path + "\" is no file that it reads; name files that end in .dbc, or a folder";
+            return "\"" + path + "\" is no file that it reads; name files that end in " + std::string{kinds} +
+                   ", or a folder";
         files.emplace_back(path);
         return {};
     }
@@ -99,7 +97,8 @@ std::string add_files(const std::string& path, std::vector<fs::path>& files) {
         if (each->is_regular_file(failed) && reader_of(each->path()) != nullptr)
             files.push_back(each->path());
     std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
-    return files.size() == before ? "folder \"" + path + "\" has no .dbc file" : "";
+    return files.size() == before ? "folder \"" + path + "\" has no file that ends in " + std::string{kinds}
+                                  : "";
 }
 
 } // namespace
@@ -115,9 +114,10 @@ Report report_on(const std::vector<std::string>& paths, const std::string& node)
         std::ifstream file{path, std::ios::binary};
         const std::string text{std::istreambuf_iterator<char>{file}, {}};
         if (!file) return {.text = {}, .failure = "\"" + path.string() + "\" cannot be read"};
-        std::vector<Finding> findings = reader_of(path)->check(text);
+        const Reader& reader = *reader_of(path);
+        std::vector<Finding> findings = reader.check(text);
         for (Finding& each : findings)
-            if (each.weight == Weight::fault && !node.empty() && !concerns(each, node))
+            if (each.weight == Weight::fault && reader.names_nodes && !node.empty() && !concerns(each, node))
                 each.weight = Weight::note;
         report.text += table_of(path.string(), findings) + path.string() + ": " + verdict_on(findings) + "\n";
         report.has_faults |=

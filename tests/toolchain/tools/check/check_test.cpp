@@ -120,6 +120,21 @@ TEST(CheckDbc, tells_more_troubles_than_it_first_has_room_for) {
     EXPECT_EQ(check_dbc(text).size(), 200u);
 }
 
+TEST(CheckEds, tells_notes_faults_and_files_that_cannot_be_read) {
+    const std::string device = "[1000]\nDataType=7\nAccessType=ro\n";
+    const auto only = [](std::string_view text) {
+        const std::vector<Finding> found = check_eds(text);
+        return found.size() == 1 ? found[0] : Finding{.meaning = std::to_string(found.size()) + " findings"};
+    };
+    EXPECT_TRUE(check_eds(device).empty());
+    const Finding note = only(device + "[2000]\nDataType=6\nAccessType=rw\nHighLimit=65536\n");
+    EXPECT_EQ(note.weight, Weight::note) << note.meaning;
+    EXPECT_TRUE(note.affects.empty());
+    const Finding fault = only(device + "[2000]\nDataType=6\nAccessType=odd\n");
+    EXPECT_EQ(fault.weight, Weight::fault) << fault.meaning;
+    EXPECT_EQ(fault.affects, std::vector<std::string>{"rows that map or write 2000h:0"});
+}
+
 TEST(Check, prints_a_table_and_a_verdict_for_each_file) {
     const test::Folder folder;
     const auto write = [&](const std::string& name, const std::string& text) {
@@ -143,7 +158,7 @@ TEST(Check, prints_a_table_and_a_verdict_for_each_file) {
             at + "deep/b.DBC: good, 1 note\n" + at +
             "deep/c.dbc:2  note   nobody  BU_ names no node \"C\"\n" + at +
             "deep/c.dbc:3  fault  C, B    signal \"s\" has 0 bits instead of 1 to 64\n" + at +
-            "deep/c.dbc: 1 fault, 1 note; leave these parts out of the maps of B, C\n" + at +
+            "deep/c.dbc: 1 fault, 1 note; a row that takes such a part is refused\n" + at +
             "deep/d.dbc:1  unreadable  all  the file ends, expected a message's identifier; is it whole?\n" +
             at + "deep/d.dbc: unreadable\n");
     EXPECT_FALSE(report_on({at + "a.dbc", at + "deep/b.DBC"}).has_faults);
@@ -151,7 +166,8 @@ TEST(Check, prints_a_table_and_a_verdict_for_each_file) {
     EXPECT_FALSE(report_on({at + "deep/c.dbc"}, "A").has_faults) << "who neither sends nor receives it";
     EXPECT_EQ(report_on({at + "deep/other.txt"}).failure,
               "\"" + at +
-                  "deep/other.txt\" is no file that it reads; name files that end in .dbc, or a folder");
+                  "deep/other.txt\" is no file that it reads; name files that end in .dbc, .eds or .dcf, or "
+                  "a folder");
     EXPECT_EQ(report_on({at + "none.dbc"}).failure, "there is no file \"" + at + "none.dbc\"");
     EXPECT_EQ(report_on({}).failure, "name files or folders: tappet check press.dbc");
 }
