@@ -49,9 +49,9 @@ BrowserService::Verdict BrowserService::serve_counters(Client& client, const Req
             json.open('{').field("row", count.what).field("times", count.times).close('}');
         }
     json.close(']').key("unsent").open('[');
-    machine_->each_unsent([&](std::string_view component, std::string_view input, const Unsent& seen) {
+    machine_->each_unsent([&](std::string_view component, std::string_view input, const Unsent& unsent) {
         json.open('{').field("input", Sentence{component, ".", input}.view());
-        json.field("clamped", seen.clamped).field("no_number", seen.no_number).close('}');
+        json.field("clamped", unsent.clamped).field("no_number", unsent.no_number).close('}');
     });
     json.close(']');
     return finish(client, reply);
