@@ -239,8 +239,8 @@ private:
             return is_integer(signal)
                        ? nth_output<&Bus::integer_out>(s, name, signal.unit, "received", comes)
                        : nth_output<&Bus::physical_out>(s, name, signal.unit, "received", comes);
-        Facet sent = is_integer(signal) ? nth_input<&Bus::integer_in>(s, name, signal.unit, "sent")
-                                        : nth_input<&Bus::physical_in>(s, name, signal.unit, "sent");
+        Facet sent = is_integer(signal) ? nth_input<&Bus::integer_in>(s, name, signal.unit, "sent", comes)
+                                        : nth_input<&Bus::physical_in>(s, name, signal.unit, "sent", comes);
         sent.needs_wake =
             frame.every == Duration::zero(); // a cyclic frame takes what is there when it is due
         return sent;

@@ -29,7 +29,7 @@ struct WireCounters {
     }
 };
 
-/// How often a value that a driver was to send did not go to the wire as it was written.
+/// How often a driver sent something else than what was written: in each sending, also of the same value.
 struct Unsent {
     std::uint64_t clamped = 0;   ///< outside its row's range: the nearest bound was sent
     std::uint64_t no_number = 0; ///< not a number: nothing was sent

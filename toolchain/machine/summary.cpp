@@ -217,11 +217,11 @@ void tell_overruns(MachineInstance& instance, std::string_view speaker) {
     instance.each_unsent([&](std::string_view component, std::string_view input, const Unsent& seen) {
         if (seen.clamped != 0)
             os::print(Sentence{speaker, ": \"", component, ".", input, "\": ", seen.clamped,
-                               " values were outside its range and sent as its nearest bound\n"}
+                               " times its value was outside its range and sent as its nearest bound\n"}
                           .view());
         if (seen.no_number != 0)
             os::print(Sentence{speaker, ": \"", component, ".", input, "\": ", seen.no_number,
-                               " values were not a number and not sent\n"}
+                               " times its value was not a number and not sent\n"}
                           .view());
     });
     for (const Engine& engine : instance.engines()) {

@@ -47,8 +47,10 @@ public:
         map_.frames[0].values = count_;
         static_cast<void>(can::detail::complete(map_, 1)); // its bus's map has no faults
         for (std::size_t s = 0; s + 1 < count_; ++s)
-            store_.set_integer(s, map_.signals[s + 1].selections[0].from);
-        set(signal.has_range ? signal.most : can::is_integer(signal) ? 1.0 : usual_example);
+            store_.set_bits(s, static_cast<std::uint64_t>(map_.signals[s + 1].selections[0].from));
+        set(!signal.has_range  ? (can::is_integer(signal) ? 1.0 : usual_example)
+            : signal.most != 0 ? signal.most // zero would show no byte
+                               : signal.least);
         if (!signal.has_range && store_.physical(count_ - 1) == signal.offset)
             set(signal.offset + signal.factor);
     }
@@ -63,7 +65,8 @@ public:
         for (std::size_t i = 0; i < frame.length; ++i)
             bytes += is_covered[i] ? in_hex(frame.data[i], 2) + " " : "-- ";
         for (std::size_t s = 0; s + 1 < count_; ++s)
-            bytes += joined(s == 0 ? " while " : " and ", map_.signals[s].name, " is ", store_.integer(s));
+            bytes += joined(s == 0 ? " while " : " and ", map_.signals[s].name, " is ",
+                            map_.signals[s + 1].selections[0].from);
         return line_of(map_.signals[count_ - 1], store_.physical(count_ - 1), std::move(bytes));
     }
 
@@ -78,11 +81,12 @@ private:
     void set(double value) {
         const std::size_t last = count_ - 1;
         if (can::is_integer(map_.signals[last]))
-            store_.set_integer(last, static_cast<std::int64_t>(value));
+            store_.set_integer(last, static_cast<std::int64_t>(std::clamp(value, -exact, exact)));
         else
             store_.set_physical(last, value);
     }
 
+    static constexpr double exact = 0x1p53; ///< integers up to it are doubles
     static constexpr std::size_t most = 16; ///< the signal, and the multiplexors that select each other
     can::SignalMap<1, most> map_{};
     can::SignalStore<1, most> store_{map_};

@@ -234,8 +234,12 @@ constexpr Sentence check_loop(const ActivityRow& row, std::string_view name, con
 /// Checks that the activity is as fast as a value of its map, "comes_every": a map's period that the activity
 /// does not keep is a promise without effect.
 constexpr Sentence check_outside(const ActivityRow& row, std::string_view component, const Facet& facet) {
-    if (facet.comes_every == Duration::zero() || !row.periodic() || row.period <= facet.comes_every)
-        return {};
+    if (facet.comes_every == Duration::zero() || row.trigger == Trigger::on_device) return {};
+    if (!row.periodic())
+        return of_activity(row.name, " runs on_work(), but \"", component, ".", facet.name,
+                           "\" crosses the wire every ", facet.comes_every.count() / 1000,
+                           " us by its map, which wakes nobody; run it every(...) or on_device(...)");
+    if (row.period <= facet.comes_every) return {};
     return of_activity(
         row.name, " runs every ", row.period.count() / 1000, " us, but \"", component, ".", facet.name,
         "\" crosses the wire every ", facet.comes_every.count() / 1000,

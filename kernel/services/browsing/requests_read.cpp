@@ -49,11 +49,14 @@ BrowserService::Verdict BrowserService::serve_counters(Client& client, const Req
             json.open('{').field("row", count.what).field("times", count.times).close('}');
         }
     json.close(']').key("unsent").open('[');
+    constexpr std::size_t most_unsent_rows = 16; // a reply is one packet
+    std::size_t rows = 0;
     machine_->each_unsent([&](std::string_view component, std::string_view input, const Unsent& unsent) {
+        if (++rows > most_unsent_rows) return;
         json.open('{').field("input", Sentence{component, ".", input}.view());
         json.field("clamped", unsent.clamped).field("no_number", unsent.no_number).close('}');
     });
-    json.close(']');
+    json.close(']').field("unsent_rows", rows);
     return finish(client, reply);
 }
 
@@ -120,7 +123,7 @@ void BrowserService::put_value(Reply& reply, End end, std::string_view name) {
         const Duration age{std::max(seen, to_ns(now_)) - stamp};
         const bool stale = max_age > Duration::zero() && age > max_age;
         json.field("flow", is_forced                    ? "fresh"
-                           : writes == 0 && was_written ? "never_read"
+                           : writes == 0 && was_written ? "unread"
                            : writes == 0                ? "never_written"
                            : stale                      ? "stale"
                                                         : "fresh");

@@ -115,6 +115,7 @@ BrowserService::Verdict BrowserService::serve_why(Client& client, const Request&
     const Ways ways{part.binding.machine, order.wanted};
     const bool whole = read_between_steps(machine.index.activity[c], [&] {
         order.leaf = no_state;
+        order.status = part.machine->machine_status();
         for (const ActiveState& each : part.machine->states())
             if (order.leaf == no_state || ways.away(each.state) < ways.away(order.leaf) ||
                 part.binding.machine.plans[order.leaf].regions != 0)
@@ -146,7 +147,7 @@ bool BrowserService::look_at_why(Pending& place) {
     Reply reply{place.asker.number, true};
     JsonText& json = reply.json();
     const Sentence name{machine_->machine().table.behaviours[order.row].component, ".", part.row->name};
-    json.field("name", name.view()).field("status", to_text(part.machine->machine_status()));
+    json.field("name", name.view()).field("status", to_text(order.status));
     put_path(json, "state", machine, order.leaf);
     put_path(json, "wanted", machine, order.wanted);
     json.field("is_final", machine.table.states[order.wanted].final);

@@ -16,6 +16,7 @@ struct WhyOrder {
     std::size_t part = 0;
     StateIndex wanted = no_state;
     StateIndex leaf = no_state; ///< the active state at the time of the request
+    MachineStatus status{};     ///< at that time, too
     Bounded<TransitionIndex, most> transitions{};
     std::array<StateMachineExecution::Look, most> looks{};
     bool done = false;

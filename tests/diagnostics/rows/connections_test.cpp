@@ -39,18 +39,23 @@ void add_talk(Table& m, const ConnectionRow& row) {
     m.add(row);
 }
 
-/// A driver's ends, as its map makes them.
+/// A driver's output and input, as its map makes them.
 struct Wire {
     Output<double> level;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(output<&Wire::level>("level", "", "that is received", comes_every(10ms)));
+    }
+};
+struct Valve {
     Input<double> wanted;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
-        return facets(output<&Wire::level>("level", "", "that is received", comes_every(10ms)),
-                      input<&Wire::wanted>("wanted", "", "that is set", optional, needs_wake));
+        return facets(input<&Valve::wanted>("wanted", "", "that is set", needs_wake));
     }
 };
 void add_wire(Table& m, const ConnectionRow& row) {
-    m.add(component<Wire>("wire"), "logic");
+    m.add(component<Wire>("wire"), "motion");
     m.add(row);
 }
 
@@ -139,8 +144,15 @@ constexpr Fault option_faults[] = {
     {"row_stale_before_its_writer_writes_again",
      [](Table& m) { m.connections[1] = data("shaft.speed", "tension.speed", stale_after(1ms), hold); },
      R"(loom: connection "shaft.speed" -> "tension.speed": stale_after(1000 us) is not longer than the period of 1000 us of its writer's activity "motion", so that good values would be stale; lengthen it)"},
-    {"row_that_must_wake", [](Table& m) { add_wire(m, data("shaft.speed", "wire.wanted")); },
-     R"(loom: connection "shaft.speed" -> "wire.wanted": "wire.wanted" is looked at only when activity "logic" is woken, so that a new value could wait for ever; add wakes)"},
+    {"row_from_outside_in_an_activity_that_nobody_wakes",
+     [](Table& m) { m.add(component<Wire>("wire"), "logic"); },
+     R"(loom: activity "logic" runs on_work(), but "wire.level" crosses the wire every 10000 us by its map, which wakes nobody; run it every(...) or on_device(...))"},
+    {"row_that_must_wake",
+     [](Table& m) {
+         m.add(component<Valve>("valve"), "logic");
+         m.add(data("shaft.speed", "valve.wanted"));
+     },
+     R"(loom: connection "shaft.speed" -> "valve.wanted": "valve.wanted" is looked at only when activity "logic" is woken, so that a new value could wait for ever; add wakes)"},
     {"connection_stale_never", [](Table& m) { measured(m, stop_machine); },
      R"(loom: connection "encoder.angle" -> "shaft.measured" says what to do with a stale value but not when it is stale; add stale_after(...))"},
     {"connection_stale_before_it_is_written", [](Table& m) { measured(m, stale_after(-5ms), hold); },

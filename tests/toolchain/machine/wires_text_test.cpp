@@ -22,7 +22,12 @@ constexpr auto signals = can::signal_map(
                   can::signal("axis", 0, 32).as_float().range(-1, 1).in("m/s").safe(0)),
     can::transmit(can::standard(0x301), "pages", can::fd_bytes(12), can::every(1ms),
                   can::signal("page", 0, 8).safe(0),
-                  can::signal("level", 8, 16).times(0.5).in("mm").when("page", 3).safe(0)));
+                  can::signal("level", 8, 16).times(0.5).in("mm").when("page", 3).safe(0)),
+    can::receive(can::standard(0x302), "kinds", can::bytes(8), can::every(1ms),
+                 can::signal("kind", 0, 8).as_signed().range(-5, 100),
+                 can::signal("depth", 8, 16).as_signed().range(-200, 0).when("kind", 255)),
+    can::receive(can::standard(0x303), "total", can::bytes(8), can::every(1ms),
+                 can::signal("total", 0, 64).range(0, 18446744073709551615.0)));
 constexpr auto registers = modbus::register_map(
     modbus::read("unit", modbus::input_registers(4, 7), modbus::every(250ms),
                  modbus::word("pressure", 0).times(0.01).in("bar"), modbus::float_word("flow", 1).in("l/min"),
@@ -59,6 +64,10 @@ TEST(WiresText, sets_the_multiplexor_that_selects_a_signal) {
     EXPECT_THAT(describe_wires(table.view()), HasSubstr("0x301 standard, 12 bytes CAN FD, sent every 1 ms"));
     EXPECT_THAT(line_with("level"),
                 HasSubstr("1.5 mm          03 03 00 -- -- -- -- -- -- -- -- --  while page is 3"));
+    EXPECT_THAT(line_with("depth"), HasSubstr("-200            FF 38 FF -- -- -- -- --  while kind is 255"));
+}
+TEST(WiresText, shows_a_value_that_is_not_zero_and_that_a_double_holds) {
+    EXPECT_THAT(line_with("total"), HasSubstr("00 00 00 00 00 00 20 00"));
 }
 TEST(WiresText, shows_each_register_with_its_address_and_words) {
     EXPECT_THAT(describe_wires(table.view()),

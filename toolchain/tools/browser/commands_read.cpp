@@ -224,8 +224,11 @@ Result<void> tell_counters(Work& work) {
             work.out << row << "\n";
         else
             work.out << row["input"].get<std::string>() << ": " << row["clamped"]
-                     << " values outside its range, sent as its nearest bound; " << row["no_number"]
-                     << " that were not a number, not sent\n";
+                     << " times outside its range, sent as its nearest bound; " << row["no_number"]
+                     << " times not a number, not sent\n";
+    if (const auto all = counters->value("unsent_rows", std::size_t{0});
+        !work.line.json && all > rows("unsent").size())
+        work.out << all - rows("unsent").size() << " more inputs: the summary of the run lists them\n";
     return {};
 }
 

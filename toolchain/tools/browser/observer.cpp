@@ -70,7 +70,7 @@ std::vector<Reading> Observer::read(std::span<const std::uint32_t> facets) const
         }
     }
     for (Reading& reading : readings) { // after them: a value that comes in between is one more, not one less
-        reading.never_read = reading.is_initial() && was_written_to(reading.facet);
+        reading.unread = reading.is_initial() && was_written_to(reading.facet);
         if (const map::Connection* row = map_->device_row_of(reading.facet))
             reading.wire.push_back(read(row->from));
     }

@@ -15,8 +15,8 @@ struct Reading {
     bool forced = false;
     bool has_writes = false; ///< the machine counts this facet's values
     std::uint64_t writes =
-        0; ///< of an input: that its component has read; 0: the value is the row's initial one
-    bool never_read = false;    ///< an input that was written, and that its component never read
+        0;               ///< of an input: that its component has read; 0: the value is the row's initial one
+    bool unread = false; ///< an input with a value that its component did not read since it started
     std::int64_t stamp_ns = -1; ///< the time at which the value was true; -1: not stored
     std::int64_t now_ns = -1;   ///< time of the cycle after which it was read; -1: no activity
     std::vector<std::byte> value{};
@@ -24,7 +24,7 @@ struct Reading {
     /// value. Otherwise empty.
     std::vector<Reading> wire{};
 
-    /// Returns whether the value is the row's initial one: see never_read.
+    /// Returns whether the value is the row's initial one: see unread.
     [[nodiscard]] bool is_initial() const { return has_writes && writes == 0; }
 };
 

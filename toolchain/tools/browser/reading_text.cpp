@@ -15,7 +15,7 @@ std::int64_t max_age_of(const MapReader& map, std::uint32_t facet) {
 } // namespace
 
 std::string_view flow_of(const MapReader& map, const Reading& reading) {
-    if (reading.is_initial()) return reading.never_read ? "never_read" : "never_written";
+    if (reading.is_initial()) return reading.unread ? "unread" : "never_written";
     if (reading.forced || reading.stamp_ns < 0 || reading.now_ns < 0) return "fresh";
     const std::int64_t limit = max_age_of(map, reading.facet);
     return limit > 0 && reading.now_ns - reading.stamp_ns > limit ? "stale" : "fresh";
@@ -24,11 +24,11 @@ std::string_view flow_of(const MapReader& map, const Reading& reading) {
 std::string marks_of(const MapReader& map, const Reading& reading) {
     if (reading.busy) return "busy";
     const std::string_view flow = flow_of(map, reading);
-    std::string marks = reading.forced       ? "FORCED"
-                        : flow == "fresh"    ? ""
-                        : reading.never_read ? "never read"
-                        : flow == "stale"    ? "stale"
-                                             : "never written";
+    std::string marks = reading.forced    ? "FORCED"
+                        : flow == "fresh" ? ""
+                        : reading.unread  ? "unread"
+                        : flow == "stale" ? "stale"
+                                          : "never written";
     const std::string wire = wire_of(map, reading);
     return marks + (marks.empty() || wire.empty() ? "" : ", ") + wire;
 }

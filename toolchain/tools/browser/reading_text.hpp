@@ -6,14 +6,14 @@
 
 namespace tappet::browser {
 
-/// Returns "fresh", "stale" (older than its row allows), "never_written", or "never_read" of an input that
+/// Returns "fresh", "stale" (older than its row allows), "never_written", or "unread" of an input that
 /// was written and that its component has not read.
 [[nodiscard]] std::string_view flow_of(const MapReader& map, const Reading& reading);
 /// Returns "wire 13.5 deg" when the device of an input gave another value than its component last read.
 [[nodiscard]] std::string wire_of(const MapReader& map, const Reading& reading);
 /// Returns ", \"wire\": 13.5, \"wire_time_ns\": T" for an input that a device feeds; otherwise empty.
 [[nodiscard]] std::string json_wire_of(const MapReader& map, const Reading& reading);
-/// Returns "FORCED", "stale", "never written", "never read", "busy", "wire 13.5 deg", separated by ", ";
+/// Returns "FORCED", "stale", "never written", "unread", "busy", "wire 13.5 deg", separated by ", ";
 /// empty when there is nothing to report.
 [[nodiscard]] std::string marks_of(const MapReader& map, const Reading& reading);
 /// Returns the value in the given style; "?" while busy.

@@ -35,7 +35,7 @@ TEST_F(Press, get_reads_ports_and_properties_with_their_state) {
     EXPECT_TRUE(has(answer, R"("name": "ram.limit", "value": 50, "flow": "fresh", "forced": false)"));
     EXPECT_TRUE(has(answer, R"("name": "table.height", "value": 50)"));
     EXPECT_TRUE(has(ask("3 get browser.clients"), R"("value": 1)"));
-    EXPECT_TRUE(has(ask("4 get archive.height"), R"("value": 0, "flow": "never_read", "forced": false)"));
+    EXPECT_TRUE(has(ask("4 get archive.height"), R"("value": 0, "flow": "unread", "forced": false)"));
     EXPECT_TRUE(has(ask("5 get lamp.wanted"), R"("value": false, "flow": "never_written", "forced": false)"));
 }
 

@@ -70,8 +70,8 @@ TEST_F(Watching, the_device_value_is_shown_when_the_read_value_differs) {
 TEST_F(Watching, an_input_that_its_component_never_read_is_not_called_never_written) {
     EXPECT_EQ(shown("loom.angle"), "loom.angle = 0 deg   never written");
     machine.write("shaft.angle", 14.0, 3'000'000);
-    EXPECT_EQ(shown("loom.angle"), "loom.angle = 0 deg   never read, wire 14 deg");
-    EXPECT_EQ(flow_of(session->map(), session->observer().read(facet("loom.angle"))), "never_read");
+    EXPECT_EQ(shown("loom.angle"), "loom.angle = 0 deg   unread, wire 14 deg");
+    EXPECT_EQ(flow_of(session->map(), session->observer().read(facet("loom.angle"))), "unread");
 }
 
 TEST_F(Watching, a_value_forced_at_the_device_is_not_shown_as_the_wire) {
