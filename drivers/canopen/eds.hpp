@@ -1,5 +1,6 @@
 // An object dictionary read from an EDS or DCF file (CiA 306) in a constant expression. A fault in the file
-// is noted; it is a build error, with the file's own line, in a row that needs what is wrong.
+// is a build error with the file's own line, or, where whose it is stands beyond doubt (see EdsReader), a
+// note, which is an error in a row that needs what is wrong.
 //
 //     tappet_file(<target> servo.eds)                                       in CMakeLists.txt
 //     #include "<path>/servo.eds.hpp"                                      tappet::files::servo_eds, the text

@@ -5,7 +5,6 @@
 #include "drivers/canopen/eds_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <tuple>
 
@@ -13,21 +12,12 @@ namespace tappet::canopen {
 
 namespace {
 
-EdsFault whole_file(const SourceText& file, std::string_view fault) {
-    EdsFault told{0, {}, "every node of this file", true};
-    fault.remove_prefix(file.name.size() + 1); // FILE:LINE: SENTENCE
-    std::from_chars(fault.data(), fault.data() + fault.size(), told.line);
-    told.meaning = fault.substr(fault.find(": ") + 2);
-    return told;
-}
-
 template <std::size_t most> std::vector<EdsFault> read(const SourceText& file) {
     const auto read = std::make_unique<detail::EdsReader<most, most>>(file);
     std::vector<EdsFault> all;
     for (const FileNote& note : read->notes)
-        all.push_back(
-            {note.line, std::string{meaning(note).view()}, std::string{effect(note).view()}, false});
-    if (!read->fault.empty()) all.push_back(whole_file(file, read->fault.view()));
+        all.push_back({note.line, std::string{meaning(note).view()}, std::string{effect(note).view()},
+                       note.flaws == flaw::file});
     std::ranges::sort(all, {}, [](const EdsFault& each) { return std::tie(each.line, each.meaning); });
     return all;
 }

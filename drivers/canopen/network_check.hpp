@@ -111,18 +111,17 @@ private:
 constexpr Sentence flaw_fault(const NodeRow& node, bool counts_sync, bool beats) noexcept {
     FlawsTold flaws{node};
     flaws.need_identity();
-    constexpr std::uint8_t written = flaw::type | flaw::access;
-    flaws.need(0x1017, written);
-    if (beats) flaws.need({0x1016, 1}, written);
-    if (counts_sync) flaws.need(0x1019, written);
+    flaws.need(0x1017, flaw::type);
+    if (beats) flaws.need({0x1016, 1}, flaw::type);
+    if (counts_sync) flaws.need(0x1019, flaw::type);
     for (const PdoRow& row : node.pdos)
-        for (const Address& at : row.objects) flaws.need(at, flaw::type | flaw::access | flaw::mapping);
-    for (const ParameterRow& row : node.parameters) flaws.need(row.at, written | flaw::limits);
+        for (const Address& at : row.objects) flaws.need(at, flaw::type);
+    for (const ParameterRow& row : node.parameters) flaws.need(row.at, flaw::type | flaw::limits);
     for (const Object& object : node.dictionary.objects) {
-        if (object.at.index >= 0x1400 && object.at.index < 0x1C00) flaws.need(object.at, written);
+        if (object.at.index >= 0x1400 && object.at.index < 0x1C00) flaws.need(object.at, flaw::type);
         if (object.is_parameter && !is_configured_by_rows(object.at.index) &&
             std::ranges::find(node.parameters, object.at, &ParameterRow::at) == node.parameters.end())
-            flaws.need(object.at, written | flaw::value);
+            flaws.need(object.at, flaw::type | flaw::value);
     }
     return flaws.told();
 }

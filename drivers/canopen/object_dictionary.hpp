@@ -122,13 +122,19 @@ struct Number {
 /// The parts of an object's description that a fault in the file makes unknown. A row that needs one of them
 /// is refused.
 namespace flaw {
-inline constexpr std::uint8_t type = 1, access = 2, mapping = 4, value = 8, limits = 16;
+inline constexpr std::uint8_t type = 1, value = 2, limits = 4;
+inline constexpr std::uint8_t file = 8; ///< of a note, not of an object: the file is refused
 } // namespace flaw
 
 /// A fault in the file, as data; eds_notes.hpp says it.
 struct FileNote {
     enum class Kind : std::uint8_t {
         no_line,
+        no_such_section,
+        section_twice,
+        joined,
+        damaged_key,
+        other_section,
         entry_twice,
         no_entry,
         not_a_choice,
@@ -147,6 +153,10 @@ struct FileNote {
         compact_pdo,
         identity_twice,
         no_device_type,
+        value_of_record,
+        value_twice,
+        no_identifier,
+        no_object,
     };
     Kind kind = Kind::no_line;
     std::uint8_t flaws = 0; ///< of the object; 0: no row needs what is wrong

@@ -126,8 +126,9 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(Eds, refuses_files_that_describe_no_device) {
-    EXPECT_EQ(refusal(""), "x.eds:1: it has no object; is it an EDS or DCF file of CiA 306?");
-    EXPECT_EQ(refusal("<xml>"), "x.eds:1: it has no object; is it an EDS or DCF file of CiA 306?");
+    const std::string refused = "; the file is not read: correct this line, or take an undamaged file";
+    EXPECT_EQ(refusal(""), "x.eds:1: it has no object; is it an EDS or DCF file of CiA 306?" + refused);
+    EXPECT_EQ(refusal("<xml>"), "x.eds:1: \"<xml>\" is neither a [section] nor an entry Key=Value" + refused);
     EXPECT_EQ(refusal("\xEF\xBB\xBF[1000]\nDataType=7\nAccessType=ro\n"), "") << "a byte-order mark";
 }
 

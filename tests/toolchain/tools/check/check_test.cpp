@@ -130,9 +130,12 @@ TEST(CheckEds, tells_notes_faults_and_files_that_cannot_be_read) {
     const Finding note = only(device + "[2000]\nDataType=6\nAccessType=rw\nHighLimit=65536\n");
     EXPECT_EQ(note.weight, Weight::note) << note.meaning;
     EXPECT_TRUE(note.affects.empty());
-    const Finding fault = only(device + "[2000]\nDataType=6\nAccessType=odd\n");
+    const Finding fault = only(device + "[2000]\nDataType=0x40\nAccessType=rw\n");
     EXPECT_EQ(fault.weight, Weight::fault) << fault.meaning;
     EXPECT_EQ(fault.affects, std::vector<std::string>{"rows that map or write 2000h:0"});
+    const Finding lost = only(device + "[2000\nDataType=6\nAccessType=rw\nParameterValue=90000\n");
+    EXPECT_EQ(lost.weight, Weight::unreadable) << lost.meaning;
+    EXPECT_EQ(lost.line, 4u);
 }
 
 TEST(Check, prints_a_table_and_a_verdict_for_each_file) {
