@@ -119,6 +119,10 @@ bool CanReplay::read_line() {
         if (read.error().is_cut && !read_text()) counts_.is_cut = true, fault_ = {};
         return false;
     }
+    if (file_.eof()) { // without its end, a line may lack bytes of its frame
+        counts_.is_cut = true;
+        return false;
+    }
     read_ = *read;
     if (interface_.empty()) {
         interface_ = read_.interface;

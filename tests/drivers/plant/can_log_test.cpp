@@ -272,6 +272,27 @@ TEST_F(CanLog, ends_at_a_last_line_that_is_cut_anywhere) {
     EXPECT_TRUE(zeros.counts().is_cut);
 }
 
+// Cut between two bytes, it is a right line of a shorter frame.
+TEST_F(CanLog, leaves_out_a_last_line_without_its_end) {
+    for (const std::string cut : {"0203", "02", "", "020304 R"}) {
+        CanReplay of_cut;
+        const std::string path = file("(1.0) can0 181#01\n(1.1) can0 181#" + cut);
+        ASSERT_TRUE(of_cut.open("can", path, {}, machine_receives, machine_sends).empty()) << cut;
+        EXPECT_EQ(of_cut.counts().played, 1u) << cut;
+        EXPECT_TRUE(of_cut.counts().is_cut) << cut;
+    }
+    ASSERT_TRUE(open("(1.0) can0 181#01\n(1.1) can0 181#02").empty());
+    for (const Duration at : {0ms, 100ms}) move(Time{at});
+    EXPECT_EQ(arrived(machine).size(), 1u);
+    EXPECT_TRUE(replay.is_over());
+    EXPECT_NE(replay.report().view().find("; its last line is cut off, and left out"),
+              std::string_view::npos);
+    CanReplay whole;
+    ASSERT_TRUE(
+        whole.open("can", file("(1.0) can0 181#01\r\n"), {}, machine_receives, machine_sends).empty());
+    EXPECT_FALSE(whole.counts().is_cut);
+}
+
 TEST_F(CanLog, begins_a_new_stretch_where_its_clock_was_set_back) {
     ASSERT_TRUE(open("(1000.0) can0 181#01\n(1001.0) can0 181#02\n(501.0) can0 181#03\n"
                      "(501.5) can0 181#04\n(500.25) can0 181#05\n")
