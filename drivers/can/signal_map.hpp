@@ -34,7 +34,8 @@ struct FrameRow : MapRow, Rate {
     bool multiplexed = false;   ///< a frame holds only some of its signals
     std::string_view in_file{}; ///< its name in its DBC file, when the row gives it another
     bool despite_file = false;  ///< its identifier or length is believed instead of its DBC file's
-    bool is_proven = false;     ///< of another node whose own proof shows it is in time: only load here
+    bool despite_identifier = false;
+    bool is_proven = false; ///< of another node whose own proof shows it is in time: only load here
 };
 
 /// Returns the row's frame without contents.
@@ -182,6 +183,11 @@ struct MapFault {
     std::size_t signal = no_such;
 };
 
+constexpr Sentence facet_fault(const FrameRow& frame) noexcept {
+    if (frame.name.size() + 1 + std::string_view{"received"}.size() <= FacetName::most) return {};
+    return Sentence{"frame \"", frame.name, "\": its name is too long for a facet's, which has at most ",
+                    FacetName::most, " characters; give it a shorter one with .called(\"..\")"};
+}
 constexpr Sentence facet_fault(const FrameRow& frame, const Signal& s) noexcept {
     const Sentence who{"signal \"", frame.name, ".", s.name, "\""};
     if (frame.name.size() + 1 + s.name.size() > FacetName::most)
@@ -318,11 +324,7 @@ constexpr MapFault map_fault(const SignalMap<F, S>& map, std::size_t frames) noe
         const FrameRow& row = map.frames[f];
         const Sentence who{"frame \"", row.name, "\""};
         if (row.name.empty()) return {Sentence{"frame ", f + 1, " has no name: name it"}, {}, f};
-        if (row.name.size() + 1 + std::string_view{"received"}.size() > FacetName::most)
-            return {Sentence{who, ": its name is too long for a facet's, which has at most ", FacetName::most,
-                             " characters; give it a shorter one with .called(\"..\")"},
-                    {},
-                    f};
+        if (const Sentence fault = facet_fault(row); !fault.empty()) return {fault, {}, f};
         if (!valid(row.identifier))
             return {Sentence{who, " has the identifier ", row.identifier.id,
                              ": a standard one ends at 2047, an extended one at 536870911"},

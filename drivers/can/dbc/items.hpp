@@ -1,5 +1,5 @@
-// Items of a DBC statement, as the reader expects them. A fault concerns the row that the statement is about,
-// and ends the statement or not; the reader goes on with the next one.
+// Items of a DBC statement, as the reader expects them. A fault makes the file unreadable, unless it is
+// certain which row it concerns: then that row is marked, and the reader goes on with the next statement.
 #pragma once
 
 #include "drivers/can/dbc/network.hpp"
@@ -16,6 +16,8 @@ protected:
     constexpr void begin(std::size_t at) noexcept {
         failed_ = false;
         weight_ = Weight::fault;
+        part_ = Part::all;
+        is_by_identifier_ = marks_ = false;
         statement_at_ = at;
         message_ = signal_ = no_such;
     }
@@ -35,27 +37,50 @@ protected:
     static constexpr void mark(std::size_t& first, std::size_t at) noexcept {
         if (first == no_such) first = at;
     }
+    /// Calls visit(message) for each message with the identifier that the statement names.
+    template <class Visit> constexpr void for_each_twin(const Visit& visit) {
+        MessageRow& own = the_message();
+        if (!is_by_identifier_ || !own.shares_identifier) return visit(own);
+        for (MessageRow& each : net_.all())
+            if (!each.is_independent && each.identifier == own.identifier) visit(each);
+    }
+    /// Calls visit(signal) for each signal that the statement names: one for each twin that has it.
+    template <class Visit> constexpr void for_each_namesake(const Visit& visit) {
+        const std::string_view name = the_signal().shape.name;
+        if (!is_by_identifier_) return visit(the_signal());
+        for_each_twin([&](MessageRow& message) {
+            if (SignalRow* const found = net_.find(message, name); found != nullptr) visit(*found);
+        });
+    }
     template <class... Pieces> constexpr void tell(Weight weight, std::size_t at, const Pieces&... pieces) {
-        if (weight == Weight::limits)
-            mark(the_signal().limits_trouble, at);
-        else if (weight == Weight::fault && signal_ != no_such)
-            mark(the_signal().trouble, at);
-        else if (weight == Weight::fault && message_ != no_such)
-            mark(the_message().trouble, at);
-        else
-            weight = Weight::note;
-        if (net_.troubles != nullptr)
-            net_.troubles->add(Trouble{at, weight, message_, signal_, {}}, pieces...);
+        const auto told = [&](std::size_t message, std::size_t signal) {
+            if (net_.troubles != nullptr)
+                net_.troubles->add(Trouble{at, weight, message, signal, {}}, pieces...);
+        };
+        if (weight == Weight::limits) mark(the_signal().limits_trouble, at);
+        if (weight != Weight::fault) return told(message_, signal_);
+        if (signal_ == no_such)
+            return for_each_twin([&](MessageRow& each) {
+                mark(each.troubles[static_cast<std::size_t>(part_)], at);
+                told(static_cast<std::size_t>(&each - net_.messages.data()), no_such);
+            });
+        for_each_namesake([&](SignalRow& each) {
+            mark(part_ == Part::selection ? each.selection_trouble : each.trouble, at);
+            told(each.message, static_cast<std::size_t>(&each - net_.signals.data()));
+        });
     }
     template <class... Pieces> constexpr void note(std::size_t at, const Pieces&... pieces) {
         tell(Weight::note, at, pieces...);
     }
-    /// Spoils the row; its statement goes on.
+    /// Spoils the row, if the statement is about one; its statement goes on.
     template <class... Pieces> constexpr void spoil(std::size_t at, const Pieces&... pieces) {
-        if (ok()) tell(weight_, at, pieces...);
+        if (!ok()) return;
+        if (message_ == no_such) return give_up(at, pieces...);
+        tell(weight_, at, pieces...);
     }
-    /// Spoils the row, and ends the statement.
+    /// Ends the statement, and spoils the rows that it is about, or the file.
     template <class... Pieces> constexpr void fail(std::size_t at, const Pieces&... pieces) {
+        if (ok() && !marks_) return give_up(at, pieces...);
         spoil(at, pieces...);
         failed_ = true;
     }
@@ -104,7 +129,7 @@ protected:
             fail_expected(what);
         else if (!is_number(value))
             spoil(at, what, " is beyond a double");
-        return is_number(value) ? value : 1;
+        return value;
     }
     /// Returns one of a signal's limits, before `end`; infinite: none.
     constexpr double limit(std::string_view what, char end) {
@@ -113,8 +138,8 @@ protected:
         double value = none;
         if (!ok()) return none;
         if (!in_.real(value)) {
-            tell(Weight::limits, at, "found \"", in_.found(), "\", expected ", what);
-            in_.skip_to({&end, 1});
+            if (!in_.no_number(end)) fail_expected(what);
+            if (ok()) tell(Weight::limits, at, what, " is no number");
         } else if (!is_number(value)) {
             tell(Weight::limits, at, what, " is beyond a double");
         }
@@ -131,6 +156,9 @@ protected:
     std::size_t statement_at_ = 0;
     std::size_t message_ = no_such, signal_ = no_such;
     Weight weight_ = Weight::fault; ///< of the statement's faults
+    Part part_ = Part::all;         ///< the part of the row that they concern
+    bool is_by_identifier_ = false; ///< the statement is about all messages with the identifier
+    bool marks_ = false;            ///< a fault of the statement spoils its rows, not the file
     bool failed_ = false;
 };
 

@@ -20,15 +20,12 @@ protected:
         if (first == 0 && found_ != no_such && id == found_id_) return found_;
         std::size_t m = first;
         for (const MessageRow& each : net_.all().subspan(first)) {
-            if (raw_id(each) == id) break;
+            if (raw_id(each) == id && !each.is_independent) break;
             ++m;
         }
         if (m == net_.used.messages) return no_such;
         if (first == 0) found_ = m, found_id_ = id;
         return m;
-    }
-    [[nodiscard]] constexpr bool is_of_last(const SignalRow& row) const noexcept {
-        return row.message + 1 == net_.used.messages;
     }
 
     // ---- nodes
@@ -61,8 +58,6 @@ protected:
         if (net_.used.messages == net_.messages.size())
             return give_up(statement_at_, "BO_ is in the middle of a line; begin a new one");
         MessageRow& row = net_.messages[net_.used.messages++];
-        about(row);
-        takes_signals_ = true;
         row.first = net_.used.signals;
         const std::size_t id_at = row.at = in_.at();
         const std::uint32_t id = whole(0xffff'ffff, "a message's identifier");
@@ -71,15 +66,18 @@ protected:
         row.identifier = {id & ~extended_bit, (id & extended_bit) != 0};
         row.is_independent = id == independent_id || row.name == independent;
         expect(':', "\":\" after the message's name");
-        row.length = static_cast<std::uint16_t>(whole(0xffff, "the message's length in bytes"));
+        row.length = whole(0xffff'ffff, "the message's length in bytes");
         const std::size_t sender_at = in_.at();
         row.sender = label("the node that sends the message");
-        if (failed_) return in_.skip_line();
-        if (row.is_independent) return;
+        takes_signals_ = true;
+        if (!ok() || row.is_independent) return;
+        about(row);
         check_nodes(net_.text.substr(sender_at, row.sender.size()));
+        part_ = Part::identifier;
         if (!valid(row.identifier))
             spoil(id_at, "message \"", row.name, "\" has the identifier ", std::uint64_t{id},
                   ": a standard one ends at 2047, an extended one has bit 31 set and 29 bits");
+        part_ = Part::all;
         for (MessageRow& each : net_.all().first(net_.used.messages - 1)) {
             if (each.is_independent) continue;
             if (each.identifier == row.identifier) {
@@ -90,7 +88,7 @@ protected:
             }
             if (each.name == row.name) {
                 spoil(row.at, "message \"", row.name, "\" is there twice");
-                mark(each.trouble, row.at);
+                mark(each.troubles[0], row.at);
             }
         }
     }
@@ -99,7 +97,7 @@ protected:
         if (net_.used.messages == 0)
             return give_up(in_.at(), "a signal without a message; write BO_ before it");
         MessageRow& owner = net_.messages[net_.used.messages - 1];
-        if (owner.is_independent) return in_.skip_line();
+        if (!takes_signals_) return give_up(in_.at(), "a signal that is not behind its message");
         if (net_.used.signals == net_.signals.size())
             return give_up(in_.at(), "SG_ is in the middle of a line; begin a new one");
         SignalRow& row = net_.signals[net_.used.signals++];
@@ -107,17 +105,14 @@ protected:
         row.message = net_.used.messages - 1;
         ++owner.signals;
         about(row);
+        if (owner.is_independent) weight_ = Weight::note;
         shape(row);
-        if (failed_) { // its receivers are somewhere in the rest
-            const std::size_t from = in_.at();
-            in_.skip_line();
-            row.receivers = in_.since(from);
-            return;
-        }
         row.receivers = node_list();
+        if (ok() && !in_.at_end() && !in_.begins_line())
+            fail_expected("a node that receives the signal, or the end of the line");
+        if (!ok()) return;
         check_nodes(row.receivers);
         const Signal& s = row.shape;
-        if (!takes_signals_) spoil(row.at, "signal \"", s.name, "\" is not in its message");
         if (SignalRow* const other = net_.find(owner, s.name); other != &row) {
             spoil(row.at, "message \"", owner.name, "\" has two signals \"", s.name, "\"");
             mark(other->trouble, row.at);
@@ -138,7 +133,10 @@ protected:
         if (s.bits == 0 && row.trouble == no_such)
             spoil(bits_at, "signal \"", s.name, "\" has 0 bits instead of 1 to 64");
         expect('@', "\"@\" after the number of the signal's bits");
-        s.order = whole(1, "the byte order, 0 (Motorola) or 1 (Intel)") == 1 ? Order::intel : Order::motorola;
+        const std::size_t order_at = in_.at();
+        const std::uint32_t order = whole(0xffff'ffff, "the byte order, 0 (Motorola) or 1 (Intel)");
+        if (order > 1) give_up(order_at, order, " is no byte order: 0 (Motorola) or 1 (Intel)");
+        s.order = order == 1 ? Order::intel : Order::motorola;
         if (ok() && in_.take('-'))
             s.kind = Kind::signed_integer;
         else
@@ -146,10 +144,13 @@ protected:
         expect('(', "\"(\" before factor and offset");
         const std::size_t factor_at = in_.at();
         s.factor = real("the factor");
+        row.factor = in_.since(factor_at);
         if (s.factor == 0 && ok())
             spoil(factor_at, "signal \"", s.name, "\" has the factor 0: every value would be the offset");
         expect(',', "\",\" between factor and offset");
+        const std::size_t offset_at = in_.at();
         s.offset = real("the offset");
+        row.offset = in_.since(offset_at);
         expect(')', "\")\" after factor and offset");
         expect('[', "\"[\" before the least value");
         const std::size_t limits_at = in_.at();

@@ -14,19 +14,30 @@ inline constexpr std::string_view nobody = "Vector__XXX";
 /// Vector's container for signals without a message.
 inline constexpr std::string_view independent = "VECTOR__INDEPENDENT_SIG_MSG";
 
+/// A part of a message or a signal that a fault concerns, and that a row can state instead.
+enum class Part : std::uint8_t {
+    all,        ///< no row states it
+    identifier, ///< despite(extended(..), ..)
+    format,     ///< CAN FD or not: despite(bytes(..), ..)
+    rate,       ///< every(..) or on_demand(..)
+    selection,  ///< of a signal, by its multiplexor: when(..)
+};
+
 struct SignalRow {
-    Signal shape{};     ///< its unit is as in the file
-    std::size_t at = 0; ///< position of its name in the text
+    Signal shape{};                      ///< its unit is as in the file
+    std::string_view factor{}, offset{}; ///< as in the file
+    std::size_t at = 0;                  ///< position of its name in the text
     std::size_t message = 0;
     std::string_view receivers{};
     std::string_view long_name{};
     bool is_multiplexor = false;
     bool is_multiplexed = false;
-    std::uint32_t page = 0;               ///< m0: 0
-    std::size_t selected_by = no_such;    ///< index of a signal
-    std::size_t trouble = no_such;        ///< position of its first fault
-    std::size_t limits_trouble = no_such; ///< position of a fault of its limits
-    std::size_t names_at = no_such;       ///< position of its VAL_
+    std::uint32_t page = 0;                  ///< m0: 0
+    std::size_t selected_by = no_such;       ///< index of a signal
+    std::size_t trouble = no_such;           ///< position of its first fault
+    std::size_t limits_trouble = no_such;    ///< position of a fault of its limits
+    std::size_t selection_trouble = no_such; ///< position of a fault of its selection
+    std::size_t names_at = no_such;          ///< position of its VAL_
     std::size_t first_value = 0;
     std::size_t values = 0;
     bool is_replaced = false;     ///< by a row of the machine for another one of this name
@@ -41,7 +52,7 @@ struct MessageRow {
     std::string_view name{};
     std::string_view long_name{};
     std::size_t at = 0;
-    std::uint16_t length = 0;
+    std::uint32_t length = 0;
     std::string_view sender{};
     std::string_view more_senders{};
     std::size_t first = 0;
@@ -49,7 +60,8 @@ struct MessageRow {
     bool says_every = false;
     std::optional<bool> is_fd{}, switches{}, on_demand{}; ///< empty: the file's default
     Duration every{};
-    std::size_t trouble = no_such;  ///< position of its first fault
+    /// Position of the first fault of each part.
+    std::array<std::size_t, 5> troubles{no_such, no_such, no_such, no_such, no_such};
     bool shares_identifier = false; ///< with another message
     bool is_taken = false;
     Direction direction = Direction::receive;

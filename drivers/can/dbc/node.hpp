@@ -44,7 +44,7 @@ constexpr Signal despite(const Signal& signal) noexcept {
 template <std::size_t N>
 constexpr auto despite(Identifier identifier, FrameWithSignals<N> message) noexcept {
     message.row.identifier = identifier;
-    message.row.despite_file = true;
+    message.row.despite_file = message.row.despite_identifier = true;
     return message;
 }
 /// A message whose length or format is wrong in the file: despite(fd_bytes(16), receive("scan")).

@@ -1,16 +1,15 @@
 // Reads a DBC file, in a constant expression or on the host, with the same code and the same fault messages.
-// A fault marks the row that it concerns, and reading goes on: only a map that takes the row is refused.
+// Leniency is a closed list: a fault makes the whole file unreadable, unless it is certain which row it
+// concerns. Then it marks the row, and only a map that takes the row is refused.
 #pragma once
 
-#include "drivers/can/dbc/choice.hpp"
-#include "drivers/can/dbc/message_reader.hpp"
-#include "kernel/base/decimal.hpp"
+#include "drivers/can/dbc/attribute_reader.hpp"
 
 namespace tappet::can::dbc {
 
-class Reader : MessageReader {
+class Reader : AttributeReader {
 public:
-    explicit constexpr Reader(Network& network) noexcept : MessageReader{network} {}
+    explicit constexpr Reader(Network& network) noexcept : AttributeReader{network} {}
 
     /// Fills the network; its fault says why nothing of the file can be used.
     constexpr void read() {
@@ -18,85 +17,21 @@ public:
             note(0, "the file begins with a byte-order mark");
         while (net_.fault.empty() && !in_.at_end()) statement();
         begin(0);
+        if (!has_statement_ && net_.fault.empty()) give_up(0, "the file has no statement; is it a DBC file?");
         for (MessageRow& message : net_.all())
             if (net_.fault.empty() && !message.is_independent) finish(message);
     }
 
 private:
-    constexpr void end_of_statement() {
-        if (!ok() || in_.take(';')) return;
-        if (!in_.at_end() && !begins_statement(in_)) return fail_expected("\";\", the end of the statement");
-        note(statement_at_, "the statement has no \";\"; it ends before the next one");
-    }
-    constexpr void skip_statement() {
-        std::size_t text_at = 0;
-        switch (in_.skip_statement(begins_statement, text_at)) {
-        case Scanner::End::semicolon: break;
-        case Scanner::End::none:
-            if (!failed_) note(statement_at_, "the statement has no \";\"; it ends before the next one");
-            break;
-        case Scanner::End::unclosed: note(text_at, "a text is unclosed; it ends with its line"); break;
-        case Scanner::End::cut: give_up(text_at, "a text is unclosed at the end of the file; is it whole?");
-        }
-    }
-
-    // ---- look-up of the row that a statement is about: false after a fault, and in Vector's container
-
-    constexpr bool known_message() {
-        const std::size_t at = in_.at();
-        const std::uint32_t id = whole(0xffff'ffff, "a message's identifier");
-        if (!ok()) return false;
-        const std::size_t found = message_of(id);
-        if (found == no_such) {
-            if (id != independent_id) note(at, "no message has the identifier ", std::uint64_t{id});
-        } else if (!net_.messages[found].is_independent) {
-            message_ = found;
-            return true;
-        }
-        failed_ = true;
-        return false;
-    }
-    constexpr bool known_signal() {
-        const std::size_t at = in_.at();
-        const std::string_view name = label("a signal's name");
-        if (!ok()) return false;
-        for (std::size_t m = message_; m != no_such; m = message_of(raw_id(the_message()), m + 1))
-            if (const SignalRow* const found = net_.find(net_.messages[m], name); found != nullptr) {
-                about(*found);
-                return true;
-            }
-        Nearest nearest{name};
-        for (const SignalRow& each : net_.of(the_message())) nearest.consider(each.shape.name);
-        note(at, "message \"", the_message().name, "\" has no signal \"", name, "\"", or_meant(nearest, ""));
-        failed_ = true;
-        return false;
-    }
     // ---- statements
 
-    /// Returns whether to skip the statement, because it has no effect on the wire.
-    static constexpr bool is_passed_over(std::string_view keyword) noexcept {
-        constexpr std::string_view all =
-            "VAL_TABLE_ EV_ ENVVAR_DATA_ EV_DATA_ SGTYPE_ SIG_GROUP_ SIG_TYPE_REF_ SIGTYPE_VALTYPE_ "
-            "SGTYPE_VAL_ "
-            "BA_DEF_SGTYPE_ BA_SGTYPE_ BA_DEF_REL_ BA_REL_ BA_DEF_DEF_REL_ BU_SG_REL_ BU_EV_REL_ "
-            "BU_BO_REL_ CAT_ CAT_DEF_ FILTER CM_";
-        return names(all, keyword);
-    }
-    static constexpr bool is_statement(std::string_view keyword) noexcept {
-        constexpr std::string_view read =
-            "BO_ SG_ VAL_ BA_ BA_DEF_ BA_DEF_DEF_ BO_TX_BU_ SIG_VALTYPE_ SG_MUL_VAL_ BU_ NS_ BS_ VERSION";
-        return names(read, keyword) || is_passed_over(keyword);
-    }
-    static constexpr bool begins_statement(const Scanner& at) noexcept {
-        return at.begins_line() && is_statement(at.peek());
-    }
     constexpr void statement() {
         if (in_.take(';')) return;
         begin(in_.at());
+        has_statement_ = true;
         const std::string_view keyword = in_.word();
         if (keyword == "SG_") return signal_statement();
         if (keyword == "BO_") return message_statement();
-        const bool in_message = takes_signals_;
         takes_signals_ = false;
         if (keyword == "VAL_")
             values();
@@ -123,26 +58,9 @@ private:
         else if (is_passed_over(keyword))
             skip_statement();
         else
-            return unknown(keyword, in_message);
+            give_up(statement_at_, "found \"", keyword.empty() ? in_.found() : keyword,
+                    "\", expected a statement, which begins with BO_, SG_, VAL_ or the like");
         if (failed_ && net_.fault.empty()) skip_statement();
-    }
-    constexpr void unknown(std::string_view keyword, bool in_message) {
-        // In a message it may be the rest of a signal, with its receivers.
-        const bool continues = in_message && !keyword.ends_with('_');
-        takes_signals_ = continues;
-        if (continues && net_.used.signals != 0 && is_of_last(net_.signals[net_.used.signals - 1]))
-            about(net_.signals[net_.used.signals - 1]);
-        else if (continues)
-            about(net_.messages[net_.used.messages - 1]);
-        fail(statement_at_, "found \"", keyword.empty() ? in_.found() : keyword,
-             "\", expected a statement, which begins with BO_, SG_, VAL_ or the like");
-        if (!continues) return skip_statement();
-        in_.skip_line();
-        if (signal_ == no_such) return;
-        const std::string_view receivers = the_signal().receivers;
-        the_signal().receivers =
-            in_.since(receivers.empty() ? statement_at_
-                                        : static_cast<std::size_t>(receivers.data() - net_.text.data()));
     }
     constexpr void new_symbols() {
         expect(':', "\":\" after NS_");
@@ -163,41 +81,56 @@ private:
     constexpr void nodes() {
         expect(':', "\":\" after BU_");
         if (!ok()) return;
-        if (has_nodes_) note(statement_at_, "BU_ is there twice; the first one counts");
+        if (has_nodes_) return give_up(statement_at_, "BU_ is there twice");
         // Nodes may continue on further lines: the next statement ends them.
         const std::size_t from = in_.at();
         while (!in_.at_end() && !is_statement(in_.peek()) && !in_.name().empty()) in_.take(',');
         in_.take(';');
-        if (!has_nodes_) net_.nodes = in_.since(from);
+        net_.nodes = in_.since(from);
         has_nodes_ = true;
     }
     constexpr void senders() {
-        if (!known_message()) return;
+        if (!known_message(false)) return;
         expect(':', "\":\" before the nodes that send the message");
-        const std::string_view list = node_list();
+        const std::string_view list = ok() ? node_list() : std::string_view{};
+        if (list.empty() && ok()) fail_expected("a node that sends the message");
         check_nodes(list);
         end_of_statement();
-        if (ok()) the_message().more_senders = list;
+        if (!ok()) return;
+        for_each_twin([&](MessageRow& each) {
+            if (!each.more_senders.empty())
+                give_up(statement_at_, "message \"", each.name, "\" has BO_TX_BU_ twice");
+            each.more_senders = list;
+        });
     }
 
-    // A fault in the names of values is a note: the signal has none of them, and what uses one is refused.
+    /// Names of values are texts: the signal lacks those that cannot be believed, and what uses one is
+    /// refused.
     constexpr void values() {
         weight_ = Weight::note;
         if (!in_.peek().empty()) return skip_statement(); // of an environment variable
-        if (!known_message() || !known_signal()) return;
-        SignalRow& row = the_signal();
-        const std::size_t at = in_.at();
-        const bool is_second = row.names_at != no_such;
-        if (is_second)
-            note(at, "signal \"", row.shape.name, "\" has its values named twice; none of the names counts");
-        row.names_at = statement_at_;
-        row.first_value = net_.used.values;
-        row.values = 0;
-        while (ok() && in_.next() != ';' && !in_.at_end() && !begins_statement(in_)) value(row);
+        if (!known_message(false) || !known_signal()) return;
+        const Signal& shape = the_signal().shape;
+        const std::size_t first = net_.used.values;
+        while (ok() && in_.next() != ';' && !in_.at_end() && !begins_statement(in_)) value(the_signal());
         end_of_statement();
-        if (failed_ || is_second) row.values = 0;
+        if (!ok()) return;
+        for_each_namesake([&](SignalRow& row) {
+            const bool is_second = row.names_at != no_such;
+            const bool is_other = row.shape.bits != shape.bits || row.shape.kind != shape.kind;
+            if (is_second)
+                note(statement_at_, "signal \"", shape.name,
+                     "\" has its values named twice; none of the names counts");
+            else if (is_other)
+                note(row.at, "signal \"", shape.name,
+                     "\" has another type than its namesake, whose names of "
+                     "values it does not take");
+            row.names_at = statement_at_;
+            row.first_value = first;
+            row.values = is_second || is_other ? 0 : net_.used.values - first;
+        });
     }
-    constexpr void value(SignalRow& row) {
+    constexpr void value(const SignalRow& row) {
         ValueName value;
         const std::size_t at = in_.at();
         bool fits = true;
@@ -219,140 +152,78 @@ private:
         if (!fits) return note(at, "signal \"", row.shape.name, "\" cannot have the value of this name");
         if (net_.used.values == net_.values.size()) return give_up(at, "too many values; is the file whole?");
         net_.values[net_.used.values++] = value;
-        ++row.values;
     }
 
     constexpr void value_type() {
-        if (!known_message() || !known_signal()) return;
+        if (!known_message(true) || !known_signal()) return;
         in_.take(':');
         const std::size_t at = in_.at();
         const std::uint32_t kind = whole(2, "0 (integer), 1 (float) or 2 (double)");
         end_of_statement();
-        if (!ok() || kind == 0) return;
-        Signal& s = the_signal().shape;
-        if (s.bits != 32 * kind)
-            spoil(at, "signal \"", s.name, "\" has ", unsigned{s.bits}, " bits, but a ",
-                  kind == 1 ? "float" : "double", " has ", 32 * kind);
-        else
-            s.kind = kind == 1 ? Kind::float32 : Kind::float64;
+        if (!ok()) return;
+        for_each_namesake([&](SignalRow& row) {
+            concern(row);
+            Signal& s = row.shape;
+            const Kind was = s.kind;
+            const bool was_real = was == Kind::float32 || was == Kind::float64;
+            const Kind now = kind == 1 ? Kind::float32 : kind == 2 ? Kind::float64 : was;
+            if (was_real && (kind == 0 || was != now))
+                spoil(at, "signal \"", s.name, "\" has two types");
+            else if (kind != 0 && s.bits != 32 * kind)
+                spoil(at, "signal \"", s.name, "\" has ", unsigned{s.bits}, " bits, but a ",
+                      kind == 1 ? "float" : "double", " has ", 32 * kind);
+            else
+                s.kind = now;
+        });
+    }
+    /// From here on, faults concern this row alone.
+    constexpr void concern(const SignalRow& row) {
+        about(row);
+        is_by_identifier_ = false;
     }
 
-    constexpr void selections() {
-        if (!known_message()) return;
-        const std::size_t signal_at = in_.at();
-        if (!known_signal()) return;
-        SignalRow& row = the_signal();
-        const std::size_t at = in_.at();
-        const bool is_known = known_signal() && the_signal().message == row.message;
-        const SignalRow& multiplexor = the_signal();
-        about(row);
-        if (!is_known) {
-            tell(Weight::fault, at, "signal \"", row.shape.name, "\" has an unknown multiplexor");
-            failed_ = true;
-            return;
-        }
-        if (!multiplexor.is_multiplexor)
-            return fail(at, "signal \"", multiplexor.shape.name,
-                        "\" selects others but is not a multiplexor");
-        if (!row.is_multiplexed)
-            return fail(signal_at, "signal \"", row.shape.name, "\" is selected but not multiplexed");
+    template <class Visit> constexpr void each_range(const Visit& visit) {
         do {
             const std::size_t from_at = in_.at();
             const std::uint32_t from = whole(0xffff'ffff, "the first value of a range");
             expect('-', "\"-\" between the ends of a range");
             const std::uint32_t to = whole(0xffff'ffff, "the last value of a range");
-            if (to < from) spoil(from_at, "an empty range");
-            if (ok()) select(row, {from, to});
+            if (to < from && ok()) fail(from_at, "an empty range");
+            if (ok()) visit(Selection{from, to});
         } while (ok() && in_.take(','));
-        end_of_statement();
-        row.selected_by = static_cast<std::size_t>(&multiplexor - net_.signals.data());
     }
-    // ---- attributes: rates, CAN FD, and names of more than 32 characters
-
-    constexpr Choice* choice(std::string_view attribute) noexcept {
-        for (Choice* const each : {&fd_, &switch_, &demand_})
-            if (each->attribute == attribute) return each;
-        return nullptr;
-    }
-    constexpr bool chosen(const Choice& among) {
-        if (in_.next() == '"') return among.says_yes(text("the attribute's value"));
+    constexpr void selections() {
+        if (!known_message(true)) return;
+        part_ = Part::selection;
+        const std::size_t signal_at = in_.at();
+        if (!known_signal()) return;
         const std::size_t at = in_.at();
-        const std::uint32_t number = whole(63, "the number of the attribute's value");
-        if (among.is_unreadable) spoil(at, among.attribute, " has no readable definition");
-        return among.holds(number);
-    }
-    constexpr void attribute_definition() {
-        if (in_.peek() == "BO_") in_.word();
-        const std::string_view name = in_.next() == '"' ? text("an attribute's name") : std::string_view{};
-        Choice* const of = choice(name);
-        if (of == nullptr || in_.peek() != "ENUM") return skip_statement();
-        in_.word();
-        of->yes = 0;
-        unsigned number = 0;
-        do of->define(number++, text("a value's name between quotes"));
-        while (ok() && in_.take(','));
+        const std::string_view by = label("a multiplexor's name");
+        const Scanner ranges = in_;
+        each_range([](const Selection&) {});
         end_of_statement();
-        of->is_unreadable = !ok();
-    }
-
-    constexpr Duration cycle_time() {
-        weight_ = Weight::note;
-        const std::size_t at = in_.at();
-        const double ms = real("the cycle time in milliseconds");
-        if (ok() && ms >= 0 && ms < 1e9) return Duration{static_cast<std::int64_t>(ms * 1e6 + 0.5)};
-        spoil(at, "a cycle time of ", decimal(ms), " ms");
-        return {};
-    }
-    constexpr void attribute() {
-        const std::string_view name = text("an attribute's name between quotes");
-        const std::string_view of = in_.peek();
-        const bool is_period = name == "GenMsgCycleTime" && of == "BO_";
-        const bool is_message_name = name == "SystemMessageLongSymbol" && of == "BO_";
-        const bool is_signal_name = name == "SystemSignalLongSymbol" && of == "SG_";
-        const Choice* const among = of == "BO_" ? choice(name) : nullptr;
+        const Scanner end = in_;
         if (!ok()) return;
-        if (!is_period && !is_message_name && !is_signal_name && among == nullptr) return skip_statement();
-        in_.word();
-        if (!known_message() || (is_signal_name && !known_signal())) return;
-        if (among != nullptr) {
-            (among == &fd_       ? the_message().is_fd
-             : among == &switch_ ? the_message().switches
-                                 : the_message().on_demand) = chosen(*among);
-        } else if (is_period) {
-            the_message().says_every = true;
-            the_message().every = cycle_time();
-        } else {
-            weight_ = Weight::note;
-            const std::string_view long_name = text("a name between quotes");
-            if (ok()) (is_signal_name ? the_signal().long_name : the_message().long_name) = long_name;
-        }
-        end_of_statement();
+        for_each_namesake([&](SignalRow& row) {
+            concern(row);
+            const SignalRow* const multiplexor = net_.find(the_message(), by);
+            const auto index = static_cast<std::size_t>(multiplexor - net_.signals.data());
+            if (multiplexor == nullptr)
+                return spoil(at, "signal \"", row.shape.name, "\" has an unknown multiplexor");
+            if (!multiplexor->is_multiplexor)
+                return spoil(at, "signal \"", by, "\" selects others but is not a multiplexor");
+            if (!row.is_multiplexed)
+                return spoil(signal_at, "signal \"", row.shape.name, "\" is selected but not multiplexed");
+            if (row.selected_by != no_such && row.selected_by != index)
+                return spoil(at, "signal \"", row.shape.name, "\" has two multiplexors");
+            in_ = ranges;
+            each_range([&](const Selection& each) { select(row, each); });
+            row.selected_by = index;
+        });
+        in_ = end;
     }
-    constexpr void attribute_default() {
-        const std::string_view name = text("an attribute's name between quotes");
-        Choice* const of = choice(name);
-        if (of == nullptr && name != "GenMsgCycleTime") return skip_statement();
-        if (of != nullptr)
-            of->usually = chosen(*of);
-        else
-            usual_every_ = cycle_time();
-        end_of_statement();
-    }
-
     // ---- a complete message
 
-    constexpr void take_defaults(MessageRow& message) {
-        if (message.shares_identifier) // attributes belong to the first one
-            if (const MessageRow& first = net_.messages[message_of(raw_id(message))]; &first != &message) {
-                message.every = first.every, message.says_every = first.says_every;
-                message.is_fd = first.is_fd, message.switches = first.switches;
-                message.on_demand = first.on_demand;
-            }
-        if (!message.says_every) message.every = usual_every_;
-        if (!message.is_fd) message.is_fd = fd_.usually;
-        if (!message.switches) message.switches = switch_.usually;
-        if (!message.on_demand) message.on_demand = demand_.usually;
-    }
     constexpr void finish(MessageRow& message) {
         take_defaults(message);
         const auto signals = net_.of(message);
@@ -366,6 +237,8 @@ private:
         for (SignalRow& each : signals) {
             if (!each.is_multiplexed) continue;
             about(each);
+            part_ = Part::selection;
+            if (each.selection_trouble != no_such) continue;
             if (each.selected_by == no_such) {
                 if (multiplexors > 1)
                     spoil(each.at, "message \"", message.name,
@@ -393,9 +266,8 @@ private:
         if (!message.long_name.empty()) message.name = message.long_name;
     }
 
+    bool has_statement_ = false;
     bool has_nodes_ = false;
-    Duration usual_every_{};
-    Choice fd_ = can_fd, switch_ = bit_rate_switch, demand_ = send_type;
 };
 
 } // namespace tappet::can::dbc

@@ -169,51 +169,63 @@ public:
         skip_blanks();
         return true;
     }
+    /// Takes "inf" or "nan" in any spelling of C's printf, before `end`.
+    constexpr bool no_number(char end) noexcept {
+        const Scanner before = *this;
+        if (next() == '-' || next() == '+') ++at_;
+        const std::string_view written = word();
+        for (const std::string_view each : {"inf", "infinity", "nan"}) {
+            std::size_t same = 0;
+            while (same < each.size() && same < written.size() && (written[same] | 0x20) == each[same])
+                ++same;
+            if (same == each.size() && same == written.size() && next() == end) return true;
+        }
+        *this = before;
+        return false;
+    }
     /// Moves to the next line.
     constexpr void skip_line() noexcept {
         while (!at_end() && text_[at_] != '\n') ++at_;
         skip_blanks();
     }
-    /// Moves to the first of these characters in this line, or to its end.
-    constexpr void skip_to(std::string_view ends) noexcept {
-        while (!at_end() && text_[at_] != '\n' && !ends.contains(text_[at_])) ++at_;
-    }
     enum class End : std::uint8_t {
         semicolon, ///< the position is behind it
-        none,      ///< the next line begins a statement, or the file ends
-        unclosed,  ///< a text without its second quote, at `text_at`; the position is the next line
-        cut,       ///< the file ends in such a text
+        none,      ///< the next line begins a statement
+        inside,    ///< the statement contains another one
+        unclosed,  ///< a text without its second quote, at `text_at`
+        cut,       ///< the file ends in the statement, or in a text, at `text_at`
     };
-    /// Moves behind the statement. begins(scanner): a statement begins here.
+    /// Moves behind a statement that is passed over. begins(word): the word begins a statement.
     template <class Begins> constexpr End skip_statement(const Begins& begins,
                                                          std::size_t& text_at) noexcept {
-        for (const std::size_t from = at_; !at_end();) {
-            if (at_ != from && begins_line() && begins(*this)) return End::none;
+        text_at = text_.size();
+        while (!at_end()) {
             if (take(';')) return End::semicolon;
             if (next() != '"') {
+                const std::string_view word = peek();
+                if (word.ends_with('_') && begins(word)) {
+                    if (begins_line()) return End::none;
+                    // These also say what the statement is about.
+                    constexpr std::string_view objects = "BO_ SG_ BU_ EV_ BU_BO_REL_ BU_SG_REL_ BU_EV_REL_";
+                    if (!names(objects, word)) return End::inside;
+                }
                 ++at_;
                 while (!at_end() && is_word_character(text_[at_])) ++at_;
                 skip_blanks();
                 continue;
             }
             text_at = at_;
-            const Scanner opened{*this};
+            Scanner line{*this};
             std::string_view ignored;
             const bool is_closed = text(ignored, true);
             if (is_closed && (next() == ';' || !ignored.contains('\n'))) continue;
             // A text of many lines may have swallowed statements, up to the first quote of another text.
-            bool swallows = false;
-            Scanner line{opened};
-            for (line.skip_line(); !swallows && !line.at_end() && (line.at_ < at_ || !is_closed);
-                 line.skip_line())
-                swallows = begins(line);
-            if (is_closed && !swallows) continue;
-            *this = opened;
-            if (!swallows) return End::cut;
-            skip_line();
-            return End::unclosed;
+            for (line.skip_line(); !line.at_end() && (line.at_ < at_ || !is_closed); line.skip_line())
+                if (begins(line.peek())) return End::unclosed;
+            if (!is_closed) return End::cut;
         }
-        return End::none;
+        text_at = text_.size();
+        return End::cut;
     }
     /// Returns the beginning of the next item, for messages.
     [[nodiscard]] constexpr std::string_view found() const noexcept {

@@ -2,6 +2,7 @@
 // part must be free of faults.
 #pragma once
 
+#include "drivers/can/dbc/nearly.hpp"
 #include "drivers/can/dbc/network.hpp"
 #include "drivers/can/dbc/node.hpp"
 #include "drivers/can/dbc/reader.hpp"
@@ -63,7 +64,8 @@ public:
         const MessageRow& message = *messages[fault.frame];
         const SignalRow* const signal = fault.signal == no_such ? nullptr : signals[fault.signal];
         net_.fail(signal != nullptr ? signal->at : message.at, fault.text,
-                  fault.cure.empty() ? Sentence{} : cure(message, signal));
+                  fault.cure.empty() ? Sentence{}
+                                     : cure(message, signal, message.length > 8 ? "fd_bytes(..), " : ""));
     }
 
 private:
@@ -85,7 +87,8 @@ private:
     // ---- names in the rows
 
     constexpr void find_node() {
-        if (!ok() || node_.name.empty() || names(net_.nodes, node_.name)) return;
+        names_us_ = !node_.name.empty() && names(net_.nodes, node_.name);
+        if (!ok() || node_.name.empty() || names_us_) return;
         Nearest nearest{node_.name};
         for_each_name(net_.nodes, [&](std::string_view each) { nearest.consider(each); });
         for (const MessageRow& message : net_.all()) { // BU_ may lack it
@@ -155,19 +158,24 @@ private:
             message.length = row.length;
             message.is_fd = row.format != Format::classical;
             message.switches = row.format == Format::flexible_faster;
+            message.troubles[static_cast<std::size_t>(Part::format)] = no_such;
         }
-        if (row.identifier == Identifier{}) return;
-        if (!valid(message.identifier) || row.length != 0) message.trouble = no_such;
+        if (!row.despite_identifier) return;
         message.identifier = row.identifier;
         message.shares_identifier = false;
+        message.troubles[static_cast<std::size_t>(Part::identifier)] = no_such;
     }
     constexpr void believe(const MessageRow& message, SignalRow& file, const Signal& row) {
         const Signal in_file = file.shape;
+        const bool is_selected = file.selected_by != no_such && file.selection_trouble == no_such;
+        if (file.is_multiplexed && !is_selected && row.multiplexor.empty())
+            return net_.fail(file.at, "the row of signal \"", in_file.name,
+                             "\" does not say what selects it; write .when(\"..\", ..) behind its place");
         file.shape = row;
         file.shape.name = in_file.name;
         file.shape.unit = in_file.unit;
         file.row = &row;
-        file.trouble = file.limits_trouble = no_such;
+        file.trouble = file.limits_trouble = file.selection_trouble = no_such;
         for (SignalRow& each : net_.of(message))
             each.is_replaced |= &each != &file && each.shape.name == in_file.name;
         if (row.multiplexor.empty()) {
@@ -195,7 +203,8 @@ private:
             return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", node_.name,
                              "\" but has no safe values; write transmit(\"", message.name,
                              "\", signal(\"..\").safe(..)) into its node, or .safe_by_silence() behind that");
-        const bool is_others = message.sender != nobody && !node_.name.empty();
+        if (row == nullptr && !node_.name.empty()) find_doubt(message);
+        const bool is_others = message.sender != nobody && !node_.name.empty() && !may_be_us(message.sender);
         if (row != nullptr && is_ours != sends && (is_ours || is_others))
             return net_.fail(message.at, "message \"", message.name, "\" is sent by \"", message.sender,
                              is_ours ? "\", so \"" : "\", not by \"", node_.name,
@@ -212,6 +221,29 @@ private:
         }
         message.is_taken = row != nullptr || count(message) != 0;
         if (message.is_taken) check(message);
+    }
+    [[nodiscard]] constexpr bool may_be_us(std::string_view name) const noexcept {
+        return names_us_ && may_be_node(name, node_.name, net_.nodes);
+    }
+    /// Refuses a message that may be the node's own, or one for it: a name that BU_ lacks is nearly its name.
+    constexpr void find_doubt(const MessageRow& message) {
+        if (!names_us_) return;
+        const auto look = [&](std::string_view list) {
+            for_each_name(list, [&](std::string_view name) {
+                if (!may_be_us(name)) return;
+                net_.fail(static_cast<std::size_t>(name.data() - net_.text.data()), "\"", name,
+                          "\", which BU_ does not name, may be \"", node_.name, "\"; write transmit(\"",
+                          message.name, "\", ..), receive(\"", message.name, "\", ..) or without(\"",
+                          message.name, "\")");
+            });
+        };
+        look(message.sender);
+        look(message.more_senders);
+        std::string_view last{};
+        for (const SignalRow& each : net_.of(message)) {
+            if (each.receivers != last) look(each.receivers);
+            last = each.receivers;
+        }
     }
     /// Returns whether a row says that another message with this identifier is on the bus.
     [[nodiscard]] constexpr bool another_has_row(const MessageRow& message) const noexcept {
@@ -234,21 +266,32 @@ private:
         if (message.length > 64)
             net_.fail(message.at, "message \"", message.name, "\" has ", std::size_t{message.length},
                       " bytes, which no frame holds, only a transport protocol", cure(message, nullptr));
-        if (message.trouble != no_such) found_fault(message.trouble, message, nullptr);
+        for (std::size_t part = 0; part < message.troubles.size(); ++part) {
+            const bool is_rate = static_cast<Part>(part) == Part::rate;
+            if (message.troubles[part] == no_such || (is_rate && says_rate(message))) continue;
+            found_fault(message.troubles[part],
+                        is_rate ? Sentence{"; write can::every(..) or can::on_demand(..) into ",
+                                           word_of(message), message.name, "\", ..)"}
+                                : cure(message, nullptr,
+                                       static_cast<Part>(part) == Part::identifier ? "extended(..), " : ""));
+        }
         for (SignalRow& each : net_.of(message)) {
             if (!each.is_taken) continue;
             const bool lacks_limits =
                 message.direction == Direction::transmit && each.limits_trouble != no_such;
-            if (each.trouble != no_such || lacks_limits)
-                found_fault(each.trouble != no_such ? each.trouble : each.limits_trouble, message, &each);
+            const std::size_t at = each.trouble != no_such             ? each.trouble
+                                   : each.selection_trouble != no_such ? each.selection_trouble
+                                   : lacks_limits                      ? each.limits_trouble
+                                                                       : no_such;
+            if (at != no_such) found_fault(at, cure(message, &each));
             keep_good_names(net_, each, [](const ValueName&, std::string_view) {});
         }
         if (faults_ == before) check_rate(message);
     }
-    constexpr void found_fault(std::size_t at, const MessageRow& message, const SignalRow* signal) {
+    constexpr void found_fault(std::size_t at, const Sentence& cure) {
         if (faults_++ != 0) return;
         fault_at_ = at;
-        cure_ = cure(message, signal);
+        cure_ = cure;
     }
     /// Reads the file again for the sentence of the first fault.
     constexpr void refuse() {
@@ -263,36 +306,59 @@ private:
         const Sentence more =
             faults_ == 1 ? Sentence{}
                          : Sentence{" (and ", faults_ - 1, " more: tappet check ", net_.file, " lists all)"};
-        net_.fail(fault_at_, found.text, cure_, more);
+        // A question is no clause before another one.
+        net_.fail(fault_at_, found.text, cure_.view().substr(found.text.view().ends_with('?') ? 1 : 0), more);
     }
     /// Returns the end of a sentence about a fault of the file: how the node's rows go around it.
-    constexpr Sentence cure(const MessageRow& message, const SignalRow* signal) const {
+    constexpr Sentence cure(const MessageRow& message, const SignalRow* signal,
+                            std::string_view wrong = {}) const {
         const bool is_sent = message.direction == Direction::transmit;
-        const std::string_view word = is_sent ? "transmit(\"" : "receive(\"";
-        const bool is_long = message.length > 8 && message.length <= 64;
-        const std::string_view wrong = !valid(message.identifier) ? "extended(..), "
-                                       : is_long                  ? "fd_bytes(..), "
-                                                                  : "";
+        const std::string_view word = word_of(message);
         if (signal == nullptr && wrong.empty())
             return Sentence{"; leave it out by a row, without(\"", message.name, "\")"};
         if (signal == nullptr)
             return Sentence{"; state it in its row, despite(",       wrong,        word, message.name,
                             "\", ..)), or leave it out, without(\"", message.name, "\")"};
-        const Sentence state{"; state it in its row, despite(signal(\"", signal->shape.name,
-                             "\", first bit, bits)), or "};
+        const Sentence state{"; state it in its row, despite(", row_for(*signal), "), or "};
         if (!is_sent)
             for (const SignalRow& each : net_.of(message))
-                if (&each != signal && each.trouble == no_such && !each.shape.name.empty())
+                if (&each != signal && each.trouble == no_such && each.selection_trouble == no_such)
                     return Sentence{state,           "take other signals alone, receive(\"",
                                     message.name,    "\", signal(\"",
                                     each.shape.name, "\"), ..)"};
         return Sentence{state, "leave its message out by a row, without(\"", message.name, "\")"};
     }
+    static constexpr std::string_view word_of(const MessageRow& message) noexcept {
+        return message.direction == Direction::transmit ? "transmit(\"" : "receive(\"";
+    }
+    /// Returns a signal's row with all that was read of it, and ".." for what the machine must state.
+    static constexpr Sentence row_for(const SignalRow& signal) {
+        const Signal& s = signal.shape;
+        Sentence row{"signal(\"", s.name, "\", "};
+        const bool has_place = signal.trouble == no_such &&
+                               (signal.limits_trouble != no_such || signal.selection_trouble != no_such);
+        if (has_place)
+            row.add(s.start).add(", ").add(s.bits).add(")");
+        else
+            row.add("first bit, bits)");
+        if (s.order == Order::motorola) row.add(".big_endian()");
+        if (s.kind != Kind::unsigned_integer)
+            row.add(s.kind == Kind::signed_integer ? ".as_signed()" : ".as_float()");
+        const auto add = [&](std::string_view word, double value, double usual, std::string_view written) {
+            if (value != usual) row.add(word).add(value == 0 || !is_number(value) ? ".." : written).add(")");
+        };
+        add(".times(", s.factor, 1, signal.factor);
+        add(".plus(", s.offset, 0, signal.offset);
+        if (s.has_range || signal.limits_trouble != no_such) row.add(".range(.., ..)");
+        const bool lacks_selection = signal.is_multiplexed && signal.selected_by == no_such;
+        if (lacks_selection || signal.selection_trouble != no_such) row.add(".when(\"..\", ..)");
+        return row;
+    }
     static constexpr bool says_rate(const MessageRow& message) noexcept {
         return message.row != nullptr && message.row->every != as_in_file.every;
     }
     constexpr void check_rate(const MessageRow& message) {
-        const std::string_view word = message.direction == Direction::transmit ? "transmit(\"" : "receive(\"";
+        const std::string_view word = word_of(message);
         if (!says_rate(message) && message.every <= Duration::zero())
             net_.fail(
                 message.at, "message \"", message.name,
@@ -379,6 +445,7 @@ private:
     std::span<char> characters_{};
     std::size_t used_values_ = 0;
     std::size_t used_characters_ = 0;
+    bool names_us_ = false;                       ///< BU_ names the node
     std::size_t faults_ = 0, fault_at_ = no_such; ///< of the file, in what is taken
     Sentence cure_{};
 };

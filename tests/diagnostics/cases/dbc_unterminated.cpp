@@ -1,5 +1,5 @@
 // A text of a DBC file has no end.
-// refused: wrong-file: component "can": press.dbc:3:36: a text is unclosed or out of place, expected the unit between quotes; state it in its row, despite(signal("speed", first bit, bits)), or leave its message out by a row, without("drive")
+// refused: wrong-file: component "can": press.dbc:3:36: a text is unclosed or out of place, expected the unit between quotes
 #include "drivers/can/bus.hpp"
 #include "drivers/can/from_dbc.hpp"
 #include "tests/diagnostics/small_machine.hpp"

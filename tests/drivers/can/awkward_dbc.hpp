@@ -24,7 +24,7 @@ inline std::string awkward(std::string text, std::uint64_t seed) {
             "BO_ 1999 Long: 1785 them\n SG_ Text : 0|8000@1+ (1,0) [0|1E+481] \"\" others\n"
             " SG_ Over : 0|8@1+ (1,0) [0|0] \"\" them\n SG_ Under : 4|8@1+ (1,0) [0|0] \"\" them\n\n");
     if (has(4)) text += "VAL_ 1997 Text 0 \"off\" ;\n";
-    if (has(5)) text += "FOO_ 3 \"of a maker\";\n";
+    if (has(5)) text += "FILTER 3 \"of a maker\";\n";
     return text;
 }
 
@@ -33,10 +33,10 @@ inline std::string more_awkward(std::string text, std::uint64_t seed) {
     text = awkward(std::move(text), seed);
     const std::size_t first = text.find("\nBO_ ");
     if (first != text.npos)
-        text.insert(first + 1, seed % 2 == 0 ? "CM_ \"without its end\"\n" : "CM_ \"without its quote;\n");
-    text += "BA_ \"GenMsgCycleTime\" BO_ 1998 5;\n";
+        text.insert(first + 1, seed % 2 == 0 ? "CM_ \"without its end\"\n" : "BA_DEF_ \"Maker\" STRING\n");
+    text += "VAL_ 1998 x 5 \"five\";\n";
     if (seed % 3 == 0) text.insert(0, "\xEF\xBB\xBF");
-    if (seed % 5 == 0) text += "CM_ \"the last one\"";
+    if (seed % 5 == 0) text += "CM_ \"the last one\";";
     return text;
 }
 

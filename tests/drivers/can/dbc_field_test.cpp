@@ -41,12 +41,12 @@ BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX
  SG_ lost : 0|99@1+ (1,0) [0|0] "" us
 BO_ 2 2nd: 8 A
  SG_ 2t : 0|8@1+ (1,0) [0|0] "" us, robot
-CM_ "never closed;
+BA_DEF_ "Maker" STRING
 BO_ 3 O: 8 robot
  SG_ u : 0|8@1+ (1,0) [0|0] "" us
 VAL_ 1 s 255 "SNA"
 BA_DEF_DEF_ "GenMsgCycleTime" 10;
-BA_ "GenMsgCycleTime" BO_ 7 20;
+VAL_ 7 s 1 "on";
 CM_ "end";
 )";
 constexpr SourceText swallowed{"swallowed.dbc", {swallowed_text, sizeof swallowed_text - 1}};
@@ -133,7 +133,6 @@ TEST(DbcField, drops_names_that_cannot_be_believed) {
     EXPECT_EQ(names("VAL_ 1 s 0 \"off\" 1 \"on\" 0 \"OFF\" 2 \"two\";"), "on two ");
     EXPECT_EQ(names("VAL_ 1 s 0 \"off\" 1 \"on\" 0 \"off\" 0 \"off\";"), "off on ");
     EXPECT_EQ(names("VAL_ 1 s 0 \"off\";\nVAL_ 1 s 1 \"on\";"), "");
-    EXPECT_EQ(names("VAL_ 1 s 0 \"off\" 1 on;\nCM_ \"x\";"), "");
 }
 
 TEST(DbcField, takes_some_signals_of_a_message) {
@@ -146,7 +145,7 @@ TEST(DbcField, takes_some_signals_of_a_message) {
     constexpr auto none = node("us", without("M"));
     EXPECT_EQ(fault(overlapping, whole),
               "t.dbc:4:6: signal \"M.b\" overlaps \"a\" at bit 8; state it in its row, despite(signal(\"b\", "
-              "first bit, bits)), or take other signals alone, receive(\"M\", signal(\"a\"), ..)");
+              "first bit, bits).times(0.5)), or take other signals alone, receive(\"M\", signal(\"a\"), ..)");
     EXPECT_EQ(decoded({overlapping, some.view()}, "M.b", {1, 8}), 4.0);
     EXPECT_EQ(fault(overlapping, far),
               "t.dbc:5:6: signal \"M.c\" reaches outside its frame of 8 bytes: it starts at bit 60 (its "
@@ -193,9 +192,10 @@ TEST(DbcField, asks_for_limits_only_where_it_sends) {
     EXPECT_TRUE(read.map.signals[3].has_range);
     EXPECT_EQ(read.map.signals[3].most, std::numeric_limits<double>::max());
     constexpr auto sender = node("us", transmit("M", every(10ms)).safe_by_silence());
-    EXPECT_EQ(fault(limits, sender), "t.dbc:3:26: the greatest value is beyond a double; state it in its "
-                                     "row, despite(signal(\"s\", first bit, bits)), or leave its message out "
-                                     "by a row, without(\"M\") (and 2 more: tappet check t.dbc lists all)");
+    EXPECT_EQ(fault(limits, sender),
+              "t.dbc:3:26: the greatest value is beyond a double; state it in its row, despite(signal(\"s\", "
+              "0, 8).range(.., ..)), or leave its message out by a row, without(\"M\") (and 2 more: tappet "
+              "check t.dbc lists all)");
 }
 
 TEST(DbcField, believes_a_row_despite_the_file) {
@@ -254,16 +254,38 @@ TEST(DbcField, takes_no_receiver_from_a_comment) {
               "t.dbc:1:6: BU_ names no node \"us\"; name one of its nodes, or none: node(\"\", ..)");
 }
 
-TEST(DbcField, finds_the_receiver_of_a_signal_that_it_cannot_read) {
-    EXPECT_EQ(
-        fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" us\n", us),
-        "t.dbc:3:11: found \";8@1+\", expected \"|\" after the signal's first bit; state it in its row, "
-        "despite(signal(\"s\", first bit, bits)), or leave its message out by a row, without(\"M\")");
-    EXPECT_EQ(fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\"\n  us\n", us),
-              "t.dbc:4:3: found \"us\", expected a statement, which begins with BO_, SG_, VAL_ or the like; "
-              "state it in its row, despite(signal(\"s\", first bit, bits)), or leave its message out by a "
-              "row, without(\"M\")");
-    EXPECT_EQ(fault("BU_: A us\nBO_ 1 M: 8 A\n SG_ s : 0;8@1+ (1,0) [0|0] \"\" A\n", us), "");
+TEST(DbcField, obeys_the_cures_that_it_prints) {
+    const std::string pages = "BU_: us A\nBO_ 1 M: 8 A\n SG_ k M : 0|8@1+ (1,0) [0|0] \"\" us\n"
+                              " SG_ j M : 8|8@1+ (1,0) [0|0] \"\" us\n"
+                              " SG_ t m3 : 16|16@1- (0.1,-40) [0|0] \"\" us\n";
+    EXPECT_EQ(fault(pages, node("us", receive("M", every(10ms)))),
+              "t.dbc:5:6: message \"M\" has several multiplexors, and SG_MUL_VAL_ says not which one selects "
+              "\"t\"; state it in its row, despite(signal(\"t\", 16, "
+              "16).as_signed().times(0.1).plus(-40).when(\"..\", ..)), or take other signals alone, "
+              "receive(\"M\", signal(\"k\"), ..)");
+    const auto cured = [](const Signal& t) { return node("us", receive("M", every(10ms), despite(t))); };
+    const Signal place = signal("t", 16, 16).as_signed().times(0.1).plus(-40);
+    EXPECT_EQ(fault(pages, cured(place)), "t.dbc:5:6: the row of signal \"t\" does not say what selects it; "
+                                          "write .when(\"..\", ..) behind its place");
+    const auto when = cured(place.when("k", 3));
+    const DbcMap read{pages, when.view()};
+    ASSERT_EQ(read.map.fault.view(), "");
+    EXPECT_EQ(read.map.multiplexor_of[read.map.signal("M.t")], read.map.signal("M.k"));
+    EXPECT_EQ(fault("BU_: us A\nBO_ 1 M: 8 us\n SG_ t : 7|16@0- (0.1,-40) [0|1E+999] \"\" A\n",
+                    node("us", transmit("M", every(10ms), signal("t").safe(0)))),
+              "t.dbc:3:31: the greatest value is beyond a double; state it in its row, despite(signal(\"t\", "
+              "7, 16).big_endian().as_signed().times(0.1).plus(-40).range(.., ..)), or leave its message out "
+              "by a row, without(\"M\")");
+    // A row cures the fault that it states, and no other one.
+    const std::string two = "BU_: us A\nBO_ 1 M: 8 A\n SG_ s : 0|8@1+ (1,0) [0|0] \"\" us\n"
+                            "BO_ 3000 M: 8 A\n SG_ s : 8|8@1+ (1,0) [0|0] \"\" us\n";
+    EXPECT_EQ(fault(two, node("us", despite(bytes(8), receive("M", every(10ms))))),
+              "t.dbc:4:10: message \"M\" is there twice; leave it out by a row, without(\"M\") (and 2 more: "
+              "tappet check t.dbc lists all)");
+    constexpr auto zero = node("us", despite(standard(0), receive("M")));
+    const DbcMap zeroed{one, zero.view()};
+    ASSERT_EQ(zeroed.map.fault.view(), "");
+    EXPECT_EQ(zeroed.map.frames[0].identifier, standard(0));
 }
 
 } // namespace

@@ -107,6 +107,7 @@ private:
                           " bytes, which no frame holds, only a transport protocol"});
         else
             tell(fault, message, nullptr, can::detail::length_fault(frame).text);
+        tell(fault, message, nullptr, can::detail::facet_fault(frame));
         std::vector<can::Signal> all;
         std::vector<std::size_t> multiplexors;
         for (SignalRow& each : net_.of(message)) {
@@ -132,6 +133,7 @@ private:
                 return !fault.empty();
             };
             const can::Signal& signal = among.signals[s];
+            is_told(can::detail::facet_fault(frame, signal));
             if (is_told(can::detail::layout_fault(frame, signal).text)) continue;
             if (const std::size_t m = among.multiplexor_of[s]; m != no_such)
                 is_told(can::detail::multiplexor_fault(frame, signal, among.signals.subspan(m, 1)).text);

@@ -33,9 +33,10 @@ struct Case {
 
 TEST(CheckDbc, is_content_with_good_files) {
     for (const std::string& text :
-         {std::string{}, head, plain, plain + "// a comment: BO_ 1 M: 8 A\n",
+         {head, plain, plain + "// a comment: BO_ 1 M: 8 A\n",
           with_signal("s : 0|64@1+ (1,0) [0|0] \"\" B // not of C\nVAL_ 1 s 18446744073709551615 \"SNA\";\n"),
-          head + "BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n SG_ x : 0|99@1+ broken\n",
+          head + "BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n SG_ x : 0|9@1+ (1,0) [0|0] "
+                 "\"\" B\n",
           head + "BO_ 1 1st: 8 A\n SG_ 2nd : 0|8@1+ (1,0) [0|0] \"\" B\nVAL_ 1 2nd 1 \"on\";\n",
           plain + "CM_ \"of two lines:\nBO_ 1 M: 8 A; and no more\";\n",
           plain + "BA_DEF_ BO_ \"GenMsgSendType\" ENUM \"cyclic\",\"spontaneous\";\nBA_ \"GenMsgSendType\" "
@@ -48,27 +49,20 @@ TEST(CheckDbc, notes_what_nobody_suffers_from) {
         {head + "CM_ \"x\"\nBO_ 1 M: 8 A\nBO_ 2 N: 8 A\nCM_ \"end\";\nBO_ 3 O: 8 A\n",
          "2 note: the statement has no \";\"; it ends before the next one\n"},
         {"\xEF\xBB\xBF" + plain, "1 note: the file begins with a byte-order mark\n"},
-        {head + "CM_ \"never closed;\n" + plain.substr(head.size()) + "CM_ \"x\";\n",
-         "2 note: a text is unclosed; it ends with its line\n"},
         {head + "BO_ 1 M: 8 C\nBO_ 2 N: 8 A\nBO_ 3 O: 8 C\n", "2 note: BU_ names no node \"C\" +1\n"},
         {head + "BO_ 1 M: 8 AA\n", "2 note: BU_ names no node \"AA\"; did you mean \"A\"?\n"},
-        {plain + head, "4 note: BU_ is there twice; the first one counts\n"},
-        {plain + "FOO_ 1 x;\nVAL_ 7 s 1 \"on\";\nVAL_ 1 t 1 \"on\";\n",
-         "4 note: found \"FOO_\", expected a statement, which begins with BO_, SG_, VAL_ or the like\n"
-         "5 note: no message has the identifier 7\n"
-         "6 note: message \"M\" has no signal \"t\"\n"},
+        {plain + "VAL_ 7 s 1 \"on\";\nVAL_ 1 t 1 \"on\";\n", "4 note: no message has the identifier 7\n"
+                                                             "5 note: message \"M\" has no signal \"t\"\n"},
         {plain + "VAL_ 1 s 300 \"far\" 1 \"on\" 1 \"off\" 2 \"two\" 2 \"two\";\n",
          "4 note: signal \"s\" names the value 1, which has another name too +1\n"
          "4 note: signal \"s\" names the value 2, which has it twice\n"
          "4 note: signal \"s\" names the value 300, which its bits cannot hold\n"},
         {plain + "VAL_ 1 s 0 \"off\";\nVAL_ 1 s 1 \"on\";\n",
          "5 note: signal \"s\" has its values named twice; none of the names counts\n"},
-        {plain + "VAL_ 1 s 0 off;\nBA_ \"GenMsgCycleTime\" BO_ 1 -5;\n",
-         "4 note: found \"off;\", expected the value's name between quotes\n5 note: a cycle time of -5 ms\n"},
         {head + "BO_ 1 M: 8 Vector__XXX\n SG_ t : 0|1600@1+ (1,0) [0|1E+481] \"\" Vector__XXX\n",
          "3 note: 1600 is too large for the number of the signal's bits, which is 64 at most\n"
          "3 note: the greatest value is beyond a double\n"},
-        {plain + "BA_DEF_ \"x\" INT 0 1\n",
+        {plain + "BA_DEF_ \"x\" INT 0 1\nCM_ \"x\";\n",
          "4 note: the statement has no \";\"; it ends before the next one\n"},
     };
     for (const Case& each : cases) EXPECT_EQ(findings(each.text), each.findings) << each.text;
@@ -97,10 +91,31 @@ TEST(CheckDbc, names_who_suffers_from_a_fault) {
          "bit 31 set and 29 bits\n3 fault B: message \"M\" is there twice\n"
          "4 fault B: message \"N\" has the identifier of \"M\"\n"
          "4 fault B: frame \"N\" has 12 bytes: a classical frame holds 8 at most\n"},
-        {with_signal("s : 0!8@1+ (1,0) [0|0] \"\" B\n"),
-         "3 fault A B: found \"!8@1+\", expected \"|\" after the signal's first bit\n"},
+        {plain + "SIG_VALTYPE_ 1 t : 1;\nBA_ \"GenMsgCycleTime\" BO_ 1 -5;\n",
+         "4 fault A B: message \"M\" has no signal \"t\"\n5 fault A B: a cycle time of -5 ms\n"},
+        {with_signal(std::string(64, 's') + " : 0|8@1+ (1,0) [0|0] \"\" B\n"),
+         "3 fault A B: signal \"M." + std::string(64, 's') +
+             "\": a facet's name has at most 63 characters; give it or its frame a shorter one with "
+             ".called(\"..\")\n"},
         {with_signal("s m1 : 0|8@1+ (1,0) [0|0] \"\" B\n"),
          "3 fault A B: signal \"s\" is multiplexed but its message has no multiplexor\n"},
+    };
+    for (const Case& each : cases) EXPECT_EQ(findings(each.text), each.findings) << each.text;
+}
+
+TEST(CheckDbc, refuses_a_file_in_which_it_is_not_certain_whom_a_fault_concerns) {
+    const std::string begins = ", expected a statement, which begins with BO_, SG_, VAL_ or the like\n";
+    const std::vector<Case> cases{
+        {"", "1 unreadable: the file has no statement; is it a DBC file?\n"},
+        {"Notes of today\n", "1 unreadable: found \"Notes\"" + begins},
+        {plain + "FOO_ 1 x;\n", "4 unreadable: found \"FOO_\"" + begins},
+        {plain + head, "4 unreadable: BU_ is there twice\n"},
+        {plain + "VAL_ 1 s 0 off;\n",
+         "4 unreadable: found \"off;\", expected the value's name between quotes\n"},
+        {with_signal("s : 0!8@1+ (1,0) [0|0] \"\" B\n"),
+         "3 unreadable: found \"!8@1+\", expected \"|\" after the signal's first bit\n"},
+        {head + "CM_ \"never closed;\n" + plain.substr(head.size()) + "CM_ \"x\";\n",
+         "2 unreadable: a text is unclosed before the next statement\n"},
     };
     for (const Case& each : cases) EXPECT_EQ(findings(each.text), each.findings) << each.text;
 }
@@ -146,7 +161,7 @@ TEST(Check, prints_a_table_and_a_verdict_for_each_file) {
     };
     const std::string at = folder.string() + "/";
     write("a.dbc", plain);
-    write("deep/b.DBC", plain + "FOO_ 1;\n");
+    write("deep/b.DBC", plain + "BA_DEF_ \"x\" INT 0 1\nCM_ \"x\";\n");
     write("deep/c.dbc", head + "BO_ 1 M: 8 C\n SG_ s : 0|0@1+ (1,0) [0|0] \"\" B\n");
     write("deep/d.dbc", "BO_");
     write("deep/other.txt", "BO_");
@@ -156,11 +171,9 @@ TEST(Check, prints_a_table_and_a_verdict_for_each_file) {
     EXPECT_EQ(
         all.text,
         at + "a.dbc: good\n" + at +
-            "deep/b.DBC:4  note  nobody  found \"FOO_\", expected a statement, which begins with BO_, SG_, "
-            "VAL_ or the like\n" +
-            at + "deep/b.DBC: good, 1 note\n" + at +
-            "deep/c.dbc:2  note   nobody  BU_ names no node \"C\"\n" + at +
-            "deep/c.dbc:3  fault  C, B    signal \"s\" has 0 bits instead of 1 to 64\n" + at +
+            "deep/b.DBC:4  note  nobody  the statement has no \";\"; it ends before the next one\n" + at +
+            "deep/b.DBC: good, 1 note\n" + at + "deep/c.dbc:2  note   nobody  BU_ names no node \"C\"\n" +
+            at + "deep/c.dbc:3  fault  C, B    signal \"s\" has 0 bits instead of 1 to 64\n" + at +
             "deep/c.dbc: 1 fault, 1 note; a row that takes such a part is refused\n" + at +
             "deep/d.dbc:1  unreadable  all  the file ends, expected a message's identifier; is it whole?\n" +
             at + "deep/d.dbc: unreadable\n");
