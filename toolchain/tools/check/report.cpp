@@ -61,6 +61,8 @@ std::string table_of(const std::string& file, const std::vector<Finding>& findin
     std::vector<std::vector<std::string>> rows;
     for (const Finding& each : findings) {
         std::string meaning = each.meaning;
+        for (char& sign : meaning) // a file may hold what a terminal obeys
+            if (static_cast<unsigned char>(sign) < 0x20 || sign == 0x7F) sign = '?';
         if (each.more != 0) meaning += " (and in " + count_of(each.more, "more line") + ")";
         rows.push_back({file + ":" + std::to_string(each.line), std::string{word_of(each.weight)},
                         each.weight == Weight::unreadable ? "all"

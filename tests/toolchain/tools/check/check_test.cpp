@@ -178,6 +178,8 @@ TEST(Check, prints_a_table_and_a_verdict_for_each_file) {
             "deep/d.dbc:1  unreadable  all  the file ends, expected a message's identifier; is it whole?\n" +
             at + "deep/d.dbc: unreadable\n");
     EXPECT_FALSE(report_on({at + "a.dbc", at + "deep/b.DBC"}).has_faults);
+    write("e.dbc", "\x1B[2J\x07 1;\n");
+    EXPECT_EQ(report_on({at + "e.dbc"}).text.find_first_of("\x1B\x07"), std::string::npos);
     EXPECT_TRUE(report_on({at + "deep/c.dbc"}, "B").has_faults);
     EXPECT_FALSE(report_on({at + "deep/c.dbc"}, "A").has_faults) << "who neither sends nor receives it";
     EXPECT_EQ(report_on({at + "deep/other.txt"}).failure,
