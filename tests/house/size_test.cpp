@@ -44,7 +44,7 @@ const std::vector<Size> sizes{
     {"tests/kernel",         32805},
     {"tests/drivers",         18954},
     {"tests/apps",            6182},
-    {"tests/toolchain",       6484},
+    {"tests/toolchain",       6486},
     {"tests/bench",           4779},
     {"tests/diagnostics",     4335},
     {"tests/differential",    4851},

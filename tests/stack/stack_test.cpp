@@ -25,7 +25,7 @@ const Rules rules{
         {"ports, properties, filters, devices and signs of life",
          {"PortAccess::", "tappet::Output<", "tappet::Input<", "limits_detail::", "can::SocketCan::", "can::ControlledDevice::", "can::Device::", "gpio::Lines::", "gpio::PlannedLines::", "modbus::LibmodbusTransport::", "detail::MemberOf",
           "detail::PropertyAccess", "detail::BagMember", "detail::command_call_of", "::interface()::{lambda", "detail::Several<", "::add_line<",
-          "::cycles_of(", "::rests(", "::is_part_expected(", "::is_engine_expected("}},
+          "::unsent(", "::cycles_of(", "::rests(", "::is_part_expected(", "::is_engine_expected("}},
         {"posting; values as texts",
          {"detail::post<", "EventWaitState::receive", "(anonymous namespace)::ValueReader::", "(anonymous namespace)::ValueWriter::",
           "(anonymous namespace)::Reader::", "(anonymous namespace)::Writer::"}},
