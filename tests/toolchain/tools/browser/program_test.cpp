@@ -367,9 +367,8 @@ TEST_F(Program, describes_the_machine_and_a_single_name) {
     EXPECT_THAT(machine_info.out, HasSubstr("stack of fast: 4096 of 65536 bytes used at most\n"));
     EXPECT_THAT(machine_info.out, Not(HasSubstr("stack of slow"))) << "in virtual time it has none";
     EXPECT_THAT(machine_info.out, HasSubstr("limits held back loom.speed 3 times\n"));
-    EXPECT_THAT(machine_info.out,
-                HasSubstr("can.axis.speed: 12 values outside its range, sent as its nearest "
-                          "bound; 1 that were not a number, not sent\n"));
+    EXPECT_THAT(machine_info.out, HasSubstr("can.axis.speed: 12 times outside its range, sent as its nearest "
+                                            "bound; 1 times not a number, not sent\n"));
     machine.answer("counters", {R"({"id": %, "ok": true})"});
     EXPECT_THAT(run({"info", "--json"}).out, HasSubstr("\"role\": \"engineer\""));
     const Outcome facet = run({"info", "loom.angle"});
