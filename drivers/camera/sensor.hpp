@@ -41,13 +41,7 @@ struct Sensor {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
         clock_ = setup.clock;
-        if (device_ == nullptr) return setup.no_device();
-        if (const int handle = device_->wait_handle(); handle < 0)
-            device_->set_listener(&os::Waiter::wake_thunk, waiter_);
-        else if (!waiter_->watch(handle))
-            return Sentence{"component \"", setup.component,
-                            "\": its activity watches too many devices; give it fewer drivers"};
-        return {};
+        return device_ == nullptr ? setup.no_device() : setup.woken_by(*device_);
     }
 
     /// Frames from before the start are dropped.

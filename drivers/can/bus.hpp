@@ -94,10 +94,7 @@ struct Bus {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
         if (device_ == nullptr) return setup.no_device();
-        if (!device_->wakes(*waiter_))
-            return Sentence{"component \"", setup.component,
-                            "\": its activity watches too many devices; give it fewer drivers"};
-        return {};
+        return device_->wakes(*waiter_) ? Sentence{} : setup.too_many_devices();
     }
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {

@@ -59,6 +59,20 @@ struct Setup {
             "component \"", component, "\": this world provides no device \"", device_name,
             "\" of the class it drives: give it to the start-up, or name another device in its row"};
     }
+    /// Returns the answer for configure() when the waiter takes no further device.
+    [[nodiscard]] Sentence too_many_devices() const {
+        return Sentence{"component \"", component,
+                        "\": its activity watches too many devices; give it fewer drivers"};
+    }
+    /// Lets the device wake the activity: by its descriptor, or a twin by its listener. Returns the answer
+    /// for configure().
+    template <class Device>
+    [[nodiscard]] Sentence woken_by(Device& found) const {
+        if (const int handle = found.wait_handle(); handle >= 0)
+            return waiter->watch(handle) ? Sentence{} : too_many_devices();
+        found.set_listener(&os::Waiter::wake_thunk, waiter);
+        return {};
+    }
 };
 
 } // namespace tappet

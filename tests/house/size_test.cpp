@@ -18,7 +18,7 @@ const std::vector<Size> sizes{
     {"kernel/base",           2752},
     {"kernel/os",             4586},
     {"kernel/exchange",       924},
-    {"kernel/component",      4978},
+    {"kernel/component",      4992},
     {"kernel/activity",       1880},
     {"kernel/program",        3178},
     {"kernel/statechart",     3981},

@@ -1,4 +1,4 @@
-// What the page of the figures shows of a run, with a document that only keeps its elements.
+// Runs the script of the figures' page on a document that only keeps its elements.
 // node page_test.js report.html; exit code 1: a check failed.
 "use strict";
 const assert = require("node:assert/strict");
