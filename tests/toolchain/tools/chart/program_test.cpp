@@ -61,7 +61,7 @@ TEST_F(ChartProgram, shows_data_as_solid_and_triggers_as_dashed_arrows) {
 
 TEST_F(ChartProgram, shows_the_requests_and_programs_of_a_compiled_script) {
     const std::string table = made(TRACKER_CHART, "dot plantuml scxml", "car_tracking.dot");
-    EXPECT_THAT(table, HasSubstr("c2 -> c0 [label=\"start\\nstop\\nmove_camera\\ncalibrate\\n"));
+    EXPECT_THAT(table, HasSubstr("c4 -> c2 [label=\"start\\nstop\\nmove_camera\\ncalibrate\\n"));
     const std::string states = contents_of(folder / "charts/car_tracking.tracking.puml");
     EXPECT_THAT(states, HasSubstr("state \"LocaliseCar\""));
     EXPECT_THAT(states, HasSubstr("panel.start_calibration"));
