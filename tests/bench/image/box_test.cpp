@@ -269,7 +269,7 @@ TEST(Box, installs_a_signed_update_from_a_stick_on_a_button_press) {
     EXPECT_THAT(said, HasSubstr("image 2"));
     EXPECT_THAT(said, HasSubstr("revision 3 is on trial"));
     EXPECT_THAT(said, HasSubstr("revision 3 has proven itself and stays"));
-    EXPECT_THAT(said, HasSubstr("is not taken: it is version 2, and this box has 2")) << "once is enough";
+    EXPECT_THAT(said, HasSubstr("is refused: it is version 2, and this box has 2")) << "once is enough";
     EXPECT_TRUE(has_kept(box, 2));
 }
 
