@@ -75,15 +75,13 @@ function(tappet_check_effects_of target)
         target_compile_options(${target} PRIVATE -Wfunction-effects -Werror=function-effects)
     elseif(TAPPET_EFFECTS_BY STREQUAL beside)
         get_target_property(launcher ${target} CXX_COMPILER_LAUNCHER)
-        if(NOT launcher)
-            set(launcher)
+        set(check ${TAPPET_CLANG} -O0 -Wno-everything -Wfunction-effects -Werror=function-effects)
+        list(APPEND check -fconstexpr-steps=2000000000 -fconstexpr-depth=2000)
+        set(both "${tappet_effects_program}" ${check} --)
+        if(launcher) # not an empty word in the list, because a command with one does not start
+            set(both "${tappet_effects_program}" ${launcher} ${check} -- ${launcher})
         endif()
-        set_target_properties(
-            ${target}
-            PROPERTIES
-                CXX_COMPILER_LAUNCHER
-                "${tappet_effects_program};${launcher};${TAPPET_CLANG};-O0;-Wno-everything;-Wfunction-effects;-Werror=function-effects;-fconstexpr-steps=2000000000;-fconstexpr-depth=2000;--;${launcher}"
-        )
+        set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER "${both}")
         if(TARGET tappet-effects)
             add_dependencies(${target} tappet-effects)
         endif()
