@@ -9,7 +9,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/cache.cmake")
 set(tappet_share "${CMAKE_INSTALL_DATADIR}/tappet")
 install(FILES CMakeLists.txt LICENSE DESTINATION "${tappet_share}")
 install(DIRECTORY kernel drivers board DESTINATION "${tappet_share}" PATTERN "*.md" EXCLUDE)
-install(DIRECTORY toolchain DESTINATION "${tappet_share}" PATTERN "*.md" EXCLUDE PATTERN tools EXCLUDE PATTERN guide EXCLUDE)
+install(DIRECTORY toolchain DESTINATION "${tappet_share}" PATTERN "*.md" EXCLUDE PATTERN tools EXCLUDE PATTERN tables EXCLUDE PATTERN guide EXCLUDE)
 install(DIRECTORY toolchain/tools/chart DESTINATION "${tappet_share}/toolchain/tools" PATTERN "*.md" EXCLUDE)
 install(DIRECTORY toolchain/tools/front/template DESTINATION "${tappet_share}")
 install(FILES toolchain/tools/front/tappet.bash DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME tappet)
@@ -33,7 +33,7 @@ install(DIRECTORY apps/cut_to_length DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/t
 install(DIRECTORY "${TAPPET_CACHE}/kernel" DESTINATION "${tappet_share}/foreign" PATTERN "*-aarch64" EXCLUDE)
 
 # They find each other beside themselves.
-install(TARGETS tappet tappet-bench tappet-browse tappet-effects tappet-image bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
+install(TARGETS tappet tappet-bench tappet-browse tappet-effects tappet-image tappet-tables bench-init box-init DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet")
 install(FILES "${CMAKE_BINARY_DIR}/tools/box-init.inputs" DESTINATION "${CMAKE_INSTALL_LIBDIR}/tappet") # for bills of materials
 install(CODE "
     set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")

@@ -1,4 +1,4 @@
-// A signal map from a DBC file that the build made a constant: tappet_file() of CMake.
+// A signal map from a DBC file, of which the build made tables: tappet_file() of CMake.
 //
 //     inline constexpr auto controller = can::node("controller",
 //         can::transmit("drive_command", can::signal("controlword").safe(2), can::signal("speed").safe(0)));
@@ -7,34 +7,31 @@
 // The map has the same type as one of can::signal_map(..), and its faults name line and column of the file.
 #pragma once
 
-#include "drivers/can/dbc/reader.hpp"
+#include "drivers/can/dbc/table.hpp"
 #include "drivers/can/dbc/taking.hpp"
-#include "kernel/base/source_text.hpp"
 
 namespace tappet::can {
 
 namespace dbc {
 
-template <const auto& file> inline constexpr auto network_of = [] {
-    Store<room_for(file.text)> store;
-    store.file = file.name;
-    store.text = file.text;
-    Network network = store.network();
-    Reader{network}.read();
-    store.keep(network);
-    return store;
-}();
+/// The messages that may concern a node, and the room for their rows.
+template <const auto& file, const auto& node> struct Candidates {
+    std::array<bool, file.messages.size()> marks{};
+    Room room = mark_candidates(file, node.view(), marks.data());
+};
+template <const auto& file, const auto& node> inline constexpr Candidates<file, node> candidates{};
 
-/// The network with the node's part of it marked, and the sizes that this part needs.
+/// Their rows with the node's part marked, and the sizes that this part needs.
 template <const auto& file, const auto& node> struct Marked {
-    std::remove_cvref_t<decltype(network_of<file>)> store = network_of<file>;
+    Store<candidates<file, node>.room> store{};
+    Sentence fault{file.fault};
     Sizes sizes{};
 
     constexpr Marked() {
-        Network network = store.network();
-        if (network.fault.empty()) sizes = Taking{network, node.view()}.take();
-        store.keep(network);
-        if (!store.fault.empty()) sizes = {};
+        if (!fault.empty()) return;
+        decode(file, candidates<file, node>.marks.data(), store.rows(), store.told.data());
+        sizes = Taking{file, store.rows(), store.told.data(), node.view(), fault}.take();
+        if (!fault.empty()) sizes = {};
     }
 };
 template <const auto& file, const auto& node> inline constexpr Marked<file, node> marked{};
@@ -45,21 +42,22 @@ template <const auto& file, const auto& node> struct Taken {
 
     SignalMap<sizes.frames, sizes.signals> map{};
     std::array<ValueName, sizes.values> values{};
-    std::array<char, sizes.characters> characters{};
 
     constexpr Taken() {
+        map.fault = marked<file, node>.fault;
+        if (!map.fault.empty()) return;
         auto store = marked<file, node>.store;
-        Network network = store.network();
-        if (network.fault.empty()) Taking{network, node.view()}.fill(map, values, characters);
-        map.fault = network.fault;
+        Taking{file, store.rows(), store.told.data(), node.view(), map.fault}.fill(map, values.data());
     }
 };
 template <const auto& file, const auto& node> inline constexpr Taken<file, node> taken{};
 
 } // namespace dbc
 
-/// `file` is a SourceText, `node` the result of can::node(..): constexpr variables at namespace scope.
+/// `file` is a table made by tappet_file(), `node` the result of can::node(..): constexpr variables at
+/// namespace scope.
 template <const auto& file, const auto& node>
+    requires std::same_as<std::remove_cvref_t<decltype(file)>, dbc::Table>
 inline constexpr const auto& from_dbc = dbc::taken<file, node>.map;
 
 } // namespace tappet::can

@@ -1,19 +1,25 @@
-// An object dictionary read from an EDS or DCF file (CiA 306) in a constant expression. A fault in the file
-// is a build error with the file's own line, or, where whose it is stands beyond doubt (see EdsReader), a
-// note, which is an error in a row that needs what is wrong.
+// An object dictionary from an EDS or DCF file (CiA 306), of which the build made tables: tappet_file() of
+// CMake. A fault in the file is a build error with the file's own line, or, where whose it is stands beyond
+// doubt (see EdsReader), a note, which is an error in a row that needs what is wrong.
 //
 //     tappet_file(<target> servo.eds)                                       in CMakeLists.txt
-//     #include "<path>/servo.eds.hpp"                                      tappet::files::servo_eds, the text
+//     #include "<path>/servo.eds.hpp"                                      tappet::files::servo_eds
 //     canopen::dictionary<files::servo_eds>                                      what is in it
 #pragma once
 
 #include "drivers/canopen/cp1252.hpp"
-#include "drivers/canopen/eds_reader.hpp"
-#include "kernel/base/array_of.hpp"
+#include "drivers/canopen/number_text.hpp"
+#include "drivers/canopen/object_dictionary.hpp"
 
 #include <array>
 
 namespace tappet::canopen {
+
+/// A file as the build's program read it.
+struct EdsFile {
+    std::string_view fault{}; ///< the file describes no device
+    Dictionary dictionary{};
+};
 
 /// The machine builder's word on an object, in place of its file's: see despite().
 struct Belief {
@@ -24,22 +30,19 @@ struct Belief {
 
 namespace detail {
 
-template <const auto& Source> inline constexpr EdsReader<eds_room(Source.text)> eds_read{Source};
-
-/// Copies the objects to an array of exact size, as part of the program that uses it, with those believed.
-template <const auto& Source, Belief... beliefs> struct CheckedDictionary {
-    TAPPET_ACCEPTED(eds_read<Source>.fault);
-    static constexpr auto& read = eds_read<Source>;
+/// The file's objects with those believed, as part of the program that uses them.
+template <const auto& File, Belief... beliefs> struct CheckedDictionary {
+    static constexpr Sentence fault{File.fault};
+    TAPPET_ACCEPTED(fault);
+    static constexpr auto& read = File.dictionary;
     static constexpr std::array<Belief, sizeof...(beliefs)> believed{beliefs...};
-    static constexpr bool in_file(Address at) {
-        return std::ranges::find(read.objects, at, &Object::at) != read.objects.end();
-    }
-    static constexpr std::size_t added = (std::size_t{0} + ... + (in_file(beliefs.at) ? 0u : 1u));
+    static constexpr std::size_t added =
+        (std::size_t{0} + ... + (read.find(beliefs.at) != nullptr ? 0u : 1u));
     static constexpr auto objects = [] {
-        std::array<Object, read.objects.used + added> all{};
+        std::array<Object, read.objects.size() + added> all{};
         auto end = std::copy(read.objects.begin(), read.objects.end(), all.begin());
         for (const Belief& each : believed) {
-            if (!in_file(each.at)) (end++)->at = each.at;
+            if (read.find(each.at) == nullptr) (end++)->at = each.at;
             Object& object = *std::ranges::find(all, each.at, &Object::at);
             const NumberRead value =
                 bits_of(each.type) != 0 ? to_number(object.text, each.type) : NumberRead{};
@@ -58,9 +61,13 @@ template <const auto& Source, Belief... beliefs> struct CheckedDictionary {
         std::ranges::sort(all, {}, &Object::at);
         return all;
     }();
-    static constexpr auto notes = array_of<read.notes.used>([](std::size_t i) { return read.notes[i]; });
-    static constexpr Dictionary dictionary{Source.name,  read.product, read.node, read.identity,
-                                           read.doubted, objects,      notes};
+    static constexpr Dictionary dictionary{read.file,    read.product, read.node, read.identity,
+                                           read.doubted, objects,      read.notes};
+};
+template <const auto& File> struct CheckedDictionary<File> {
+    static constexpr Sentence fault{File.fault};
+    TAPPET_ACCEPTED(fault);
+    static constexpr const Dictionary& dictionary = File.dictionary;
 };
 
 } // namespace detail
@@ -71,10 +78,11 @@ constexpr Belief despite(Address at, DataType type, Access access = Access::read
     return {at, type, access};
 }
 
-/// The dictionary of a constant SourceText at namespace scope. A fault in what a network's rows need is
+/// The dictionary of a file, a constant made by tappet_file(). A fault in what a network's rows need is
 /// refused there, and its cure is a despite() behind the file, also for the simulated device:
 ///     canopen::dictionary<files::servo_eds, canopen::despite(0x6060, canopen::DataType::integer8)>
-template <const auto& Source, Belief... beliefs>
-inline constexpr const Dictionary& dictionary = detail::CheckedDictionary<Source, beliefs...>::dictionary;
+template <const auto& File, Belief... beliefs>
+    requires std::same_as<std::remove_cvref_t<decltype(File)>, EdsFile>
+inline constexpr const Dictionary& dictionary = detail::CheckedDictionary<File, beliefs...>::dictionary;
 
 } // namespace tappet::canopen

@@ -1,40 +1,45 @@
-// Reads an EDS or DCF file (CiA 306), at compile time or at run time, into objects and notes on its faults.
+// Reads an EDS or DCF file (CiA 306) on the host, into objects and notes on its faults.
 #pragma once
 
 #include "drivers/canopen/eds_notes.hpp"
 #include "drivers/canopen/eds_words.hpp"
-#include "kernel/base/bounded.hpp"
 #include "kernel/base/source_text.hpp"
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace tappet::canopen {
 
 namespace detail {
 
-/// Reads the text once, and a second time for references to other sections. Holds N objects and M notes.
+/// Reads the text once, and a second time for references to other sections.
 /// Refuses the file as a whole for all that it cannot read: a line, a section's name, a word or a number, and
 /// for each doubt about an object that a value belongs to. These alone are notes, or flaws of their object:
 /// limits that do not fit, a SubNumber or a list that is wrong, a type of the file's own (DEFSTRUCT), a
 /// number too large for an object that is no part of the identity or of a PDO, a value outside of its limits,
 /// CompactPDO beside PDO objects, and an identity said twice. An empty entry is one that is not there.
-template <std::size_t N, std::size_t M = 64> class EdsReader {
+class EdsReader {
 public:
-    constexpr explicit EdsReader(const SourceText& source) : source_{source} {
+    explicit EdsReader(const SourceText& source) : source_{source} {
         for (const auto step :
              {&EdsReader::read_sections, &EdsReader::order, &EdsReader::check_records,
               &EdsReader::read_references, &EdsReader::check_values, &EdsReader::find_identity})
             if (fault.empty()) (this->*step)();
     }
 
-    Bounded<Object, N> objects{};
-    Bounded<FileNote, M> notes{};
+    std::vector<Object> objects{};
+    std::vector<FileNote> notes{};
     Identity identity{};
     std::string_view product{};
     std::uint8_t node = 0;
     std::uint8_t doubted = 0; ///< as in Dictionary
     Sentence fault{};         ///< the file describes no device
+
+    /// Refers to the reader.
+    [[nodiscard]] Dictionary dictionary() const {
+        return {source_.name, product, node, identity, doubted, objects, notes};
+    }
 
 private:
     struct Entry {
@@ -57,36 +62,35 @@ private:
         Entry sub_number{};
         bool compact = false;
         bool plain = false; ///< a variable: it has no sub-indices
-        bool operator==(const Record&) const = default;
     };
 
     using Kind = FileNote::Kind;
     /// Refuses the file.
-    constexpr void refuse(FileNote each) {
+    void refuse(FileNote each) {
         each.flaws = flaw::file;
         if (fault.empty())
             fault = Sentence(source_.name, ":", each.line, ": ", meaning(each),
                              "; the file is not read: correct this line, or take an undamaged file");
-        if (!notes.push(each)) notes[notes.size() - 1] = each;
+        notes.push_back(each);
     }
-    constexpr void refuse(const Section& section, Kind kind, Key key) {
+    void refuse(const Section& section, Kind kind, Key key) {
         const Entry& entry = section.entries[key];
         refuse({kind, 0, section.meant.at, entry.line != 0 ? entry.line : section.line, 0, keys[key],
                 entry.line != 0 ? entry.text : section.name});
     }
-    constexpr void note(const FileNote& each) { static_cast<void>(notes.push(each)); }
-    constexpr void note(Section& section, Kind kind, Key key, std::uint8_t flaws) {
+    void note(const FileNote& each) { notes.push_back(each); }
+    void note(Section& section, Kind kind, Key key, std::uint8_t flaws) {
         const Entry& entry = section.entries[key];
         section.flaws |= flaws;
         note({kind, flaws, section.meant.at, entry.line, 0, keys[key], entry.text});
     }
     /// Nobody asks for the limits of an object that is only read.
-    constexpr void note_limit(Section& section, Kind kind, Key key) {
+    void note_limit(Section& section, Kind kind, Key key) {
         section.has_wrong_limits = true;
         note(section, kind, key, section.is_read_only ? std::uint8_t{0} : flaw::limits);
     }
 
-    constexpr void read_sections() {
+    void read_sections() {
         Section section;
         IniLines lines{source_.text};
         for (IniLine line = lines.next();; line = lines.next()) {
@@ -113,7 +117,7 @@ private:
         }
     }
 
-    constexpr void read_entry(Section& section, const IniLine& line) {
+    void read_entry(Section& section, const IniLine& line) {
         using Name = SectionName::Kind;
         const Name in = section.meant.kind;
         if (in == Name::damaged) return;
@@ -145,8 +149,8 @@ private:
     }
 
     /// Returns a number of an entry that is not a value of the device.
-    constexpr std::uint32_t count_of(const Section& section, Key key, std::uint32_t otherwise,
-                                     std::uint32_t most = ~0u) {
+    std::uint32_t count_of(const Section& section, Key key, std::uint32_t otherwise,
+                           std::uint32_t most = ~0u) {
         const Entry& entry = section.entries[key];
         if (entry.text.empty()) return otherwise;
         const auto number = to_whole(entry.text);
@@ -156,7 +160,7 @@ private:
         return otherwise;
     }
 
-    constexpr void finish(Section& section) {
+    void finish(Section& section) {
         using Name = SectionName::Kind;
         switch (section.meant.kind) {
         case Name::object: finish_object(section); break;
@@ -180,12 +184,12 @@ private:
         default: break;
         }
     }
-    constexpr void is_only(const Section& section, std::uint32_t& first) {
+    void is_only(const Section& section, std::uint32_t& first) {
         if (first != 0) refuse({Kind::section_twice, 0, {}, section.line, first, {}, section.name});
         first = section.line;
     }
 
-    constexpr void finish_object(Section& section) {
+    void finish_object(Section& section) {
         constexpr std::uint32_t domain = 2, variable = 7, array = 8, record = 9;
         const std::uint32_t type = count_of(section, object_type, variable);
         const std::uint16_t index = section.meant.at.index;
@@ -193,8 +197,7 @@ private:
         if (type != domain && type != variable && type != array && type != record)
             return refuse(section, Kind::not_a_choice, object_type);
         const bool plain = type == domain || type == variable;
-        static_cast<void>(
-            records_.push({index, section.line, section.entries[sub_number], compact != 0, plain}));
+        records_.push_back({index, section.line, section.entries[sub_number], compact != 0, plain});
         if (plain) return add(section);
         if (compact == 0) {
             if (!section.entries[parameter_value].text.empty())
@@ -208,17 +211,17 @@ private:
         count.value = {compact, true, false};
         count.name = "Number of entries";
         count.line = section.line;
-        static_cast<void>(objects.push(count));
+        objects.push_back(count);
         section.meant.at.sub = 1;
         add(section);
-        for (std::uint32_t sub = 2; sub <= compact && !objects.full(); ++sub) {
-            Object next = objects[objects.size() - 1];
+        for (std::uint32_t sub = 2; sub <= compact; ++sub) {
+            Object next = objects.back();
             next.at.sub = static_cast<std::uint8_t>(sub);
-            static_cast<void>(objects.push(next));
+            objects.push_back(next);
         }
     }
 
-    constexpr void add(Section& section) {
+    void add(Section& section) {
         Object object;
         object.at = section.meant.at;
         object.line = section.line;
@@ -259,18 +262,18 @@ private:
             section.flaws |= flaw::value; // unknown like its type
         }
         object.flaws = section.flaws;
-        static_cast<void>(objects.push(object));
+        objects.push_back(object);
     }
 
     /// The identity and the PDOs: each start-up of the node needs their numbers.
-    static constexpr bool is_of_start(std::uint16_t index) {
+    static bool is_of_start(std::uint16_t index) {
         return index == 0x1000 || index == 0x1018 || (index >= 0x1400 && index < 0x1C00);
     }
-    static constexpr Kind kind_of(NumberFault fault) {
+    static Kind kind_of(NumberFault fault) {
         return fault == NumberFault::no_number ? Kind::not_a_number : Kind::does_not_fit;
     }
 
-    constexpr void read_access(Section& section, Object& object) {
+    void read_access(Section& section, Object& object) {
         struct Name {
             std::string_view text;
             Access access;
@@ -293,7 +296,7 @@ private:
     }
 
     /// Reads the limits. One beyond the type bounds nothing; contradictory ones are dropped, as a flaw.
-    constexpr void read_limits(Section& section, Object& object) {
+    void read_limits(Section& section, Object& object) {
         const std::string_view low = section.entries[low_limit].text, high = section.entries[high_limit].text;
         for (const Key key : {low_limit, high_limit}) {
             const std::string_view text = section.entries[key].text;
@@ -322,14 +325,14 @@ private:
         if (section.has_wrong_limits) object.low = object.high = {};
     }
 
-    constexpr void order() {
-        std::ranges::sort(objects.begin(), objects.end(), [](const Object& a, const Object& b) {
+    void order() {
+        std::ranges::sort(objects, [](const Object& a, const Object& b) {
             return a.at != b.at ? a.at < b.at : a.line < b.line;
         });
         for (std::size_t i = 1; i < objects.size(); ++i)
             if (objects[i].at == objects[i - 1].at)
                 refuse({Kind::object_twice, 0, objects[i].at, objects[i].line, objects[i - 1].line, {}, {}});
-        std::ranges::sort(records_.begin(), records_.end(), [](const Record& a, const Record& b) {
+        std::ranges::sort(records_, [](const Record& a, const Record& b) {
             return a.index != b.index ? a.index < b.index : a.line < b.line;
         });
         for (std::size_t i = 1; i < records_.size(); ++i) {
@@ -340,7 +343,7 @@ private:
         if (objects.empty()) refuse({Kind::no_object, 0, {}, 1, 0, {}, {}});
     }
 
-    constexpr void check_records() {
+    void check_records() {
         for (const Object& object : objects) {
             const Record* const record = record_of(object.at.index);
             if (record == nullptr)
@@ -362,7 +365,7 @@ private:
         }
     }
     /// A PDO is silenced by its sub-index 1, unless a row uses it.
-    constexpr void check_pdos() {
+    void check_pdos() {
         std::array<std::uint32_t, 2> written{};
         for (const Record& record : records_) {
             const bool is_sent = record.index >= 0x1800;
@@ -383,14 +386,13 @@ private:
         else
             note(compact);
     }
-    constexpr const Record* record_of(std::uint16_t index) const {
-        const Record* const found =
-            std::ranges::lower_bound(records_.begin(), records_.end(), index, {}, &Record::index);
-        return found != records_.end() && found->index == index ? found : nullptr;
+    const Record* record_of(std::uint16_t index) const {
+        const auto found = std::ranges::lower_bound(records_, index, {}, &Record::index);
+        return found != records_.end() && found->index == index ? &*found : nullptr;
     }
 
     /// Checks references: lists name objects, and values of a compact array name its sub-indices.
-    constexpr void read_references() {
+    void read_references() {
         SectionName in{};
         IniLines lines{source_.text};
         for (IniLine line = lines.next(); line.kind != IniLine::Kind::end; line = lines.next()) {
@@ -417,7 +419,7 @@ private:
                 refuse({Kind::no_such_element, 0, in.at.index, line.line, 0, {}, line.name});
         }
     }
-    constexpr void read_value(std::uint16_t index, std::uint64_t sub, const IniLine& line) {
+    void read_value(std::uint16_t index, std::uint64_t sub, const IniLine& line) {
         Object* const object = sub > 254 ? nullptr : find({index, static_cast<std::uint8_t>(sub)});
         if (object == nullptr) return refuse({Kind::no_such_element, 0, index, line.line, 0, {}, line.name});
         if (object->is_parameter)
@@ -437,12 +439,12 @@ private:
         object->flaws |= flaw::value;
         note(fault_of);
     }
-    constexpr Object* find(Address at) {
-        Object* const found = std::ranges::lower_bound(objects.begin(), objects.end(), at, {}, &Object::at);
-        return found != objects.end() && found->at == at ? found : nullptr;
+    Object* find(Address at) {
+        const auto found = std::ranges::lower_bound(objects, at, {}, &Object::at);
+        return found != objects.end() && found->at == at ? &*found : nullptr;
     }
 
-    constexpr void check_values() {
+    void check_values() {
         for (Object& object : objects) {
             if (!object.value.given || within_limits(object, object.value.of(1), 1)) continue;
             const std::uint8_t flaws = object.is_parameter ? flaw::value : std::uint8_t{0};
@@ -451,7 +453,7 @@ private:
         }
     }
 
-    constexpr void find_identity() {
+    void find_identity() {
         const Object* const type = find(0x1000);
         if (type == nullptr) return refuse({Kind::no_device_type, 0, 0x1000, 1, 0, {}, {}});
         identity.device_type = identity_of(*type);
@@ -473,7 +475,7 @@ private:
     }
 
     /// Returns an object's part of the identity; 0: not given.
-    constexpr std::uint32_t identity_of(const Object& object) {
+    std::uint32_t identity_of(const Object& object) {
         if (!object.text.empty() &&
             (!object.value.given || object.value.plus_node || object.value.bits > ~0u))
             refuse({Kind::not_a_number, 0, object.at, object.line, 0, "Value", object.text});
@@ -481,7 +483,7 @@ private:
     }
 
     SourceText source_;
-    Bounded<Record, N> records_{};
+    std::vector<Record> records_{};
     std::uint32_t device_line_ = 0, commissioning_line_ = 0;
     Entry compact_pdo_{};
     std::array<std::uint32_t, 2> pdos_{}; ///< RPDOs and TPDOs as [DeviceInfo] counts them

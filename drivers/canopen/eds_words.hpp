@@ -153,16 +153,4 @@ constexpr bool is_joined(std::string_view value) noexcept {
            section_name(value.substr(begin + 1, value.size() - begin - 2)).kind == SectionName::Kind::values;
 }
 
-/// Returns the largest number of objects that a text can contain.
-constexpr std::size_t eds_room(std::string_view text) noexcept {
-    std::size_t room = 1;
-    IniLines lines{text};
-    for (IniLine line = lines.next(); line.kind != IniLine::Kind::end; line = lines.next()) {
-        if (line.kind == IniLine::Kind::section) ++room;
-        if (line.kind != IniLine::Kind::entry || !same(line.name, "CompactSubObj")) continue;
-        if (const auto count = to_whole(line.value); count && count->size <= 254) room += count->size + 1;
-    }
-    return room;
-}
-
 } // namespace tappet::canopen::detail

@@ -77,11 +77,12 @@ const std::vector<Row> house{
     {"toolchain/tools/chart", {"kernel/machine", "toolchain", "drivers/can"}},
     {"toolchain/tools/bench", {"kernel/base", "toolchain/version.hpp"}},
     {"toolchain/tools/image", {"toolchain", "toolchain/tools/bench", "board/box"}},
+    {"toolchain/tables",  {"drivers/canopen"}},
     {"toolchain/tools/check", {"drivers/canopen"}},
     {"toolchain/tools/front", {"toolchain", "toolchain/tools/check", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp", "toolchain/tools/image/options.hpp"}},
     {"toolchain/tools/pages", {"drivers/plant", "drivers/system", "kernel/pieces", "drivers/instruments", "drivers/canopen", "toolchain/tools/browser", "kernel/control"}},
     {"apps/carpet_loom/demo", {"apps", "toolchain", "toolchain/tools/bench", "toolchain/tools/browser"}},
-    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages", "toolchain/tools/check", "toolchain/tools/image"}},
+    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages", "toolchain/tools/check", "toolchain/tools/image", "toolchain/tables"}},
 };
 // clang-format on
 

@@ -11,13 +11,13 @@ class AttributeReader : protected StatementReader {
 protected:
     using StatementReader::StatementReader;
 
-    constexpr Choice* choice(std::string_view attribute) noexcept {
+    Choice* choice(std::string_view attribute) noexcept {
         for (Choice* const each : {&fd_, &switch_, &demand_})
             if (each->attribute == attribute) return each;
         return nullptr;
     }
     /// Returns the value of the attribute; it is unknown after a fault.
-    constexpr Says chosen(Choice& among) {
+    Says chosen(Choice& among) {
         const std::size_t at = in_.at();
         Says says = Says::unknown;
         if (in_.next() == '"') {
@@ -31,7 +31,7 @@ protected:
         return says;
     }
     /// An attribute's name. Its meaning must not be lost with one of its characters.
-    constexpr std::string_view attribute_name() {
+    std::string_view attribute_name() {
         const std::size_t at = in_.at();
         const std::string_view name = text("an attribute's name between quotes");
         for (const std::string_view each : {period, fd_.attribute, switch_.attribute, demand_.attribute})
@@ -39,7 +39,7 @@ protected:
                 give_up(at, "attribute \"", name, "\" is unknown; did you mean \"", each, "\"?");
         return name;
     }
-    constexpr void attribute_definition() {
+    void attribute_definition() {
         constexpr std::string_view objects = "BO_ BU_ SG_ EV_", types = "INT HEX FLOAT STRING ENUM";
         const bool is_of_messages = in_.peek() == "BO_";
         if (names(objects, in_.peek())) in_.word();
@@ -61,13 +61,13 @@ protected:
         end_of_statement();
     }
 
-    constexpr Duration cycle_time() {
+    Duration cycle_time() {
         const std::size_t at = in_.at();
         const double ms = real("the cycle time in milliseconds");
         if (ok() && !(ms >= 0 && ms < 1e9)) fail(at, "a cycle time of ", decimal(ms), " ms");
         return ok() ? Duration{static_cast<std::int64_t>(ms * 1e6 + 0.5)} : Duration{};
     }
-    constexpr void attribute() {
+    void attribute() {
         const std::string_view name = attribute_name();
         if (!ok()) return;
         const std::string_view of = in_.peek();
@@ -89,7 +89,7 @@ protected:
         else
             the_message().long_name = long_name;
     }
-    constexpr void choose(Choice& among) {
+    void choose(Choice& among) {
         part_ = &among == &demand_ ? Part::rate : Part::format;
         const std::size_t at = in_.at();
         const Says says = chosen(among);
@@ -105,7 +105,7 @@ protected:
         });
         if (is_twice) spoil(at, among.attribute, " is there twice");
     }
-    constexpr void state_period() {
+    void state_period() {
         part_ = Part::rate;
         const std::size_t at = in_.at();
         const Duration every = cycle_time();
@@ -119,7 +119,7 @@ protected:
         });
         if (is_twice) spoil(at, period, " is there twice");
     }
-    constexpr void attribute_default() {
+    void attribute_default() {
         const std::size_t at = in_.at();
         const std::string_view name = attribute_name();
         if (!ok()) return;
@@ -141,7 +141,7 @@ protected:
             usual_every_ = every;
     }
 
-    constexpr void take_defaults(MessageRow& message) {
+    void take_defaults(MessageRow& message) {
         if (!message.says_every) message.every = usual_every_;
         if (!message.is_fd) message.is_fd = fd_.usually;
         if (!message.switches) message.switches = switch_.usually;

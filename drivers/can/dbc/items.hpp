@@ -8,12 +8,12 @@ namespace tappet::can::dbc {
 
 class Items {
 protected:
-    explicit constexpr Items(Network& network) noexcept : net_{network}, in_{network.text} {}
+    explicit Items(Network& network) noexcept : net_{network}, in_{network.text} {}
 
-    [[nodiscard]] constexpr bool ok() const noexcept { return !failed_; }
+    [[nodiscard]] bool ok() const noexcept { return !failed_; }
 
     /// Begins a statement, which is about no row yet.
-    constexpr void begin(std::size_t at) noexcept {
+    void begin(std::size_t at) noexcept {
         failed_ = false;
         weight_ = Weight::fault;
         part_ = Part::all;
@@ -21,75 +21,76 @@ protected:
         statement_at_ = at;
         message_ = signal_ = no_such;
     }
-    constexpr void about(const MessageRow& message) noexcept {
+    void about(const MessageRow& message) noexcept {
         message_ = static_cast<std::size_t>(&message - net_.messages.data());
         signal_ = no_such;
     }
-    constexpr void about(const SignalRow& signal) noexcept {
+    void about(const SignalRow& signal) noexcept {
         message_ = signal.message;
         signal_ = static_cast<std::size_t>(&signal - net_.signals.data());
     }
-    [[nodiscard]] constexpr MessageRow& the_message() const noexcept { return net_.messages[message_]; }
-    [[nodiscard]] constexpr SignalRow& the_signal() const noexcept { return net_.signals[signal_]; }
+    [[nodiscard]] MessageRow& the_message() const noexcept { return net_.messages[message_]; }
+    [[nodiscard]] SignalRow& the_signal() const noexcept { return net_.signals[signal_]; }
 
     // ---- troubles
 
-    static constexpr void mark(std::size_t& first, std::size_t at) noexcept {
-        if (first == no_such) first = at;
+    static void mark(std::size_t& first, std::size_t trouble) noexcept {
+        if (first == no_such) first = trouble;
     }
+    [[nodiscard]] std::size_t last_trouble() const noexcept { return net_.troubles.size() - 1; }
     /// Calls visit(message) for each message with the identifier that the statement names.
-    template <class Visit> constexpr void for_each_twin(const Visit& visit) {
+    template <class Visit> void for_each_twin(const Visit& visit) {
         MessageRow& own = the_message();
         if (!is_by_identifier_ || !own.shares_identifier) return visit(own);
-        for (MessageRow& each : net_.all())
+        for (MessageRow& each : net_.messages)
             if (!each.is_independent && each.identifier == own.identifier) visit(each);
     }
     /// Calls visit(signal) for each signal that the statement names: one for each twin that has it.
-    template <class Visit> constexpr void for_each_namesake(const Visit& visit) {
+    template <class Visit> void for_each_namesake(const Visit& visit) {
         const std::string_view name = the_signal().shape.name;
         if (!is_by_identifier_) return visit(the_signal());
         for_each_twin([&](MessageRow& message) {
             if (SignalRow* const found = net_.find(message, name); found != nullptr) visit(*found);
         });
     }
-    template <class... Pieces> constexpr void tell(Weight weight, std::size_t at, const Pieces&... pieces) {
+    template <class... Pieces> void tell(Weight weight, std::size_t at, const Pieces&... pieces) {
         const auto told = [&](std::size_t message, std::size_t signal) {
-            if (net_.troubles != nullptr)
-                net_.troubles->add(Trouble{at, weight, message, signal, {}}, pieces...);
+            net_.troubles.push_back({at, weight, message, signal, Sentence{pieces...}});
+            return last_trouble();
         };
-        if (weight == Weight::limits) mark(the_signal().limits_trouble, at);
-        if (weight != Weight::fault) return told(message_, signal_);
+        if (weight == Weight::limits) return mark(the_signal().limits_trouble, told(message_, signal_));
+        if (weight == Weight::note) return static_cast<void>(told(message_, signal_));
         if (signal_ == no_such)
             return for_each_twin([&](MessageRow& each) {
-                mark(each.troubles[static_cast<std::size_t>(part_)], at);
-                told(static_cast<std::size_t>(&each - net_.messages.data()), no_such);
+                mark(each.troubles[static_cast<std::size_t>(part_)],
+                     told(static_cast<std::size_t>(&each - net_.messages.data()), no_such));
             });
         for_each_namesake([&](SignalRow& each) {
-            mark(part_ == Part::selection ? each.selection_trouble : each.trouble, at);
-            told(each.message, static_cast<std::size_t>(&each - net_.signals.data()));
+            mark(part_ == Part::selection ? each.selection_trouble : each.trouble,
+                 told(each.message, static_cast<std::size_t>(&each - net_.signals.data())));
         });
     }
-    template <class... Pieces> constexpr void note(std::size_t at, const Pieces&... pieces) {
+    template <class... Pieces> void note(std::size_t at, const Pieces&... pieces) {
         tell(Weight::note, at, pieces...);
     }
     /// Spoils the row, if the statement is about one; its statement goes on.
-    template <class... Pieces> constexpr void spoil(std::size_t at, const Pieces&... pieces) {
+    template <class... Pieces> void spoil(std::size_t at, const Pieces&... pieces) {
         if (!ok()) return;
         if (message_ == no_such) return give_up(at, pieces...);
         tell(weight_, at, pieces...);
     }
     /// Ends the statement, and spoils the rows that it is about, or the file.
-    template <class... Pieces> constexpr void fail(std::size_t at, const Pieces&... pieces) {
+    template <class... Pieces> void fail(std::size_t at, const Pieces&... pieces) {
         if (ok() && !marks_) return give_up(at, pieces...);
         spoil(at, pieces...);
         failed_ = true;
     }
     /// Makes the whole file unreadable.
-    template <class... Pieces> constexpr void give_up(std::size_t at, const Pieces&... pieces) {
+    template <class... Pieces> void give_up(std::size_t at, const Pieces&... pieces) {
         net_.fail(at, pieces...);
         failed_ = true;
     }
-    constexpr void fail_expected(std::string_view what) {
+    void fail_expected(std::string_view what) {
         if (in_.at_end())
             give_up(in_.at(), "the file ends, expected ", what, "; is it whole?");
         else if (in_.next() == '"')
@@ -100,16 +101,16 @@ protected:
 
     // ---- expected items
 
-    constexpr void expect(char c, std::string_view what) {
+    void expect(char c, std::string_view what) {
         if (ok() && !in_.take(c)) fail_expected(what);
     }
-    constexpr std::string_view label(std::string_view what) {
+    std::string_view label(std::string_view what) {
         const std::string_view name = ok() ? in_.name() : std::string_view{};
         if (name.empty() && ok()) fail_expected(what);
         return name;
     }
     /// Returns a number, or 0 after a fault.
-    constexpr std::uint32_t whole(std::uint64_t most, std::string_view what) {
+    std::uint32_t whole(std::uint64_t most, std::string_view what) {
         const std::size_t at = in_.at();
         std::uint64_t value = 0;
         if (!ok()) return 0;
@@ -121,7 +122,7 @@ protected:
         }
         return static_cast<std::uint32_t>(value);
     }
-    constexpr double real(std::string_view what) {
+    double real(std::string_view what) {
         const std::size_t at = in_.at();
         double value = 0;
         if (!ok()) return value;
@@ -132,7 +133,7 @@ protected:
         return value;
     }
     /// Returns one of a signal's limits, before `end`; infinite: none.
-    constexpr double limit(std::string_view what, char end) {
+    double limit(std::string_view what, char end) {
         constexpr double none = std::numeric_limits<double>::infinity();
         const std::size_t at = in_.at();
         double value = none;
@@ -145,7 +146,7 @@ protected:
         }
         return value;
     }
-    constexpr std::string_view text(std::string_view what) {
+    std::string_view text(std::string_view what) {
         std::string_view text;
         if (ok() && !in_.text(text)) fail_expected(what);
         return text;

@@ -11,54 +11,53 @@ protected:
 
     using Items::Items;
 
-    static constexpr std::uint32_t raw_id(const MessageRow& message) noexcept {
+    static std::uint32_t raw_id(const MessageRow& message) noexcept {
         return message.identifier.id | (message.identifier.extended ? extended_bit : 0);
     }
     /// Returns the first message with this identifier, from `first` on; no_such: none. Most statements are
     /// about the message of the statement before.
-    constexpr std::size_t message_of(std::uint32_t id, std::size_t first = 0) noexcept {
+    std::size_t message_of(std::uint32_t id, std::size_t first = 0) noexcept {
         if (first == 0 && found_ != no_such && id == found_id_) return found_;
         std::size_t m = first;
-        for (const MessageRow& each : net_.all().subspan(first)) {
+        for (const MessageRow& each : std::span{net_.messages}.subspan(first)) {
             if (raw_id(each) == id && !each.is_independent) break;
             ++m;
         }
-        if (m == net_.used.messages) return no_such;
+        if (m == net_.messages.size()) return no_such;
         if (first == 0) found_ = m, found_id_ = id;
         return m;
     }
 
     // ---- nodes
 
-    constexpr void check_nodes(std::string_view list) {
-        if (net_.troubles == nullptr || list == checked_nodes_) return;
+    void check_nodes(std::string_view list) {
+        if (list == checked_nodes_) return;
         checked_nodes_ = list; // most lists equal the previous one
         for_each_name(list, [&](std::string_view node) {
-            if (node == nobody || names(net_.nodes, node)) return;
+            if (node == nobody || names(net_.nodes.names, node)) return;
             Nearest nearest{node};
-            for_each_name(net_.nodes, [&](std::string_view each) { nearest.consider(each); });
-            note(static_cast<std::size_t>(node.data() - net_.text.data()), "BU_ names no node \"", node, "\"",
-                 or_meant(nearest, ""));
+            for_each_name(net_.nodes.names, [&](std::string_view each) { nearest.consider(each); });
+            note(net_.position_of(node), "BU_ names no node \"", node, "\"", or_meant(nearest, ""));
         });
     }
     /// Returns the names up to the end of the line, or to something else.
-    constexpr std::string_view node_list() {
+    NodeList node_list() {
         const std::size_t from = in_.at();
         std::size_t end = from;
         while (!in_.at_end() && !in_.begins_line() && !in_.name().empty()) {
             in_.take(',');
             end = in_.at();
         }
-        return end == from ? std::string_view{} : in_.since(from);
+        return {end == from ? std::string_view{} : in_.since(from), from};
     }
 
     // ---- statements
 
-    constexpr void message_statement() {
-        if (net_.used.messages == net_.messages.size())
+    void message_statement() {
+        if (!in_.begins_statement(statement_at_))
             return give_up(statement_at_, "BO_ is in the middle of a line; begin a new one");
-        MessageRow& row = net_.messages[net_.used.messages++];
-        row.first = net_.used.signals;
+        MessageRow& row = net_.messages.emplace_back();
+        row.first = net_.signals.size();
         const std::size_t id_at = row.at = in_.at();
         const std::uint32_t id = whole(0xffff'ffff, "a message's identifier");
         row.at = in_.at();
@@ -67,42 +66,43 @@ protected:
         row.is_independent = id == independent_id || row.name == independent;
         expect(':', "\":\" after the message's name");
         row.length = whole(0xffff'ffff, "the message's length in bytes");
-        const std::size_t sender_at = in_.at();
-        row.sender = label("the node that sends the message");
+        row.sender.at = in_.at();
+        row.sender.names = label("the node that sends the message");
         takes_signals_ = true;
         if (!ok() || row.is_independent) return;
         about(row);
-        check_nodes(net_.text.substr(sender_at, row.sender.size()));
+        check_nodes(row.sender.names);
         part_ = Part::identifier;
         if (!valid(row.identifier))
             spoil(id_at, "message \"", row.name, "\" has the identifier ", std::uint64_t{id},
                   ": a standard one ends at 2047, an extended one has bit 31 set and 29 bits");
         part_ = Part::all;
-        for (MessageRow& each : net_.all().first(net_.used.messages - 1)) {
+        for (MessageRow& each : std::span{net_.messages}.first(net_.messages.size() - 1)) {
             if (each.is_independent) continue;
             if (each.identifier == row.identifier) {
-                if (net_.troubles != nullptr) // either may be taken, so none is spoilt
-                    net_.troubles->add({id_at, Weight::fault, message_, no_such, {}}, "message \"", row.name,
-                                       "\" has the identifier of \"", each.name, "\"");
+                // Either may be taken, so none is spoilt.
+                net_.troubles.push_back(
+                    {id_at, Weight::fault, message_, no_such,
+                     Sentence{"message \"", row.name, "\" has the identifier of \"", each.name, "\""}});
                 each.shares_identifier = row.shares_identifier = true;
             }
             if (each.name == row.name) {
                 spoil(row.at, "message \"", row.name, "\" is there twice");
-                mark(each.troubles[0], row.at);
+                mark(each.troubles[0], last_trouble());
             }
         }
     }
 
-    constexpr void signal_statement() {
-        if (net_.used.messages == 0)
+    void signal_statement() {
+        if (net_.messages.empty())
             return give_up(in_.at(), "a signal without a message; write BO_ before it");
-        MessageRow& owner = net_.messages[net_.used.messages - 1];
+        MessageRow& owner = net_.messages.back();
         if (!takes_signals_) return give_up(in_.at(), "a signal that is not behind its message");
-        if (net_.used.signals == net_.signals.size())
+        if (!in_.begins_statement(statement_at_, "BO_"))
             return give_up(in_.at(), "SG_ is in the middle of a line; begin a new one");
-        SignalRow& row = net_.signals[net_.used.signals++];
+        SignalRow& row = net_.signals.emplace_back();
         row.at = in_.at();
-        row.message = net_.used.messages - 1;
+        row.message = net_.messages.size() - 1;
         ++owner.signals;
         about(row);
         if (owner.is_independent) weight_ = Weight::note;
@@ -111,15 +111,15 @@ protected:
         if (ok() && !in_.at_end() && !in_.begins_line())
             fail_expected("a node that receives the signal, or the end of the line");
         if (!ok()) return;
-        check_nodes(row.receivers);
+        check_nodes(row.receivers.names);
         const Signal& s = row.shape;
         if (SignalRow* const other = net_.find(owner, s.name); other != &row) {
             spoil(row.at, "message \"", owner.name, "\" has two signals \"", s.name, "\"");
-            mark(other->trouble, row.at);
+            mark(other->trouble, last_trouble());
         }
     }
     /// Reads a signal up to its unit.
-    constexpr void shape(SignalRow& row) {
+    void shape(SignalRow& row) {
         Signal& s = row.shape;
         s.name = label("a signal's name");
         const std::size_t multiplexing_at = in_.at();
@@ -165,7 +165,7 @@ protected:
         s.unit = text("the unit between quotes");
     }
     /// Reads "M", "m12" or "m12M".
-    constexpr void multiplexing(SignalRow& row, std::string_view written, std::size_t at) {
+    void multiplexing(SignalRow& row, std::string_view written, std::size_t at) {
         std::string_view left = written;
         row.is_multiplexed = left.starts_with('m');
         if (row.is_multiplexed) {
@@ -183,7 +183,7 @@ protected:
             fail(at, "found \"", written, "\", expected \":\" or M, m0 or m0M of a multiplexed signal");
     }
 
-    constexpr void select(SignalRow& signal, const Selection& more) {
+    void select(SignalRow& signal, const Selection& more) {
         auto& all = signal.shape.selections;
         if (!all.empty() && more.from != 0 && all[all.size() - 1].to == more.from - 1)
             all[all.size() - 1].to = more.to;

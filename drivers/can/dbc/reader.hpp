@@ -1,4 +1,4 @@
-// Reads a DBC file, in a constant expression or on the host, with the same code and the same fault messages.
+// Reads a DBC file on the host.
 // Leniency is a closed list: a fault makes the whole file unreadable, unless it is certain which row it
 // concerns. Then it marks the row, and only a map that takes the row is refused.
 #pragma once
@@ -9,23 +9,23 @@ namespace tappet::can::dbc {
 
 class Reader : AttributeReader {
 public:
-    explicit constexpr Reader(Network& network) noexcept : AttributeReader{network} {}
+    explicit Reader(Network& network) noexcept : AttributeReader{network} {}
 
     /// Fills the network; its fault says why nothing of the file can be used.
-    constexpr void read() {
+    void read() {
         if (net_.text.size() != without_mark(net_.text).size())
             note(0, "the file begins with a byte-order mark");
         while (net_.fault.empty() && !in_.at_end()) statement();
         begin(0);
         if (!has_statement_ && net_.fault.empty()) give_up(0, "the file has no statement; is it a DBC file?");
-        for (MessageRow& message : net_.all())
+        for (MessageRow& message : net_.messages)
             if (net_.fault.empty() && !message.is_independent) finish(message);
     }
 
 private:
     // ---- statements
 
-    constexpr void statement() {
+    void statement() {
         if (in_.take(';')) return;
         begin(in_.at());
         has_statement_ = true;
@@ -62,7 +62,7 @@ private:
                     "\", expected a statement, which begins with BO_, SG_, VAL_ or the like");
         if (failed_ && net_.fault.empty()) skip_statement();
     }
-    constexpr void new_symbols() {
+    void new_symbols() {
         expect(':', "\":\" after NS_");
         while (ok() && !in_.at_end()) {
             Scanner ahead = in_;
@@ -72,13 +72,13 @@ private:
             in_ = ahead;
         }
     }
-    constexpr void bit_timing() {
+    void bit_timing() {
         expect(':', "\":\" after BS_");
         std::uint64_t ignored = 0;
         while (ok() && (in_.whole(ignored) || in_.take(':') || in_.take(',') || in_.take(';'))) {
         }
     }
-    constexpr void nodes() {
+    void nodes() {
         expect(':', "\":\" after BU_");
         if (!ok()) return;
         if (has_nodes_) return give_up(statement_at_, "BU_ is there twice");
@@ -86,19 +86,19 @@ private:
         const std::size_t from = in_.at();
         while (!in_.at_end() && !is_statement(in_.peek()) && !in_.name().empty()) in_.take(',');
         in_.take(';');
-        net_.nodes = in_.since(from);
+        net_.nodes = {in_.since(from), from};
         has_nodes_ = true;
     }
-    constexpr void senders() {
+    void senders() {
         if (!known_message(false)) return;
         expect(':', "\":\" before the nodes that send the message");
-        const std::string_view list = ok() ? node_list() : std::string_view{};
-        if (list.empty() && ok()) fail_expected("a node that sends the message");
-        check_nodes(list);
+        const NodeList list = ok() ? node_list() : NodeList{};
+        if (list.names.empty() && ok()) fail_expected("a node that sends the message");
+        check_nodes(list.names);
         end_of_statement();
         if (!ok()) return;
         for_each_twin([&](MessageRow& each) {
-            if (!each.more_senders.empty())
+            if (!each.more_senders.names.empty())
                 give_up(statement_at_, "message \"", each.name, "\" has BO_TX_BU_ twice");
             each.more_senders = list;
         });
@@ -106,12 +106,12 @@ private:
 
     /// Names of values are texts: the signal lacks those that cannot be believed, and what uses one is
     /// refused.
-    constexpr void values() {
+    void values() {
         weight_ = Weight::note;
         if (!in_.peek().empty()) return skip_statement(); // of an environment variable
         if (!known_message(false) || !known_signal()) return;
         const Signal& shape = the_signal().shape;
-        const std::size_t first = net_.used.values;
+        const std::size_t first = net_.values.size();
         while (ok() && in_.next() != ';' && !in_.at_end() && !begins_statement(in_)) value(the_signal());
         end_of_statement();
         if (!ok()) return;
@@ -127,10 +127,10 @@ private:
                      "values it does not take");
             row.names_at = statement_at_;
             row.first_value = first;
-            row.values = is_second || is_other ? 0 : net_.used.values - first;
+            row.values = is_second || is_other ? 0 : net_.values.size() - first;
         });
     }
-    constexpr void value(const SignalRow& row) {
+    void value(const SignalRow& row) {
         ValueName value;
         const std::size_t at = in_.at();
         bool fits = true;
@@ -150,11 +150,10 @@ private:
         value.name = text("the value's name between quotes");
         if (!ok()) return;
         if (!fits) return note(at, "signal \"", row.shape.name, "\" cannot have the value of this name");
-        if (net_.used.values == net_.values.size()) return give_up(at, "too many values; is the file whole?");
-        net_.values[net_.used.values++] = value;
+        net_.values.push_back(value);
     }
 
-    constexpr void value_type() {
+    void value_type() {
         if (!known_message(true) || !known_signal()) return;
         in_.take(':');
         const std::size_t at = in_.at();
@@ -177,12 +176,12 @@ private:
         });
     }
     /// From here on, faults concern this row alone.
-    constexpr void concern(const SignalRow& row) {
+    void concern(const SignalRow& row) {
         about(row);
         is_by_identifier_ = false;
     }
 
-    template <class Visit> constexpr void each_range(const Visit& visit) {
+    template <class Visit> void each_range(const Visit& visit) {
         do {
             const std::size_t from_at = in_.at();
             const std::uint32_t from = whole(0xffff'ffff, "the first value of a range");
@@ -192,7 +191,7 @@ private:
             if (ok()) visit(Selection{from, to});
         } while (ok() && in_.take(','));
     }
-    constexpr void selections() {
+    void selections() {
         if (!known_message(true)) return;
         part_ = Part::selection;
         const std::size_t signal_at = in_.at();
@@ -224,7 +223,7 @@ private:
     }
     // ---- a complete message
 
-    constexpr void finish(MessageRow& message) {
+    void finish(MessageRow& message) {
         take_defaults(message);
         const auto signals = net_.of(message);
         std::size_t multiplexors = 0;

@@ -56,6 +56,18 @@ public:
         while (i != 0 && (text_[i - 1] == ' ' || text_[i - 1] == '\t')) --i;
         return i == 0 || text_[i - 1] == '\n' || text_[i - 1] == '\r';
     }
+    /// Returns whether only blanks are between `at` and the beginning of its line, or a ';', or whether that
+    /// part begins with the word `in`.
+    [[nodiscard]] constexpr bool begins_statement(std::size_t at, std::string_view in = {}) const noexcept {
+        std::size_t from = at;
+        while (from != 0 && text_[from - 1] != '\n' && text_[from - 1] != '\r' && text_[from - 1] != ';')
+            --from;
+        if (from == 0) from = text_.size() - without_mark(text_).size();
+        while (from < at && is_blank(text_[from])) ++from;
+        const std::string_view part = text_.substr(from, at - from);
+        return part.empty() ||
+               (!in.empty() && part.size() > in.size() && part.starts_with(in) && is_blank(part[in.size()]));
+    }
     constexpr bool take(char c) noexcept {
         if (at_ == text_.size() || text_[at_] != c) return false;
         ++at_;

@@ -10,7 +10,7 @@ protected:
     using MessageReader::MessageReader;
 
     /// Returns whether to skip the statement, because it has no effect on the wire.
-    static constexpr bool is_passed_over(std::string_view keyword) noexcept {
+    static bool is_passed_over(std::string_view keyword) noexcept {
         constexpr std::string_view all =
             "VAL_TABLE_ EV_ ENVVAR_DATA_ EV_DATA_ SGTYPE_ SIG_GROUP_ SIG_TYPE_REF_ SIGTYPE_VALTYPE_ "
             "SGTYPE_VAL_ "
@@ -18,20 +18,20 @@ protected:
             "BU_BO_REL_ CAT_ CAT_DEF_ FILTER CM_ NS_DESC_";
         return names(all, keyword);
     }
-    static constexpr bool is_statement(std::string_view keyword) noexcept {
+    static bool is_statement(std::string_view keyword) noexcept {
         constexpr std::string_view read =
             "BO_ SG_ VAL_ BA_ BA_DEF_ BA_DEF_DEF_ BO_TX_BU_ SIG_VALTYPE_ SG_MUL_VAL_ BU_ NS_ BS_ VERSION";
         return names(read, keyword) || is_passed_over(keyword);
     }
-    static constexpr bool begins_statement(const Scanner& at) noexcept {
+    static bool begins_statement(const Scanner& at) noexcept {
         return at.begins_line() && is_statement(at.peek());
     }
-    constexpr void end_of_statement() {
+    void end_of_statement() {
         if (!ok() || in_.take(';')) return;
         if (in_.at_end() || !begins_statement(in_)) return fail_expected("\";\", the end of the statement");
         note(statement_at_, "the statement has no \";\"; it ends before the next one");
     }
-    constexpr void skip_statement() {
+    void skip_statement() {
         std::size_t text_at = 0;
         switch (in_.skip_statement(is_statement, text_at)) {
         case Scanner::End::semicolon: break;
@@ -51,12 +51,12 @@ protected:
 
     // ---- look-up of the row that a statement is about: false after a fault, and in Vector's container
 
-    template <class... Pieces> constexpr void spoil_unknown(std::size_t at, const Pieces&... pieces) {
+    template <class... Pieces> void spoil_unknown(std::size_t at, const Pieces&... pieces) {
         if (weight_ == Weight::note) return note(at, pieces...);
         fail(at, pieces...);
     }
     /// `marks`: a fault of the statement behind the identifier spoils the message, not the file.
-    constexpr bool known_message(bool marks) {
+    bool known_message(bool marks) {
         const std::size_t at = in_.at();
         const std::uint32_t id = whole(0xffff'ffff, "a message's identifier");
         if (!ok()) return false;
@@ -67,13 +67,14 @@ protected:
             return true;
         }
         bool is_independent = id == independent_id;
-        for (const MessageRow& each : net_.all()) is_independent |= each.is_independent && raw_id(each) == id;
+        for (const MessageRow& each : net_.messages)
+            is_independent |= each.is_independent && raw_id(each) == id;
         if (!is_independent) spoil_unknown(at, "no message has the identifier ", std::uint64_t{id});
         failed_ = true;
         return false;
     }
     /// Finds it in the first of the messages with the identifier that has it.
-    constexpr bool known_signal() {
+    bool known_signal() {
         const std::size_t at = in_.at();
         const std::string_view name = label("a signal's name");
         if (!ok()) return false;

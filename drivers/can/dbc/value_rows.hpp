@@ -2,12 +2,12 @@
 // other, are removed. Whatever uses one of them is then refused.
 #pragma once
 
-#include "drivers/can/dbc/network.hpp"
+#include "drivers/can/dbc/rows.hpp"
 
 namespace tappet::can::dbc {
 
 /// Returns why the name of index `i` cannot be believed; empty: it can.
-constexpr std::string_view name_trouble(const Signal& s, std::span<const ValueName> all, std::size_t i) {
+constexpr std::string_view name_trouble(const Signal& s, Slice<ValueName> all, std::size_t i) {
     const bool is_float = s.kind == Kind::float32 || s.kind == Kind::float64;
     const std::int64_t value = all[i].value;
     if (!is_float && to_integer(s, static_cast<std::uint64_t>(value) & detail::mask_of(s)) != value)
@@ -21,8 +21,8 @@ constexpr std::string_view name_trouble(const Signal& s, std::span<const ValueNa
 }
 
 /// Keeps the names that can be believed, and of equal ones the first; tell(name, why) for each other one.
-template <class Tell> constexpr void keep_good_names(Network& net, SignalRow& row, const Tell& tell) {
-    const auto all = net.values.subspan(row.first_value, row.values);
+template <class Tell> constexpr void keep_good_names(const Rows& rows, SignalRow& row, const Tell& tell) {
+    const auto all = rows.names_of(row);
     for (std::size_t i = 0; i < row.values;) {
         const std::string_view why = name_trouble(row.shape, all, i);
         if (why.empty()) {
@@ -30,7 +30,7 @@ template <class Tell> constexpr void keep_good_names(Network& net, SignalRow& ro
             continue;
         }
         tell(all[i], why);
-        std::rotate(&all[i], &all[i] + 1, all.data() + all.size()); // the others are compared with it
+        std::rotate(&all[i], &all[i] + 1, all.end()); // the others are compared with it
         --row.values;
     }
 }

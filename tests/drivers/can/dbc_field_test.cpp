@@ -6,6 +6,8 @@
 #include "tests/drivers/can/awkward_dbc.hpp"
 #include "tests/drivers/can/dbc_generator.hpp"
 #include "tests/drivers/can/dbc_on_host.hpp"
+#include "tests/drivers/can/files.hpp"
+#include "tests/drivers/can/swallowed.dbc.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,34 +32,14 @@ double decoded(const DbcMap& read, std::string_view path, Payload data) {
 constexpr auto us = node("us");
 constexpr auto receiver = node("", receive("M", every(10ms)));
 
-// A reader that goes on must read the same in the compiler and on the host.
-constexpr char swallowed_text[] = "\xEF\xBB\xBF"
-                                  R"(BU_: A us // "none" BO_ 9 X: 8 A
-CM_ "no semicolon"
-BO_ 1 M: 8 A
- SG_ s : 0|8@1+ (1,0) [0|0] "" us
- SG_ t : 0|1600@1+ (1,0) [0|1E+481] "" A
-BO_ 1073741824 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX
- SG_ lost : 0|99@1+ (1,0) [0|0] "" us
-BO_ 2 2nd: 8 A
- SG_ 2t : 0|8@1+ (1,0) [0|0] "" us, robot
-BA_DEF_ "Maker" STRING
-BO_ 3 O: 8 robot
- SG_ u : 0|8@1+ (1,0) [0|0] "" us
-VAL_ 1 s 255 "SNA"
-BA_DEF_DEF_ "GenMsgCycleTime" 10;
-VAL_ 7 s 1 "on";
-CM_ "end";
-)";
-constexpr SourceText swallowed{"swallowed.dbc", {swallowed_text, sizeof swallowed_text - 1}};
-constexpr auto map = from_dbc<swallowed, us>;
+constexpr auto map = from_dbc<files::swallowed_dbc, us>;
 TAPPET_ACCEPTED(map.fault);
 static_assert(map.frames.size() == 3 && map.signals.size() == 3);
 static_assert(map.signal("M.s") == 0 && map.signal("2nd.2t") == 1 && map.signal("O.u") == 2);
 static_assert(map.signals[0].names.size() == 1 && map.frames[2].every == 10ms);
 
 TEST(DbcField, reads_past_faults_of_no_consequence) {
-    const DbcMap read{swallowed.text, us.view()};
+    const DbcMap read{contents_of("swallowed.dbc"), us.view()};
     EXPECT_EQ(decoded(read, "M.s", {7}), 7.0);
     EXPECT_EQ(read.sizes.frames, 3u);
     EXPECT_EQ(read.sizes.signals, 3u);

@@ -1,5 +1,6 @@
 // Our reader and decoder agree with canmatrix to the bit, for DBC files and frames of fixed seeds.
 #include "apps/carpet_loom/maps.hpp"
+#include "drivers/can/dbc/texts.hpp"
 #include "drivers/can/dbc/writer.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "tests/drivers/can/awkward_dbc.hpp"

@@ -1,6 +1,7 @@
 // DBC files as signal maps: the compiled map, and the frames that a node sends and receives with it.
 #include "drivers/can/bus.hpp"
 #include "drivers/can/from_dbc.hpp"
+#include "tests/drivers/can/files.hpp"
 #include "tests/drivers/can/press.dbc.hpp"
 #include "tests/drivers/can/same_map.hpp"
 
@@ -151,7 +152,7 @@ TEST(Dbc, reads_whether_the_bit_rate_switches) {
 }
 
 TEST(Dbc, reads_at_run_time_the_same_map_as_at_compile_time) {
-    expect_same(map, {files::press_dbc.text, controller.view()});
+    expect_same(map, {contents_of("press.dbc"), controller.view()});
 }
 
 } // namespace

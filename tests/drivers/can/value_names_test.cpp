@@ -2,6 +2,7 @@
 #include "drivers/can/from_dbc.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "drivers/can/value_names.hpp"
+#include "tests/drivers/can/gearbox.dbc.hpp"
 #include "tests/drivers/can/press.dbc.hpp"
 
 #include <gtest/gtest.h>
@@ -9,24 +10,11 @@
 namespace tappet::can {
 namespace {
 
-constexpr char gearbox_text[] = R"(BU_: controller gearbox
-BO_ 385 gearbox: 2 gearbox
- SG_ gear : 0|8@1- (1,0) [0|6] "" controller
- SG_ oil : 8|8@1+ (0.5,-40) [-40|80] "degC" controller
-BO_ 513 gear_command: 2 controller
- SG_ gear : 0|8@1- (1,0) [0|6] "" gearbox
- SG_ most : 8|8@1+ (0.5,-40) [-40|80] "degC" gearbox
-VAL_ 385 gear 0 "Neutral" 1 "First" -1 "Reverse gear" ;
-VAL_ 513 gear 0 "Neutral" 1 "First" -1 "Reverse gear" ;
-VAL_ 385 oil 255 "not available" ;
-VAL_ 513 most 255 "not available" ;
-)";
-constexpr SourceText file{"gearbox.dbc", {gearbox_text, sizeof gearbox_text - 1}};
 constexpr auto controller =
     node("controller", receive("gearbox", every(10ms)),
          transmit("gear_command", every(10ms), signal("gear").called("wanted").safe("Reverse gear"),
                   signal("most").safe("not available")));
-constexpr auto map = from_dbc<file, controller>;
+constexpr auto map = from_dbc<files::gearbox_dbc, controller>;
 TAPPET_ACCEPTED(map.fault);
 
 enum class Gear : std::int64_t {

@@ -1,6 +1,6 @@
 // Damaged DCF files: a network's start-up is that of the undamaged file, or the file or the network is
 // refused. No object takes another's value, no value of the identity or of a PDO is lost.
-#include "drivers/canopen/eds.hpp"
+#include "drivers/canopen/eds_reader.hpp"
 #include "drivers/canopen/network.hpp"
 
 #include <gtest/gtest.h>
@@ -137,7 +137,7 @@ constexpr auto none = can::signal_map(
 
 /// Returns the start-up of a node as "1018h:1 = 999" and so on; "refused: " and why.
 std::vector<std::string> start_of(const std::string& text) {
-    const auto read = std::make_unique<detail::EdsReader<200>>(SourceText{"x.dcf", text});
+    const auto read = std::make_unique<detail::EdsReader>(SourceText{"x.dcf", text});
     const auto refused = [](const Sentence& why) {
         return std::vector{"refused: " + std::string{why.view()}};
     };
@@ -227,7 +227,7 @@ const std::string device = "[1000]\nDataType=7\nAccessType=ro\nDefaultValue=0x19
 
 /// Returns "LINE: MEANING" of the sentence that refuses the file; empty: it is read.
 std::string refusal(const std::string& more) {
-    const std::string all{detail::EdsReader<64>{SourceText{"x.dcf", device + more}}.fault.view()};
+    const std::string all{detail::EdsReader{SourceText{"x.dcf", device + more}}.fault.view()};
     return all.empty() ? all : all.substr(6, all.find("; the file is not read") - 6);
 }
 /// The refusal of object 2000h, whose section is line 8.

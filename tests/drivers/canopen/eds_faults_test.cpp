@@ -2,16 +2,28 @@
 // is refused only in a row that needs what is wrong, with a cure in that row.
 #include "drivers/canopen/eds.hpp"
 #include "drivers/canopen/eds_faults.hpp"
+#include "drivers/canopen/eds_reader.hpp"
 #include "drivers/canopen/network.hpp"
 #include "drivers/canopen/simulated_node.hpp"
+#include "tests/drivers/canopen/configured.dcf.hpp"
+#include "tests/drivers/canopen/contradictory.eds.hpp"
+#include "tests/drivers/canopen/flawed.eds.hpp"
+#include "tests/drivers/canopen/untyped.dcf.hpp"
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <string>
 
 namespace tappet::canopen {
 namespace {
 
+std::string contents_of(const std::string& name) {
+    std::ifstream file{TAPPET_EDS_FILES "/" + name, std::ios::binary};
+    EXPECT_TRUE(file) << name;
+    return {std::istreambuf_iterator<char>{file}, {}};
+}
 std::string faults_of(const std::string& text) {
     std::string all;
     for (const EdsFault& each : eds_faults({"x.eds", text}))
@@ -106,106 +118,12 @@ TEST(EdsFaults, are_listed_all_at_once_in_order) {
     EXPECT_EQ(eds_faults({"x.eds", many}).size(), 2u * 256);
 }
 
-constexpr SourceText contradictory{"two.eds", R"([DeviceInfo]
-VendorNumber=0x10
-RevisionNumber=1
-[1000]
-DataType=7
-AccessType=ro
-[1017]
-DataType=6
-AccessType=rw
-[1018]
-ObjectType=9
-SubNumber=2
-[1018sub1]
-DataType=7
-AccessType=ro
-DefaultValue=17
-[1018sub3]
-DataType=7
-AccessType=ro
-DefaultValue=2
-)"};
-
 /// A device with its faults, as a network's rows see it.
-constexpr SourceText flawed{"flawed.eds", R"([DeviceInfo]
-CompactPDO=23
-[1000]
-DataType=7
-AccessType=ro
-[1017]
-DataType=6
-AccessType=rw
-[1400]
-ObjectType=9
-SubNumber=3
-[1400sub1]
-DataType=7
-AccessType=rw
-[1400sub2]
-DataType=5
-AccessType=rw
-[1600]
-ObjectType=9
-SubNumber=9
-[1600sub0]
-DataType=5
-AccessType=rw
-[1600sub1]
-DataType=7
-AccessType=rw
-[2000]
-DataType=2
-AccessType=rw
-LowLimit=0x00
-HighLimit=0xFF
-[2001]
-DataType=6
-AccessType=rw
-HighLimit=65536
-[2002]
-DataType=0x40
-AccessType=rw
-PDOMapping=1
-[2003]
-ObjectType=8
-SubNumber=4
-[2003sub1]
-DataType=0x41
-AccessType=rw
-PDOMapping=1
-)"};
-constexpr SourceText configured{"own.dcf", R"([1000]
-DataType=7
-AccessType=ro
-[1017]
-DataType=6
-AccessType=rw
-[2000]
-DataType=6
-AccessType=rw
-HighLimit=10
-ParameterValue=11
-)"};
-
-constexpr SourceText untyped{"untyped.dcf", R"([1000]
-DataType=7
-AccessType=ro
-[1017]
-DataType=6
-AccessType=rw
-[2000]
-DataType=0x40
-AccessType=rw
-ParameterValue=700
-)"};
-
 constexpr auto map = can::signal_map(can::transmit(can::standard(0x205), "out", can::bytes(2),
                                                    can::every(5ms), can::signal("value", 0, 16).safe(0)));
 constexpr auto none = can::signal_map(
     can::receive(can::extended(0x1234), "other", can::bytes(1), can::every(5ms), can::signal("value", 0, 8)));
-constexpr NodeRow node_of_flawed = node(5, "own", dictionary<flawed>).heartbeat(100ms);
+constexpr NodeRow node_of_flawed = node(5, "own", dictionary<files::flawed_eds>).heartbeat(100ms);
 
 template <class Map> std::string fault_of(const Map& frames, const NodeRow& row) {
     return std::string{network(frames, manager(127), row).fault.view()};
@@ -217,10 +135,9 @@ TEST(EdsFaults, in_objects_without_rows_are_no_fault_of_the_network) {
 }
 
 TEST(EdsFaults, in_limits_leave_those_of_the_next_object) {
-    const detail::EdsReader<8> read{{"x.eds",
-                                     "[1000]\nDataType=7\nAccessType=ro\n"
-                                     "[2000]\nDataType=2\nAccessType=rw\nLowLimit=0\nHighLimit=0xFF\n"
-                                     "[2001]\nDataType=5\nAccessType=rw\nHighLimit=9\n"}};
+    const detail::EdsReader read{{"x.eds", "[1000]\nDataType=7\nAccessType=ro\n"
+                                           "[2000]\nDataType=2\nAccessType=rw\nLowLimit=0\nHighLimit=0xFF\n"
+                                           "[2001]\nDataType=5\nAccessType=rw\nHighLimit=9\n"}};
     ASSERT_EQ(read.objects.size(), 3u);
     EXPECT_EQ(read.objects[1].flaws, flaw::limits);
     EXPECT_EQ(read.objects[2].flaws, 0);
@@ -230,10 +147,11 @@ TEST(EdsFaults, in_limits_leave_those_of_the_next_object) {
 
 TEST(EdsFaults, in_a_written_object_are_refused_with_a_cure_in_its_row) {
     EXPECT_EQ(fault_of(none, node_of_flawed.write(0x2000, 5)),
-              "node 5 \"own\": flawed.eds:31: HighLimit 0xFF of 2000h:0 is under its LowLimit; believe the "
+              "node 5 \"own\": tests/drivers/canopen/flawed.eds:31: HighLimit 0xFF of 2000h:0 is under its "
+              "LowLimit; believe the "
               "device: canopen::dictionary<.., canopen::despite(0x2000, canopen::DataType::integer8)>");
     constexpr NodeRow believed =
-        node(5, "own", dictionary<flawed, despite(0x2000, DataType::integer8)>).heartbeat(100ms);
+        node(5, "own", dictionary<files::flawed_eds, despite(0x2000, DataType::integer8)>).heartbeat(100ms);
     EXPECT_EQ(fault_of(none, believed.write(0x2000, 5)), "");
     EXPECT_EQ(fault_of(none, believed.write(0x2000, 128)), "") << "a bit pattern, as elsewhere";
     EXPECT_NE(fault_of(none, believed.write(0x2000, 256)), "");
@@ -242,18 +160,21 @@ TEST(EdsFaults, in_a_written_object_are_refused_with_a_cure_in_its_row) {
 
 TEST(EdsFaults, in_mapped_objects_are_told_together) {
     EXPECT_EQ(fault_of(map, node_of_flawed.pdo("out", {{0x2003, 1}}).write(0x2000, 5).write(0x2002, 1)),
-              "node 5 \"own\": flawed.eds:44: DataType \"0x41\" has no meaning there (CiA 301, CiA 306); "
+              "node 5 \"own\": tests/drivers/canopen/flawed.eds:44: DataType \"0x41\" has no meaning there "
+              "(CiA 301, CiA 306); "
               "believe the device: canopen::dictionary<.., canopen::despite({0x2003, 1}, "
-              "canopen::DataType::..)>; flawed.eds:31: HighLimit 0xFF of 2000h:0 is under its "
+              "canopen::DataType::..)>; tests/drivers/canopen/flawed.eds:31: HighLimit 0xFF of 2000h:0 is "
+              "under its "
               "LowLimit; believe the device: canopen::dictionary<.., canopen::despite(0x2000, "
               "canopen::DataType::integer8)>; and 1 more of its faults");
     EXPECT_EQ(fault_of(map, node_of_flawed.pdo("out", {0x2002})),
-              "node 5 \"own\": flawed.eds:37: DataType \"0x40\" has no meaning there (CiA 301, CiA 306); "
+              "node 5 \"own\": tests/drivers/canopen/flawed.eds:37: DataType \"0x40\" has no meaning there "
+              "(CiA 301, CiA 306); "
               "believe the device: canopen::dictionary<.., canopen::despite(0x2002, canopen::DataType::..)>");
-    constexpr auto& believed = dictionary<flawed, despite(0x2002, DataType::unsigned16),
+    constexpr auto& believed = dictionary<files::flawed_eds, despite(0x2002, DataType::unsigned16),
                                           despite({0x1A00, 1}, DataType::unsigned32, Access::read_only)>;
     static_assert(std::ranges::is_sorted(believed.objects, {}, &Object::at));
-    EXPECT_EQ(believed.objects.size(), dictionary<flawed>.objects.size() + 1);
+    EXPECT_EQ(believed.objects.size(), dictionary<files::flawed_eds>.objects.size() + 1);
     ASSERT_NE(believed.find({0x1A00, 1}), nullptr) << "an object that the file lacks";
     EXPECT_EQ(believed.find({0x1A00, 1})->access, Access::read_only);
     constexpr auto net =
@@ -274,25 +195,27 @@ template <const Dictionary& of> SdoAbort maps_2002() {
 }
 
 TEST(EdsFaults, are_cured_for_the_simulated_device_too) {
-    EXPECT_EQ(maps_2002<dictionary<flawed>>(), SdoAbort::not_mappable);
-    constexpr auto& believed = dictionary<flawed, despite(0x2002, DataType::unsigned16)>;
+    EXPECT_EQ(maps_2002<dictionary<files::flawed_eds>>(), SdoAbort::not_mappable);
+    constexpr auto& believed = dictionary<files::flawed_eds, despite(0x2002, DataType::unsigned16)>;
     EXPECT_EQ(maps_2002<believed>(), SdoAbort::none);
 }
 
 TEST(EdsFaults, in_the_values_of_a_dcf_are_refused_unless_a_row_writes_them) {
-    constexpr NodeRow row = node(5, "own", dictionary<configured>).heartbeat(100ms);
-    EXPECT_EQ(fault_of(none, row), "node 5 \"own\": own.dcf:7: the value 11 of 2000h:0 is outside of its own "
+    constexpr NodeRow row = node(5, "own", dictionary<files::configured_dcf>).heartbeat(100ms);
+    EXPECT_EQ(fault_of(none, row), "node 5 \"own\": tests/drivers/canopen/configured.dcf:7: the value 11 of "
+                                   "2000h:0 is outside of its own "
                                    "limits; write the value meant: "
                                    ".write(0x2000, ..)");
     EXPECT_EQ(fault_of(none, row.write(0x2000, 10)), "");
 }
 
 TEST(EdsFaults, of_a_type_make_its_value_unknown_until_it_is_believed) {
-    const auto fault = fault_of(none, node(5, "own", dictionary<untyped>).heartbeat(100ms));
-    EXPECT_NE(fault.find("untyped.dcf:8: DataType"), fault.npos) << fault;
+    const auto fault = fault_of(none, node(5, "own", dictionary<files::untyped_dcf>).heartbeat(100ms));
+    EXPECT_NE(fault.find("tests/drivers/canopen/untyped.dcf:8: DataType"), fault.npos) << fault;
     constexpr auto net =
         network(none, manager(127),
-                node(5, "own", dictionary<untyped, despite(0x2000, DataType::unsigned16)>).heartbeat(100ms));
+                node(5, "own", dictionary<files::untyped_dcf, despite(0x2000, DataType::unsigned16)>)
+                    .heartbeat(100ms));
     ASSERT_EQ(net.fault.view(), "");
     bool written = false;
     for (const ConfigurationStep& step : net.steps)
@@ -300,8 +223,8 @@ TEST(EdsFaults, of_a_type_make_its_value_unknown_until_it_is_believed) {
                    step.value == 700 && step.bytes == 2;
     EXPECT_TRUE(written);
     EXPECT_NE(
-        fault_of(none,
-                 node(5, "own", dictionary<untyped, despite(0x2000, DataType::unsigned8)>).heartbeat(100ms)),
+        fault_of(none, node(5, "own", dictionary<files::untyped_dcf, despite(0x2000, DataType::unsigned8)>)
+                           .heartbeat(100ms)),
         "")
         << "700 does not fit";
 }
@@ -314,15 +237,16 @@ TEST(EdsFaults, of_compact_pdos_are_cured_by_their_objects) {
     };
     constexpr Belief word = despite(0x2002, DataType::unsigned16);
     EXPECT_EQ(
-        fault_of(second, row(dictionary<flawed, word>)),
-        "node 5 \"own\": frame \"out\" is a PDO that the device does not have: flawed.eds has no 1401h or no "
+        fault_of(second, row(dictionary<files::flawed_eds, word>)),
+        "node 5 \"own\": frame \"out\" is a PDO that the device does not have: "
+        "tests/drivers/canopen/flawed.eds has no 1401h or no "
         "1601h; take another identifier, or believe that CompactPDO stands for them: a canopen::despite(..) "
         "for "
         "each");
     EXPECT_EQ(
         fault_of(
             second,
-            row(dictionary<flawed, word, despite({0x1401, 1}, DataType::unsigned32),
+            row(dictionary<files::flawed_eds, word, despite({0x1401, 1}, DataType::unsigned32),
                            despite({0x1401, 2}, DataType::unsigned8), despite(0x1601, DataType::unsigned8),
                            despite({0x1601, 1}, DataType::unsigned32)>)),
         "");
@@ -330,16 +254,17 @@ TEST(EdsFaults, of_compact_pdos_are_cured_by_their_objects) {
 
 TEST(EdsFaults, of_an_identity_are_cured_in_the_row_of_the_node) {
     EXPECT_EQ(
-        faults_of(std::string{contradictory.text}),
+        faults_of(contents_of("contradictory.eds")),
         "13: 1018h:1 is 17, but [DeviceInfo] (line 1) says 0x10 -> nodes of this file without .identity(..)\n"
         "17: 1018h:3 is 2, but [DeviceInfo] (line 1) says 1 -> nodes of this file without .identity(..)\n");
-    constexpr NodeRow row = node(5, "own", dictionary<contradictory>).heartbeat(100ms);
-    EXPECT_EQ(
-        fault_of(none, row),
-        "node 5 \"own\": two.eds:13: 1018h:1 is 17, but [DeviceInfo] (line 1) says 0x10; state the device's: "
-        ".identity(vendor, product, revision); two.eds:17: 1018h:3 is 2, but [DeviceInfo] (line 1) says 1; "
-        "state "
-        "the device's: .identity(vendor, product, revision)");
+    constexpr NodeRow row = node(5, "own", dictionary<files::contradictory_eds>).heartbeat(100ms);
+    EXPECT_EQ(fault_of(none, row),
+              "node 5 \"own\": tests/drivers/canopen/contradictory.eds:13: 1018h:1 is 17, but [DeviceInfo] "
+              "(line 1) says 0x10; state the device's: "
+              ".identity(vendor, product, revision); tests/drivers/canopen/contradictory.eds:17: 1018h:3 is "
+              "2, but [DeviceInfo] (line 1) says 1; "
+              "state "
+              "the device's: .identity(vendor, product, revision)");
     EXPECT_NE(fault_of(none, row.of_any_revision()), "");
     constexpr auto net = network(none, manager(127), row.identity(0x11, 0, 2));
     ASSERT_EQ(net.fault.view(), "");

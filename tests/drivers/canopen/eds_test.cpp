@@ -1,7 +1,9 @@
 // Object dictionaries from EDS and DCF texts: their contents, and the refusals of files without a device.
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "drivers/canopen/eds.hpp"
+#include "drivers/canopen/eds_reader.hpp"
 #include "kernel/base/random.hpp"
+#include "tests/drivers/canopen/odd.dcf.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,21 +54,8 @@ TEST(Eds, contains_the_objects_of_a_drive) {
     "[1018sub0]\nDataType=5\nAccessType=const\nDefaultValue=1\n"                                             \
     "[1018sub1]\nDataType=7\nAccessType=ro\nDefaultValue=16\n"
 
-constexpr SourceText odd{
-    "odd.dcf", "; a comment\r\n" DEVICE_TYPE IDENTITY "[2000]\r\nParameterName=Gr\xF6\xDF"
-               "e \x80\r\nDataType=0x0003\r\nAccessType=RW\r\nDefaultValue=-3\r\n"
-               "ParameterValue=017\r\nPDOMapping=1\r\n"
-               "[2001]\nObjectType=0x8\nDataType=0x0006\nAccessType=rw\nCompactSubObj=3\nDefaultValue=7\n"
-               "[2001Value]\nNrOfEntries=1\n2=0x20\n"
-               "[2002]\ndatatype=0x0008\naccesstype=rw\ndefaultvalue=-1.5e1\n"
-               "[2003]\nDataType=0x0008\nAccessType=rw\nDefaultValue=0x3FC00000\n"
-               "[2004]\nDataType=0x0001\nAccessType=rw\nDefaultValue=1\n"
-               "[2005]\nDataType=0x0007\nAccessType=rw\nDefaultValue=0x40000180 + $NODEID\n"
-               "[2006]\nObjectType=0x2\nDataType=0x000F\nAccessType=rw\n"
-               "[DeviceComissioning]\nNodeID=9\nNodeName=left\n"};
-
 TEST(Eds, reads_files_as_vendors_write_them) {
-    const Dictionary& d = dictionary<odd>;
+    const Dictionary& d = dictionary<files::odd_dcf>;
     EXPECT_EQ(d.node, 9);
     EXPECT_EQ(d.identity.vendor, 16u);
     const Object& size = at(d, 0x2000);
@@ -122,7 +111,7 @@ TEST(Eds, reads_any_real_as_the_library_does) {
 }
 
 std::string refusal(const std::string& text) {
-    return std::string{detail::EdsReader<64>{SourceText{"x.eds", text}}.fault.view()};
+    return std::string{detail::EdsReader{SourceText{"x.eds", text}}.fault.view()};
 }
 
 TEST(Eds, refuses_files_that_describe_no_device) {

@@ -3,6 +3,7 @@
 #include "apps/carpet_loom/nodes/encoder.eds.hpp"
 #include "drivers/canopen/network.hpp"
 #include "tests/drivers/canopen/servo.eds.hpp"
+#include "tests/drivers/canopen/values.dcf.hpp"
 
 #include <gtest/gtest.h>
 
@@ -78,43 +79,19 @@ TEST(NetworkTable, disables_unmapped_pdos) {
 }
 
 TEST(NetworkTable, uses_the_values_of_a_dcf_unless_a_row_overrides_them) {
-    static constexpr SourceText source{"own.dcf", R"([1000]
-DataType=7
-AccessType=ro
-DefaultValue=5
-[1017]
-DataType=6
-AccessType=rw
-DefaultValue=0
-ParameterValue=77
-[2000]
-DataType=6
-AccessType=rw
-ParameterValue=12
-[2001]
-DataType=6
-AccessType=rw
-ParameterValue=13
-[2002]
-DataType=6
-AccessType=rw
-DefaultValue=14
-[DeviceComissioning]
-NodeID=5
-)"};
     constexpr auto none = can::signal_map(can::receive(can::extended(0x185), "no PDO", can::bytes(1),
                                                        can::every(5ms), can::signal("byte", 0, 8)));
     const auto table =
-        network(none, boss, node(5, "own", dictionary<source>).heartbeat(100ms).write(0x2001, 15));
+        network(none, boss, node(5, "own", dictionary<files::values_dcf>).heartbeat(100ms).write(0x2001, 15));
     ASSERT_EQ(table.fault.view(), "");
     std::string writes;
     for (const ConfigurationStep& step : table.steps)
         if (step.kind == ConfigurationStep::Kind::write)
             writes += std::string{to_text(step.at).view()} + "=" + std::to_string(step.value) + " ";
     EXPECT_EQ(writes, "2000h:0=12 2001h:0=15 1017h:0=100 ");
-    const auto other = network(none, boss, node(6, "own", dictionary<source>).heartbeat(100ms));
-    EXPECT_EQ(other.fault.view(),
-              "node 6 \"own\": own.dcf is the configuration of node 5; take the one of this node");
+    const auto other = network(none, boss, node(6, "own", dictionary<files::values_dcf>).heartbeat(100ms));
+    EXPECT_EQ(other.fault.view(), "node 6 \"own\": tests/drivers/canopen/values.dcf is the configuration of "
+                                  "node 5; take the one of this node");
 }
 
 std::string in_file(Address at) {

@@ -2,6 +2,7 @@
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "drivers/canopen/sdo_client.hpp"
 #include "drivers/canopen/simulated_node.hpp"
+#include "tests/drivers/canopen/texts.eds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,36 +10,6 @@
 
 namespace tappet::canopen {
 namespace {
-
-constexpr SourceText texts{"texts.eds", R"([1000]
-DataType=7
-AccessType=ro
-DefaultValue=1
-[2000]
-DataType=9
-AccessType=rw
-DefaultValue=a name that takes three segments
-[2001]
-DataType=0x1B
-AccessType=rw
-DefaultValue=0x1122334455667788
-[2002]
-DataType=5
-AccessType=wo
-[2003]
-DataType=9
-AccessType=rw
-DefaultValue=
-[2004]
-DataType=2
-AccessType=rw
-LowLimit=-5
-HighLimit=5
-[2005]
-DataType=9
-AccessType=ro
-DefaultValue=more characters than the 64 bytes that a client of ours takes in one transfer hold
-)"};
 
 /// A client and a server with nothing between them.
 struct Connection : testing::Test {
@@ -76,7 +47,7 @@ struct Connection : testing::Test {
     }
     [[nodiscard]] std::string text() const { return {client.value().begin(), client.value().end()}; }
 
-    SimulatedDevice<dictionary<texts>> device{1};
+    SimulatedDevice<dictionary<files::texts_eds>> device{1};
     SdoClient client;
     SdoServer server;
     Time now{};

@@ -31,6 +31,8 @@
 #include "kernel/services/browsing/browser_service.hpp"
 #include "kernel/services/reporting/reporting.hpp"
 #include "kernel/services/scope/thread_scope.hpp"
+#include "tests/toolchain/guide/mode_servo.eds.hpp"
+#include "tests/toolchain/guide/servo.eds.hpp"
 #include "toolchain/machine/system_run.hpp"
 
 #include <gtest/gtest.h>

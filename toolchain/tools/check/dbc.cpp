@@ -1,5 +1,5 @@
 // Checks all messages of a DBC file, whoever takes them.
-#include "drivers/can/dbc/reader.hpp"
+#include "drivers/can/dbc/network.hpp"
 #include "drivers/can/dbc/value_rows.hpp"
 #include "toolchain/tools/check/check.hpp"
 
@@ -15,32 +15,16 @@ using can::dbc::Trouble;
 
 class DbcCheck {
 public:
-    explicit DbcCheck(std::string_view text) {
-        const can::dbc::Room room = can::dbc::room_for(text);
-        messages_.resize(room.messages);
-        signals_.resize(room.signals);
-        values_.resize(room.values);
-        net_ = {"", text, {}, messages_, signals_, values_};
-        // As many troubles as lines, or as the first reading told.
-        for (std::size_t size = 64; size != 0;) {
-            told_.resize(size);
-            can::dbc::Troubles troubles{.rows = told_};
-            net_.used = {}, net_.fault = {}, net_.troubles = &troubles;
-            std::ranges::fill(messages_, MessageRow{});
-            std::ranges::fill(signals_, SignalRow{});
-            can::dbc::Reader{net_}.read();
-            size = troubles.count > size ? troubles.count : 0;
-            told_.resize(std::min(told_.size(), troubles.count));
-        }
-        for (const MessageRow& message : net_.all())
+    explicit DbcCheck(std::string_view text) : net_{can::dbc::read("", text)} {
+        for (const MessageRow& message : net_.messages)
             if (net_.fault.empty() && !message.is_independent) check(message);
     }
     [[nodiscard]] std::vector<Finding> findings() {
-        std::ranges::sort(told_, [](const Trouble& a, const Trouble& b) {
+        std::ranges::sort(net_.troubles, [](const Trouble& a, const Trouble& b) {
             return a.at != b.at ? a.at < b.at : a.text.view() < b.text.view();
         });
         std::vector<Finding> found;
-        for (const Trouble& each : told_) {
+        for (const Trouble& each : net_.troubles) {
             Finding one{net_.line_of(each.at), Weight::note, std::string{each.text.view()},
                         affected_by(each)};
             if (each.weight != can::dbc::Weight::note && !one.affects.empty()) one.weight = Weight::fault;
@@ -74,16 +58,16 @@ private:
         });
     }
     /// The nodes that send or receive the row; a signal's limits concern its senders only.
-    [[nodiscard]] std::vector<std::string> affected_by(const Trouble& trouble) const {
+    [[nodiscard]] std::vector<std::string> affected_by(const Trouble& trouble) {
         std::vector<std::string> nodes;
         if (trouble.weight == can::dbc::Weight::note || trouble.message == no_such) return nodes;
         const MessageRow& message = net_.messages[trouble.message];
-        add(nodes, message.sender);
-        add(nodes, message.more_senders);
+        add(nodes, message.sender.names);
+        add(nodes, message.more_senders.names);
         if (trouble.weight == can::dbc::Weight::limits) return nodes;
         for (const SignalRow& each : net_.of(message))
             if (trouble.signal == no_such || &each == &net_.signals[trouble.signal])
-                add(nodes, each.receivers);
+                add(nodes, each.receivers.names);
         return nodes;
     }
 
@@ -92,7 +76,7 @@ private:
         if (what.empty()) return;
         const auto m = static_cast<std::size_t>(&message - net_.messages.data());
         const auto s = signal == nullptr ? no_such : static_cast<std::size_t>(signal - net_.signals.data());
-        told_.push_back({signal == nullptr ? message.at : signal->at, weight, m, s, what});
+        net_.troubles.push_back({signal == nullptr ? message.at : signal->at, weight, m, s, what});
     }
     /// Checks what the map checks, for each signal that reads well.
     void check(const MessageRow& message) {
@@ -114,10 +98,10 @@ private:
             all.push_back(each.shape);
             multiplexors.push_back(each.selected_by == no_such ? no_such : each.selected_by - message.first);
             if (each.names_at == no_such) continue;
-            keep_good_names(net_, each, [&](const can::ValueName& name, std::string_view why) {
+            keep_good_names(net_.rows(), each, [&](const can::ValueName& name, std::string_view why) {
                 tell(can::dbc::Weight::note, message, &each,
                      Sentence{"signal \"", each.shape.name, "\" names the value ", name.value, ", ", why});
-                told_.back().at = each.names_at;
+                net_.troubles.back().at = each.names_at;
             });
         }
         if (message.length <= 64) check(message, frame, {all, multiplexors});
@@ -149,11 +133,7 @@ private:
         }
     }
 
-    std::vector<MessageRow> messages_;
-    std::vector<SignalRow> signals_;
-    std::vector<can::ValueName> values_;
-    std::vector<Trouble> told_;
-    can::dbc::Network net_{};
+    can::dbc::Network net_;
 };
 
 } // namespace

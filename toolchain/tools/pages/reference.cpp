@@ -29,6 +29,7 @@
 #include "kernel/services/time/timed_event.hpp"
 #include "kernel/services/time/watchdog.hpp"
 #include "toolchain/tools/browser/commands.hpp"
+#include "toolchain/tools/pages/node.eds.hpp"
 #include "toolchain/tools/pages/pages.hpp"
 
 #include <algorithm>
@@ -47,10 +48,9 @@ constexpr auto frames = can::signal_map(
     can::transmit(can::standard(2), "out_frame", can::bytes(8), can::every(10ms), can::signal("count", 0, 16),
                   can::signal("measure", 16, 16).times(0.1).in("mm"))
         .safe_by_silence());
-constexpr SourceText eds{"node.eds",
-                         "[1000]\nDataType=7\nAccessType=ro\n[1017]\nDataType=6\nAccessType=rw\n"};
-constexpr auto nodes = canopen::network(frames, canopen::manager(127),
-                                        canopen::node(9, "node", canopen::dictionary<eds>).heartbeat(100ms));
+constexpr auto nodes =
+    canopen::network(frames, canopen::manager(127),
+                     canopen::node(9, "node", canopen::dictionary<files::node_eds>).heartbeat(100ms));
 constexpr auto cams = cam_table(300_rpm, cam("point", at(0_deg)), cam("window", window(80_deg, 120_deg)));
 constexpr auto lines = gpio::line_map(gpio::sensor("sensor"), gpio::output("output", gpio::safe(false)),
                                       gpio::actuator("actuator", gpio::safe(false)));
