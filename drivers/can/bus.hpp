@@ -11,6 +11,7 @@
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/nth.hpp"
+#include "kernel/component/output_gate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -60,6 +61,9 @@ struct Bus {
     }
     static Unsent unsent(const void* bus, std::size_t facet) noexcept {
         return facet < signal_count ? static_cast<const Bus*>(bus)->store_.unsent(facet) : Unsent{};
+    }
+    static void gate_output(void* bus, std::size_t signal, OutputGate& gate) noexcept {
+        static_cast<Bus*>(bus)->gates_.add(signal, gate);
     }
     static constexpr DeviceTraffic device_traffic{AllFrames<map, protocol>::traffic.size(), &analyse_traffic,
                                                   &longest_seen};
@@ -143,6 +147,7 @@ struct Bus {
         bus_state.write(static_cast<std::int64_t>(State::down));
         if (!was_faulted_) bus_fault.emit();
         was_stopped_ = true;
+        gates_.stop(cycle.now);
     }
 
     [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return stopped_safely_; }
@@ -240,6 +245,8 @@ private:
                                         : nth_input<&Bus::physical_in>(s, name, signal.unit, "sent", comes);
         sent.needs_wake =
             frame.every == Duration::zero(); // a cyclic frame takes what is there when it is due
+        if (is_cyclic(map.row_of[s]) && signal.says_safe)
+            tappet::detail::apply(sent, drives_output(s, signal.safe_value));
         return sent;
     }
 
@@ -279,7 +286,7 @@ private:
             else if (const double value = store_.physical(s); is_number(value))
                 physical_out[s].write(value, frame.stamp);
             else
-                no_numbers.write(no_numbers.last() + 1);
+                store_.note_no_number(s), no_numbers.write(no_numbers.last() + 1);
         }
         frame_received[f].emit();
     }
@@ -334,16 +341,19 @@ private:
         });
     }
 
-    Reading read_inputs(std::size_t f) noexcept TAPPET_REALTIME {
+    Reading read_inputs(std::size_t f, Time now) noexcept TAPPET_REALTIME {
         Reading found;
         const auto take = [&](std::size_t s, auto& input, auto& value) noexcept TAPPET_REALTIME {
             const Flow flow = input.read(value);
             bool is_now = input.forced() || (flow == Flow::stale && input.has_substitute());
             found.usable &= flow == Flow::fresh || flow == Flow::old || is_now;
-            if (const Signal& row = map.signals[s]; input.is_abandoned()) {
+            const Signal& row = map.signals[s];
+            const auto safe = static_cast<std::remove_reference_t<decltype(value)>>(row.safe_value);
+            if (input.is_abandoned()) {
                 found.usable &= is_now = row.says_safe && !is_on_demand(f); // else silence is safe
-                value = static_cast<std::remove_reference_t<decltype(value)>>(row.safe_value);
+                value = safe;
             }
+            if (gates_.hold(s, value == safe, now)) value = safe, found.held = true;
             found.forced |= input.forced();
             if (is_on_demand(f)) found.writes += input.writes();
             found.fresh |= flow == Flow::fresh;
@@ -375,8 +385,8 @@ private:
     }
 
     void send(std::size_t f, Time now) noexcept TAPPET_REALTIME {
-        const Reading found = read_inputs(f);
-        const bool repeats = found.usable && !found.agreed && may_repeat_[f];
+        const Reading found = read_inputs(f, now);
+        const bool repeats = found.usable && !found.agreed && may_repeat_[f] && !found.held;
         may_repeat_[f] = found.usable && found.agreed;
         if (!found.usable) return;
         if (!repeats && !keep_inputs(f)) {
@@ -392,7 +402,7 @@ private:
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
             Demand& demand = demands_[f];
-            const Reading found = read_inputs(f);
+            const Reading found = read_inputs(f, now);
             demand.is_open |= found.fresh;
             const bool was_hidden = std::exchange(demand.is_hidden, found.forced) && !found.forced;
             const bool is_forgotten = was_hidden && found.writes == demand.forgotten;
@@ -433,7 +443,7 @@ private:
         }
         for (std::size_t f = 0; f < frame_count; ++f) {
             if (!is_on_demand(f)) continue;
-            const Reading found = read_inputs(f);
+            const Reading found = read_inputs(f, {}); // on demand: it has no gate
             Demand& demand = demands_[f];
             demand.is_hidden = found.forced;
             demand.forgotten = found.writes;
@@ -470,6 +480,7 @@ private:
     std::array<double, signal_count> physical_{};
     std::array<Time, frame_count> due_{};
     std::array<Demand, frame_count> demands_{};
+    OutputGates<signal_count> gates_{};
     std::array<bool, frame_count> may_repeat_{}; // the values sent last had one time stamp
     Device* device_ = nullptr;
     os::Waiter* waiter_ = nullptr;

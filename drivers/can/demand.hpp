@@ -13,6 +13,7 @@ struct Reading {
     bool fresh = false;  ///< at least one was written since the last reading
     bool agreed = true;  ///< all have the same time, except forced or substituted ones, which are current
     bool forced = false; ///< at least one is forced
+    bool held = false;   ///< at least one has its safe value, because its gate is closed
     Time at = never;     ///< that time; never: all are current
     std::uint64_t writes = 0; ///< number of writes to all of them, also behind forces; for a frame on demand
 };

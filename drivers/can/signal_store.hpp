@@ -82,8 +82,10 @@ public:
         raw_[s] = bits & detail::mask_of(map_->signals[s]);
     }
 
-    /// Returns what was set of a signal and not encoded as it was. Any thread.
+    /// Returns what was set of a signal and not encoded as it was, or received and no number. Any thread.
     [[nodiscard]] Unsent unsent(std::size_t s) const noexcept { return unsent_[s].read(); }
+    /// Counts a received value that is not a number, and is not passed on.
+    constexpr void note_no_number(std::size_t s) noexcept TAPPET_REALTIME { unsent_[s].count(false, true); }
     [[nodiscard]] constexpr const SignalMap<F, S>& map() const noexcept TAPPET_REALTIME { return *map_; }
 
     DecodeCounters count{};

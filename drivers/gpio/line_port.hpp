@@ -8,6 +8,7 @@
 #include "kernel/component/component.hpp"
 #include "kernel/component/facet_name.hpp"
 #include "kernel/component/nth.hpp"
+#include "kernel/component/output_gate.hpp"
 
 #include <array>
 #include <bit>
@@ -79,6 +80,7 @@ template <const auto& map> struct LinePort {
         failures_ = device_->counters().failures;
         edges_lost.write(0);
         is_faulted.write(false);
+        asked_ = safe_values;
         drive(outputs, safe_values);
         // The levels report what happened before the start; edges would carry an older time.
         for (std::size_t n = 0; n < most_batches_before_start; ++n)
@@ -105,12 +107,13 @@ template <const auto& map> struct LinePort {
             waiter_->wake();
         else if (doubtful_)
             read_levels(cycle.now);
-        write_outputs();
+        write_outputs(cycle.now);
         judge(cycle.now);
     }
 
-    void stop(const Cycle&) noexcept TAPPET_REALTIME {
+    void stop(const Cycle& cycle) noexcept TAPPET_REALTIME {
         stopped_ = true;
+        gates_.stop(cycle.now);
         drive(outputs, safe_values);
         if (refused_ != 0) drive(outputs, safe_values); // there is no further retry once it is stopped
         // Lines without a driver cannot be relied on, even if the chip is healthy.
@@ -119,8 +122,11 @@ template <const auto& map> struct LinePort {
 
     [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return !stopped_ || refused_ == 0; }
 
-    template <std::size_t line> void set() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, true); }
-    template <std::size_t line> void clear() noexcept TAPPET_REALTIME { actuate(Mask{1} << line, false); }
+    template <std::size_t line> void set() noexcept TAPPET_REALTIME { actuate(line, true); }
+    template <std::size_t line> void clear() noexcept TAPPET_REALTIME { actuate(line, false); }
+    static void gate_output(void* port, std::size_t line, OutputGate& gate) noexcept {
+        static_cast<LinePort*>(port)->gates_.add(line, gate);
+    }
 
     [[nodiscard]] Counters counters() const noexcept { return device_->counters(); }
 
@@ -168,6 +174,8 @@ private:
     static constexpr void add_line(std::array<Facet, facet_count>& all, std::size_t& n) {
         using Names = LineNames<map>;
         constexpr std::string_view name = Names::plain[i];
+        [[maybe_unused]] constexpr DrivesOutput drives =
+            drives_output(i, map.rows[i].line.safe_value ? 1 : 0);
         if constexpr (map.rows[i].line.role == Role::input) {
             all[n++] = nth_output<&LinePort::level>(i, name, "", "the line's level", as_it_was);
             all[n++] = nth_event<&LinePort::rises>(i, Names::rises[i].view(),
@@ -175,12 +183,12 @@ private:
             all[n++] = nth_event<&LinePort::falls>(i, Names::falls[i].view(),
                                                    "the line became inactive, at that time");
         } else if constexpr (map.rows[i].driven == Driven::by_port) {
-            all[n++] = nth_input<&LinePort::wanted>(i, name, "", "the level wanted", needs_wake);
+            all[n++] = nth_input<&LinePort::wanted>(i, name, "", "the level wanted", needs_wake, drives);
         } else {
             all[n++] = operation<&LinePort::template set<i>>(Names::set[i].view(), "makes the line active",
-                                                             required);
+                                                             required, drives);
             all[n++] = operation<&LinePort::template clear<i>>(Names::clear[i].view(),
-                                                               "makes the line inactive", required);
+                                                               "makes the line inactive", required, drives);
         }
     }
 
@@ -239,15 +247,22 @@ private:
         known_ = true;
     }
 
-    void write_outputs() noexcept TAPPET_REALTIME {
+    void write_outputs(Time now) noexcept TAPPET_REALTIME {
         Mask mask = 0;
         Mask values = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            if (map.rows[i].line.role != Role::output || map.rows[i].driven != Driven::by_port) continue;
-            bool value = false;
-            // Stale: the row decides, by the last value or its substitute.
-            if (wanted[i].read(value) == Flow::never_written) continue;
-            if (wanted[i].is_abandoned()) value = map.rows[i].line.safe_value;
+            const LineRow& row = map.rows[i];
+            if (row.line.role != Role::output) continue;
+            bool value = bit(asked_, i);
+            if (row.driven == Driven::by_port) {
+                // Stale: the row decides, by the last value or its substitute.
+                if (wanted[i].read(value) == Flow::never_written) continue;
+                if (wanted[i].is_abandoned()) value = row.line.safe_value;
+            } else if (!gates_.has(i)) {
+                continue;
+            }
+            const bool safe = row.line.safe_value;
+            if (gates_.hold(i, value == safe, now)) value = safe;
             if (bit(driven_, i) == value) continue;
             mask |= Mask{1} << i;
             values = with_bit(values, i, value);
@@ -255,10 +270,14 @@ private:
         drive(mask, values);
     }
 
-    void actuate(Mask line, bool active) noexcept TAPPET_REALTIME {
+    void actuate(std::size_t line, bool active) noexcept TAPPET_REALTIME {
         if (stopped_) return;
-        drive(line, active ? line : 0);
-        judge(clock_->now());
+        const Time now = clock_->now();
+        asked_ = with_bit(asked_, line, active);
+        const bool safe = map.rows[line].line.safe_value;
+        if (gates_.hold(line, active == safe, now)) active = safe;
+        drive(Mask{1} << line, with_bit(0, line, active));
+        judge(now);
     }
 
     /// Writes these outputs, and with them all that were refused before.
@@ -288,6 +307,7 @@ private:
     Time read_at_{};        // when the levels were last read
     Mask levels_ = 0;       // as reported
     Mask from_reading_ = 0; // reported from a reading, with no edge since
+    Mask asked_ = 0;        // the values that operations asked for last
     Mask driven_ = 0;       // the values requested of the outputs
     Mask refused_ = 0;      // the outputs whose value the chip refused
     bool known_ = false;    // the levels were read at least once
@@ -296,6 +316,7 @@ private:
     bool stopped_ = false;
     std::int64_t lost_ = 0;
     std::uint64_t failures_ = 0; // the device's count at the last check
+    OutputGates<count> gates_{};
 };
 
 } // namespace tappet::gpio

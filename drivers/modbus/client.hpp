@@ -8,6 +8,7 @@
 #include "kernel/base/array_of.hpp"
 #include "kernel/component/component.hpp"
 #include "kernel/component/nth.hpp"
+#include "kernel/component/output_gate.hpp"
 
 #include <array>
 #include <cstdint>
@@ -84,6 +85,7 @@ template <const auto& map> struct Client {
         TAPPET_ESCAPE("this activity is not real-time", write_last(cycle));
         if (!was_lost_) lost.emit();
         was_stopped_ = true;
+        gates_.stop(cycle.now);
     }
 
     [[nodiscard]] bool stopped_safely() const noexcept TAPPET_REALTIME { return stopped_safely_; }
@@ -93,15 +95,22 @@ template <const auto& map> struct Client {
         return facet < count ? static_cast<const Client*>(client)->unsent_[facet].read() : Unsent{};
     }
 
+    static void gate_output(void* client, std::size_t value, OutputGate& gate) noexcept {
+        static_cast<Client*>(client)->gates_.add(value, gate);
+    }
+
     static constexpr auto interface() {
         std::array<Facet, count + 8> list{};
         std::size_t n = 0;
         for (std::size_t v = 0; v < count; ++v) {
             const std::string_view name = ValueNames<map>::all[v].view(), unit = map.registers[v].unit;
             const auto every = comes_every(map.rows[map.row_of[v]].every);
-            list[n++] = is_written(v)
-                            ? nth_input<&Client::wanted>(v, name, unit, "written to the server", every)
-                            : nth_output<&Client::read>(v, name, unit, "read from the server", every);
+            list[n] = is_written(v)
+                          ? nth_input<&Client::wanted>(v, name, unit, "written to the server", every)
+                          : nth_output<&Client::read>(v, name, unit, "read from the server", every);
+            if (const Register& row = map.registers[v]; is_written(v) && row.says_safe)
+                tappet::detail::apply(list[n], drives_output(v, row.safe_value));
+            ++n;
         }
         list[n++] = output<&Client::connected>("connected", "", "the server answers", while_stopped(false));
         list[n++] = output<&Client::outages>("outages", "", "times the server was lost, since start");
@@ -155,13 +164,17 @@ private:
             if (!is_written(v)) continue;
             double value = 0;
             const Flow flow = wanted[v].read(value);
-            // A forced value and a row's substitute for a stale one are current in each cycle.
-            const bool is_given = flow == Flow::stale && wanted[v].has_substitute();
+            if (flow == Flow::never_written) continue;
+            const double safe = map.registers[v].safe_value;
+            const bool is_held = gates_.hold(v, value == safe, now);
+            if (is_held) value = safe;
+            // A forced value, a row's substitute for a stale one and a held value are current in each cycle.
+            const bool is_given = is_held || (flow == Flow::stale && wanted[v].has_substitute());
             const Time stamp = is_given ? now : wanted[v].stamp();
             const bool is_left = stamp == before_all && session_->value(v).stamp != before_all;
             const bool is_newer = stamp > session_->value(v).stamp || is_left;
             const bool is_other = !is_set_[v] || value != taken_[v]; // it changed behind a force
-            if (flow == Flow::never_written || (flow != Flow::fresh && !is_newer && !is_other)) continue;
+            if (flow != Flow::fresh && !is_newer && !is_other) continue;
             taken_[v] = value;
             is_set_[v] = session_->set(v, value, stamp);
         }
@@ -187,7 +200,8 @@ private:
     std::optional<Session<map.rows.size(), map.registers.size()>> session_{};
     std::array<Time, count> seen_ = array_of<count>([](std::size_t) { return Time::min(); });
     std::array<Unsent, count> unsent_{};
-    std::array<bool, count> is_set_{};  ///< in the session, since start()
+    std::array<bool, count> is_set_{}; ///< in the session, since start()
+    OutputGates<count> gates_{};
     std::array<double, count> taken_{}; ///< the last values set there
     bool was_lost_ = false, was_stopped_ = false, stopped_safely_ = true;
     Trouble told_{};

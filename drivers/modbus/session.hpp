@@ -62,8 +62,8 @@ struct Backoff {
 /// `transport` must outlive the client.
 template <std::size_t R, std::size_t V> class Session {
 public:
-    /// `unsent`: where values that are not encoded as they were set are counted, by their index; empty:
-    /// nowhere.
+    /// `unsent`: where values that are not encoded as they were set, or are received and not a number, are
+    /// counted, by their index; empty: nowhere.
     Session(const RegisterMap<R, V>& map, Transport& transport, Backoff backoff = {},
             std::span<Unsent> unsent = {}) noexcept
         : map_{&map}, transport_{&transport}, backoff_{backoff}, wait_{backoff.first}, unsent_{unsent} {}
@@ -267,6 +267,7 @@ private:
             } else {
                 values_[v].quality = Quality::no_number;
                 ++count_.no_numbers;
+                if (v < unsent_.size()) unsent_[v].count(false, true);
             }
         }
     }

@@ -22,7 +22,7 @@ struct BufferRings {
 };
 
 template <class T>
-class BufferOutput {
+class BufferOutput : FacetMember<member::port> {
 public:
     using Value = T;
 
@@ -50,7 +50,7 @@ private:
 };
 
 template <class T>
-class BufferInput {
+class BufferInput : FacetMember<member::port> {
 public:
     using Value = T;
 

@@ -13,6 +13,7 @@
 
 #include "kernel/base/contract.hpp"
 #include "kernel/component/current.hpp"
+#include "kernel/component/facet_member.hpp"
 #include "kernel/component/life.hpp"
 #include "kernel/component/port.hpp"
 #include "kernel/component/signature.hpp"
@@ -247,7 +248,7 @@ private:
 /// result as T&. Only one activity sends, polls and resets it: its component's, or that of the row's
 /// sent_by(...).
 template <class... P>
-class CommandCall {
+class CommandCall : FacetMember<member::command_call> {
     using Pack = detail::Packing<P...>;
     template <std::size_t N, class List>
     struct Nth;

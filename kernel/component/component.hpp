@@ -56,6 +56,7 @@ namespace tappet {
     return {};
 }
 
+class OutputGate;     ///< kernel/component/output_gate.hpp
 struct Controlled;    ///< kernel/machine/instance/controlled.hpp
 struct ScriptUnit;    ///< kernel/script/unit.hpp
 struct LineFunctions; ///< kernel/machine/instance/line_functions.hpp
@@ -95,8 +96,12 @@ struct ComponentType {
     const void* device_map =
         nullptr; ///< map of what is on that device; only a start-up that knows the kind reads it
     DeviceTraffic device_traffic{}; ///< the traffic of that device, and whether it can carry it
-    /// Returns what was not sent as written of an input of a driver; null: it has no such inputs. Any thread.
+    /// Returns what was not sent as written of an input of a driver, or not passed on of an output; null: it
+    /// has no such ports. Any thread.
     Unsent (*unsent)(const void* component, std::size_t facet) = nullptr;
+    /// Gives an output of a driver, by the number of its facets (drives_output), a gate that outlives the
+    /// machine; null: it has no such outputs. Before anything runs.
+    void (*gate_output)(void* component, std::size_t output, OutputGate& gate) = nullptr;
     bool shares_device = false; ///< it may share the device with its driver; what it calls is safe there
     bool behaviour_required = false;
     bool sees_machine = false;            ///< it gets the machine: a service that shows, stores or changes it
@@ -158,6 +163,7 @@ constexpr ComponentType describe() {
     if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;
     if constexpr (requires { T::device_traffic; }) type.device_traffic = T::device_traffic;
     if constexpr (requires { &T::unsent; }) type.unsent = &T::unsent;
+    if constexpr (requires { &T::gate_output; }) type.gate_output = &T::gate_output;
     if constexpr (requires { T::shares_device; }) type.shares_device = T::shares_device;
     if constexpr (requires { T::sees_machine; }) type.sees_machine = T::sees_machine;
     if constexpr (requires { T::line_functions; }) type.lines = &T::line_functions;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/component/facet_member.hpp"
 #include "kernel/component/subscription.hpp"
 
 #include <atomic>
@@ -27,7 +28,7 @@ inline constexpr std::size_t max_subscribers = 64;
 /// An event. Emitted only by its own component, from each activity that runs functions of that component.
 /// Real-time; emissions from several activities may overlap.
 template <class... A>
-class Event {
+class Event : FacetMember<member::event> {
     static_assert((std::is_trivially_copyable_v<A> && ...),
                   "arguments of an event are copied between activities");
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/base/realtime.hpp"
+#include "kernel/component/facet_member.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -17,7 +18,7 @@ namespace tappet {
 /// to run may still be running, and an emission in progress on another thread may run a synchronous reaction
 /// that it already found connected. When connect() and disconnect() run at the same time, the one whose
 /// atomic operation comes last holds, and an emission in between may be dropped.
-class EventHandle {
+class EventHandle : FacetMember<member::handle> {
 public:
     EventHandle() = default;
     /// `epoch`: that of an asynchronous row, else null. Start-up makes the handles that rows name.
@@ -54,6 +55,8 @@ private:
 
 /// Keeps a row connected as long as it lives.
 class ScopedEventHandle {
+    static constexpr EventHandle nothing{};
+
 public:
     ScopedEventHandle() = default;
     explicit ScopedEventHandle(const EventHandle& handle) noexcept TAPPET_REALTIME : handle_{handle} {
@@ -61,11 +64,11 @@ public:
     }
     ~ScopedEventHandle() TAPPET_REALTIME { handle_.disconnect(); }
     ScopedEventHandle(ScopedEventHandle&& other) noexcept TAPPET_REALTIME
-        : handle_{std::exchange(other.handle_, EventHandle{})} {}
+        : handle_{std::exchange(other.handle_, nothing)} {}
     ScopedEventHandle& operator=(ScopedEventHandle&& other) noexcept TAPPET_REALTIME {
         if (this == &other) return *this;
         handle_.disconnect();
-        handle_ = std::exchange(other.handle_, EventHandle{});
+        handle_ = std::exchange(other.handle_, nothing);
         return *this;
     }
     ScopedEventHandle(const ScopedEventHandle&) = delete;
@@ -74,7 +77,7 @@ public:
     [[nodiscard]] bool connected() const noexcept TAPPET_REALTIME { return handle_.connected(); }
 
 private:
-    EventHandle handle_{};
+    EventHandle handle_ = nothing; // a copy is no member that interface() lists
 };
 
 } // namespace tappet

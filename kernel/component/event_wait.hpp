@@ -4,6 +4,7 @@
 
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
+#include "kernel/component/facet_member.hpp"
 #include "kernel/component/subscription.hpp"
 #include "kernel/os/clock.hpp"
 #include "kernel/os/waiter.hpp"
@@ -16,7 +17,7 @@ namespace tappet {
 
 /// The state of an EventWait, for any arguments. One row brings it one event; the emissions wait in mailboxes
 /// of its own, as many as the row's queue says.
-class EventWaitState {
+class EventWaitState : FacetMember<member::wait> {
 public:
     /// Sets up the wait; called by start-up. `activity`: the activity that an emission wakes, also while
     /// nobody waits.

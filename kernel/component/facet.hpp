@@ -142,11 +142,14 @@ struct Facet {
     TypeId type = nullptr; ///< of the value, or of the argument list
     bool required =
         false; ///< an input or a call that must be connected, an operation that a reaction must name
-    bool valid_to_start = false;     ///< an input: its component does not start before it has a valid value
-    bool grows_stale = false;        ///< an input: its row says when its value is stale
-    bool needs_wake = false;         ///< an input: its component looks at it only when it is woken
-    Duration comes_every{};          ///< its values cross a wire to or from outside in this period; 0: not so
-    AtRest at_rest = AtRest::unsaid; ///< of an output of bool
+    bool valid_to_start = false; ///< an input: its component does not start before it has a valid value
+    bool grows_stale = false;    ///< an input: its row says when its value is stale
+    bool needs_wake = false;     ///< an input: its component looks at it only when it is woken
+    Duration comes_every{};      ///< its values cross a wire to or from outside in this period; 0: not so
+    /// An input or an operation: number + 1 of the device's output that it drives and that has a safe value.
+    std::uint16_t device_output = 0;
+    double safe_value = 0;            ///< of that output
+    AtRest at_rest = AtRest::unsaid;  ///< of an output of bool
     std::uint8_t least_reactions = 0; ///< of an event: least number of reaction rows that must name it
     bool any_thread = false;          ///< an operation or a method that any activity may call
     bool may_block = false;           ///< a method or a command; never in a real-time activity

@@ -52,6 +52,13 @@ struct ComesEvery {
     Duration period;
 };
 constexpr ComesEvery comes_every(Duration period) noexcept { return {period}; }
+/// States that an input or an operation drives this output of a device, by the number that `hold` of its
+/// component knows, and its safe value. held_in of the table may name it.
+struct DrivesOutput {
+    std::size_t number;
+    double safe;
+};
+constexpr DrivesOutput drives_output(std::size_t number, double safe) noexcept { return {number, safe}; }
 /// States the value of an output of bool while its component is stopped, for example `connected` is false.
 /// The engine writes it after stop(). A driver states it for each of its outputs of bool, or marks the output
 /// as_it_was.
@@ -119,6 +126,10 @@ constexpr void apply(Facet& facet, ValidToStart) noexcept { facet.valid_to_start
 constexpr void apply(Facet& facet, GrowsStale) noexcept { facet.grows_stale = true; }
 constexpr void apply(Facet& facet, NeedsWake) noexcept { facet.needs_wake = true; }
 constexpr void apply(Facet& facet, ComesEvery values) noexcept { facet.comes_every = values.period; }
+constexpr void apply(Facet& facet, DrivesOutput output) noexcept {
+    facet.device_output = static_cast<std::uint16_t>(output.number + 1);
+    facet.safe_value = output.safe;
+}
 constexpr void apply(Facet& facet, WhileStopped stopped) noexcept { facet.at_rest = stopped.says; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }

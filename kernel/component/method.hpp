@@ -13,6 +13,7 @@
 #pragma once
 
 #include "kernel/base/contract.hpp"
+#include "kernel/component/facet_member.hpp"
 #include "kernel/component/life.hpp"
 #include "kernel/component/signature.hpp"
 
@@ -81,7 +82,7 @@ class MethodCall;
 
 /// The caller's side. Called only by its own component. Real-time, as the method is.
 template <class R, class... A>
-class MethodCall<R(A...)> {
+class MethodCall<R(A...)> : FacetMember<member::method_call> {
     static_assert((!detail::Parameter<A>::is_result && ...),
                   "a method returns its result; for several, a struct");
 

@@ -7,6 +7,7 @@
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
 #include "kernel/component/current.hpp"
+#include "kernel/component/facet_member.hpp"
 #include "kernel/component/rate_transition.hpp"
 #include "kernel/component/stamps.hpp"
 #include "kernel/component/stops.hpp"
@@ -104,7 +105,7 @@ inline constexpr Time no_clock{};
 /// An output port. Written only by its own component, from its own activity. From the end of the component's
 /// stop() to its next start() a write is dropped and counted: the values that stop() left stay. Real-time.
 template <class T>
-class Output {
+class Output : FacetMember<member::port> {
     static_assert(Exchangeable<T>, "what flows between activities is copied word by word");
 
 public:
@@ -223,7 +224,7 @@ private:
 
 /// An input port. Read only by its own component, from its own activity. Real-time.
 template <class T>
-class Input {
+class Input : FacetMember<member::port> {
 public:
     using Value = T;
 

@@ -8,6 +8,7 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/component/facet_member.hpp"
 #include "kernel/exchange/words.hpp"
 
 #include <concepts>
@@ -63,7 +64,7 @@ concept PropertyValue =
 /// A property. Read by its own component, from its own activity. Once the machine runs, only a
 /// PropertyTransaction changes it, between two steps.
 template <PropertyValue T>
-class Property {
+class Property : FacetMember<member::property> {
 public:
     using Value = T;
     constexpr Property() noexcept = default;

@@ -6,12 +6,13 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/component/current.hpp"
+#include "kernel/component/facet_member.hpp"
 
 namespace tappet {
 
 /// Owned by a component; its engine serves it because the component's interface names it. Used only from its
 /// own activity. Real-time.
-class Timer {
+class Timer : FacetMember<member::timer> {
 public:
     /// Fires once, at `when`; a time in the past fires at the engine's next look. Arming again moves it. To
     /// repeat, arm it for Cycle::after() when it fires. A timer that no engine serves would never fire: that

@@ -29,10 +29,11 @@ struct WireCounters {
     }
 };
 
-/// How often a driver sent something else than what was written: in each sending, also of the same value.
+/// How often a driver sent something else than what was written, in each sending, also of the same value; or
+/// did not pass on what it received.
 struct Unsent {
     std::uint64_t clamped = 0;   ///< outside its row's range: the nearest bound was sent
-    std::uint64_t no_number = 0; ///< not a number: nothing was sent
+    std::uint64_t no_number = 0; ///< not a number: nothing was sent, or of a row received, nothing passed on
 
     /// Counts a value; one thread counts, any thread reads.
     constexpr void count(bool is_clamped, bool is_no_number) noexcept TAPPET_REALTIME {

@@ -125,6 +125,15 @@ struct LinkRow {
     bool needs_slot = false;                ///< a command of another activity
 };
 
+/// What a program orders of a component: an operation that it calls, an event that it emits, an output that
+/// it writes. See kernel/program/orders.hpp.
+struct ProgramOrder {
+    std::uint16_t link = 0; ///< number of the LinkRow
+    NodeIndex node = no_node;
+    bool is_constant = false; ///< of an output: it is written with a constant
+    double value = 0;         ///< that constant
+};
+
 /// The data of one program instance, one piece of memory:
 ///     [0, constants)            constants, never written
 ///     [constants, variables)    parameters and variables; kept from step to step

@@ -17,6 +17,8 @@ struct BehaviourType {
     std::string_view name{};
     ProgramTables tables{};
     StateMachineTable machine{}; ///< without states: a program alone, tables.programs[0]
+    /// Of native code, whose instructions are not kept; else empty.
+    std::span<const ProgramOrder> orders{};
 
     [[nodiscard]] constexpr bool is_program() const noexcept { return machine.states.empty(); }
     /// Returns the number of parameters; they precede all other variables.

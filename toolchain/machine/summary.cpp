@@ -174,9 +174,9 @@ std::size_t write_summary(MachineInstance& instance, const RunFacts& facts, std:
             json.field(instance.observation().counted(section, row).what,
                        instance.observation().counted(section, row).times);
     json.close('}');
-    json.key("unsent").open('{'); // by inputs of drivers
-    instance.each_unsent([&](std::string_view component, std::string_view input, const Unsent& seen) {
-        json.key(Sentence{component, ".", input}.view()).open('{');
+    json.key("unsent").open('{'); // by rows of drivers
+    instance.each_unsent([&](std::string_view component, const Facet& row, const Unsent& seen) {
+        json.key(Sentence{component, ".", row.name}.view()).open('{');
         json.field("clamped", seen.clamped).field("no_number", seen.no_number).close('}');
     });
     json.close('}');
@@ -214,16 +214,22 @@ void tell_overruns(MachineInstance& instance, std::string_view speaker) {
                                "box is slower than the table claims\n"}
                           .view());
     });
-    instance.each_unsent([&](std::string_view component, std::string_view input, const Unsent& seen) {
+    instance.each_unsent([&](std::string_view component, const Facet& row, const Unsent& seen) {
         if (seen.clamped != 0)
-            os::print(Sentence{speaker, ": \"", component, ".", input, "\": ", seen.clamped,
+            os::print(Sentence{speaker, ": \"", component, ".", row.name, "\": ", seen.clamped,
                                " times its value was outside its range and sent as its nearest bound\n"}
                           .view());
         if (seen.no_number != 0)
-            os::print(Sentence{speaker, ": \"", component, ".", input, "\": ", seen.no_number,
-                               " times its value was not a number and not sent\n"}
+            os::print(Sentence{speaker, ": \"", component, ".", row.name, "\": ", seen.no_number,
+                               " times its value was not a number and not ",
+                               row.kind == FacetKind::output ? "passed on\n" : "sent\n"}
                           .view());
     });
+    for (std::size_t section = 0; section < instance.machine().table.extras->size(); ++section)
+        if (const SectionCount seen = instance.observation().counted(section, 0);
+            seen.times != 0 && !seen.told.empty())
+            os::print(Sentence{speaker, ": \"", seen.what, "\": ", seen.times, " times it ", seen.told, "\n"}
+                          .view());
     for (const Engine& engine : instance.engines()) {
         const EngineStatistics& seen = engine.statistics();
         if (seen.misses == 0) continue;

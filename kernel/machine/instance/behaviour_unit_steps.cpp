@@ -39,6 +39,17 @@ void BehaviourUnit::start(Time now) noexcept TAPPET_REALTIME {
         else
             static_cast<void>(part.machine->start(now));
     }
+    judge_gates();
+}
+
+void BehaviourUnit::judge_gates() noexcept TAPPET_REALTIME {
+    for (StateGate* each = gates_; each != nullptr; each = each->next) {
+        bool open = false;
+        for (const StateGate::Where& where : each->open_in)
+            open |= !parts_[where.instance].machine->in_error() &&
+                    parts_[where.instance].machine->is_in(where.state);
+        if (each->gate.set_open(open)) each->driver();
+    }
 }
 
 // A machine in error stays as it is, for the report.
@@ -90,6 +101,7 @@ bool BehaviourUnit::step(Time now) noexcept TAPPET_REALTIME {
     }
     limit_.until = never; // what makes the component safe is not cut short
     has_failed_ = failed;
+    judge_gates();
     if (worked && left_over) ++left_over_;
     return worked;
 }
@@ -103,6 +115,7 @@ void BehaviourUnit::finish(Time now, std::string_view reason) noexcept TAPPET_RE
         else
             static_cast<void>(part.machine->request_final(now, reason));
     }
+    judge_gates();
 }
 
 bool BehaviourUnit::is_finished() const noexcept TAPPET_REALTIME {
@@ -116,6 +129,7 @@ bool BehaviourUnit::is_finished() const noexcept TAPPET_REALTIME {
 void BehaviourUnit::deactivate(Time now) noexcept TAPPET_REALTIME {
     for (UnitPart& part : parts_)
         if (part.machine != nullptr) static_cast<void>(part.machine->deactivate(now));
+    judge_gates();
 }
 
 bool BehaviourUnit::component_runs() const noexcept TAPPET_REALTIME {
@@ -138,6 +152,7 @@ void BehaviourUnit::drop() noexcept TAPPET_REALTIME {
         static_cast<void>(part.machine->bind(part.binding));
         part.machine->trace(trace_, trace_context_);
     }
+    judge_gates();
 }
 
 const UnitPart* BehaviourUnit::failed_part() const noexcept TAPPET_REALTIME {
@@ -189,6 +204,7 @@ void BehaviourUnit::dispatch(std::size_t event, const std::byte* packed, Time no
         static_cast<void>(parts_[i].machine->dispatch(trigger, now, packed));
     }
     limit_.until = never;
+    judge_gates();
 }
 
 } // namespace tappet

@@ -37,15 +37,15 @@ std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevi
     if (const Sentence fault = check_constants(); !fault.empty()) return std::unexpected(fault);
     if (auto shared = share_memory(); !shared) return shared;
     construct();
+    if (unlisted_.kind != nullptr) return std::unexpected(describe_unlisted());
     place_engines();
     place_scope();
     connect_clocks();
-    if (const Sentence fault = find_unlisted_port(); !fault.empty()) return std::unexpected(fault);
     connect_data();
-    connect_extras();
     place_needed_inputs();
     if (const Sentence fault = place_behaviours(); !fault.empty()) return std::unexpected(fault);
     if (const Sentence fault = connect_controls(); !fault.empty()) return std::unexpected(fault);
+    connect_extras();
     connect_events();
     place_mailboxes();
     connect_operations();
@@ -74,8 +74,27 @@ std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevi
 }
 
 void MachineBuilder::construct() {
-    for (std::size_t c = 0; c < machine_.table.components.size(); ++c)
-        machine_.table.components[c].type->construct(instance_.component(c));
+    const MemberCensus census{[](void* self, const void* member, const MemberKind& kind) noexcept {
+                                  static_cast<MachineBuilder*>(self)->look_up(member, kind);
+                              },
+                              this};
+    for (constructed_ = 0; constructed_ < machine_.table.components.size(); ++constructed_) {
+        const ComponentType& type = *machine_.table.components[constructed_].type;
+        MemberCensus::current = type.device_kind == nullptr && !type.sees_machine ? &census : nullptr;
+        type.construct(instance_.component(constructed_));
+    }
+    MemberCensus::current = nullptr;
+}
+
+/// Is told each facet member that a component constructs, and notes the first that is not listed.
+void MachineBuilder::look_up(const void* member, const MemberKind& kind) noexcept {
+    const ComponentType& type = *machine_.table.components[constructed_].type;
+    const std::byte* const memory = machine_.memory.data() + machine_.plan.component_at[constructed_];
+    const auto* const at = static_cast<const std::byte*>(member);
+    if (unlisted_.kind != nullptr || at < memory || at >= memory + type.size) return; // or a temporary
+    for (const Facet& each : type.facets)
+        if (each.at != nullptr && each.at(const_cast<std::byte*>(memory), each.index) == member) return;
+    unlisted_ = {constructed_, at, &kind};
 }
 
 Sentence MachineBuilder::configure_properties(std::size_t c) {
@@ -186,28 +205,22 @@ void MachineBuilder::connect_clocks() {
     }
 }
 
-/// Finds a port that its component's interface() does not list: it still has the clock with which it was
-/// made. A driver has more ports than its map's rows need.
-Sentence MachineBuilder::find_unlisted_port() const {
-    for (std::size_t c = 0; c < machine_.table.components.size(); ++c) {
-        const ComponentRow& row = machine_.table.components[c];
-        if (row.type->device_kind != nullptr) continue;
-        const auto* const memory = static_cast<const std::byte*>(instance_.component(c));
-        for (std::size_t at = 0; at + sizeof(const Time*) <= row.type->size; at += alignof(const Time*)) {
-            const void* clock = nullptr;
-            std::memcpy(&clock, memory + at, sizeof clock);
-            if (clock == &no_clock)
-                return Sentence{"component \"",
-                                row.name,
-                                "\": its type ",
-                                row.type->tag->name,
-                                " has a port",
-                                place_among_members(c, memory + at),
-                                " that interface() does not list, so that no row can connect it; list it, "
-                                "input<..> or output<..>, or remove it"};
-        }
-    }
-    return {};
+/// Says which member of a component its interface() does not list. A driver has more ports than its map's
+/// rows need; a service that sees the machine has members of the kinds of others.
+Sentence MachineBuilder::describe_unlisted() const {
+    const ComponentRow& row = machine_.table.components[unlisted_.component];
+    return Sentence{"component \"",
+                    row.name,
+                    "\": its type ",
+                    row.type->tag->name,
+                    " has ",
+                    unlisted_.kind->name,
+                    place_among_members(unlisted_.component, unlisted_.member),
+                    " that interface() does not list, so that ",
+                    unlisted_.kind->effect,
+                    "; list it, ",
+                    unlisted_.kind->word,
+                    ", or remove it"};
 }
 
 /// Describes an address in a component by the listed members around it.

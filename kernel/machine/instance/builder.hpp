@@ -32,7 +32,8 @@ private:
     void place_engines();
     void place_scope();
     void connect_clocks();
-    [[nodiscard]] Sentence find_unlisted_port() const;
+    void look_up(const void* member, const MemberKind& kind) noexcept;
+    [[nodiscard]] Sentence describe_unlisted() const;
     [[nodiscard]] Sentence place_among_members(std::size_t c, const std::byte* address) const;
 
     [[nodiscard]] Sentence check_constants() const;
@@ -68,6 +69,13 @@ private:
     MachineInstance& instance_;
     const AcceptedMachine& machine_;
     const PropertyStore& store_;
+    std::size_t constructed_ = 0; ///< the component that is constructed now
+    /// The first facet member that no interface() lists; without a kind: there is none.
+    struct {
+        std::size_t component = nowhere;
+        const std::byte* member = nullptr;
+        const MemberKind* kind = nullptr;
+    } unlisted_;
 };
 
 } // namespace tappet

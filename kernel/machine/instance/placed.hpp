@@ -49,8 +49,8 @@ public:
         return facet_at(machine_.table, end).at == nullptr ? nullptr : facet(end);
     }
 
-    /// Visits each driver's input whose values did not all go to the wire as they were written:
-    /// tell(component, input, Unsent). Any thread.
+    /// Visits each row of a driver whose values did not all go to the wire as they were written, or were not
+    /// all numbers when they came: tell(component, facet, Unsent). Any thread.
     template <class Tell>
     void each_unsent(const Tell& tell) {
         const auto rows = machine_.table.components;
@@ -58,7 +58,7 @@ public:
             for (std::size_t f = 0; rows[c].type->unsent != nullptr && f < rows[c].type->facets.size(); ++f)
                 if (const Unsent seen = rows[c].type->unsent(component(c), f);
                     seen.clamped + seen.no_number != 0)
-                    tell(rows[c].name, rows[c].type->facets[f].name, seen);
+                    tell(rows[c].name, rows[c].type->facets[f], seen);
     }
 
     /// Returns the behaviour that drives a component: that of the table's row, or the one loaded in its

@@ -2,6 +2,7 @@
 // its links and its command slots, in one block of memory of known size. One engine steps it.
 #pragma once
 
+#include "kernel/component/output_gate.hpp"
 #include "kernel/machine/table/unit_rows.hpp"
 #include "kernel/program/execution.hpp"
 #include "kernel/statechart/execution.hpp"
@@ -53,6 +54,21 @@ struct UnitRoute {
     TriggerIndex trigger = no_trigger;
 };
 
+/// A gate that is open while one of these states is active, from before its entry program to after its exit
+/// program, and its machine is not in error. Judged after each step of the unit and after each event.
+struct StateGate {
+    struct Where {
+        InstanceIndex instance = no_instance;
+        StateIndex state = no_state;
+    };
+    static constexpr std::size_t most_states = 16;
+
+    OutputGate gate{};
+    Bounded<Where, most_states> open_in{};
+    Waker driver{}; ///< of the output
+    StateGate* next = nullptr;
+};
+
 /// Not real-time except where stated. place() only while no engine steps it.
 class BehaviourUnit {
 public:
@@ -74,6 +90,11 @@ public:
     /// Whether none of its commands is in progress: its memory may be reused.
     [[nodiscard]] bool is_quiet() const noexcept TAPPET_REALTIME;
     [[nodiscard]] bool has_programs() const noexcept { return has_programs_; }
+    /// Adds a gate that outlives it; after place().
+    void add_gate(StateGate& gate) noexcept {
+        gate.next = gates_;
+        gates_ = &gate;
+    }
     void trace(StateMachineExecution::Trace hook, void* context) noexcept;
 
     // Real-time, in the component's engine.
@@ -126,6 +147,7 @@ private:
     [[gnu::cold]] void report_failure() noexcept TAPPET_REALTIME;
     void limit_work(Time now) noexcept TAPPET_REALTIME;
     void begin_anew(UnitPart& part, Time now) noexcept TAPPET_REALTIME;
+    void judge_gates() noexcept TAPPET_REALTIME;
 
     ScriptUnit unit_{};
     BehaviourOptions options_{};
@@ -149,6 +171,7 @@ private:
     bool has_programs_ = false;
     StateMachineExecution::Trace trace_ = nullptr;
     void* trace_context_ = nullptr;
+    StateGate* gates_ = nullptr;
     std::span<const UnitRoute> routes_{}; // [event * instances + instance]
 };
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "kernel/machine/table/behaviours.hpp"
+#include "kernel/program/orders.hpp"
 #include "kernel/script/native.hpp"
 
 #include <array>
@@ -32,8 +33,12 @@ template <const auto& source> struct CompiledUnit {
     static constexpr std::size_t count = source.types.size();
     using Numbers = std::make_index_sequence<count>;
 
+    template <std::size_t type>
+    static constexpr auto orders =
+        copy_orders<count_orders(source.types[type].tables)>(source.types[type].tables);
     template <std::size_t type> static constexpr BehaviourType type_without_code() {
         BehaviourType row = source.types[type];
+        row.orders = orders<type>;
 #ifndef TAPPET_KEEPS_INSTRUCTIONS // of a program that draws the machine
         row.tables = native_tables<source, type>;
         row.machine.programs = &native_tables<source, type>;

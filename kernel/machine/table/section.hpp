@@ -21,6 +21,7 @@ class MachineInstance;
 struct SectionCount {
     std::string_view what{};
     std::uint64_t times = 0;
+    std::string_view told{}; ///< said of `what` at the end of a run when it is not 0; empty: nothing
 };
 
 /// The rows are constants of the table; data that change while the machine runs are in the memory that the

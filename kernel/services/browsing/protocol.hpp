@@ -74,7 +74,7 @@ using tappet::to_text;
     X(unsubscribe, observer,         1, 1,         " EVENT", "") \
     X(forced,      observer,         0, 0,         "", R"("forced": ["NAME", ..])") \
     X(counters,    observer,         0, 0,         "", \
-      R"("stacks": [{"activity": "...", "bytes": n, "used_bytes": n, as deep as it went}], "held_back": [{"row": "...", "times": n, by rows of limits}], "unsent": [{"input": "...", "clamped": n, "no_number": n, of a driver; the first 16}], "unsent_rows": n, of all})") \
+      R"("stacks": [{"activity": "...", "bytes": n, "used_bytes": n, as deep as it went}], "held_back": [{"row": "...", "times": n, by rows of limits}], "unsent": [{"input": "..." or "output" of a driver: received, "clamped": n, "no_number": n, the first 16}], "unsent_rows": n, of all})") \
     X(call,        machine_operator, 1, browsing::max_words, " METHOD [ARGUMENT...]", R"("result": .. unless it returns nothing)", \
       callable, "a method or an operation, answered at once (operator)") \
     X(send,        machine_operator, 1, browsing::max_words, " COMMAND [ARGUMENT...]", R"("state": "sent"; packets with its states follow)", \

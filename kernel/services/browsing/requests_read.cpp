@@ -51,9 +51,10 @@ BrowserService::Verdict BrowserService::serve_counters(Client& client, const Req
     json.close(']').key("unsent").open('[');
     constexpr std::size_t most_unsent_rows = 16; // a reply is one packet
     std::size_t rows = 0;
-    machine_->each_unsent([&](std::string_view component, std::string_view input, const Unsent& unsent) {
+    machine_->each_unsent([&](std::string_view component, const Facet& row, const Unsent& unsent) {
         if (++rows > most_unsent_rows) return;
-        json.open('{').field("input", Sentence{component, ".", input}.view());
+        const bool came = row.kind == FacetKind::output;
+        json.open('{').field(came ? "output" : "input", Sentence{component, ".", row.name}.view());
         json.field("clamped", unsent.clamped).field("no_number", unsent.no_number).close('}');
     });
     json.close(']').field("unsent_rows", rows);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernel/control/control.hpp"
+#include "kernel/limits/held_in.hpp"
 #include "kernel/services/reporting/check.hpp"
 #include "tests/diagnostics/copy.hpp"
 
@@ -70,6 +71,7 @@ struct Table : Copy {
     bool is_controlled = false;             ///< the section is there
     ControlRows control;
     std::vector<ReportRows> reports; ///< one for each such section
+    std::vector<HeldIn> held;
 
     Table(const MachineView& machine, const Board& on, const Binding& bound);
     /// The sentence with which the check refuses it; empty: it is accepted.

@@ -53,6 +53,7 @@ std::string Table::refusal() const {
     Sections sections;
     if (is_controlled) sections.all.push_back(&control);
     for (const ReportRows& each : reports) sections.all.push_back(&each);
+    for (const HeldIn& each : held) sections.all.push_back(&each);
     view.extras = &sections;
     return refusal_of(view, board, binding);
 }

@@ -167,6 +167,14 @@ TEST_F(CanBus, ignores_received_values_that_are_not_finite) {
     run_until(40ms);
     EXPECT_EQ(force.last(), 2.5) << "and it grows stale";
     EXPECT_EQ(bus->no_numbers.last(), 2);
+    instance.each_unsent([](std::string_view component, const Facet& row, const Unsent& each) {
+        EXPECT_EQ(component, "can");
+        EXPECT_EQ(row.name, "cell.force");
+        EXPECT_EQ(row.kind, FacetKind::output);
+        EXPECT_EQ(each.no_number, 2u);
+        EXPECT_EQ(each.clamped, 0u);
+    });
+    EXPECT_EQ(can::Bus<signals>::unsent(bus, signals.signals.size() - 1).no_number, 2u);
 }
 
 TEST_F(CanBus, sends_no_frame_while_its_value_is_nan) {
@@ -183,8 +191,8 @@ TEST_F(CanBus, sends_no_frame_while_its_value_is_nan) {
 TEST_F(CanBus, counts_by_signal_what_it_did_not_send_as_it_was_written) {
     const auto seen = [this] {
         std::vector<std::string> rows;
-        instance.each_unsent([&](std::string_view component, std::string_view input, const Unsent& each) {
-            rows.push_back(std::string{component} + "." + std::string{input} +
+        instance.each_unsent([&](std::string_view component, const Facet& row, const Unsent& each) {
+            rows.push_back(std::string{component} + "." + std::string{row.name} +
                            (each.clamped != 0 ? " clamped" : "") + (each.no_number != 0 ? " no number" : ""));
         });
         return rows;

@@ -42,8 +42,8 @@ TEST_F(Utility, writes_a_change_soon_and_nothing_that_was_never_set) {
 TEST_F(Utility, counts_by_register_what_it_did_not_write_as_it_was_set) {
     const auto of_pump = [this] {
         Unsent of;
-        instance.each_unsent([&](std::string_view, std::string_view input, const Unsent& each) {
-            EXPECT_EQ(input, "pump.on");
+        instance.each_unsent([&](std::string_view, const Facet& row, const Unsent& each) {
+            EXPECT_EQ(row.name, "pump.on");
             of = each;
         });
         return of;

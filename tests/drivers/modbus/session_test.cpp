@@ -62,7 +62,8 @@ TEST(ModbusSessionOfRealNumbers, keeps_the_last_good_value_instead_of_nan_or_inf
     static constexpr auto meter =
         register_map(read("meter", input_registers(0, 2), every(100ms), float_word("flow", 0)));
     Twin server{300ms};
-    Session<1, 1> session{meter, server};
+    std::array<Unsent, 1> by_register{};
+    Session<1, 1> session{meter, server, {}, by_register};
     Time now{};
     const auto run = [&](Duration time) {
         for (const Time end = now + time; now < end;) now = session.step(now);
@@ -79,6 +80,7 @@ TEST(ModbusSessionOfRealNumbers, keeps_the_last_good_value_instead_of_nan_or_inf
     }
     EXPECT_LT(session.value(0).stamp - good, 200ms) << "it grows old";
     EXPECT_GT(session.counters().no_numbers, 20u);
+    EXPECT_EQ(by_register[0].read().no_number, session.counters().no_numbers);
     server.set(Table::input_registers, 0, 0x4020);
     run(1s);
     EXPECT_EQ(session.value(0).quality, Quality::good);

@@ -222,13 +222,16 @@ Result<void> tell_counters(Work& work) {
     for (const auto& row : rows("unsent"))
         if (work.line.json)
             work.out << row << "\n";
+        else if (row.contains("output"))
+            work.out << row["output"].get<std::string>() << ": " << row["no_number"]
+                     << " times received and not a number, not passed on\n";
         else
             work.out << row["input"].get<std::string>() << ": " << row["clamped"]
                      << " times outside its range, sent as its nearest bound; " << row["no_number"]
                      << " times not a number, not sent\n";
     if (const auto all = counters->value("unsent_rows", std::size_t{0});
         !work.line.json && all > rows("unsent").size())
-        work.out << all - rows("unsent").size() << " more inputs: the summary of the run lists them\n";
+        work.out << all - rows("unsent").size() << " more rows: the summary of the run lists them\n";
     return {};
 }
 

@@ -359,7 +359,7 @@ TEST_F(Program, describes_the_machine_and_a_single_name) {
     machine.answer("counters", {R"({"id": %, "ok": true,
         "stacks": [{"activity": "fast", "bytes": 65536, "used_bytes": 4096}, {"activity": "slow", "bytes": 65536, "used_bytes": 0}],
         "held_back": [{"row": "loom.speed", "times": 3}],
-        "unsent": [{"input": "can.axis.speed", "clamped": 12, "no_number": 1}]})"});
+        "unsent": [{"input": "can.axis.speed", "clamped": 12, "no_number": 1}, {"output": "can.cell.force", "clamped": 0, "no_number": 2}]})"});
     const Outcome machine_info = run({"info"});
     EXPECT_THAT(machine_info.out, HasSubstr("machine sample on board test"));
     EXPECT_THAT(machine_info.out, HasSubstr("you are its engineer"));
@@ -369,6 +369,8 @@ TEST_F(Program, describes_the_machine_and_a_single_name) {
     EXPECT_THAT(machine_info.out, HasSubstr("limits held back loom.speed 3 times\n"));
     EXPECT_THAT(machine_info.out, HasSubstr("can.axis.speed: 12 times outside its range, sent as its nearest "
                                             "bound; 1 times not a number, not sent\n"));
+    EXPECT_THAT(machine_info.out,
+                HasSubstr("can.cell.force: 2 times received and not a number, not passed on\n"));
     machine.answer("counters", {R"({"id": %, "ok": true})"});
     EXPECT_THAT(run({"info", "--json"}).out, HasSubstr("\"role\": \"engineer\""));
     const Outcome facet = run({"info", "loom.angle"});
