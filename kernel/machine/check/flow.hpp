@@ -130,9 +130,11 @@ constexpr Sentence check_age(const MachineView& m, const ConnectionRow& row, con
             "hold, substitute(...) or stop_machine");
     const ActivityRow& activity = m.activities[writer];
     const bool is_outside = from.comes_every > Duration::zero();
-    const Duration every = is_outside                           ? from.comes_every
-                           : activity.trigger == Trigger::every ? activity.period
-                                                                : Duration::zero();
+    // A periodic activity, real-time or not, writes in its own cycles: in the first one after a value came.
+    const Duration period = activity.periodic() ? activity.period : Duration::zero();
+    const Duration every = !is_outside                  ? period
+                           : period <= Duration::zero() ? from.comes_every
+                                                        : (from.comes_every + period - 1ns) / period * period;
     if (row.max_age == Duration::zero() || row.max_age > every) return {};
     if (is_outside)
         return of_connection(row, ": stale_after(", row.max_age.count() / 1000,

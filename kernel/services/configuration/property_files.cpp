@@ -70,8 +70,7 @@ PropertyStore PropertyFiles::store() noexcept {
             }};
 }
 
-bool PropertyFiles::name_path(std::string_view directory, const ComponentRow& row) noexcept {
-    const std::string_view name = row.properties.name;
+bool PropertyFiles::name_path(std::string_view directory, std::string_view name) noexcept {
     if (directory.size() + 1 + name.size() > longest_path) return false;
     auto end = std::copy(directory.begin(), directory.end(), path_.begin());
     *end++ = '/';
@@ -82,6 +81,12 @@ bool PropertyFiles::name_path(std::string_view directory, const ComponentRow& ro
 
 Sentence PropertyFiles::load(const ComponentRow& row, PropertyTransaction& into) noexcept {
     if (!keeps()) return row.properties.may_be_missing ? Sentence{} : no_directory(row);
+    // Without a directory each optional file is missing, and only the saving at the end would fail.
+    if (name_path(directory_, ".") && os::read_file(path_.data(), {}).result == os::FileRead::missing)
+        return Sentence{
+            directory_, ": component \"", row.name,
+            "\": this directory of its properties file does not exist; make it, or name another one by "
+            "--properties"};
     StatedValues stated;
     stated.each(row, [&](std::size_t index, std::byte* copy) {
         std::memcpy(copy, into.change(index), row.type->facets[index].type->size);
@@ -94,7 +99,7 @@ Sentence PropertyFiles::load(const ComponentRow& row, PropertyTransaction& into)
         *found |= *there;
     }
     tell_overridden(row, stated, into);
-    if (*found || row.properties.may_be_missing || !name_path(directory_, row)) return {};
+    if (*found || row.properties.may_be_missing || !name_path(directory_, row.properties.name)) return {};
     return Sentence{
         std::string_view{path_.data()},
         ": component \"",
@@ -107,7 +112,7 @@ Sentence PropertyFiles::load(const ComponentRow& row, PropertyTransaction& into)
 
 std::expected<bool, Sentence> PropertyFiles::load_from(std::string_view directory, const ComponentRow& row,
                                                        LeftOut left_out, PropertyTransaction& into) noexcept {
-    if (!name_path(directory, row))
+    if (!name_path(directory, row.properties.name))
         return std::unexpected(Sentence{"component \"", row.name, "\": the path of its properties file \"",
                                         row.properties.name,
                                         "\" is too long; name a shorter properties directory"});
@@ -132,7 +137,7 @@ std::expected<bool, Sentence> PropertyFiles::load_from(std::string_view director
 
 Sentence PropertyFiles::save(const ComponentRow& row, const PropertyTransaction& from) noexcept {
     if (!keeps()) return no_directory(row);
-    if (!name_path(directory_, row))
+    if (!name_path(directory_, row.properties.name))
         return Sentence{"component \"", row.name, "\": the path of its properties file \"",
                         row.properties.name, "\" is too long; name a shorter properties directory"};
     // A component may set a value that nobody checked; the next start would refuse to arm with it.

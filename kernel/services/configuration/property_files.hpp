@@ -38,7 +38,7 @@ public:
     [[nodiscard]] bool keeps() const noexcept { return !directory_.empty(); }
 
 private:
-    [[nodiscard]] bool name_path(std::string_view directory, const ComponentRow& row) noexcept;
+    [[nodiscard]] bool name_path(std::string_view directory, std::string_view file) noexcept;
     /// Returns whether there is a file.
     [[nodiscard]] std::expected<bool, Sentence> load_from(std::string_view directory, const ComponentRow& row,
                                                           LeftOut left_out,

@@ -23,13 +23,14 @@ struct Hearer {
     Input<Text<8>> word;
     Input<std::int8_t> count, pulse;
     Input<float> share;
-    Input<double> loud;
+    Input<double> loud, damp;
     void step(const Cycle&) noexcept TAPPET_REALTIME {}
     static constexpr auto interface() {
         return facets(input<&Hearer::word>("word", "", "that it hears", optional),
                       input<&Hearer::count>("count", "", "of the words", optional),
                       input<&Hearer::share>("share", "", "of silence", optional),
                       input<&Hearer::loud>("loud", "", "as it was", optional),
+                      input<&Hearer::damp>("damp", "%", "the air", optional),
                       input<&Hearer::pulse>("pulse", "", "of who talks", optional, grows_stale));
     }
 };
@@ -125,6 +126,23 @@ constexpr Fault end_faults[] = {
      R"(loom: connection "encoder.angle" -> "shaft.measured": "encoder.angle" is an output, not a buffered output; write data(...))"},
 };
 INSTANTIATE_TEST_SUITE_P(ends, Refusal, planted_into(small_loom, end_faults), name_of);
+
+/// A row from a component of an activity that is not real-time.
+void hear_slowly(Table& m, const ConnectionRow& row) {
+    m.add(component<Wire>("wire"));
+    m.add(activity("wires", every(4ms), not_real_time, runs("wire")));
+    m.add(component<Hearer>("hearer"), "field");
+    m.add(row);
+}
+constexpr Fault slow_faults[] = {
+    {"row_stale_before_its_slow_writer_writes_again",
+     [](Table& m) { hear_slowly(m, data("climate.humidity", "hearer.damp", stale_after(250ms), hold)); },
+     R"(loom: connection "climate.humidity" -> "hearer.damp": stale_after(250000 us) is not longer than the period of 250000 us of its writer's activity "hall", so that good values would be stale; lengthen it)"},
+    {"row_from_outside_stale_between_two_cycles_of_its_driver",
+     [](Table& m) { hear_slowly(m, data("wire.level", "hearer.loud", stale_after(12ms), hold)); },
+     R"(loom: connection "wire.level" -> "hearer.loud": stale_after(12000 us) is not longer than the 12000 us in which "wire.level" comes, so that good values would be stale; lengthen it)"},
+};
+INSTANTIATE_TEST_SUITE_P(slow, Refusal, planted_into(small_loom, slow_faults), name_of);
 
 constexpr Fault option_faults[] = {
     {"row_from_outside_without_an_age",

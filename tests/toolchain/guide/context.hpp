@@ -23,6 +23,7 @@
 #include "drivers/plant/plant.hpp"
 #include "drivers/system/station.hpp"
 #include "kernel/control/control.hpp"
+#include "kernel/limits/held_in.hpp"
 #include "kernel/limits/limits.hpp"
 #include "kernel/machine/firmware.hpp"
 #include "kernel/machine/table/compiled.hpp"

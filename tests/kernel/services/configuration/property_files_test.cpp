@@ -196,6 +196,18 @@ TEST_F(PropertyFilesOfAMachine, are_required_even_in_a_start_up_that_reads_none)
     EXPECT_THAT(configure(), HasSubstr("this start-up reads none"));
 }
 
+TEST_F(PropertyFilesOfAMachine, need_a_directory_that_exists) {
+    PropertyFiles nowhere{"/nowhere/at/all"};
+    instance.read_properties_from(nowhere.store());
+    const auto configured = instance.configure({});
+    ASSERT_FALSE(configured);
+    EXPECT_THAT(std::string{configured.error().view()}, StartsWith("/nowhere/at/all: component \""));
+    EXPECT_THAT(
+        std::string{configured.error().view()},
+        HasSubstr("this directory of its properties file does not exist; make it, or name another one by "
+                  "--properties"));
+}
+
 TEST_F(PropertyFilesOfAMachine, need_a_directory_unless_all_are_optional) {
     PropertyFiles nowhere_to_lie{""};
     instance.read_properties_from(nowhere_to_lie.store());
