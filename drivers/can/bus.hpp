@@ -239,8 +239,9 @@ private:
         const auto comes = comes_every(frame.every);
         if (frame.direction == Direction::receive)
             return is_integer(signal)
-                       ? nth_output<&Bus::integer_out>(s, name, signal.unit, "received", comes)
-                       : nth_output<&Bus::physical_out>(s, name, signal.unit, "received", comes);
+                       ? nth_output<&Bus::integer_out>(s, name, signal.unit, "received", comes, stamps_cause)
+                       : nth_output<&Bus::physical_out>(s, name, signal.unit, "received", comes,
+                                                        stamps_cause);
         Facet sent = is_integer(signal) ? nth_input<&Bus::integer_in>(s, name, signal.unit, "sent", comes)
                                         : nth_input<&Bus::physical_in>(s, name, signal.unit, "sent", comes);
         sent.needs_wake =

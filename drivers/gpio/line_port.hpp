@@ -177,7 +177,7 @@ private:
         [[maybe_unused]] constexpr DrivesOutput drives =
             drives_output(i, map.rows[i].line.safe_value ? 1 : 0);
         if constexpr (map.rows[i].line.role == Role::input) {
-            all[n++] = nth_output<&LinePort::level>(i, name, "", "the line's level", as_it_was);
+            all[n++] = nth_output<&LinePort::level>(i, name, "", "the line's level", as_it_was, stamps_cause);
             all[n++] = nth_event<&LinePort::rises>(i, Names::rises[i].view(),
                                                    "the line became active, at that time");
             all[n++] = nth_event<&LinePort::falls>(i, Names::falls[i].view(),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace tappet {
 
@@ -30,7 +31,7 @@ void Engine::place(const EnginePlan& plan, os::Clock& clock) noexcept {
     const bool is_simple =
         plan.timers.empty() && plan.guarded.empty() && recorded_ == nullptr && recorder_ == nullptr;
     // An activity that rows wake also records their times.
-    const bool only_steps = plan.behaviours.empty() && plan.periodic;
+    const bool only_steps = plan.behaviours.empty() && plan.periodic && !plan.hears_causes;
     serves_ = !is_simple ? Serves::everything : only_steps ? Serves::steps : Serves::behaviours;
     for (EnginePart& part : plan_.parts) {
         part.step = part.type->step;
@@ -114,6 +115,8 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     if constexpr (causes) {
         waking = due && !plan_.periodic ? take_waking_row() : nullptr;
         cause_ = waking == nullptr ? no_cause : waking->cause();
+        // A period serves its messages behind its components, so these act on them in the next one.
+        if (due && plan_.periodic) cause_ = std::exchange(left_, no_cause);
         set_running_cause(cause_);
     }
     cycle_.release = release;
@@ -131,6 +134,8 @@ void Engine::cycle_as(bool woken) noexcept TAPPET_REALTIME {
     bool acted = false;
     if constexpr (everything) acted = run_timers();
     if (due) run_components();
+    if constexpr (causes)
+        if (plan_.periodic) cause_ = running_cause(); // or that of a value which an input brought
     if (commands_.has_work()) acted |= run_commands();
     if (inbox_.pending()) acted |= run_messages();
     if constexpr (causes) {
@@ -230,6 +235,7 @@ bool Engine::run_messages() noexcept TAPPET_REALTIME {
         if (message.cause == no_cause) return;
         AsyncReaction::note_end(message, lap_);
         if (cause_ == no_cause) cause_ = message.cause;
+        if (left_ == no_cause) left_ = message.cause;
     });
     set_running_cause(no_cause);
     statistics_.messages += served;

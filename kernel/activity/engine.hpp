@@ -110,6 +110,7 @@ struct EnginePlan {
     std::int64_t at_most_n = 1;
     Duration at_most_per{};
     bool stop_when_late = false;
+    bool hears_causes = false;           ///< edges or frames may cause what it does in its periods
     std::span<EnginePart> parts;         ///< in data-flow order
     std::span<FunctionTiming> functions; ///< functions_per_part for each part
     std::span<EngineTimer> timers;
@@ -455,6 +456,7 @@ private:
     Time lap_{};
     Time ended_{};
     Time cause_{}; ///< cause of this cycle: that of its wake, or of the first message that has one
+    Time left_{};  ///< of a periodic activity: cause of the first message, for the components' next step
     std::atomic<WakingRow*> waking_{nullptr};
     Duration least_excess_{}; ///< least excess for which a function can be to blame: zero, or never
     Duration worst_excess_{}; ///< of this cycle; least_excess_: no function took longer than usual

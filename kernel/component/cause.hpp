@@ -35,6 +35,12 @@ inline void set_running_cause(Time stamp) noexcept TAPPET_REALTIME {
                   detail::running_cause = stamp);
 }
 
+/// Takes a stamp as the cause of what the calling thread does for the rest of its cycle, if it has none.
+/// Real-time.
+inline void note_cause(Time stamp) noexcept TAPPET_REALTIME {
+    if (running_cause() == no_cause) set_running_cause(stamp);
+}
+
 /// Sets the cause of what the calling thread does, until destroyed. Real-time; made by drivers.
 class CausedBy {
 public:

@@ -148,8 +148,10 @@ struct Facet {
     Duration comes_every{};      ///< its values cross a wire to or from outside in this period; 0: not so
     /// An input or an operation: number + 1 of the device's output that it drives and that has a safe value.
     std::uint16_t device_output = 0;
-    double safe_value = 0;            ///< of that output
-    AtRest at_rest = AtRest::unsaid;  ///< of an output of bool
+    double safe_value = 0;           ///< of that output
+    AtRest at_rest = AtRest::unsaid; ///< of an output of bool
+    /// An output: its values have the time stamp of the edge or the frame that caused them.
+    bool stamps_cause = false;
     std::uint8_t least_reactions = 0; ///< of an event: least number of reaction rows that must name it
     bool any_thread = false;          ///< an operation or a method that any activity may call
     bool may_block = false;           ///< a method or a command; never in a real-time activity
@@ -278,6 +280,7 @@ struct PortAccess {
                 in.max_age_ = policy.max_age;
                 in.settle();
                 in.when_stale_ = policy.when_stale;
+                in.is_cause_ = policy.is_cause;
                 if constexpr (std::is_floating_point_v<T>) in.scale_ = {policy.scale, policy.between};
                 in.substitute_ = value_in<T>(policy.substitute);
                 in.before_first_ =

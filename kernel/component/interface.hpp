@@ -69,6 +69,9 @@ constexpr WhileStopped while_stopped(bool value) noexcept {
     return {value ? AtRest::says_true : AtRest::says_false};
 }
 inline constexpr WhileStopped as_it_was{AtRest::as_it_was};
+/// States that the values of a driver's output have the time stamp of the edge or the frame that caused them.
+struct StampsCause {};
+inline constexpr StampsCause stamps_cause{};
 /// Marks an event that matters to the machine's safety: at least so many reaction rows must name it.
 struct HeardBy {
     std::uint8_t reactions = 1;
@@ -131,6 +134,7 @@ constexpr void apply(Facet& facet, DrivesOutput output) noexcept {
     facet.safe_value = output.safe;
 }
 constexpr void apply(Facet& facet, WhileStopped stopped) noexcept { facet.at_rest = stopped.says; }
+constexpr void apply(Facet& facet, StampsCause) noexcept { facet.stamps_cause = true; }
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
 constexpr void apply(Facet& facet, MayBlock) noexcept { facet.may_block = true; }
@@ -179,7 +183,8 @@ constexpr Facet output(std::string_view name, std::string_view unit, std::string
                        Options... options) {
     using M = detail::MemberOf<Member>;
     using T = typename M::Type::Value;
-    static_assert(std::same_as<typename M::Type, Output<bool>> || (std::same_as<Options, ComesEvery> && ...),
+    static_assert(std::same_as<typename M::Type, Output<bool>> ||
+                      (!std::same_as<Options, WhileStopped> && ...),
                   "while_stopped(..) is for an Output<bool>; write other outputs in stop()");
     if constexpr (std::same_as<typename M::Type, BufferOutput<T>>)
         return {.name = name,

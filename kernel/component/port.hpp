@@ -6,6 +6,7 @@
 #include "kernel/base/realtime.hpp"
 #include "kernel/base/time.hpp"
 #include "kernel/base/type_tag.hpp"
+#include "kernel/component/cause.hpp"
 #include "kernel/component/current.hpp"
 #include "kernel/component/facet_member.hpp"
 #include "kernel/component/rate_transition.hpp"
@@ -45,6 +46,7 @@ struct InputPolicy {
     RowValue before_first{};
     double scale = 1;                 ///< for a floating number that comes from another data object
     BetweenValues* between = nullptr; ///< for the same; null: the last value is held
+    bool is_cause = false; ///< a new value's stamp is the cause of what its reader does in that cycle
 };
 
 /// For an input: the factor of each new value, and the values between two. Only floating numbers have them.
@@ -89,14 +91,12 @@ struct Waker {
     }
 };
 
-/// A filter that each value a component writes passes on its way out; it may change the value. In the port's
-/// own activity.
+/// A filter that each written value passes, in the port's own activity; it may change the value.
 struct PortFilter {
     void (*pass)(PortFilter& self, void* value, Time stamp) noexcept TAPPET_REALTIME = nullptr;
 };
 
-/// The counter of dropped writes; not null: the component does not run, and its writes are dropped and
-/// counted here.
+/// Counts dropped writes; not null: the component does not run.
 using DroppedWrites = std::atomic<std::uint32_t>;
 
 /// The clock of a port before its machine connects the ports of the component's interface.
@@ -327,6 +327,7 @@ private:
         if (shared_ == nullptr || forced_) return false;
         const Life before = cache_.life;
         const bool is_new = shared_->read(cache_, cached_generation_);
+        if (is_new && is_cause_) note_cause(cache_.stamp);
         if constexpr (std::is_floating_point_v<T>) {
             if (is_new && scale_.factor != 1) cache_.value = scaled(cache_.value);
             if (scale_.between != nullptr && cached_generation_ != 0) [[unlikely]]
@@ -473,7 +474,7 @@ private:
     const DataObject<Sample<T>>* shared_ = nullptr;
     [[no_unique_address]] std::conditional_t<std::is_floating_point_v<T>, Scale, NoScale> scale_{};
     bool inside_only_ = false; ///< the value is the one at the other end, of any age
-    bool forced_ = false;
+    bool forced_ = false, is_cause_ = false;
     bool stands_ = false;           ///< its component is stopped, and a force ended with that stop
     bool ends_before_turn_ = false; ///< the writer had stopped when another one was linked
     WhenStale when_stale_ = WhenStale::hold;

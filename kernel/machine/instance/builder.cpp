@@ -153,6 +153,7 @@ void MachineBuilder::place_engines() {
         engine.budget = row.budget_each;
         engine.at_most_n = row.at_most_n;
         engine.at_most_per = row.at_most_per;
+        engine.hears_causes = hears_causes(a);
         engine.stop_when_late = row.when_late == WhenLate::stop;
         engine.parts = parts;
         engine.functions = functions;
@@ -169,6 +170,17 @@ void MachineBuilder::place_engines() {
             TAPPET_REALTIME { static_cast<MachineInstance*>(self)->ask_stop(reason, detail, &from); },
             &instance_);
     }
+}
+
+/// Whether edges or frames may cause what a periodic activity does.
+bool MachineBuilder::hears_causes(std::size_t activity) const {
+    const MachineView& table = machine_.table;
+    for (std::size_t x = 0; x < table.connections.size(); ++x)
+        if (machine_.index.activity[machine_.index.connections[x].to.component] == activity && is_cause(x))
+            return true;
+    return std::ranges::any_of(machine_.index.reactions, [&](const Link& each) {
+        return machine_.index.activity[each.to.component] == activity;
+    });
 }
 
 void MachineBuilder::place_scope() {

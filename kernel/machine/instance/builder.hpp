@@ -40,6 +40,8 @@ private:
     void connect_data();
     void connect_row(std::size_t row);
     void add_waker(std::size_t row);
+    [[nodiscard]] bool is_cause(std::size_t row) const;
+    [[nodiscard]] bool hears_causes(std::size_t activity) const;
     void connect_extras();
     [[nodiscard]] bool has_initial(std::size_t connection) const noexcept;
     [[nodiscard]] bool is_in_circle(const Link& input) const;

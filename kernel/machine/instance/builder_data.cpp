@@ -57,6 +57,14 @@ void MachineBuilder::connect_extras() {
         machine_.table.extras->at(e)->connect(instance_, e, instance_.extra_memory(e));
 }
 
+/// Whether a row brings the stamps of edges and frames into the cycles of a periodic activity, which they do
+/// not wake.
+bool MachineBuilder::is_cause(std::size_t x) const {
+    const Link& link = machine_.index.connections[x];
+    return machine_.plan.connections[x].shared && facet_at(machine_.table, link.from).stamps_cause &&
+           machine_.table.activities[machine_.index.activity[link.to.component]].periodic();
+}
+
 void MachineBuilder::connect_row(std::size_t x) {
     const ConnectionRow& row = machine_.table.connections[x];
     const ConnectionPlan& plan = machine_.plan.connections[x];
@@ -83,7 +91,8 @@ void MachineBuilder::connect_row(std::size_t x) {
             row.transition, machine_.table.activities[machine_.index.activity[link.from.component]].period};
     from.port->set_policy(instance_.facet(link.to),
                           {row.max_age, row.when_stale, row.substitute, row.before_first,
-                           checks::factor_of(row, from, facet_at(machine_.table, link.to)), between});
+                           checks::factor_of(row, from, facet_at(machine_.table, link.to)), between,
+                           is_cause(x)});
 }
 
 void MachineBuilder::add_waker(std::size_t x) {

@@ -22,7 +22,7 @@ struct Lines {
     }
     static constexpr auto interface() {
         return facets(event<&Lines::rises>("rises", "an edge"),
-                      output<&Lines::level>("level", "", "after it"));
+                      output<&Lines::level>("level", "", "after it", stamps_cause));
     }
 };
 
@@ -126,6 +126,83 @@ TEST_F(Reactions, are_recorded_for_each_row_separately) {
     EXPECT_NE(instance.observation().times_of_connection(wakes_logic), nullptr);
     EXPECT_NE(instance.observation().times_of_reaction(tells_logic),
               instance.observation().times_of_reaction(tells_brake));
+}
+
+// ---- through a periodic activity
+
+/// Drives its output from what it read, or was told, before.
+struct Cell {
+    Input<bool> level;
+    Output<bool> motor;
+    bool told = false;
+    void on_rise(Time) noexcept TAPPET_REALTIME { told = true; }
+    void step(const Cycle&) noexcept TAPPET_REALTIME { motor.write(level.get() || told); }
+    static constexpr auto interface() {
+        return facets(input<&Cell::level>("level", "", "seen", optional),
+                      output<&Cell::motor>("motor", "", "what follows"),
+                      operation<&Cell::on_rise>("on_rise", "notes it"));
+    }
+};
+struct Motor : Clocked {
+    Input<bool> runs;
+    int woken = 0;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {
+        ++woken;
+        clock->consume(20us);
+    }
+    static constexpr auto interface() { return facets(input<&Motor::runs>("runs", "", "shall run")); }
+};
+
+template <class Connected, class Told> constexpr auto cell_with(const Connected& connected,
+                                                                const Told& told) {
+    return machine("cell",
+                   components(component<Lines>("lines"), component<Cell>("cell"), component<Motor>("motor")),
+                   activities(activity("lines", every(1ms), runs("lines"), budget(50us)),
+                              activity("cell", every(5ms), runs("cell"), budget(50us)),
+                              activity("motor", on_work(), at_most(4, 1ms), runs("motor"), deadline(500us),
+                                       budget(50us))),
+                   connected, told, behaviours());
+}
+constexpr auto reading_cell = cell_with(
+    connections(data("cell.motor", "motor.runs", wakes), data("lines.level", "cell.level")), reactions());
+constexpr auto told_cell = cell_with(connections(data("cell.motor", "motor.runs", wakes)),
+                                     reactions(when("lines.rises", tell("cell.on_rise"))));
+
+template <const auto& table> struct ReactionsOf : testing::Test, RunningRig<table> {
+    /// Takes an edge just after a period of the cell and of the lines.
+    Time edge() {
+        this->pass(20ms + 100us);
+        Lines& lines = this->template the<Lines>("lines");
+        lines.edge = this->clock.now();
+        return lines.edge;
+    }
+    const ReactionTimes& motor_woken() { return *this->instance.observation().times_of_connection(0); }
+};
+using ReactionsOfReading = ReactionsOf<reading_cell>;
+using ReactionsOfTold = ReactionsOf<told_cell>;
+
+TEST_F(ReactionsOfReading, are_timed_through_the_cycle_that_read_the_value) {
+    edge();
+    EXPECT_EQ(motor_woken().count, 0u) << "its period alone is no edge";
+    EXPECT_GT(the<Motor>("motor").woken, 2);
+    pass(50ms);
+    EXPECT_EQ(motor_woken().count, 1u) << "later cycles read an old value";
+    EXPECT_GE(motor_woken().longest, 5ms - 100us);
+    EXPECT_LE(motor_woken().longest, 5ms);
+    edge();
+    pass(50ms);
+    EXPECT_EQ(motor_woken().count, 2u);
+}
+
+TEST_F(ReactionsOfTold, are_timed_through_the_step_that_follows_the_message) {
+    edge();
+    pass(50ms);
+    EXPECT_EQ(motor_woken().count, 1u);
+    EXPECT_GE(motor_woken().longest, 5ms - 100us);
+    EXPECT_LE(motor_woken().longest, 11ms) << "served behind one step, acted on in the next";
+    edge();
+    pass(50ms);
+    EXPECT_EQ(motor_woken().count, 2u);
 }
 
 TEST(ReactionTimes, use_bins_of_powers_of_two_microseconds) {
