@@ -25,7 +25,7 @@ public:
         open_.store(open, std::memory_order_release);
         return true;
     }
-    /// Whether the driver may send the value that is asked for now. In the driver's activity.
+    /// Returns whether the driver may send the value that is asked for. In the driver's activity.
     bool admits(bool is_safe, Time now) noexcept TAPPET_REALTIME {
         const bool admitted = is_safe || open_.load(std::memory_order_acquire);
         const Time since = since_.load(std::memory_order_relaxed);

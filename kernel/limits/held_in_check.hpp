@@ -1,4 +1,4 @@
-// What the programs of a state machine do to a held output, as far as the compiler can read them: the
+// Checks a held output against the programs of a state machine that the compiler can read: the
 // programs of scripts, whose operations, events and constants it follows through the table's rows. C++
 // functions are not readable; at run time the output's gate judges their orders like all others.
 #pragma once

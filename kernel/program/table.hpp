@@ -125,7 +125,7 @@ struct LinkRow {
     bool needs_slot = false;                ///< a command of another activity
 };
 
-/// What a program orders of a component: an operation that it calls, an event that it emits, an output that
+/// An order of a program to a component: an operation that it calls, an event that it emits, an output that
 /// it writes. See kernel/program/orders.hpp.
 struct ProgramOrder {
     std::uint16_t link = 0; ///< number of the LinkRow

@@ -17,7 +17,7 @@ struct BehaviourType {
     std::string_view name{};
     ProgramTables tables{};
     StateMachineTable machine{}; ///< without states: a program alone, tables.programs[0]
-    /// Of native code, whose instructions are not kept; else empty.
+    /// The orders of native code, whose instructions are not kept; else empty.
     std::span<const ProgramOrder> orders{};
 
     [[nodiscard]] constexpr bool is_program() const noexcept { return machine.states.empty(); }

@@ -69,6 +69,7 @@ protected:
     PropertyFiles files{directory};
 
     void SetUp() override {
+        std::filesystem::create_directories(directory);
         this->instance.browse_in(directory);
         this->instance.read_properties_from(files.store());
         const auto configured = this->instance.configure({});
