@@ -31,10 +31,10 @@ void HeldIn::connect(MachineInstance& instance, std::size_t, std::span<std::byte
     const std::size_t driver = find_component(of.table, output.substr(0, dot));
     const BehaviourRow* const row = held_detail::behaviour_of(of.table, machine);
     BehaviourUnit& unit = *instance.unit_of_row(static_cast<std::size_t>(row - of.table.behaviours.data()));
+    const Duration grace = grace_of(of, *this, driver, find_component(of.table, machine));
     auto* const placed = new (memory.data()) held_detail::Placed{
         .clock = &instance.clock(),
-        .held = StateGate{.gate{grace_of(of, *this, driver, find_component(of.table, machine))},
-                          .driver = instance.waker_of(of.index.activity[driver])}};
+        .held = StateGate{.gate = OutputGate{grace}, .driver = instance.waker_of(of.index.activity[driver])}};
     const std::span<const UnitPart> parts = unit.parts();
     for (std::size_t i = 0; i < parts.size(); ++i)
         for (std::size_t s = 0; parts[i].machine != nullptr && s < parts[i].type->machine.states.size(); ++s)

@@ -8,6 +8,7 @@
 #include "drivers/modbus/far_end.hpp"
 #include "drivers/plant/simulation.hpp"
 #include "kernel/limits/held_in.hpp"
+#include "kernel/machine/table/compiled.hpp"
 #include "tests/drivers/components/forced_port.hpp"
 #include "tests/drivers/components/machine_rig.hpp"
 
