@@ -37,17 +37,20 @@ constexpr bool is_configured_by_rows(std::uint16_t index) noexcept {
     return (index >= 0x1000 && index <= 0x1019 && index != 0x1012) || (index >= 0x1400 && index < 0x1C00);
 }
 
-/// Collects the faults of a file in the objects that a node's rows need, for one sentence.
+/// Collects the faults of a file in the objects that a node's rows need, for one sentence. The objects' flaws
+/// and the doubted identity decide; the notes only say it.
 class FlawsTold {
 public:
     constexpr explicit FlawsTold(const NodeRow& node) noexcept : node_{node} {}
 
     constexpr void need_identity() noexcept {
-        for (const FileNote& each : node_.dictionary.notes) {
-            if (each.kind != FileNote::Kind::identity_twice || (node_.any_revision && each.at.sub == 3))
+        for (std::uint8_t sub = 1; sub <= 3; ++sub) {
+            if ((node_.dictionary.doubted >> sub & 1) == 0 || (node_.any_revision && sub == 3) || !begin())
                 continue;
-            if ((node_.dictionary.doubted >> each.at.sub & 1) == 0 || !begin()) continue;
-            tell(each.line, meaning(each));
+            const Address at{0x1018, sub};
+            const FileNote* const note = note_of(at, FileNote::Kind::identity_twice);
+            tell(note != nullptr ? note->line : node_.dictionary.find(at)->line,
+                 note != nullptr ? meaning(*note) : Sentence{to_text(at), " is not what [DeviceInfo] says"});
             told_.add("; state the device's: .identity(vendor, product, revision)");
         }
     }
@@ -78,6 +81,11 @@ private:
     }
     constexpr void tell(std::uint32_t line, const Sentence& fault) noexcept {
         told_.add(node_.dictionary.file).add(":").add(line).add(": ").add(fault);
+    }
+    constexpr const FileNote* note_of(Address at, FileNote::Kind kind) const noexcept {
+        for (const FileNote& each : node_.dictionary.notes)
+            if (each.kind == kind && each.at == at) return &each;
+        return nullptr;
     }
     constexpr const FileNote* note_of(const Object& object, std::uint8_t flaws) const noexcept {
         for (const bool exactly : {true, false}) // a compact array has one note for all
@@ -282,6 +290,22 @@ constexpr Sentence parameter_fault(const NodeRow& node, const ParameterRow& row)
     return {};
 }
 
+/// Checks that the numbers that a node's row states can be compared with the device's.
+constexpr Sentence identity_fault(const NodeRow& node) noexcept {
+    const Identity& wanted = node.dictionary.identity;
+    const std::array numbers{wanted.vendor, wanted.product, node.any_revision ? 0 : wanted.revision};
+    for (std::uint8_t sub = 1; sub <= numbers.size() && node.states_identity; ++sub)
+        if (const Address at{0x1018, sub}; numbers[sub - 1u] != 0 && node.dictionary.find(at) == nullptr)
+            return Sentence(who(node), " states an identity(..), but ", node.dictionary.file, " has no ",
+                            to_text(at),
+                            ", so that the device's number would not be compared; believe that "
+                            "the device has it: canopen::dictionary<.., canopen::despite({0x1018, ",
+                            unsigned{sub},
+                            "}, canopen::DataType::unsigned32, canopen::Access::read_only)>, "
+                            "or take identity(..) away");
+    return {};
+}
+
 /// Object 1016h, in which a node stores 3.5 heartbeat periods of the manager, has 16 bits in ms.
 inline constexpr std::int64_t most_beats_ms = 65535 * 2 / 7;
 
@@ -309,6 +333,7 @@ constexpr Sentence node_fault(const ManagerRow& manager, const NodeRow& node) no
         return Sentence{
             subject,
             " would be lost before its next heartbeat comes; let heartbeat(every, lost) wait longer"};
+    if (const Sentence fault = identity_fault(node); !fault.empty()) return fault;
     const Object* const beat = node.dictionary.find(0x1017);
     if (beat == nullptr || !writable(beat->access))
         return Sentence{subject, " produces no heartbeat: ", node.dictionary.file,

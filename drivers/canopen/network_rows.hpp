@@ -45,6 +45,7 @@ struct NodeRow {
     Duration lost_after{};
     Duration answers_within = 100ms; ///< time-out of each request of an SDO transfer
     bool any_revision = false;
+    bool states_identity = false; ///< instead of its file
     Bounded<PdoRow, most_pdos> pdos{};
     Bounded<ParameterRow, most_parameters> parameters{};
     bool too_many = false;
@@ -78,6 +79,7 @@ struct NodeRow {
         NodeRow copy = *this;
         copy.dictionary.identity = {dictionary.identity.device_type, vendor, product, revision};
         copy.dictionary.doubted = 0;
+        copy.states_identity = true;
         return copy;
     }
     /// Accepts a node of another revision, too.

@@ -87,17 +87,27 @@ constexpr void write_pdo(StepWriter<M>& to, const NodeRow& node, const PdoRow& r
         to.confirm({mapping, static_cast<std::uint8_t>(i + 1)}, entry_of(i));
 }
 
+/// Disables the PDOs that no row uses: the first four of each way, which are enabled unless the file says
+/// otherwise (CiA 301), and each further one that the file enables.
 template <std::size_t M>
 constexpr void silence_other_pdos(StepWriter<M>& to, const NodeRow& node,
                                   std::span<const bool> used) noexcept {
+    const auto silence = [&](const Object& own) {
+        const std::uint64_t entry = own.value.of(node.id);
+        if ((entry & pdo_invalid) == 0) to.write(own.at, pdo_invalid | entry);
+    };
     for (std::uint8_t number = 0; number < predefined_pdos; ++number)
         for (const bool sent : {true, false}) {
             const PdoPlace place{true, sent, number};
             const Object* const own = node.dictionary.find({place.communication(), 1});
             if (own == nullptr || used[2u * number + (sent ? 1u : 0u)]) continue;
-            const std::uint64_t entry = own->value.of(node.id);
-            if ((entry & pdo_invalid) == 0) to.write(own->at, pdo_invalid | entry);
+            silence(*own);
         }
+    for (const Object& own : node.dictionary.objects) {
+        const bool is_sent = own.at.index >= 0x1800;
+        const unsigned number = own.at.index - (is_sent ? 0x1800u : 0x1400u); // wraps below 1400h
+        if (own.at.sub == 1 && number >= predefined_pdos && number < 0x200 && own.value.given) silence(own);
+    }
 }
 
 template <std::size_t F, std::size_t S, std::size_t N>

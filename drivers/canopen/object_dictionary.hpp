@@ -216,7 +216,8 @@ struct Dictionary {
     /// Bit n: the file contradicts itself on 1018h:n of the identity, which is then that of the object.
     std::uint8_t doubted = 0;
     std::span<const Object> objects{}; ///< in the order of their addresses
-    std::span<const FileNote> notes{}; ///< on the file's faults, as far as there is room
+    /// On the file's faults: for sentences, so no decision may depend on them.
+    std::span<const FileNote> notes{};
 
     /// Finds an object; null when the device has none there. Real-time: binary search.
     [[nodiscard]] constexpr const Object* find(Address at) const noexcept TAPPET_REALTIME {

@@ -7,7 +7,9 @@
 #include "drivers/canopen/simulated_node.hpp"
 #include "tests/drivers/canopen/configured.dcf.hpp"
 #include "tests/drivers/canopen/contradictory.eds.hpp"
+#include "tests/drivers/canopen/crowded.eds.hpp"
 #include "tests/drivers/canopen/flawed.eds.hpp"
+#include "tests/drivers/canopen/unidentified.eds.hpp"
 #include "tests/drivers/canopen/untyped.dcf.hpp"
 
 #include <gtest/gtest.h>
@@ -270,6 +272,35 @@ TEST(EdsFaults, of_an_identity_are_cured_in_the_row_of_the_node) {
     ASSERT_EQ(net.fault.view(), "");
     EXPECT_EQ(net.steps[0].at, (Address{0x1018, 1}));
     EXPECT_EQ(net.steps[0].value, 0x11u);
+}
+
+TEST(EdsFaults, of_an_identity_are_found_behind_many_notes) {
+    constexpr NodeRow row = node(5, "own", dictionary<files::crowded_eds>).heartbeat(100ms);
+    ASSERT_GT(row.dictionary.notes.size(), 64u);
+    const std::string told = fault_of(none, row);
+    EXPECT_NE(told.find("1018h:1 is 17, but [DeviceInfo] (line 1) says 0x10"), told.npos) << told;
+    EXPECT_EQ(fault_of(none, row.identity(0x11, 0, 2)), "");
+}
+
+TEST(EdsFaults, of_an_identity_that_could_not_be_compared_are_refused) {
+    constexpr NodeRow row = node(5, "own", dictionary<files::unidentified_eds>).heartbeat(100ms);
+    EXPECT_EQ(fault_of(none, row), "");
+    EXPECT_EQ(
+        fault_of(none, row.identity(0x11, 0x22)),
+        "node 5 \"own\" states an identity(..), but tests/drivers/canopen/unidentified.eds has no 1018h:1, "
+        "so that the device's "
+        "number would not be compared; believe that the device has it: canopen::dictionary<.., "
+        "canopen::despite({0x1018, 1}, canopen::DataType::unsigned32, canopen::Access::read_only)>, or take "
+        "identity(..) away");
+    EXPECT_EQ(fault_of(none, row.identity(0, 0)), "");
+    constexpr NodeRow believed =
+        node(5, "own",
+             dictionary<files::unidentified_eds,
+                        despite({0x1018, 1}, DataType::unsigned32, Access::read_only)>)
+            .heartbeat(100ms);
+    constexpr auto net = network(none, manager(127), believed.identity(0x11, 0));
+    ASSERT_EQ(net.fault.view(), "");
+    EXPECT_EQ(net.steps[0], (ConfigurationStep{ConfigurationStep::Kind::identity, 4, {0x1018, 1}, 0x11}));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "apps/carpet_loom/nodes/drive.eds.hpp"
 #include "apps/carpet_loom/nodes/encoder.eds.hpp"
 #include "drivers/canopen/network.hpp"
+#include "tests/drivers/canopen/fifth.eds.hpp"
 #include "tests/drivers/canopen/servo.eds.hpp"
 #include "tests/drivers/canopen/values.dcf.hpp"
 
@@ -76,6 +77,18 @@ TEST(NetworkTable, disables_unmapped_pdos) {
     ASSERT_EQ(table.fault.view(), "");
     EXPECT_EQ(table.steps[table.steps.size() - 1],
               (ConfigurationStep{ConfigurationStep::Kind::write, 4, {0x1400, 1}, 0x80000205}));
+}
+
+TEST(NetworkTable, disables_pdos_beyond_the_fourth_that_the_file_enables) {
+    constexpr auto other = can::signal_map(can::receive(can::extended(0x185), "no PDO", can::bytes(1),
+                                                        can::every(5ms), can::signal("byte", 0, 8)));
+    const auto table = network(other, boss, node(5, "own", dictionary<files::fifth_eds>).heartbeat(100ms));
+    ASSERT_EQ(table.fault.view(), "");
+    std::string writes;
+    for (const ConfigurationStep& step : table.steps)
+        if (step.kind == ConfigurationStep::Kind::write && step.at.index != 0x1017)
+            writes += std::string{to_text(step.at).view()} + (step.value == 0x8000'01C5 ? " off " : " ? ");
+    EXPECT_EQ(writes, "1804h:1 off ");
 }
 
 TEST(NetworkTable, uses_the_values_of_a_dcf_unless_a_row_overrides_them) {
