@@ -21,6 +21,7 @@ template <std::size_t columns, std::size_t rows>
 struct Sensor {
     static constexpr Size device_map{columns, rows};
     static constexpr const DeviceKind& device_kind = camera::device_kind;
+    static constexpr bool woken_by_device = true;
     static constexpr Sentence size_text{columns, " x ", rows};
     static constexpr std::array<std::string_view, 1> size_as_part{size_text.view()};
     static constexpr std::span<const std::string_view> device_lines() { return size_as_part; }

@@ -49,6 +49,8 @@ struct Bus {
     static_assert(AllFrames<map, protocol>::transmit.size() <= TransmitQueue::capacity,
                   "what is sent at one time fits the queue");
     static constexpr const DeviceKind& device_kind = can::device_kind;
+    static constexpr bool woken_by_device = true;
+    static constexpr DevicePace device_pace = AllFrames<map, protocol>::pace;
     static constexpr Identifiers device_map = AllFrames<map, protocol>::value;
     static constexpr Sentence analyse_traffic(const DeviceUse& use, std::span<TrafficRow> into) {
         const ProvenRates proven{protocol.bit_rate, protocol.data_bit_rate};
@@ -97,8 +99,7 @@ struct Bus {
     Sentence configure(Setup& setup) {
         device_ = setup.device<Device>();
         waiter_ = setup.waiter;
-        if (device_ == nullptr) return setup.no_device();
-        return device_->wakes(*waiter_) ? Sentence{} : setup.too_many_devices();
+        return device_ == nullptr ? setup.no_device() : setup.woken_by(*device_);
     }
 
     void start(const Cycle& cycle) noexcept TAPPET_REALTIME {

@@ -40,7 +40,9 @@ constexpr std::int64_t frame_time_ns(Format format, bool extended, unsigned byte
 
 /// Returns the shortest time of a frame from its longest: without any stuffing at least four fifths of its
 /// bits remain.
-constexpr std::int64_t least_time_ns(std::int64_t longest_ns) noexcept { return longest_ns * 4 / 5; }
+constexpr std::int64_t least_time_ns(std::int64_t longest_ns) noexcept {
+    return longest_ns - longest_ns / 5 - (longest_ns % 5 != 0 ? 1 : 0); // no overflow, also for the longest
+}
 
 /// Returns the longest time of one frame; a remote frame carries no data, whatever its length.
 constexpr std::int64_t frame_time_ns(const Frame& frame, BitRates rates) noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
+#include "kernel/component/device_traffic.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -106,6 +107,20 @@ template <const auto& map, const auto& services> struct AllFrames {
         joined<map.signals.size()>(std::span<const Signal>{map.signals}, services.signals);
     static constexpr Identifiers value{
         receive, transmit, has_fd, safe, told_frames, told_signals, services.restarts_allowed};
+    /// The frame that the bus must be served for most often: those of the map, and those that it sends for a
+    /// protocol; what a protocol receives is buffered.
+    static constexpr DevicePace pace = [] {
+        DevicePace fastest;
+        const auto consider = [&](const FrameRow& row) {
+            if (has_rate(row) && (fastest.apart == Duration::zero() || row.apart < fastest.apart))
+                fastest = {row.name, row.apart};
+        };
+        for (const FrameRow& row : map.frames)
+            if (row.direction != Direction::passing) consider(row);
+        for (const FrameRow& row : services.frames)
+            if (row.direction == Direction::transmit && !services.sends_itself) consider(row);
+        return fastest;
+    }();
     /// The frames in the bus's timing proof.
     static constexpr auto traffic =
         joined<map.frames.size()>(std::span<const FrameRow>{map.frames}, chosen<rated>(&AllFrames::has_rate));

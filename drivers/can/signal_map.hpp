@@ -273,11 +273,19 @@ constexpr LayoutFault multiplexor_fault(const FrameRow& frame, const Signal& s,
             return {Sentence("signal \"", frame.name, ".", each.name, "\" selects \"", s.name,
                              "\" but is not an integer of at most 32 bits"),
                     Sentence{": remove factor and offset"}};
-        for (const Selection& values : s.selections)
+        for (const Selection& values : s.selections) {
             if (values.from > values.to || values.to > mask_of(each))
                 return {Sentence(who, " is selected by values that \"", each.name,
                                  "\" never has: ", values.from, " to ", values.to),
                         Sentence{"; correct them"}};
+            // Its range limits only what is sent, and then another page would be sent.
+            for (const std::uint32_t value : {values.from, values.to})
+                if (const Raw raw = to_raw_integer(each, to_integer(each, value));
+                    frame.direction == Direction::transmit && raw.bits != value)
+                    return {Sentence(who, " is selected by the value ", value, ", which \"", each.name,
+                                     "\" never has: its range lets ", raw.bits, " be sent instead"),
+                            Sentence{"; widen its range(..), or correct the value"}};
+        }
         return {};
     }
     return {

@@ -50,6 +50,7 @@ template <const auto& map> struct LinePort {
     static constexpr std::string_view device_fault = map.fault.view();
     static constexpr std::size_t count = map.rows.size();
     static constexpr const DeviceKind& device_kind = gpio::device_kind;
+    static constexpr bool woken_by_device = true;
     static constexpr std::span<const LineRow> device_map{map.rows};
     static constexpr std::span<const std::string_view> device_lines() { return LineNames<map>::plain; }
     static constexpr std::size_t edges_per_cycle = 64;

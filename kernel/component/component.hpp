@@ -89,12 +89,16 @@ struct ComponentType {
     std::size_t size = 0;
     std::size_t align = 0;
     std::span<const Facet> facets{};
-    const DeviceKind* device_kind = nullptr;          ///< kind of the device that it drives; null: none
+    const DeviceKind* device_kind = nullptr; ///< kind of the device that it drives; null: none
+    /// Its device wakes its activity: its configure() gives the device to Setup::woken_by(), and start-up
+    /// refuses it otherwise. A driver without it polls its device.
+    bool woken_by_device = false;
     std::span<const std::string_view> device_lines{}; ///< lines of that device that it needs, by logical name
     /// The fault of what is on that device; the table's check reports it.
     std::string_view device_fault{};
     const void* device_map =
-        nullptr; ///< map of what is on that device; only a start-up that knows the kind reads it
+        nullptr;              ///< map of what is on that device; only a start-up that knows the kind reads it
+    DevicePace device_pace{}; ///< what its map lets cross most often; a periodic activity is as fast
     DeviceTraffic device_traffic{}; ///< the traffic of that device, and whether it can carry it
     /// Returns what was not sent as written of an input of a driver, or not passed on of an output; null: it
     /// has no such ports. Any thread.
@@ -159,6 +163,8 @@ constexpr ComponentType describe() {
     type.construct = [](void* memory) { new (memory) T{}; };
     if constexpr (requires { T::device_fault; }) type.device_fault = T::device_fault;
     if constexpr (requires { T::device_kind; }) type.device_kind = &T::device_kind;
+    if constexpr (requires { T::woken_by_device; }) type.woken_by_device = T::woken_by_device;
+    if constexpr (requires { T::device_pace; }) type.device_pace = T::device_pace;
     if constexpr (requires { T::device_lines(); }) type.device_lines = T::device_lines();
     if constexpr (requires { T::device_map; }) type.device_map = &T::device_map;
     if constexpr (requires { T::device_traffic; }) type.device_traffic = T::device_traffic;

@@ -17,6 +17,13 @@ struct DeviceUse {
     Duration response{};           ///< worst response of the activity that runs its driver
 };
 
+/// The name that crosses a device most often, by its map: the member `device_pace` of a driver that serves
+/// its device once in each cycle of a periodic activity.
+struct DevicePace {
+    std::string_view name{};
+    Duration apart{}; ///< least time between two; 0: it has none
+};
+
 /// Most names of a driver's traffic; so few that a row for each fits onto a stack.
 inline constexpr std::size_t most_traffic_rows = 128;
 

@@ -45,6 +45,7 @@ struct Setup {
     LifeSign watched{};                 ///< only for a type that says `watches_life = true`
     MachineInstance* machine = nullptr; ///< only for a type that says `sees_machine = true`
     scope::Directory* scope = nullptr;  ///< only for a type that says `records_cycles = true`
+    bool is_woken = false;              ///< woken_by() was called
 
     /// Returns the row's device, or null when this world has none of that name and class.
     template <class Device>
@@ -64,14 +65,23 @@ struct Setup {
         return Sentence{"component \"", component,
                         "\": its activity watches too many devices; give it fewer drivers"};
     }
-    /// Lets the device wake the activity: by its descriptor, or a twin by its listener. Returns the answer
-    /// for configure().
+    /// Lets a device wake the activity by its descriptor. Only for a type that says `woken_by_device = true`,
+    /// which must call it or the one below. Returns the answer for configure().
+    [[nodiscard]] Sentence woken_by(int descriptor) {
+        is_woken = true;
+        return waiter->watch(descriptor) ? Sentence{} : too_many_devices();
+    }
+    /// Lets the device wake the activity: itself, by its descriptor, or a twin by its listener.
     template <class Device>
-    [[nodiscard]] Sentence woken_by(Device& found) const {
-        if (const int handle = found.wait_handle(); handle >= 0)
-            return waiter->watch(handle) ? Sentence{} : too_many_devices();
-        found.set_listener(&os::Waiter::wake_thunk, waiter);
-        return {};
+    [[nodiscard]] Sentence woken_by(Device& found) {
+        is_woken = true;
+        if constexpr (requires { found.wakes(*waiter); }) {
+            return found.wakes(*waiter) ? Sentence{} : too_many_devices();
+        } else {
+            if (const int handle = found.wait_handle(); handle >= 0) return woken_by(handle);
+            found.set_listener(&os::Waiter::wake_thunk, waiter);
+            return {};
+        }
     }
 };
 

@@ -40,7 +40,8 @@ struct Accepted::Tables {
 
 void Accepted::Tables::take_index(const MachineView& m, TableIndexView& index) {
     take(m.components.size(), index.by_name, index.activity, index.position, index.in_order, index.waits_for,
-         index.connections_into.first, index.connections_from.first, index.reactions_into.first, index.reach);
+         index.connections_into.first, index.connections_from.first, index.reactions_into.first, index.reach,
+         index.acts);
     take(m.activities.size(), index.rank, index.by_rank, index.worst_response_ns);
     take(m.connections.size(), index.connections, index.connections_into.next, index.connections_from.next);
     take(m.reactions.size(), index.reactions, index.reactions_into.next);

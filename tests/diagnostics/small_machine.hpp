@@ -13,6 +13,7 @@ using namespace tappet;
 
 struct Encoder {
     static constexpr const DeviceKind& device_kind = can::device_kind;
+    static constexpr bool woken_by_device = true;
     static constexpr int device_map = 0;
     Output<double> angle;
     Output<int> turns;

@@ -46,8 +46,7 @@ public:
         map_.frames[0].first = 0;
         map_.frames[0].values = count_;
         static_cast<void>(can::detail::complete(map_, 1)); // its bus's map has no faults
-        for (std::size_t s = 0; s + 1 < count_; ++s)
-            store_.set_bits(s, static_cast<std::uint64_t>(map_.signals[s + 1].selections[0].from));
+        for (std::size_t s = 0; s + 1 < count_; ++s) select(s, map_.signals[s + 1].selections[0].from);
         set(!signal.has_range  ? (can::is_integer(signal) ? 1.0 : usual_example)
             : signal.most != 0 ? signal.most // zero would show no byte
                                : signal.least);
@@ -77,6 +76,13 @@ private:
             if (!signal.multiplexor.empty() && each.name == signal.multiplexor) add(of_row, each);
         TAPPET_CONTRACT(count_ < most, Contract::index_out_of_range, static_cast<std::int64_t>(count_), most);
         map_.signals[count_++] = signal;
+    }
+    /// Sets a multiplexor as the driver sets it; no range limits what another node sends.
+    void select(std::size_t s, std::uint32_t page) {
+        if (map_.frames[0].direction == can::Direction::transmit)
+            store_.set_integer(s, can::to_integer(map_.signals[s], page));
+        else
+            store_.set_bits(s, page);
     }
     void set(double value) {
         const std::size_t last = count_ - 1;

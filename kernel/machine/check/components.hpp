@@ -192,6 +192,11 @@ constexpr Sentence check_trigger(const MachineView& m, const ActivityRow& row) {
         if (m.components[driver].type->device_kind == nullptr)
             return of_activity(row.name, ": component \"", row.device,
                                "\" drives no device to wake it; name a driver in on_device(...)");
+        if (const ComponentType& type = *m.components[driver].type; !type.woken_by_device)
+            return of_activity(row.name, ": component \"", row.device, "\" polls its ",
+                               type.device_kind->name,
+                               " device, which wakes nobody; run it every(...), or let ", type.tag->name,
+                               " say woken_by_device = true if its configure() calls Setup::woken_by()");
         bool runs_it = false;
         for (const auto& name : row.runs) runs_it |= name == row.device;
         if (!runs_it)
@@ -233,17 +238,34 @@ constexpr Sentence check_loop(const ActivityRow& row, std::string_view name, con
 
 /// Checks that the activity is as fast as a value of its map, "comes_every": a map's period that the activity
 /// does not keep is a promise without effect.
-constexpr Sentence check_outside(const ActivityRow& row, std::string_view component, const Facet& facet) {
-    if (facet.comes_every == Duration::zero() || row.trigger == Trigger::on_device) return {};
+constexpr Sentence check_outside(const ActivityRow& row, const ComponentRow& component, const Facet& facet) {
+    const bool is_on_device = row.trigger == Trigger::on_device;
+    const bool is_woken = component.type->woken_by_device;
+    if (facet.comes_every == Duration::zero() || (is_on_device && is_woken)) return {};
     if (!row.periodic())
-        return of_activity(row.name, " runs on_work(), but \"", component, ".", facet.name,
+        return of_activity(row.name, is_on_device ? " runs on_device(\"" : " runs on_work(", row.device,
+                           is_on_device ? "\"), but \"" : "), but \"", component.name, ".", facet.name,
                            "\" crosses the wire every ", facet.comes_every.count() / 1000,
-                           " us by its map, which wakes nobody; run it every(...) or on_device(...)");
+                           " us by its map, which wakes nobody; run it every(...)",
+                           !is_on_device && (is_woken || component.type->device_kind == nullptr)
+                               ? " or on_device(...)"
+                               : "");
     if (row.period <= facet.comes_every) return {};
     return of_activity(
-        row.name, " runs every ", row.period.count() / 1000, " us, but \"", component, ".", facet.name,
+        row.name, " runs every ", row.period.count() / 1000, " us, but \"", component.name, ".", facet.name,
         "\" crosses the wire every ", facet.comes_every.count() / 1000,
         " us by its map; shorten the activity's period, or lengthen the every(...) of the map");
+}
+
+/// Checks that a periodic activity is as fast as what its driver's map lets cross, also on demand and without
+/// a value.
+constexpr Sentence check_pace(const ActivityRow& row, const ComponentRow& component) {
+    const DevicePace& pace = component.type->device_pace;
+    if (!row.periodic() || pace.apart == Duration::zero() || row.period <= pace.apart) return {};
+    return of_activity(row.name, " runs every ", row.period.count() / 1000, " us, but \"", component.name,
+                       ".", pace.name, "\" may cross the wire every ", pace.apart.count() / 1000,
+                       " us by its map; shorten the activity's period, or lengthen the every(...) or "
+                       "on_demand(...) of the map");
 }
 
 /// Checks each activity; fills the activity of each component.
@@ -266,13 +288,14 @@ constexpr Sentence check_activities(const MachineView& m, TableIndexView r) {
                                     "\" and by activity \"", row.name, "\"; keep it in one");
             r.activity[c] = a;
             for (const auto& facet : m.components[c].type->facets) {
-                if (Sentence fault = check_outside(row, name, facet); !fault.empty()) return fault;
+                if (Sentence fault = check_outside(row, m.components[c], facet); !fault.empty()) return fault;
                 if (facet.kind == FacetKind::timer && row.real_time && row.periodic())
                     return of_activity(row.name, " is periodic but component \"", name, "\" has the timer \"",
                                        facet.name,
                                        "\", which runs between periods; run it on_work() with at_most(n, "
                                        "per), so that the analysis counts it");
             }
+            if (Sentence fault = check_pace(row, m.components[c]); !fault.empty()) return fault;
             if (Sentence fault = check_loop(row, name, *m.components[c].type); !fault.empty()) return fault;
             if (m.components[c].type->work != nullptr && row.real_time)
                 return of_activity(

@@ -55,7 +55,6 @@ std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevi
         const ComponentRow& row = table.components[c];
         if (const Sentence refusal = configure_properties(c); !refusal.empty())
             return std::unexpected(refusal);
-        if (row.type->configure == nullptr) continue;
         os::Waiter& waiter = instance_.engines()[machine_.index.activity[c]].waiter();
         waiter.watch_for(machine_.plan.part_of[c]);
         Setup setup{row.name,
@@ -67,10 +66,23 @@ std::expected<void, Sentence> MachineBuilder::build(std::span<const ProvidedDevi
                     row.type->sees_machine ? &instance_ : nullptr,
                     row.type->records_cycles ? instance_.at<scope::Directory>(machine_.plan.scope_at)
                                              : nullptr};
-        if (const Sentence refusal = row.type->configure(instance_.component(c), setup); !refusal.empty())
-            return std::unexpected(refusal);
+        if (row.type->configure != nullptr)
+            if (const Sentence refusal = row.type->configure(instance_.component(c), setup); !refusal.empty())
+                return std::unexpected(refusal);
+        if (const Sentence fault = check_wake(row, setup); !fault.empty()) return std::unexpected(fault);
     }
     return {};
+}
+
+/// Checks that a driver keeps what its type says of its device's wakes, by which the table was checked.
+Sentence MachineBuilder::check_wake(const ComponentRow& row, const Setup& setup) {
+    if (setup.is_woken == row.type->woken_by_device) return {};
+    const Sentence who{"component \"", row.name, "\": its type ", row.type->tag->name};
+    if (setup.is_woken)
+        return Sentence{who, " calls Setup::woken_by() but does not say so; add static constexpr bool "
+                             "woken_by_device = true to it"};
+    return Sentence{who, " says woken_by_device, but its configure() never called Setup::woken_by(), so its "
+                         "device would wake nobody; call it there, or remove woken_by_device"};
 }
 
 void MachineBuilder::construct() {

@@ -29,6 +29,7 @@ private:
     [[nodiscard]] std::expected<void, Sentence> share_memory();
     void construct();
     [[nodiscard]] Sentence configure_properties(std::size_t component);
+    [[nodiscard]] static Sentence check_wake(const ComponentRow& row, const Setup& setup);
     void place_engines();
     void place_scope();
     void connect_clocks();

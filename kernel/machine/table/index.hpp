@@ -45,6 +45,7 @@ struct TableIndexView {
     RowsByComponent connections_from; ///< rows whose writer is the component
     RowsByComponent reactions_into;   ///< rows whose operation belongs to the component
     std::span<std::uint64_t> reach; ///< of each component: a bit for each activity that runs functions of it
+    std::span<bool> acts;           ///< of each component: it may emit, write or call; see check/wakes.hpp
     std::span<std::int64_t> worst_response_ns; ///< of each activity; 0 for not_real_time
 };
 
@@ -81,6 +82,7 @@ template <std::size_t C, std::size_t A, std::size_t X, std::size_t R> struct Tab
     std::array<std::size_t, C> first_reaction{};
     std::array<std::size_t, R> next_reaction{};
     std::array<std::uint64_t, C> reach{};
+    std::array<bool, C> acts{};
     std::array<std::int64_t, A> worst_response_ns{};
 
     constexpr TableIndexView view() noexcept {
@@ -92,6 +94,7 @@ template <std::size_t C, std::size_t A, std::size_t X, std::size_t R> struct Tab
         view.connections_from = {first_connection_from, next_connection_from};
         view.reactions_into = {first_reaction, next_reaction};
         view.reach = reach;
+        view.acts = acts;
         view.worst_response_ns = worst_response_ns;
         return view;
     }

@@ -23,6 +23,38 @@ struct TimedHorn {
     }
 };
 
+/// Emits in its step; the second also when it starts.
+struct Bell {
+    Event<> rung;
+    void step(const Cycle&) noexcept TAPPET_REALTIME { rung.emit(); }
+    void ring() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() {
+        return facets(event<&Bell::rung>("rung", "it was heard"),
+                      operation<&Bell::ring>("ring", "sounds it"));
+    }
+};
+struct StartedBell : Bell {
+    void start(const Cycle&) noexcept TAPPET_REALTIME { rung.emit(); }
+};
+/// Sends a command in its step, whose end wakes it.
+struct Caller {
+    CommandCall<int> ask;
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return facets(sends<&Caller::ask>("ask", "for a ring")); }
+};
+struct Answerer {
+    bool answer(int) noexcept TAPPET_REALTIME { return true; }
+    static constexpr auto interface() { return facets(command<&Answerer::answer>("answer", "rings")); }
+};
+/// Serves its device once in each cycle.
+struct PacedBus {
+    static constexpr const DeviceKind& device_kind = can::device_kind;
+    static constexpr int device_map = 0;
+    static constexpr bool woken_by_device = true;
+    static constexpr DevicePace device_pace{"order", 10ms};
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+
 /// The rows of small_machine.hpp with other options.
 void motion(Table& m, const auto&... options) {
     m.put(activity("motion", options..., runs("shaft", "tension")));
@@ -104,6 +136,19 @@ constexpr Fault device_faults[] = {
     {"activity_on_unknown_device",
      [](Table& m) { field(m, on_device("encodre"), deadline(300us), budget(30us)); },
      R"(loom: activity "field": there is no component "encodre"; did you mean "encoder"?)"},
+    {"activity_on_device_that_wakes_nobody", [](Table& m) { hall(m, on_device("climate"), not_real_time); },
+     R"~(loom: activity "hall": component "climate" polls its modbus device, which wakes nobody; run it every(...), or let small::Climate say woken_by_device = true if its configure() calls Setup::woken_by())~"},
+    {"driver_that_polls_when_nobody_wakes_it", [](Table& m) { hall(m, on_work(), not_real_time); },
+     R"~(loom: activity "hall" runs on_work() but no row wakes it, so the work() of component "climate" would never run; add wakes to a connection into it, or when("...", tell("climate.operation")), or run it every(...))~"},
+    {"driver_that_polls_when_another_is_woken",
+     [](Table& m) {
+         m.put(activity("field", on_device("encoder"), not_real_time, runs("encoder", "climate")));
+         m.activities.pop_back();
+     },
+     R"~(loom: activity "field" is woken by no row but by another driver's device, and component "climate" polls its modbus device, which wakes nobody; run it every(...))~"},
+    {"bus_slower_than_what_is_sent_on_demand",
+     [](Table& m) { m.add(component<PacedBus>("bus", device("main_encoder")), "hall"); },
+     R"~(loom: activity "hall" runs every 250000 us, but "bus.order" may cross the wire every 10000 us by its map; shorten the activity's period, or lengthen the every(...) or on_demand(...) of the map)~"},
 };
 INSTANTIATE_TEST_SUITE_P(devices, Refusal, planted_into(small_loom, device_faults), name_of);
 
@@ -112,7 +157,31 @@ template <class Type> void make_noise(Table& m) {
     m.add(activity("noise", on_work(), at_most(1, 100ms), budget(10us), runs("horn")));
 }
 
+void make_rings(Table& m, std::string_view first, std::string_view second) {
+    m.add(component<Bell>("left"));
+    m.add(component<Bell>("right"));
+    m.add(activity("left", on_work(), at_most(1, 100ms), budget(10us), runs("left")));
+    m.add(activity("right", on_work(), at_most(1, 100ms), budget(10us), runs("right")));
+    m.add(when("left.rung", tell(first)));
+    m.add(when("right.rung", tell(second)));
+}
+
 constexpr Fault work_faults[] = {
+    {"activity_that_only_its_own_step_wakes",
+     [](Table& m) {
+         make_noise<Bell>(m);
+         m.add(when("horn.rung", tell("horn.ring")));
+     },
+     R"~(loom: activity "noise" runs on_work() but is woken only by what never runs itself, first by "horn.rung" -> "horn.ring", so the step() of component "horn" would never run; add wakes or tell(...) from a component that is run every(...) or on_device(...), or run it every(...))~"},
+    {"activities_that_only_wake_each_other", [](Table& m) { make_rings(m, "right.ring", "left.ring"); },
+     R"~(loom: activity "left" runs on_work() but is woken only by what never runs itself, first by "right.rung" -> "left.ring", so the step() of component "left" would never run; add wakes or tell(...) from a component that is run every(...) or on_device(...), or run it every(...))~"},
+    {"activity_that_only_the_end_of_its_own_command_wakes",
+     [](Table& m) {
+         make_noise<Caller>(m);
+         m.add(component<Answerer>("answerer"), "motion");
+         m.add(uses("horn.ask", "answerer.answer"));
+     },
+     R"~(loom: activity "noise" runs on_work() but is woken only by what never runs itself, first by "answerer.answer" -> "horn.ask", so the step() of component "horn" would never run; add wakes or tell(...) from a component that is run every(...) or on_device(...), or run it every(...))~"},
     {"activity_that_nothing_wakes", make_noise<Horn>,
      R"(loom: activity "noise" runs on_work() but no row wakes it, so the step() of component "horn" would never run; add wakes to a connection into it, or when("...", tell("horn.operation")), or run it every(...))"},
     {"activity_that_only_a_timer_wakes", make_noise<TimedHorn>,
@@ -121,6 +190,17 @@ constexpr Fault work_faults[] = {
      R"(loom: activity "motion" is periodic but component "horn" has the timer "silence", which runs between periods; run it on_work() with at_most(n, per), so that the analysis counts it)"},
 };
 INSTANTIATE_TEST_SUITE_P(work, Refusal, planted_into(small_loom, work_faults), name_of);
+
+TEST(Wakes, a_start_and_a_chain_from_what_runs_itself_wake) {
+    Table started = small_loom();
+    make_noise<StartedBell>(started);
+    started.add(when("horn.rung", tell("horn.ring")));
+    EXPECT_EQ(started.refusal(), "");
+    Table chain = small_loom();
+    make_rings(chain, "right.ring", "left.ring");
+    chain.add(when("shaft.window", tell("left.ring")));
+    EXPECT_EQ(chain.refusal(), "");
+}
 
 constexpr Fault schedule_faults[] = {
     {"activities_more_than_a_processor",

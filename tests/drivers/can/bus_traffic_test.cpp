@@ -46,6 +46,11 @@ TEST(BusTraffic, lists_the_proven_frames_in_the_order_of_arbitration) {
     EXPECT_EQ(rows[2].deadline, 100ms);
 }
 
+constexpr auto only_heard = signal_map(heard(0x181, "status", 6, 2ms));
+static_assert(bus_traffic(only_heard.frames, at(500'000).bus, 100us, {}).empty(),
+              "a machine that only listens");
+static_assert(least_time_ns(1'000'001) == 800'000 && frames_in_flight(1s, Duration::max()) == 2);
+
 TEST(BusTraffic, is_refused_with_the_largest_part_of_the_response) {
     EXPECT_EQ(refusal(at(125'000), heard(0x181, "a", 8, 1ms), heard(0x182, "b", 8, 10ms)),
               "frame \"a\" may never be sent: it and more urgent frames fill the bus, which all frames "

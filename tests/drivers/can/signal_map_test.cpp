@@ -354,6 +354,26 @@ TEST(SignalMap, refuses_signals_outside_their_frame) {
     EXPECT_NE(fault_of(bytes(9), signal("a", 0, 8)), "");
 }
 
+TEST(SignalMap, refuses_pages_that_the_range_of_their_multiplexor_lets_nobody_send) {
+    constexpr Signal page = signal("page", 0, 8).range(0, 2);
+    const auto level = [](const auto&... values) {
+        return signal("level", 8, 8).when("page", values...).safe(0);
+    };
+    EXPECT_EQ(
+        fault_of_sent(page.safe(0), level(5)),
+        "signal \"f.level\" is selected by the value 5, which \"page\" never has: its range lets 2 be sent "
+        "instead; widen its range(..), or correct the value");
+    EXPECT_NE(fault_of_sent(page.safe(0), level(between(1, 3))), "");
+    EXPECT_EQ(fault_of_sent(page.safe(0), level(between(1, 2))), "");
+    static constexpr std::array names{ValueName{5, "service"}};
+    EXPECT_EQ(fault_of_sent(page.named(names).safe(0), level(5)), "") << "no range limits a named value";
+    EXPECT_EQ(signal_map(receive(standard(1), "f", bytes(4), every(1ms), page,
+                                 signal("level", 8, 16).when("page", 5)))
+                  .fault.view(),
+              "")
+        << "no range limits what another node sends";
+}
+
 constexpr auto fast = signal_map(
     receive(standard(0x321), "scan", fd_bytes(64), every(5ms), signal("count", 0, 8), signal("first", 8, 16),
             signal("across", 61, 64), signal("last", 487, 32).big_endian().as_signed()),

@@ -10,13 +10,14 @@ namespace {
 /// Receives the data written to its descriptor.
 struct Ear {
     static constexpr DeviceKind device_kind{.name = "test.ear", .is_opened_by_driver = true};
+    static constexpr bool woken_by_device = true;
     std::atomic<std::uint64_t> heard{0};
     int descriptor = -1;
 
     ~Ear() { ::close(descriptor); }
     Sentence configure(Setup& setup) {
         descriptor = ::eventfd(0, EFD_NONBLOCK);
-        return setup.waiter->watch(descriptor) ? Sentence{} : Sentence{"it cannot be watched"};
+        return setup.woken_by(descriptor);
     }
     void step(const Cycle&) noexcept TAPPET_REALTIME {
         std::uint64_t more = 0;
@@ -60,6 +61,48 @@ TEST_F(InRealTime, a_stopped_driver_does_not_disturb_others_of_its_activity) {
     while (life.state_of(1) != ComponentState::running) world.supervise(10ms);
     EXPECT_TRUE(is_heard_by(right));
     EXPECT_EQ(world.stop(), 0u);
+}
+
+/// Says that its device wakes, and lets it wake nobody.
+struct Mute {
+    static constexpr DeviceKind device_kind{.name = "test.mute", .is_opened_by_driver = true};
+    static constexpr bool woken_by_device = true;
+    Sentence configure(Setup&) { return {}; }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+/// Lets its device wake, and does not say so.
+struct Secret {
+    static constexpr DeviceKind device_kind{.name = "test.secret", .is_opened_by_driver = true};
+    int descriptor = -1;
+    ~Secret() { ::close(descriptor); }
+    Sentence configure(Setup& setup) { return setup.woken_by(descriptor = ::eventfd(0, EFD_NONBLOCK)); }
+    void step(const Cycle&) noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return std::array<Facet, 0>{}; }
+};
+template <class Driver>
+constexpr auto alone = machine("alone", components(component<Driver>("driver", device("it"))),
+                               activities(activity("driver", every(10ms), not_real_time, runs("driver"))),
+                               connections(), reactions(), behaviours());
+template <class Driver> std::string refusal_at_start() {
+    os::Clock clock{os::Clock::Kind::virtual_time};
+    MachineInstance instance{AtRunTime<alone<Driver>, twin_board>::machine(), clock};
+    const auto configured = instance.configure({});
+    return configured ? "" : std::string{configured.error().view()};
+}
+
+TEST(DriverWake, is_what_its_type_says) {
+    const std::string mute = refusal_at_start<Mute>(), secret = refusal_at_start<Secret>();
+    EXPECT_TRUE(mute.starts_with("component \"driver\": its type tappet::") &&
+                mute.ends_with(
+                    "Mute says woken_by_device, but its configure() never called Setup::woken_by(), so its "
+                    "device would wake nobody; call it there, or remove woken_by_device"))
+        << mute;
+    EXPECT_TRUE(
+        secret.ends_with("Secret calls Setup::woken_by() but does not say so; add static constexpr bool "
+                         "woken_by_device = true to it"))
+        << secret;
+    EXPECT_EQ(refusal_at_start<Ear>(), "");
 }
 
 } // namespace
