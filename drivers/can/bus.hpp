@@ -7,6 +7,7 @@
 #include "drivers/can/services.hpp"
 #include "drivers/can/signal_store.hpp"
 #include "drivers/can/transmit_queue.hpp"
+#include "drivers/can/unsent_signals.hpp"
 #include "kernel/base/array_of.hpp"
 #include "kernel/component/cause.hpp"
 #include "kernel/component/component.hpp"
@@ -62,7 +63,7 @@ struct Bus {
         return static_cast<const Bus*>(bus)->longest_response(frame);
     }
     static Unsent unsent(const void* bus, std::size_t facet) noexcept {
-        return facet < signal_count ? static_cast<const Bus*>(bus)->store_.unsent(facet) : Unsent{};
+        return facet < signal_count ? static_cast<const Bus*>(bus)->unsent_.of(facet) : Unsent{};
     }
     static void gate_output(void* bus, std::size_t signal, OutputGate& gate) noexcept {
         static_cast<Bus*>(bus)->gates_.add(signal, gate);
@@ -164,7 +165,10 @@ struct Bus {
         }
         finish(cycle.now);
     }
-    void serve_device(const Cycle& cycle) noexcept TAPPET_REALTIME { finish(cycle.now); }
+    void serve_device(const Cycle& cycle) noexcept TAPPET_REALTIME {
+        take_frames(); // before a confirmation counts as missing
+        finish(cycle.now);
+    }
 
     [[nodiscard]] const DecodeCounters& decoding() const noexcept { return store_.count; }
     [[nodiscard]] Counters counters() const noexcept { return device_->counters(); }
@@ -199,8 +203,8 @@ struct Bus {
                  output<&Bus::no_numbers>("no_numbers", "",
                                           "received signals that are not a number, since start"),
                  output<&Bus::out_of_range>("out_of_range", "",
-                                            "values outside their signal's range: sent as its nearest bound; "
-                                            "held back when not a number"),
+                                            "values outside their signal's range, since the machine's start: "
+                                            "sent as its nearest bound; held back when not a number"),
                  tappet::event<&Bus::bus_fault>("bus_fault", "the bus can no longer be relied on"),
                  tappet::event<&Bus::bus_recovered>("bus_recovered",
                                                     "the bus works again, with empty queues"),
@@ -288,7 +292,7 @@ private:
             else if (const double value = store_.physical(s); is_number(value))
                 physical_out[s].write(value, frame.stamp);
             else
-                store_.note_no_number(s), no_numbers.write(no_numbers.last() + 1);
+                unsent_.received_no_number(s), no_numbers.write(no_numbers.last() + 1);
         }
         frame_received[f].emit();
     }
@@ -311,7 +315,7 @@ private:
         wrong_lengths.write(static_cast<std::int64_t>(store_.count.wrong_lengths));
         sent_too_often.write(too_often_);
         no_numbers.write(0);
-        out_of_range.write(0);
+        out_of_range.write(unsent_.all());
     }
 
     void tell_state(Time now) noexcept TAPPET_REALTIME {
@@ -319,8 +323,7 @@ private:
         status_ = status_now();
         if (status_.lost != before.lost) frames_lost.write(static_cast<std::int64_t>(status_.lost));
         if (status_.taken != before.taken) frames_received.write(static_cast<std::int64_t>(status_.taken));
-        const auto beyond = static_cast<std::int64_t>(store_.count.refused + store_.count.saturated);
-        if (beyond != out_of_range.last()) out_of_range.write(beyond);
+        if (unsent_.all() != out_of_range.last()) out_of_range.write(unsent_.all());
         if (status_.state != before.state) bus_state.write(static_cast<std::int64_t>(status_.state));
         const bool bad = faulted(status_.state);
         if (bad == was_faulted_) return;
@@ -372,18 +375,26 @@ private:
         return found;
     }
 
-    /// Stores the values read; returns false when one is not a number.
+    /// Stores the values read; returns false when one is not a number, and counts it.
     bool keep_inputs(std::size_t f) noexcept TAPPET_REALTIME {
         const FrameRow& row = map.frames[f];
-        const std::uint64_t refused = store_.count.refused;
+        bool are_numbers = true;
         for (std::size_t s = row.first; s < row.end(); ++s) {
             if (!is_selected(row, s)) continue;
-            if (is_integer(map.signals[s]))
-                store_.set_integer(s, integers_[s]);
-            else
-                store_.set_physical(s, physical_[s]);
+            const Raw raw = is_integer(map.signals[s]) ? store_.set_integer(s, integers_[s])
+                                                       : store_.set_physical(s, physical_[s]);
+            unsent_.stored(s, raw);
+            are_numbers &= !raw.refused;
         }
-        return store_.count.refused == refused;
+        return are_numbers;
+    }
+    /// Sends the stored values, and counts those that were clamped for it.
+    void send_stored(std::size_t f, Time now, Keep keep) noexcept TAPPET_REALTIME {
+        const Send answer = device_->send(store_.encode(f, now), keep);
+        if (answer != Send::queued && answer != Send::replaced) return;
+        const FrameRow& row = map.frames[f];
+        for (std::size_t s = row.first; s < row.end(); ++s)
+            if (store_.is_encoded(row, s)) unsent_.sent(s);
     }
 
     void send(std::size_t f, Time now) noexcept TAPPET_REALTIME {
@@ -395,7 +406,7 @@ private:
             may_repeat_[f] = false;
             return;
         }
-        static_cast<void>(device_->send(store_.encode(f, now), Keep::latest));
+        send_stored(f, now, Keep::latest);
     }
 
     /// Sends the demanded frames; returns false when there were none.
@@ -420,7 +431,7 @@ private:
             if (is_forgotten || (!is_new && store_.encode(f, now).data == before.data)) continue;
             if (now < demand.may_follow) sent_too_often.write(++too_often_);
             demand.may_follow = now + map.frames[f].apart;
-            static_cast<void>(device_->send(store_.encode(f, now), Keep::every));
+            send_stored(f, now, Keep::every);
             sent = true;
         }
         return sent;
@@ -480,6 +491,7 @@ private:
     SignalStore<frame_count, signal_count> store_{map};
     std::array<std::int64_t, signal_count> integers_{};
     std::array<double, signal_count> physical_{};
+    UnsentSignals<signal_count> unsent_{};
     std::array<Time, frame_count> due_{};
     std::array<Demand, frame_count> demands_{};
     OutputGates<signal_count> gates_{};

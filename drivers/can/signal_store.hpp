@@ -2,7 +2,6 @@
 #pragma once
 
 #include "drivers/can/signal_map.hpp"
-#include "kernel/component/wire_counters.hpp"
 
 namespace tappet::can {
 
@@ -59,9 +58,13 @@ public:
         Frame frame = frame_of(row);
         frame.stamp = now;
         for (std::size_t s = row.first; s < row.end(); ++s)
-            if (map_->holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME { return raw_[m]; }))
-                insert(frame.data, map_->places[s], raw_[s]);
+            if (is_encoded(row, s)) insert(frame.data, map_->places[s], raw_[s]);
         return frame;
+    }
+    /// Returns whether encode() puts the signal of the row into its frame.
+    [[nodiscard]] constexpr bool is_encoded(const FrameRow& row, std::size_t s) const noexcept
+        TAPPET_REALTIME {
+        return map_->holds(row, s, [this](std::size_t m) noexcept TAPPET_REALTIME { return raw_[m]; });
     }
     [[nodiscard]] constexpr double physical(std::size_t s) const noexcept TAPPET_REALTIME {
         return to_physical(map_->signals[s], raw_[s]);
@@ -70,40 +73,35 @@ public:
     [[nodiscard]] constexpr std::int64_t integer(std::size_t s) const noexcept TAPPET_REALTIME {
         return to_integer(map_->signals[s], raw_[s]);
     }
-    constexpr void set_physical(std::size_t s, double value) noexcept TAPPET_REALTIME {
-        set(s, to_raw(map_->signals[s], value));
+    /// Returns how it was encoded; what is not a number is not set.
+    constexpr Raw set_physical(std::size_t s, double value) noexcept TAPPET_REALTIME {
+        return set(s, to_raw(map_->signals[s], value));
     }
     /// Sets a signal without factor and offset: a number limited to the signal's range, if any, else bits.
-    constexpr void set_integer(std::size_t s, std::int64_t value) noexcept TAPPET_REALTIME {
-        set(s, to_raw_integer(map_->signals[s], value));
+    constexpr Raw set_integer(std::size_t s, std::int64_t value) noexcept TAPPET_REALTIME {
+        return set(s, to_raw_integer(map_->signals[s], value));
     }
     /// Sets a set of bits, such as a control word; bits beyond the signal's width are cut.
     constexpr void set_bits(std::size_t s, std::uint64_t bits) noexcept TAPPET_REALTIME {
         raw_[s] = bits & detail::mask_of(map_->signals[s]);
     }
 
-    /// Returns what was set of a signal and not encoded as it was, or received and no number. Any thread.
-    [[nodiscard]] Unsent unsent(std::size_t s) const noexcept { return unsent_[s].read(); }
-    /// Counts a received value that is not a number, and is not passed on.
-    constexpr void note_no_number(std::size_t s) noexcept TAPPET_REALTIME { unsent_[s].count(false, true); }
     [[nodiscard]] constexpr const SignalMap<F, S>& map() const noexcept TAPPET_REALTIME { return *map_; }
 
     DecodeCounters count{};
 
 private:
-    constexpr void set(std::size_t s, const Raw& raw) noexcept TAPPET_REALTIME {
-        if (raw.refused || raw.saturated) [[unlikely]]
-            unsent_[s].count(raw.saturated, raw.refused);
+    constexpr Raw set(std::size_t s, const Raw& raw) noexcept TAPPET_REALTIME {
         if (raw.refused)
             ++count.refused;
         else
             raw_[s] = raw.bits;
         if (raw.saturated) ++count.saturated;
+        return raw;
     }
 
     const SignalMap<F, S>* map_;
     std::array<std::uint64_t, S> raw_{};
-    std::array<Unsent, S> unsent_{};
 };
 
 } // namespace tappet::can

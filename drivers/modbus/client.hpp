@@ -119,10 +119,10 @@ template <const auto& map> struct Client {
         list[n++] = output<&Client::no_numbers>(
             "no_numbers", "",
             "registers read that are not a number, since start; their outputs become stale");
-        list[n++] =
-            output<&Client::out_of_range>("out_of_range", "",
-                                          "values outside their register's range, since start: its nearest "
-                                          "bound is written; nothing is written when not a number");
+        list[n++] = output<&Client::out_of_range>(
+            "out_of_range", "",
+            "values outside their register's range, since the machine's start: its "
+            "nearest bound is written; nothing is written when not a number");
         list[n++] = output<&Client::reason>(
             "reason", "", "why it is lost, or which row it refuses, and the cure; written on change");
         list[n++] = event<&Client::lost>("lost", "the server does not answer");
@@ -139,7 +139,9 @@ private:
         outages.write(static_cast<std::int64_t>(seen.outages));
         outages_survived.write(static_cast<std::int64_t>(seen.outages_survived));
         no_numbers.write(static_cast<std::int64_t>(seen.no_numbers));
-        out_of_range.write(static_cast<std::int64_t>(seen.saturated));
+        std::uint64_t beyond = 0;
+        for (const Unsent& each : unsent_) beyond += each.clamped + each.no_number;
+        out_of_range.write(static_cast<std::int64_t>(beyond));
     }
     void tell_trouble() noexcept {
         const Trouble trouble = session_->trouble();

@@ -29,21 +29,17 @@ struct WireCounters {
     }
 };
 
-/// How often a driver sent something else than what was written, in each sending, also of the same value; or
-/// did not pass on what it received.
+/// How often a driver sent something else than what was written, or did not pass on what it received, since
+/// the machine's start, whatever starts again in it. A value that its frame is sent with more than once
+/// counts each time.
 struct Unsent {
     std::uint64_t clamped = 0;   ///< outside its row's range: the nearest bound was sent
-    std::uint64_t no_number = 0; ///< not a number: nothing was sent, or of a row received, nothing passed on
+    std::uint64_t no_number = 0; ///< not a number: it was not sent, or of a row received, not passed on
 
     /// Counts a value; one thread counts, any thread reads.
-    constexpr void count(bool is_clamped, bool is_no_number) noexcept TAPPET_REALTIME {
-        if consteval {
-            clamped += is_clamped;
-            no_number += is_no_number;
-        } else {
-            std::atomic_ref{clamped}.store(clamped + is_clamped, std::memory_order_relaxed);
-            std::atomic_ref{no_number}.store(no_number + is_no_number, std::memory_order_relaxed);
-        }
+    void count(bool is_clamped, bool is_no_number) noexcept TAPPET_REALTIME {
+        std::atomic_ref{clamped}.store(clamped + is_clamped, std::memory_order_relaxed);
+        std::atomic_ref{no_number}.store(no_number + is_no_number, std::memory_order_relaxed);
     }
     [[nodiscard]] Unsent read() const noexcept {
         auto& self = const_cast<Unsent&>(*this); // atomic_ref takes no const before C++26

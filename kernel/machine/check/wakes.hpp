@@ -50,10 +50,9 @@ constexpr void for_each_wake(const MachineView& m, const TableIndexView& r, cons
             if (resolve_trigger(m, row, event, found).empty())
                 visit(found.component, own, event, row.component);
         };
-        if (row.is_slot())
-            for (const std::string_view event : row.slot.events) hear(event);
-        else
-            for (const std::string_view event : events_of(row.unit()).all()) hear(event);
+        const UnitEvents events = row.is_slot() ? UnitEvents{} : events_of(row.unit());
+        for (const std::string_view event : events.all()) hear(event);
+        for (const std::string_view event : row.slot.events) hear(event);
     }
 }
 

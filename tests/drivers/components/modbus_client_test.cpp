@@ -55,6 +55,7 @@ TEST_F(Utility, counts_by_register_what_it_did_not_write_as_it_was_set) {
     EXPECT_EQ(of_pump().clamped, 1u);
     change_server(LifeChange::restart);
     EXPECT_GE(of_pump().clamped, 1u) << "a client that starts again keeps its counts";
+    EXPECT_EQ(server->out_of_range.last(), static_cast<std::int64_t>(of_pump().clamped));
 }
 
 TEST_F(Utility, reads_and_writes_in_one_cycle_when_both_are_due) {
