@@ -140,7 +140,8 @@ private:
         outages_survived.write(static_cast<std::int64_t>(seen.outages_survived));
         no_numbers.write(static_cast<std::int64_t>(seen.no_numbers));
         std::uint64_t beyond = 0;
-        for (const Unsent& each : unsent_) beyond += each.clamped + each.no_number;
+        for (std::size_t v = 0; v < count; ++v)
+            if (is_written(v)) beyond += unsent_[v].clamped + unsent_[v].no_number;
         out_of_range.write(static_cast<std::int64_t>(beyond));
     }
     void tell_trouble() noexcept {
