@@ -132,7 +132,7 @@ struct JointPath : JointGenerator {
     static constexpr auto interface() {
         return joint_facets<JointPath>(
             method<&JointPath::is_ready>("is_ready", "the joints are where work begins"),
-            command<&JointPath::go, &JointPath::gone>("go", "moves to these angles in rad; rejected while it moves elsewhere", for_people(Role::machine_operator)),
+            command<&JointPath::go, &JointPath::gone>("go", "moves to these angles in rad; rejected while it moves elsewhere", for_people(Role::machine_operator, moves)),
             command<&JointPath::go_ready, &JointPath::arrived>("go_ready", "to where work begins"),
             property<&JointPath::ready>("ready", "rad", "where work begins", range(-6.3, 6.3)),
             property<&JointPath::most_rate>("most_rate", "rad/s", "of each joint", range(0.01, 0.4)),

@@ -68,7 +68,7 @@ struct Homing {
             output<&Homing::homed>("homed", "", "all joints know their zero"),
             calls<&Homing::turn>("turn", "one joint at a rate"),
             calls<&Homing::calibrate>("calibrate", "sets the angle of a joint"),
-            command<&Homing::home, &Homing::has_homed>("home", "joint 1 to 6: finds its switch, then zero; fails when it does not move", for_people(Role::machine_operator)),
+            command<&Homing::home, &Homing::has_homed>("home", "joint 1 to 6: finds its switch, then zero; fails when it does not move", for_people(Role::machine_operator, moves)),
             method<&Homing::all_homed>("all_homed", "each joint knows its zero"),
             method<&Homing::forget>("forget", "forgets the zero of every joint and stops homing"),
             property<&Homing::switch_angles>("switch_angles", "rad", "at which the switches become active", range(-3.2, 3.2)),

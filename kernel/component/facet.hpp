@@ -156,6 +156,8 @@ struct Facet {
     bool any_thread = false;          ///< an operation or a method that any activity may call
     bool may_block = false;           ///< a method or a command; never in a real-time activity
     Role least_role = Role::engineer; ///< lowest role for a property, an operation, a method or a command
+    bool for_people = false;          ///< its interface offers it to people
+    Motion motion = Motion::none;     ///< of an operation, a method or a command
     Range range{};                    ///< of a property
     std::size_t index = 0;            ///< within a member that is an array
     std::size_t members = 0; ///< of a bag: number of facets after it that are in it, with those of inner bags

@@ -78,11 +78,18 @@ struct HeardBy {
 };
 constexpr HeardBy heard_by(std::uint8_t reactions) noexcept { return {reactions}; }
 /// Marks an operation, a method or a command that people at the machine may ask for, if they have at least
-/// this role. Unmarked, it is for engineers only: it is a part of something that the machine does by itself.
+/// this role. Unmarked, it is for engineers at the machine only: it is a part of something that the machine
+/// does by itself. `moves` marks what makes something move: nobody may ask for it over the network.
+/// `moves_while_held` marks what moves as long as somebody holds a button at the machine's panel.
 struct ForPeople {
     Role least;
+    Motion motion;
 };
-constexpr ForPeople for_people(Role least) noexcept { return {std::max(least, Role::machine_operator)}; }
+constexpr ForPeople for_people(Role least, Motion motion = Motion::none) noexcept {
+    return {std::max(least, Role::machine_operator), motion};
+}
+inline constexpr Motion moves = Motion::moves;
+inline constexpr Motion moves_while_held = Motion::moves_while_held;
 
 namespace detail {
 
@@ -138,7 +145,12 @@ constexpr void apply(Facet& facet, StampsCause) noexcept { facet.stamps_cause = 
 constexpr void apply(Facet& facet, HeardBy by) noexcept { facet.least_reactions = by.reactions; }
 constexpr void apply(Facet& facet, AnyThread) noexcept { facet.any_thread = true; }
 constexpr void apply(Facet& facet, MayBlock) noexcept { facet.may_block = true; }
-constexpr void apply(Facet& facet, ForPeople people) noexcept { facet.least_role = people.least; }
+constexpr void apply(Facet& facet, Motion motion) noexcept { facet.motion = motion; }
+constexpr void apply(Facet& facet, ForPeople people) noexcept {
+    facet.least_role = people.least;
+    facet.for_people = true;
+    facet.motion = people.motion;
+}
 
 template <class... Options>
 constexpr Facet with(Facet facet, Options... options) noexcept {

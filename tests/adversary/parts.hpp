@@ -56,13 +56,13 @@ struct Pump {
     void nudge() noexcept TAPPET_REALTIME { write(speed.last() + 1); }
 
     static constexpr auto interface() {
-        return facets(output<&Pump::speed>("speed", "rpm", "wanted"),
-                      output<&Pump::torque>("torque", "Nm", "at most"),
-                      output<&Pump::on>("on", "", "its power"),
-                      output<&Pump::spare>("spare", "", "no bit is left over"),
-                      property<&Pump::most_torque>("most_torque", "Nm", "while it turns", range(0, 100)),
-                      command<&Pump::run>("run", "as fast as that", for_people(Role::machine_operator)),
-                      operation<&Pump::nudge>("nudge", "a bit faster"));
+        return facets(
+            output<&Pump::speed>("speed", "rpm", "wanted"), output<&Pump::torque>("torque", "Nm", "at most"),
+            output<&Pump::on>("on", "", "its power"),
+            output<&Pump::spare>("spare", "", "no bit is left over"),
+            property<&Pump::most_torque>("most_torque", "Nm", "while it turns", range(0, 100)),
+            command<&Pump::run>("run", "as fast as that", for_people(Role::machine_operator, moves)),
+            operation<&Pump::nudge>("nudge", "a bit faster"));
     }
 
 private:
@@ -82,8 +82,8 @@ struct Gate {
     void drop() noexcept TAPPET_REALTIME { falls.emit(); }
     static constexpr auto interface() {
         return facets(event<&Gate::lifts>("lifts", "up"), event<&Gate::falls>("falls", "down"),
-                      method<&Gate::lift>("lift", "up", for_people(Role::machine_operator)),
-                      operation<&Gate::drop>("drop", "down", for_people(Role::machine_operator)));
+                      method<&Gate::lift>("lift", "up", for_people(Role::machine_operator, moves)),
+                      operation<&Gate::drop>("drop", "down", for_people(Role::machine_operator, moves)));
     }
 };
 

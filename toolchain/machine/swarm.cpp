@@ -53,7 +53,7 @@ std::array<SwarmBrowser, 6> visitors(const std::string& socket) {
 
 Board with_visitors(Board board) {
     board.browsing.mode = 0666;
-    static_cast<void>(board.browsing.roles.push({false, machine_operator, Role::machine_operator}));
+    static_cast<void>(board.browsing.roles.push(user(machine_operator, Role::machine_operator)));
     return board;
 }
 

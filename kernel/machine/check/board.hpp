@@ -117,6 +117,32 @@ constexpr Sentence check_each_device(const MachineView& m, const Board& board, c
     return {};
 }
 
+/// Checks that each gateway is bounded: by a role that exists, and by one row.
+constexpr Sentence check_gateways(const Board& board) {
+    const auto& rows = board.browsing.roles;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!rows[i].is_gateway) continue;
+        const auto fault = [&](const auto&... words) {
+            return Sentence{
+                "board \"",          board.name, "\", gateway(", rows[i].peer.is_group ? "group(" : "user(",
+                rows[i].peer.number, "), ..): ", words...};
+        };
+        if (rows[i].peer.number == 0)
+            return fault(
+                "root may do everything, whatever bounds it; run the gateway as a user of its own, and "
+                "name that user");
+        if (rows[i].role > Role::engineer)
+            return fault(
+                "up_to(..) states no role; write up_to(Role::observer), up_to(Role::machine_operator) or "
+                "up_to(Role::engineer)");
+        for (std::size_t j = 0; j < rows.size(); ++j)
+            if (j != i && rows[j].peer == rows[i].peer)
+                return fault(
+                    "roles(..) has another row for it, and a gateway has one bound; remove one of them");
+    }
+    return {};
+}
+
 constexpr Sentence check_devices(const MachineView& m, const Board& board, const Binding& binding) {
     if (binding.too_many)
         return Sentence{"binding to board \"", board.name,
@@ -126,6 +152,7 @@ constexpr Sentence check_devices(const MachineView& m, const Board& board, const
     for (const BoardDevice& device : board.devices)
         if (Sentence fault = check_words(device.facts, device.kind); !fault.empty())
             return Sentence{"board \"", board.name, "\", device \"", device.name, "\": ", fault};
+    if (Sentence fault = check_gateways(board); !fault.empty()) return fault;
     if (Sentence fault = check_each_device(m, board, binding); !fault.empty()) return fault;
     const auto address_of = [&board](const BoundDevice& bound) {
         const BoardDevice* device = find_named(board.devices, bound.at);

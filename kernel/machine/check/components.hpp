@@ -39,6 +39,17 @@ constexpr Sentence check_interface(const ComponentRow& row) {
                         row.type->tag->name);
 }
 
+/// Checks that a mark of motion stands within for_people(..), which offers the facet.
+constexpr Sentence check_motion(const ComponentRow& row) {
+    for (const Facet& each : row.type->facets)
+        if (each.motion != Motion::none && !each.for_people)
+            return of_component(
+                row.name, ": \"", each.name,
+                "\" is marked `moves` but is not for people; write for_people(Role::.., moves), "
+                "or remove the mark");
+    return {};
+}
+
 constexpr Sentence check_life(const ComponentRow& row) {
     const NeverRun& found = row.type->never_run;
     if (found.member.empty()) return {};
@@ -104,6 +115,7 @@ constexpr Sentence check_components(const MachineView& m, const TableIndexView& 
             return of_component(row.name, ": a component's name is not empty and has no dot; rename it");
         if (!row.type->device_fault.empty()) return of_component(row.name, ": ", row.type->device_fault);
         if (Sentence fault = check_interface(row); !fault.empty()) return fault;
+        if (Sentence fault = check_motion(row); !fault.empty()) return fault;
         if (Sentence fault = check_life(row); !fault.empty()) return fault;
         if (Sentence fault = check_settings(row); !fault.empty()) return fault;
         if (Sentence fault = check_bags(row); !fault.empty()) return fault;

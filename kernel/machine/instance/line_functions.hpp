@@ -25,14 +25,14 @@ struct LineEnd {
 enum class LineRefusal : std::uint8_t {
     none,
     wrong,  ///< it does not compile, or needs more than a line may have
-    denied, ///< the user does not have the role
+    denied, ///< the user does not have the right
     not_now ///< another line runs, or what it needs does not run
 };
 
 /// In the activity of the component that sees the machine; not real-time.
 struct LineFunctions {
-    /// Begins a line for a user of this role. An answer that is not empty says why it was not begun.
-    Sentence (*begin)(void* self, std::string_view line, Role role, LineRefusal& refusal) = nullptr;
+    /// Begins a line for a user with these rights. An answer that is not empty says why it was not begun.
+    Sentence (*begin)(void* self, std::string_view line, Rights rights, LineRefusal& refusal) = nullptr;
     /// Returns the end of the line; null: it still runs.
     const LineEnd* (*end)(void* self) = nullptr;
     /// Releases the line: its user has seen its end, or abandons it; then it is broken off.

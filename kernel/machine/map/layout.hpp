@@ -81,13 +81,16 @@ struct Component {
 
 /// Facet::flags.
 enum FacetFlag : std::uint32_t {
-    facet_required = 1,    ///< the table must connect it
-    facet_any_thread = 2,  ///< an operation or method that runs in its caller's activity
-    facet_has_range = 4,   ///< low and high are bounds
-    facet_can_force = 8,   ///< a data port
-    facet_is_shared = 16,  ///< an input or output of a connection between two activities
-    facet_connected = 32,  ///< an input with a row
-    facet_can_request = 64 ///< browsers may set, call or send it through the socket
+    facet_required = 1,     ///< the table must connect it
+    facet_any_thread = 2,   ///< an operation or method that runs in its caller's activity
+    facet_has_range = 4,    ///< low and high are bounds
+    facet_can_force = 8,    ///< a data port
+    facet_is_shared = 16,   ///< an input or output of a connection between two activities
+    facet_connected = 32,   ///< an input with a row
+    facet_can_request = 64, ///< browsers may set, call or send it through the socket
+    facet_for_people = 128, ///< its interface offers it to people; without it, nobody asks over the network
+    facet_moves = 256,      ///< it moves something: nobody asks for it over the network
+    facet_moves_while_held = 512 ///< it moves something while somebody holds it, at the panel
 };
 
 /// One facet of one component. Its full name is the component's, a dot, and `name` (which may hold dots).

@@ -176,7 +176,9 @@ constexpr void Cartographer::draw_facet(End end) {
     record.role = text(can_request ? to_text(facet.least_role) : std::string_view{});
     record.flags = flag(facet.required, facet_required) | flag(facet.any_thread, facet_any_thread) |
                    flag(ranged, facet_has_range) | flag(is_data, facet_can_force) |
-                   flag(can_request, facet_can_request);
+                   flag(can_request, facet_can_request) | flag(facet.for_people, facet_for_people) |
+                   flag(facet.motion == Motion::moves, facet_moves) |
+                   flag(facet.motion == Motion::moves_while_held, facet_moves_while_held);
     if (is_input)
         for (std::size_t x = r_.connections_into.first[end.component]; x != nowhere;
              x = r_.connections_into.next[x])

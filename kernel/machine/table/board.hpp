@@ -31,11 +31,20 @@ struct BoardDevice {
     }
 };
 
-/// This user, or every member of this group, has at least this role.
-struct BoardRole {
+/// This user, or every member of this group.
+struct BoardPeer {
     bool is_group = false;
     std::uint32_t number = 0;
+    constexpr bool operator==(const BoardPeer&) const noexcept = default;
+};
+
+/// The peer has at least this role. A gateway has no other role, and only relays requests of users whom it
+/// names: none of them has a higher role than this one.
+struct BoardRole {
+    BoardPeer peer{};
     Role role = Role::observer;
+    bool is_gateway = false;
+    bool with_panel = false; ///< of a gateway: its users may be at the machine's panel
 };
 
 /// The local socket for browsers: its directory and its users. Root and the user that runs the machine are
@@ -143,11 +152,29 @@ template <class... Devices>
 constexpr Bounded<BoardDevice, 16> board_devices(const Devices&... devices) {
     return detail::list_of<BoardDevice, 16>(devices...);
 }
+constexpr BoardPeer user(std::uint32_t number) noexcept { return {false, number}; }
+constexpr BoardPeer group(std::uint32_t number) noexcept { return {true, number}; }
 /// The user of that number has this role at least.
-constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {false, number, role}; }
+constexpr BoardRole user(std::uint32_t number, Role role) noexcept { return {user(number), role}; }
 /// Every member of the group of that number has at least this role.
-constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {true, number, role}; }
-/// The users and groups that may do more than observe, 16 rows at most.
+constexpr BoardRole group(std::uint32_t number, Role role) noexcept { return {group(number), role}; }
+/// The highest role that a gateway relays.
+struct GatewayBound {
+    Role role;
+};
+constexpr GatewayBound up_to(Role role) noexcept { return {role}; }
+/// Marks a gateway whose users may be at the machine's panel.
+struct WithPanel {};
+inline constexpr WithPanel with_panel{};
+/// gateway(user(990), up_to(Role::machine_operator)): the processes of this user, or of this group, are
+/// gateways between the network and the machine.
+constexpr BoardRole gateway(const BoardPeer& peer, GatewayBound bound) noexcept {
+    return {peer, bound.role, true};
+}
+constexpr BoardRole gateway(const BoardPeer& peer, GatewayBound bound, WithPanel) noexcept {
+    return {peer, bound.role, true, true};
+}
+/// The users and groups that may do more than observe, and the gateways; 16 rows at most.
 template <class... Rows>
 constexpr Bounded<BoardRole, 16> roles(const Rows&... rows) {
     return detail::list_of<BoardRole, 16>(rows...);

@@ -59,7 +59,7 @@ void BrowserService::accept() {
 void BrowserService::hear(Client& client) {
     for (std::size_t i = 0; i < browsing::Connections::packets_each_cycle && client.serial != 0; ++i) {
         bool cut = false;
-        const Client before{{}, client.peer, client.role, client.serial};
+        const Client before{{}, client.peer, client.rights, client.serial, client.user};
         const auto packet = connections_.receive(client, packet_, cut);
         if (packet)
             handle(client, *packet, cut);
@@ -75,8 +75,16 @@ void BrowserService::handle(Client& client, std::string_view packet, bool cut) {
     if (cut)
         verdict.why = Sentence{"a request has at most ", browsing::max_packet_bytes, " bytes; send several"};
     if (verdict.good()) verdict.why = browsing::parse_request(packet, request);
+    // A connection whose user is not accepted asks for nobody: it is not a local one again.
+    const std::string_view verb = request.verb != nullptr ? request.verb->name : std::string_view{};
+    client.must_name_user |= verb == "as" && !client.has_asked;
+    if (verdict.good() && client.must_name_user && verb != "as" && verb != "hello")
+        verdict = {Refusal::denied,
+                   Sentence{"this connection asks for a user whom it has not named; begin with "
+                            "\"as NAME ROLE network|panel\""}};
     if (verdict.good()) verdict = check_role(client, request.verb->name, request.verb->role);
     if (verdict.good()) verdict = answer(client, request);
+    client.has_asked |= !client.must_name_user && !verb.empty() && verb != "hello";
     ++(verdict.good() ? accepted_ : refused_);
     note(client, verdict.good() ? "accepted" : "refused", packet, verdict);
     if (verdict.good()) return;
@@ -104,9 +112,16 @@ BrowserService::Verdict BrowserService::finish(Client& client, Reply& reply) noe
 }
 
 BrowserService::Verdict BrowserService::check_role(const Client& client, std::string_view what, Role least) {
-    if (client.role >= least) return {};
-    return {Refusal::denied, Sentence{"\"", what, "\" needs the role of an ", to_text(least), ", you are an ",
-                                      to_text(client.role), "; ask for it in the board's list of roles"}};
+    if (client.rights.role >= least) return {};
+    return {Refusal::denied,
+            Sentence{"\"", what, "\" needs the role of an ", to_text(least), ", you are an ",
+                     to_text(client.rights.role), "; ask for it in the board's list of roles"}};
+}
+
+BrowserService::Verdict BrowserService::check_facet(const Client& client, std::string_view name,
+                                                    const Facet& facet) {
+    if (Verdict role = check_role(client, name, facet.least_role); !role.good()) return role;
+    return {Refusal::denied, check_origin(name, facet.for_people, facet.motion, client.rights.origin)};
 }
 
 BrowserService::Verdict BrowserService::answer(Client& client, const Request& request) {
@@ -124,7 +139,9 @@ void BrowserService::note(const Client& client, std::string_view what, std::stri
     Sentence line{"browser: ", what};
     if (!verdict.good()) line.add(" (").add(to_text(verdict.code)).add(")");
     line.add(" at ").add(to_ns(now_) / 1000).add(" us, uid ").add(client.peer.user).add(", pid ");
-    line.add(static_cast<int>(client.peer.process)).add(", ").add(to_text(client.role));
+    line.add(static_cast<int>(client.peer.process)).add(", ").add(to_text(client.rights.role));
+    if (!client.user.view().empty())
+        line.add(" ").add(client.user.view()).add(" from the ").add(to_text(client.rights.origin));
     if (!packet.empty()) line.add(": ");
     for (const char character : packet.substr(0, 240)) {
         const bool shown =
@@ -139,7 +156,8 @@ void BrowserService::note_end(const Pending& place, std::string_view how,
                               std::string_view why) const noexcept {
     if (!log.get() || place.is_told) return;
     os::print(Sentence{"browser: not done (", how, ") at ", to_ns(now_) / 1000, " us, request ",
-                       place.asker.number, ", ", to_text(place.asker.role), ": ", why, "\n"}
+                       place.asker.number, ", ", to_text(place.asker.role),
+                       place.asker.user.view().empty() ? "" : " ", place.asker.user.view(), ": ", why, "\n"}
                   .view());
 }
 

@@ -89,7 +89,7 @@ private:
     /// Implements BrowsingAnswerer.
     static std::size_t answer_for_nobody(void* self, std::string_view request, std::span<char> into);
     [[nodiscard]] browsing::Asker asker(const Client& client, const Request& request) const noexcept {
-        return {client.serial, request.number, now_, client.role};
+        return {client.serial, request.number, now_, client.rights.role, client.user};
     }
 
     // Pending requests; requests_pending.cpp
@@ -109,6 +109,8 @@ private:
 
     // Changing; requests_change.cpp
     [[nodiscard]] static Verdict check_role(const Client& client, std::string_view what, Role least);
+    /// The gate for each operation, method and command that a client names: its role and its origin.
+    [[nodiscard]] static Verdict check_facet(const Client& client, std::string_view name, const Facet& facet);
     [[nodiscard]] Verdict read_arguments(const Facet& facet, const Request& request,
                                          std::span<std::byte> into);
     browsing::FacetCall& prepare(Pending& place, End end) const noexcept;

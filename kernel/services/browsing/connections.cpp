@@ -23,7 +23,9 @@ Client* Connections::accept() noexcept {
         if (!connection.open()) return nullptr;
         const auto peer = connection.peer();
         if (!peer) continue; // it has already left
-        const Role role = role_of(*peer, board_);
+        // A gateway that has not named its user yet takes nobody's place.
+        const BoardRole* const gateway = gateway_of(*peer, board_);
+        const Role role = gateway != nullptr ? Role::observer : role_of(*peer, board_);
         Client* place = place_for(role);
         if (place == nullptr) {
             turn_away(connection, Sentence{"all ", max_clients,
@@ -35,12 +37,13 @@ Client* Connections::accept() noexcept {
                       Sentence{"an ", to_text(role), " needs this place; connect again later"});
             disconnect(*place);
         }
-        place->connection = std::move(connection);
-        place->peer = *peer;
-        place->role = role;
-        place->serial = ++serials_;
-        place->heard = ++heard_;
-        place->dropped = place->told_dropped = 0;
+        *place = Client{.connection = std::move(connection),
+                        .peer = *peer,
+                        .rights = {role},
+                        .serial = ++serials_,
+                        .gateway = gateway,
+                        .must_name_user = gateway != nullptr,
+                        .heard = ++heard_};
         return place;
     }
     return nullptr;
@@ -51,9 +54,9 @@ Client* Connections::place_for(Role role) noexcept {
     Client* best = nullptr;
     for (Client& each : clients_) {
         if (each.serial == 0) return &each;
-        if (each.role >= role) continue;
-        if (best == nullptr || each.role < best->role ||
-            (each.role == best->role && each.heard < best->heard))
+        if (each.rights.role >= role) continue;
+        if (best == nullptr || each.rights.role < best->rights.role ||
+            (each.rights.role == best->rights.role && each.heard < best->heard))
             best = &each;
     }
     return best;

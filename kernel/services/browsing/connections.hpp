@@ -14,9 +14,13 @@ namespace tappet::browsing {
 struct Client {
     os::LocalConnection connection{};
     os::Peer peer{};
-    Role role = Role::observer;
-    std::uint64_t serial = 0; ///< 0: the place is free
-    std::uint64_t heard = 0;  ///< increases with each packet of any client: the lowest is the longest idle
+    Rights rights{Role::observer};
+    std::uint64_t serial = 0;           ///< 0: the place is free
+    UserName user{};                    ///< for whom it asks; empty: for itself
+    const BoardRole* gateway = nullptr; ///< the row that makes it a gateway
+    bool has_asked = false;             ///< too late for `as`
+    bool must_name_user = false;        ///< nothing but `hello` is answered before `as`
+    std::uint64_t heard = 0; ///< increases with each packet of any client: the lowest is the longest idle
     std::uint64_t dropped = 0;
     std::uint64_t told_dropped = 0;
 };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernel/machine/instance/line_functions.hpp"
+#include "kernel/services/browsing/access.hpp"
 #include "kernel/services/browsing/behaviour_order.hpp"
 #include "kernel/services/browsing/why_order.hpp"
 #include "kernel/services/configuration/property_saving.hpp"
@@ -25,6 +26,7 @@ struct Asker {
     std::uint32_t number = 0; ///< of the request
     Time since{};
     Role role = Role::engineer;
+    UserName user{}; ///< for whom it asked, if not for itself
 };
 
 /// A port to force or release, or an operation or a method to call.

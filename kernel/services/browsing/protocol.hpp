@@ -42,6 +42,12 @@
 /// result. Packets that a client does not read are not kept: beyond its socket's buffer they are dropped, and
 /// the next packet that it gets says "dropped": n.
 ///
+/// A connection may begin with `as`: it asks for the user of that name, with the lowest of three roles: its
+/// own by the board, the bound of its gateway row, and ROLE. The name stands in each line of the log. This
+/// cannot be changed or undone, and only `hello` may come before it. A connection of a peer that the board
+/// lists as a gateway must begin so. Over the network nobody may call, send or execute what its interface
+/// does not mark for_people(..), or marks `moves` or `moves_while_held`.
+///
 /// A packet of number 0 that is not "ok" may come before any request: no place was free, or a client of a
 /// higher role took this one. Then the connection ends.
 ///
@@ -66,6 +72,7 @@ using tappet::to_text;
 #define TAPPET_REQUESTS(X) \
     X(hello,       observer,         0, 0,         "", \
       R"("protocol": 1, "machine": "...", "board": "...", "world": "...", "role": "...", "build_id": "...", "framework": "0.15", "time_ns": T)") \
+    X(as,          observer,         3, 3,         " NAME ROLE network|panel", R"("role": "the one that it now has")") \
     X(map,         observer,         0, 0,         "", \
       R"("bytes": n, and one file descriptor (SCM_RIGHTS), to be mapped read-only: kernel/machine/map/layout.hpp)") \
     X(get,         observer,         1, browsing::max_words, " NAME...", \

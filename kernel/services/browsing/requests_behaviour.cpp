@@ -199,7 +199,7 @@ BrowserService::Verdict BrowserService::serve_behave(Client& client, const Reque
         }
     }
     const std::size_t c = find_component(machine.table, machine.table.behaviours[found.row].component);
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     order.unit = found.unit;
     order.slot = machine_->slot_of_row(found.row);

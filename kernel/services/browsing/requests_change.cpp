@@ -111,7 +111,7 @@ BrowserService::Verdict BrowserService::serve_force(Client& client, const Reques
     const MachineView& table = machine_->machine().table;
     if (const Sentence fault = find_port(table, request.arguments[0], end); !fault.empty())
         return {Refusal::unknown, fault};
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     const TypeTag& type = *facet_at(table, end).type;
     if (place == nullptr) return no_place();
     auto& call = place->work.emplace<FacetCall>();
@@ -132,7 +132,7 @@ BrowserService::Verdict BrowserService::serve_release(Client& client, const Requ
     if (const Sentence fault = find_port(machine_->machine().table, request.arguments[0], end);
         !fault.empty())
         return {Refusal::unknown, fault};
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     place->work.emplace<FacetCall>();
     return reach(*place, asker(client, request), end, &release_port);
@@ -170,8 +170,8 @@ BrowserService::Verdict BrowserService::serve_call(Client& client, const Request
         browsing::find_facet(table, request.arguments[0], {FacetKind::method, FacetKind::operation}, end);
     if (!unknown.empty()) return {Refusal::unknown, unknown};
     const Facet& facet = facet_at(table, end);
-    if (Verdict role = check_role(client, request.arguments[0], facet.least_role); !role.good()) return role;
-    Pending* place = free_place(client.role);
+    if (Verdict barred = check_facet(client, request.arguments[0], facet); !barred.good()) return barred;
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     auto& values = place->work.emplace<FacetCall>().value;
     if (Verdict read = read_arguments(facet, request, values); !read.good()) return read;
@@ -218,7 +218,7 @@ BrowserService::Verdict BrowserService::serve_set(Client& client, const Request&
     if (request.arguments.size() % 2 != 0)
         return {Refusal::bad_request,
                 Sentence{"each property needs its value; it is spelled: ", request.verb->usage}};
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     auto& transaction = place->work.emplace<PropertyTransaction>();
     End end;

@@ -17,17 +17,16 @@ BrowserService::Verdict BrowserService::serve_send(Client& client, const Request
     const MachineView& table = machine_->machine().table;
     const Sentence unknown = browsing::find_facet(table, request.arguments[0], {FacetKind::command}, end);
     if (!unknown.empty()) return {Refusal::unknown, unknown};
-    if (Verdict role = check_role(client, request.arguments[0], facet_at(table, end).least_role);
-        !role.good())
-        return role;
+    if (Verdict barred = check_facet(client, request.arguments[0], facet_at(table, end)); !barred.good())
+        return barred;
     // Commands may take any time, even after their client has left: the other places are for requests that
     // end them.
     const auto commands = static_cast<std::size_t>(std::ranges::count_if(
         pending_, [](const Pending& each) { return each.look == &BrowserService::look_at_command; }));
-    if (commands + kept_from(client.role, max_commands) >= max_commands)
+    if (commands + kept_from(client.rights.role, max_commands) >= max_commands)
         return {Refusal::not_now,
                 Sentence{"too many commands are under way; await one, or stop what they wait for"}};
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     auto& call = place->work.emplace<FollowedCommand>();
     const Facet& facet = facet_at(table, end);
@@ -88,7 +87,7 @@ BrowserService::Verdict BrowserService::change_life(Client& client, const Reques
         return {Refusal::unsupported,
                 Sentence{"the browser answers from activity \"", machine.table.activities[activity].name,
                          "\" itself and does not stop or start it; stop the machine instead"}};
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     const LifeTicket ticket = target.component != nowhere
                                   ? machine_->life().ask_component(target.component, change)

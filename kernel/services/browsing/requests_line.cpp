@@ -29,7 +29,7 @@ BrowserService::Verdict BrowserService::serve_execute(Client& client, const Requ
     if (for_nobody_.data() != nullptr)
         return {Refusal::unsupported,
                 Sentence{"the machine no longer runs and executes nothing; only read it"}};
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     std::array<char, browsing::max_packet_bytes> text;
     std::size_t length = 0;
@@ -38,7 +38,7 @@ BrowserService::Verdict BrowserService::serve_execute(Client& client, const Requ
                 Sentence{"the line is not quoted well; it is spelled: ", request.verb->usage}};
     LineRefusal refusal{};
     const Sentence fault =
-        line.functions->begin(line.interpreter, {text.data(), length}, client.role, refusal);
+        line.functions->begin(line.interpreter, {text.data(), length}, client.rights, refusal);
     if (!fault.empty())
         return {refusal == LineRefusal::denied    ? Refusal::denied
                 : refusal == LineRefusal::not_now ? Refusal::not_now
@@ -84,12 +84,12 @@ bool BrowserService::look_at_line(Pending& place) {
 BrowserService::Verdict BrowserService::serve_break_off(Client& client, const Request& request) {
     const FollowedLine line = find_interpreter_of_lines();
     if (line.functions == nullptr) return no_interpreter();
-    switch (line.functions->break_off(line.interpreter, client.role)) {
+    switch (line.functions->break_off(line.interpreter, client.rights.role)) {
     case LineRefusal::not_now:
         return {Refusal::not_now, Sentence{"no line is at work; there is nothing to break off"}};
     case LineRefusal::denied:
         return {Refusal::denied, Sentence{"the line at work is of somebody of a higher role than an ",
-                                          to_text(client.role), "; ask them to break it off"}};
+                                          to_text(client.rights.role), "; ask them to break it off"}};
     default: break;
     }
     Reply reply{request.number, true};

@@ -16,10 +16,33 @@ BrowserService::Verdict BrowserService::serve_hello(Client& client, const Reques
         .field("machine", machine.table.name)
         .field("board", machine.board->name)
         .field("world", machine.board->world)
-        .field("role", to_text(client.role))
+        .field("role", to_text(client.rights.role))
         .field("build_id", std::string_view{header.build_id.data()})
         .field("framework", std::string_view{header.framework.data()})
         .field("time_ns", to_ns(now_));
+    return finish(client, reply);
+}
+
+BrowserService::Verdict BrowserService::serve_as(Client& client, const Request& request) {
+    if (client.has_asked)
+        return {Refusal::bad_request,
+                Sentence{"\"as\" is the first request of a connection, and comes once; connect anew"}};
+    Rights asked;
+    browsing::UserName user;
+    const auto& words = request.arguments;
+    if (const Sentence fault = browsing::parse_user(words[0], words[1], words[2], user, asked);
+        !fault.empty())
+        return {Refusal::bad_value, fault};
+    if (asked.origin == Origin::panel && client.gateway != nullptr && !client.gateway->with_panel)
+        return {Refusal::denied,
+                Sentence{"this gateway has no panel; add with_panel to its row in the board's "
+                         "list of roles, or say \"network\""}};
+    const Role bound = client.gateway != nullptr ? client.gateway->role : client.rights.role;
+    client.rights = {std::min(bound, asked.role), asked.origin};
+    client.user = user;
+    client.must_name_user = false;
+    Reply reply{request.number, true};
+    reply.json().field("role", to_text(client.rights.role));
     return finish(client, reply);
 }
 

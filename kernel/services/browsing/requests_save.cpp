@@ -20,7 +20,7 @@ BrowserService::Verdict BrowserService::serve_save(Client& client, const Request
                     Sentence{"component \"", request.arguments[0],
                              "\" has no properties file; give its row properties_file(...)"}};
     }
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     place->work.emplace<PropertySaving>().begin(*machine_, own_activity_, component);
     return await(*place, asker(client, request), &BrowserService::look_at_saving);

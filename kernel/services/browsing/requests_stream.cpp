@@ -21,7 +21,7 @@ BrowserService::Verdict BrowserService::serve_subscribe(Client& client, const Re
         if (each.taken && each.asker.client == client.serial && each.event == event)
             return {Refusal::not_now, Sentence{"\"", request.arguments[0], "\" is subscribed to already"}};
     }
-    if (free <= kept_from(client.role, max_subscriptions))
+    if (free <= kept_from(client.rights.role, max_subscriptions))
         return {Refusal::not_now, Sentence{"all subscriptions that your role may have are taken; end one"}};
     const EventHandle handle = machine_->observation().observe_event(event.component, event.facet);
     if (!handle.valid())

@@ -125,7 +125,7 @@ BrowserService::Verdict BrowserService::serve_why(Client& client, const Request&
     for (std::size_t t = 0; order.leaf != no_state && t < part.binding.machine.table.transitions.size(); ++t)
         if (ways.leads_nearer(t, order.leaf))
             static_cast<void>(order.transitions.push(static_cast<TransitionIndex>(t)));
-    Pending* place = free_place(client.role);
+    Pending* place = free_place(client.rights.role);
     if (place == nullptr) return no_place();
     order.engine = &machine_->engines()[machine.index.activity[c]];
     Message call;

@@ -42,8 +42,8 @@ bool is_expression(const ProgramTables& line) noexcept {
 
 constexpr LineFunctions CommandInterpreter::line_functions{
     .begin =
-        [](void* self, std::string_view line, Role role, LineRefusal& refusal) {
-            return static_cast<CommandInterpreter*>(self)->begin(line, role, Asker::browser, refusal);
+        [](void* self, std::string_view line, Rights rights, LineRefusal& refusal) {
+            return static_cast<CommandInterpreter*>(self)->begin(line, rights, Asker::browser, refusal);
         },
     .end = [](void* self) -> const LineEnd* {
         auto& own = *static_cast<CommandInterpreter*>(self);
@@ -86,7 +86,8 @@ void CommandInterpreter::reach_from(std::size_t home) noexcept {
         reach_[c + 1].same_activity = activity[c] == activity[home];
 }
 
-Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker, LineRefusal& refusal) {
+Sentence CommandInterpreter::begin(std::string_view text, Rights rights, Asker asker, LineRefusal& refusal) {
+    const Role role = rights.role;
     const auto refuse = [this](const Sentence& fault) {
         refused.write(refused.last() + 1);
         return fault;
@@ -115,7 +116,7 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
         return refuse(
             Sentence{"commands of earlier lines are still on their way; wait until they have ended, "
                      "or stop their components"});
-    if (const Sentence fault = prepare(text, role, *free, refusal); !fault.empty()) return refuse(fault);
+    if (const Sentence fault = prepare(text, rights, *free, refusal); !fault.empty()) return refuse(fault);
     refusal = LineRefusal::none;
     kept_for_ = Role::observer;
     bank_ = free;
@@ -129,7 +130,7 @@ Sentence CommandInterpreter::begin(std::string_view text, Role role, Asker asker
     return {};
 }
 
-Sentence CommandInterpreter::prepare(std::string_view text, Role role, Bank& bank, LineRefusal& refusal) {
+Sentence CommandInterpreter::prepare(std::string_view text, Rights rights, Bank& bank, LineRefusal& refusal) {
     const AcceptedMachine& machine = machine_->machine();
     refusal = LineRefusal::wrong;
     if (text.size() > max_characters)
@@ -154,7 +155,7 @@ Sentence CommandInterpreter::prepare(std::string_view text, Role role, Bank& ban
     }
     if (!outcome.good()) return first_fault;
     refusal = LineRefusal::denied;
-    if (Sentence fault = check_role(outcome.unit, role); !fault.empty()) return fault;
+    if (Sentence fault = check_rights(outcome.unit, rights); !fault.empty()) return fault;
     refusal = LineRefusal::not_now;
     const std::size_t activity = machine.index.activity[bank.home];
     if (!is_alive(*machine_, activity))
@@ -180,20 +181,23 @@ Sentence CommandInterpreter::prepare(std::string_view text, Role role, Bank& ban
     return {};
 }
 
-Sentence CommandInterpreter::check_role(const ScriptUnit& unit, Role role) const {
+Sentence CommandInterpreter::check_rights(const ScriptUnit& unit, Rights rights) const {
+    const Role role = rights.role;
     const ProgramTables& tables = unit.types[0].tables;
     for (const Instruction& each : tables.instructions) {
+        if (each.facet == nullptr) continue;
         const Role least = interpreter::role_of(each);
-        if (role >= least) continue;
-        return Sentence{"\"",
-                        reach_[tables.links[each.link].peer].name,
-                        ".",
-                        each.facet->name,
-                        "\" needs the role of an ",
-                        to_text(least),
-                        " here, you are an ",
-                        to_text(role),
-                        "; ask for it in the board's list of roles"};
+        const Sentence name{reach_[tables.links[each.link].peer].name, ".", each.facet->name};
+        if (role < least)
+            return Sentence{"\"",
+                            name,
+                            "\" needs the role of an ",
+                            to_text(least),
+                            " here, you are an ",
+                            to_text(role),
+                            "; ask for it in the board's list of roles"};
+        if (Sentence fault = interpreter::check_origin(each, name.view(), rights.origin); !fault.empty())
+            return fault;
     }
     if (role >= Role::machine_operator || is_expression(tables)) return {};
     return Sentence{"statements need the role of an ", to_text(Role::machine_operator), ", you are an ",
@@ -234,7 +238,7 @@ void CommandInterpreter::work(const Cycle& cycle) {
     if (waits_ && asker_ == Asker::none) {
         waits_ = false;
         LineRefusal refusal{};
-        tell(begin(of_peer_.view(), Role::engineer, Asker::peer, refusal));
+        tell(begin(of_peer_.view(), Rights{}, Asker::peer, refusal));
     } else if (waits_ && cycle.now - since_waiting_ > patience) {
         waits_ = false;
         tell(Sentence{"the line that is at work does not end; look at its components"});
@@ -300,7 +304,7 @@ bool CommandInterpreter::execute(const Line& line, Line& value) noexcept {
     LineRefusal refusal{};
     const bool is_taken = waits_ || asker_ == Asker::peer;
     const Sentence fault = is_taken ? Sentence{"another component's line is at work; send yours after it"}
-                                    : begin(line.view(), Role::engineer, Asker::peer, refusal);
+                                    : begin(line.view(), Rights{}, Asker::peer, refusal);
     if (is_taken) refused.write(refused.last() + 1);
     tell(fault);
     if (!fault.empty()) return false;

@@ -63,9 +63,9 @@ public:
 private:
     enum class Asker : std::uint8_t { none, peer, browser };
 
-    Sentence begin(std::string_view text, Role role, Asker asker, LineRefusal& refusal);
-    Sentence prepare(std::string_view text, Role role, interpreter::Bank& bank, LineRefusal& refusal);
-    Sentence check_role(const ScriptUnit& unit, Role role) const;
+    Sentence begin(std::string_view text, Rights rights, Asker asker, LineRefusal& refusal);
+    Sentence prepare(std::string_view text, Rights rights, interpreter::Bank& bank, LineRefusal& refusal);
+    Sentence check_rights(const ScriptUnit& unit, Rights rights) const;
     Sentence check_running(const ScriptUnit& unit) const;
     [[nodiscard]] bool is_at_work() const noexcept TAPPET_REALTIME {
         return asker_ != Asker::none && in_flight(end_.state);

@@ -21,6 +21,12 @@ Role role_of(const Instruction& in) noexcept {
     return Role::engineer;
 }
 
+Sentence check_origin(const Instruction& in, std::string_view facet, Origin origin) noexcept {
+    // It reads, or sets a property, which the role alone decides.
+    if (role_of(in) == Role::observer || in.run == &primitive::write_property) return {};
+    return tappet::check_origin(facet, in.facet->for_people, in.facet->motion, origin);
+}
+
 namespace {
 
 Sentence why_of(const Instruction& in, const UnitPart& part, std::string_view name) {

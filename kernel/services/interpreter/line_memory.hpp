@@ -53,6 +53,8 @@ struct Bank {
 
 /// Returns the lowest role that may execute the instruction, by its action on a component.
 Role role_of(const Instruction& instruction) noexcept;
+/// Returns why a request from there may not execute the instruction; empty: it may.
+Sentence check_origin(const Instruction& instruction, std::string_view facet, Origin origin) noexcept;
 /// Says where and why the program of a line failed.
 Sentence describe_fault(const Bank& bank, std::span<const Reachable> reach);
 

@@ -23,6 +23,10 @@ struct Mute {
     Output<double> tone;
     static constexpr auto interface() { return facets(output<&Mute::tone>("tone", "Hz", "")); }
 };
+struct Jumper {
+    void jump() noexcept TAPPET_REALTIME {}
+    static constexpr auto interface() { return facets(operation<&Jumper::jump>("jump", "up", moves)); }
+};
 struct Unnamed {
     Output<double> tone;
     static constexpr auto interface() { return facets(output<&Unnamed::tone>("", "Hz", "of the horn")); }
@@ -163,6 +167,8 @@ constexpr Fault component_faults[] = {
      R"(loom: component "horn": its facet "tone" has no description; add one in Mute)"},
     {"interface_without_name", [](Table& m) { m.add(component<Unnamed>("horn")); },
      R"(loom: component "horn": its interface has a facet without a name; name it in Unnamed)"},
+    {"interface_moves_for_nobody", [](Table& m) { m.add(component<Jumper>("horn")); },
+     R"(loom: component "horn": "jump" is marked `moves` but is not for people; write for_people(Role::.., moves), or remove the mark)"},
 };
 INSTANTIATE_TEST_SUITE_P(components, Refusal, planted_into(small_loom, component_faults), name_of);
 
@@ -341,6 +347,25 @@ constexpr Fault camera_faults[] = {
      R"(loom: board "old box", device "camera0": lines(...) is for a gpio device, and this is a camera device; remove it)"},
 };
 INSTANTIATE_TEST_SUITE_P(cameras, Refusal, planted_into(loom_on_an_old_box, camera_faults), name_of);
+
+/// Adds a row to the board's list of users.
+void list(Table& m, const BoardRole& row) { static_cast<void>(m.board.browsing.roles.push(row)); }
+
+constexpr Fault gateway_faults[] = {
+    {"gateway_of_root", [](Table& m) { list(m, gateway(user(0), up_to(Role::engineer))); },
+     R"(loom: board "old box", gateway(user(0), ..): root may do everything, whatever bounds it; run the gateway as a user of its own, and name that user)"},
+    {"gateway_of_the_group_of_root", [](Table& m) { list(m, gateway(group(0), up_to(Role::observer))); },
+     R"(loom: board "old box", gateway(group(0), ..): root may do everything, whatever bounds it; run the gateway as a user of its own, and name that user)"},
+    {"gateway_without_a_bound", [](Table& m) { list(m, gateway(user(990), up_to(static_cast<Role>(7)))); },
+     R"(loom: board "old box", gateway(user(990), ..): up_to(..) states no role; write up_to(Role::observer), up_to(Role::machine_operator) or up_to(Role::engineer))"},
+    {"gateway_with_a_role",
+     [](Table& m) {
+         list(m, user(990, Role::engineer));
+         list(m, gateway(user(990), up_to(Role::machine_operator)));
+     },
+     R"(loom: board "old box", gateway(user(990), ..): roles(..) has another row for it, and a gateway has one bound; remove one of them)"},
+};
+INSTANTIATE_TEST_SUITE_P(gateways, Refusal, planted_into(loom_on_an_old_box, gateway_faults), name_of);
 
 constexpr Fault board_faults[] = {
     {"line_twice", [](Table& m) { rebind(m, wired("panel", "io", line("red", 4), line("green", 4))); },

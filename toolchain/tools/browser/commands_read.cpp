@@ -39,11 +39,27 @@ std::string value_with_unit(Work& work, std::uint32_t index) {
     return with_unit(map, reading) + (reading.forced ? " FORCED" : "") + (wire.empty() ? "" : ", ") + wire;
 }
 
-/// Returns the role that may set, call or send it; empty: none.
+std::string_view motion_of(const map::Facet& facet) {
+    if ((facet.flags & map::facet_moves_while_held) != 0) return "moves_while_held";
+    return (facet.flags & map::facet_moves) != 0 ? "moves" : "";
+}
+
+/// Returns the role that may set, call or send it, and whether that moves something; empty: none.
 std::string role_of(const MapReader& map, const map::Facet& facet, std::string_view before,
                     std::string_view after) {
-    const std::string_view role = map.text(facet.role);
-    return role.empty() ? std::string{} : std::string{before} + std::string{role} + std::string{after};
+    const std::string role{map.text(facet.role)};
+    if (role.empty()) return {};
+    const std::string motion{motion_of(facet)};
+    return std::string{before} + role + (motion.empty() ? "" : ", ") + motion + std::string{after};
+}
+
+/// The same for programs, and whether its interface offers it to people.
+std::string json_rights(const MapReader& map, const map::Facet& facet) {
+    const std::string role{map.text(facet.role)};
+    if (role.empty()) return {};
+    const bool for_people = (facet.flags & map::facet_for_people) != 0;
+    return json_text("role", role) + R"(, "for_people": )" + (for_people ? "true" : "false") +
+           json_text("motion", motion_of(facet).empty() ? "none" : motion_of(facet));
 }
 
 void list_component(Work& work, std::uint32_t index) {
@@ -55,7 +71,7 @@ void list_component(Work& work, std::uint32_t index) {
             work.out << "{\"name\": " << in_quotes(map.full_name(i))
                      << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
                      << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
-                     << role_of(map, facet, ", \"role\": \"", "\"");
+                     << json_rights(map, facet);
             if (facet.value_at != 0) {
                 const Reading reading = work.session.observer().read(i);
                 work.out << ", \"value\": " << value_of(map, reading, Style::json)
@@ -255,7 +271,7 @@ void tell_facet(Work& work, const FoundFacet& found) {
                  << json_text("kind", map.text(facet.kind)) << json_text("type", type_of(map, facet))
                  << json_text("unit", map.text(facet.unit)) << json_text("doc", map.text(facet.doc))
                  << json_text("activity", activity_name(map, map.activity_of(facet)))
-                 << role_of(map, facet, ", \"role\": \"", "\"");
+                 << json_rights(map, facet);
         if ((facet.flags & map::facet_has_range) != 0)
             work.out << ", \"low\": " << facet.low << ", \"high\": " << facet.high;
         work.out << "}\n";

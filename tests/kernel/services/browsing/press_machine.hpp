@@ -50,6 +50,7 @@ struct Ram {
     [[nodiscard]] std::string_view why_not() const noexcept TAPPET_REALTIME { return "too fast"; }
     double distance(double to) noexcept TAPPET_REALTIME { return to - place.last(); }
     void halt() noexcept TAPPET_REALTIME { target = place.last(); }
+    void creep() noexcept TAPPET_REALTIME { target += 0.5; }
     void let_go() noexcept TAPPET_REALTIME { ++let_goes; }
     double weigh(double tare) noexcept { return ::usleep(1), 80.0 - tare; }
     double survey() noexcept { return 0.0; }
@@ -61,9 +62,11 @@ struct Ram {
                       property<&Ram::speed>("speed", "mm/ms", "of the ram", range(0.1, 20)),
                       property<&Ram::force>("force", "kN", "at the bottom", range(0, 100)),
                       command<&Ram::move_to, &Ram::moved_to>("move_to", "goes there",
-                                                             for_people(Role::machine_operator)),
+                                                             for_people(Role::machine_operator, moves)),
                       method<&Ram::distance>("distance", "from here"),
                       operation<&Ram::halt>("halt", "stays", for_people(Role::machine_operator)),
+                      operation<&Ram::creep>("creep", "down a little",
+                                             for_people(Role::machine_operator, moves_while_held)),
                       operation<&Ram::let_go>("let_go", "opens the clamp"),
                       method<&Ram::weigh>("weigh", "on scales that answer late", may_block, any_thread),
                       method<&Ram::survey>("survey", "all of it", may_block));
@@ -123,7 +126,8 @@ inline constexpr auto table = machine("press",
                 data("table.height", "archive.height")),
     reactions(), behaviours());
 inline constexpr Board board{.name = "test", .world = "host", .memory_budget_bytes = 8 * 1024 * 1024,
-                             .browsing = {.mode = 0666, .roles = roles(user(1001, Role::machine_operator))}};
+                             .browsing = {.mode = 0666, .roles = roles(user(1001, Role::machine_operator), gateway(user(990), up_to(Role::machine_operator)),
+                                                            gateway(user(991), up_to(Role::engineer), with_panel))}};
 // clang-format on
 
 } // namespace tappet::press

@@ -8,8 +8,9 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 struct Refused : Lines {
-    Sentence begin(std::string_view line, Role role = Role::engineer) {
-        Sentence fault = CommandInterpreter::line_functions.begin(&interpreter(), line, role, refusal);
+    Sentence begin(std::string_view line, Role role = Role::engineer, Origin origin = Origin::local) {
+        Sentence fault =
+            CommandInterpreter::line_functions.begin(&interpreter(), line, {role, origin}, refusal);
         if (fault.empty()) CommandInterpreter::line_functions.let_go(&interpreter());
         run(20ms);
         return fault;
@@ -109,6 +110,24 @@ TEST_F(Refused, line_above_the_clients_role_changes_nothing) {
         begin("yield", Role::observer).view(),
         "statements need the role of an operator, you are an observer; write an expression, or ask for it "
         "in the board's list of roles");
+}
+
+TEST_F(Refused, network_line_passes_the_gate_of_every_other_request) {
+    const auto from_network = [this](std::string_view line, Role role = Role::engineer) {
+        return std::string{begin(line, role, Origin::network).view()};
+    };
+    for (const char* good : {"gauge.force", "gauge.half(3)", "set gauge.target = 12", "do gauge.lock(true)"})
+        EXPECT_THAT(from_network(good), testing::IsEmpty()) << good;
+    EXPECT_THAT(from_network("do gauge.zero()"), StartsWith(R"("gauge.zero" is not for people, so nobody)"));
+    EXPECT_THAT(from_network("var int n; do ram.move_to(3, n)"),
+                StartsWith(R"("ram.move_to" moves something, so nobody)"));
+    EXPECT_THAT(from_network("do gauge.lock(true); do ram.creep()"),
+                StartsWith(R"("ram.creep" moves something while it is held)"));
+    EXPECT_EQ(refusal, LineRefusal::denied);
+    EXPECT_THAT(from_network("do ram.halt()", Role::observer), HasSubstr("needs the role of an operator"));
+    EXPECT_EQ(gauge().zeroed, 0);
+    EXPECT_EQ(ram().target, 0);
+    EXPECT_TRUE(begin("var int n; do ram.move_to(3, n)", Role::machine_operator, Origin::panel).empty());
 }
 
 } // namespace

@@ -41,7 +41,10 @@ TEST_F(Program, lists_components_and_their_facets) {
     EXPECT_THAT(one.out, HasSubstr("0 deg            of the main shaft"));
     EXPECT_THAT(run({"list", "shaft", "--json"}).out,
                 testing::AllOf(HasSubstr(R"("name": "shaft.angle", "kind": "output")"),
-                               testing::ContainsRegex(R"("name": "shaft.stop".*"role": "operator")")));
+                               testing::ContainsRegex(R"("name": "shaft.stop".*"role": "operator", )"
+                                                      R"("for_people": true, "motion": "none")")));
+    EXPECT_THAT(run({"list", "loom"}).out, HasSubstr(" [operator, moves]\n"));
+    EXPECT_THAT(run({"list", "loom", "--json"}).out, HasSubstr(R"("motion": "moves")"));
 }
 
 TEST_F(Program, shows_the_wire_wherever_a_component_has_read_another_value) {

@@ -235,7 +235,7 @@ SampleMachine::SampleMachine() {
         add("shaft", "angle", "output", map_.f64, motion, "deg", "of the main shaft", map::facet_can_force);
     add("shaft", "gains.p", "property", map_.f64, motion, "N/deg", "proportional gain", 0);
     add("shaft", "gains.i", "property", map_.f64, motion, "N/deg/s", "integral gain", 0);
-    add("shaft", "stop", "command", angle_list, motion, "", "stops at an angle", 0);
+    add("shaft", "stop", "command", angle_list, motion, "", "stops at an angle", map::facet_for_people);
     add("shaft", "beat_up", "event", angle_list, motion, "", "the reed is at the fell", 0);
     add("shaft", "reset", "method", no_list, motion, "", "forgets the stops", 0);
     map_.component("loom", "Loom", logic);
@@ -243,6 +243,8 @@ SampleMachine::SampleMachine() {
         add("loom", "angle", "input", map_.f64, logic, "deg", "as the logic sees it", map::facet_can_force);
     add("loom", "lamp", "output", map_.boolean, logic, "", "the green one", map::facet_can_force);
     add("loom", "state", "output", states, logic, "", "what it does", 0);
+    add("loom", "run", "command", angle_list, logic, "", "turns the shaft",
+        map::facet_for_people | map::facet_moves);
     map_.connect(angle, seen, 4'000'000);
     map_.react("tell", names_.at("shaft.beat_up"), names_.at("shaft.reset"));
     map_.figure(map::Owner::activity, motion, "cycles", map_.i32);
