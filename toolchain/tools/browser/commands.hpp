@@ -1,11 +1,12 @@
 // The browser's commands: one table for the command line, the prompt, the help and the completion.
 #pragma once
 
+#include "toolchain/tools/browser/files.hpp"
 #include "toolchain/tools/browser/machines.hpp"
+#include "toolchain/tools/browser/screen.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <csignal>
 #include <iosfwd>
 
 namespace tappet::browser {
@@ -46,16 +47,24 @@ struct Part {
     std::vector<std::string> names{};
 };
 
-struct Work {
-    Session& session;
-    const Line& line;
+/// Where a line's output goes, where its files are, and how it is stopped.
+struct Means {
     std::ostream& out;
-    bool screen = false;                                ///< `out` is a terminal that supports drawing
-    const volatile std::sig_atomic_t* signal = nullptr; ///< not 0 once the user wants to stop
-    std::span<const Part> among{}; ///< owners of the argument names, if not the session's
+    Files& files;
+    const StopFlag* signal = nullptr; ///< not 0 once the user wants to stop
+    bool screen = false;              ///< `out` is a terminal that supports drawing
+    std::optional<Size> far_screen{}; ///< its size, if it is not this program's own terminal
 
     /// Returns whether to stop; checked between two pictures and while waiting.
-    [[nodiscard]] bool stopped() const { return signal != nullptr && *signal != 0; }
+    [[nodiscard]] bool stopped() const { return signal != nullptr && signal->load() != 0; }
+    /// Waits, but not beyond a stop.
+    void pause(std::chrono::milliseconds time) const;
+};
+
+struct Work : Means {
+    Session& session;
+    const Line& line;
+    std::span<const Part> among{}; ///< owners of the argument names, if not the session's
 
     /// Returns the words after the command's name.
     [[nodiscard]] std::span<const std::string> arguments() const { return std::span{line.words}.subspan(1); }
@@ -106,8 +115,9 @@ struct Seen {
 };
 Result<std::vector<Seen>> find_seen(const Work& work);
 /// Runs the line on its machine or machines. Returns the failures, machine by machine; empty: none.
-[[nodiscard]] std::vector<Failure> run_among(Machines& machines, const Line& line, std::ostream& out,
-                                             bool screen, const volatile std::sig_atomic_t* signal);
+[[nodiscard]] std::vector<Failure> run_among(Machines& machines, const Line& line, const Means& means);
+/// Prints the machines, one a line, and the status of each. Returns the failures like run_among.
+[[nodiscard]] std::vector<Failure> list_machines(Machines& machines, const Line& line, const Means& means);
 /// Prints the sentence, or the machine's packet; prints nothing on failure.
 Result<void> told(const Work& work, const Result<nlohmann::ordered_json>& reply, const std::string& sentence);
 /// Checks that the command takes each option of the line; null: no command, so only common options.
@@ -117,6 +127,6 @@ Result<void> check_options(const Command* command, const Line& line);
 
 /// Returns true for commands that need no machine: about recordings that exist, or are being made.
 [[nodiscard]] bool is_about_files(const Line& line);
-Result<void> run_report_of_files(const Line& line, std::ostream& out);
+Result<void> run_report_of_files(const Line& line, const Means& means);
 
 } // namespace tappet::browser

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <thread>
 
 namespace tappet::browser {
 
@@ -113,12 +114,9 @@ parts_of_words(Machines& machines, const Command& command, std::span<const std::
     return parts;
 }
 
-struct AtMachines {
+struct AtMachines : Means {
     Machines& machines;
     const Line& line;
-    std::ostream& out;
-    bool screen;
-    const volatile std::sig_atomic_t* signal;
     std::vector<Failure> failures{};
 
     void run();
@@ -127,7 +125,7 @@ struct AtMachines {
     void at(Machine& machine, const Line& asked) {
         const auto session = machines.reach(machine);
         if (!session) return fail(session);
-        Work work{**session, asked, out, screen, signal};
+        Work work{*this, **session, asked};
         if (auto done = run_command(work); !done)
             failures.push_back({done.error().fault, machine.name + ": " + done.error().sentence});
     }
@@ -145,7 +143,7 @@ struct AtMachines {
             // A component may have the machine's name.
             if (map.find_component(rest.substr(0, rest.find('.')))) own.words[i + 1] = rest;
         }
-        Work work{*machine.session, own, out, screen, signal};
+        Work work{*this, *machine.session, own};
         if (auto done = run_command(work); !done) fail(done);
     }
     void at_each() {
@@ -165,7 +163,7 @@ struct AtMachines {
             if (session) parts.push_back({*session, std::move(part.names)});
         }
         if (parts.empty()) return;
-        Work work{*parts.front().session, line, out, screen, signal, parts};
+        Work work{*this, *parts.front().session, line, parts};
         if (auto done = run_command(work); !done) fail(done);
     }
 };
@@ -276,9 +274,22 @@ void AtMachines::run() {
 
 } // namespace
 
-std::vector<Failure> run_among(Machines& machines, const Line& line, std::ostream& out, bool screen,
-                               const volatile std::sig_atomic_t* signal) {
-    AtMachines among{machines, line, out, screen, signal};
+void Means::pause(std::chrono::milliseconds time) const {
+    using Steady = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds between_looks{20};
+    const auto until = Steady::now() + time;
+    while (!stopped() && Steady::now() < until)
+        std::this_thread::sleep_for(std::min<Steady::duration>(until - Steady::now(), between_looks));
+}
+
+std::vector<Failure> list_machines(Machines& machines, const Line& line, const Means& means) {
+    AtMachines among{means, machines, line};
+    among.list();
+    return among.failures;
+}
+
+std::vector<Failure> run_among(Machines& machines, const Line& line, const Means& means) {
+    AtMachines among{means, machines, line};
     among.run();
     return among.failures;
 }

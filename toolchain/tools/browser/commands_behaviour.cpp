@@ -6,10 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <ostream>
-#include <sstream>
-#include <thread>
 
 namespace tappet::browser {
 
@@ -69,7 +66,7 @@ Result<void> show(Work& work, std::string_view name) {
 
 Result<void> watch(Work& work, std::string_view name) {
     for (long shown = 0; !work.stopped() && (work.line.count == 0 || shown < work.line.count); ++shown) {
-        if (shown != 0) std::this_thread::sleep_for(work.line.every);
+        if (shown != 0) work.pause(work.line.every);
         if (const auto done = show(work, name); !done) return done;
     }
     return {};
@@ -80,11 +77,9 @@ Result<void> asked(Work& work, const std::string& line, const std::string& sente
 }
 
 Result<void> load(Work& work, const std::string& file, const std::string& slot) {
-    std::ifstream in{file, std::ios::binary};
-    std::ostringstream read;
-    if (!in || !(read << in.rdbuf()))
-        return wrong("'" + file + "' cannot be read, or is empty; name a script");
-    const std::string text = read.str();
+    const auto read = work.files.read(file);
+    if (!read || read->empty()) return wrong("'" + file + "' cannot be read, or is empty; name a script");
+    const std::string& text = *read;
     for (std::size_t at = 0; at < text.size(); at += piece_characters) {
         const auto sent =
             work.session.link().request("script " + own_word(work, slot) + " " + std::to_string(at) + " " +

@@ -75,7 +75,7 @@ Result<void> run_post_mortem(Work& work) {
     if (work.arguments().size() == 1) return tell(work);
     Line line = work.line;
     line.words.erase(line.words.begin(), line.words.begin() + 2);
-    Work read{work.session, line, work.out, work.screen, work.signal};
+    Work read{work, work.session, line};
     if (find_command(line.words.front()) == nullptr) return wrong(unknown_command(line.words.front()));
     return run_command(read);
 }

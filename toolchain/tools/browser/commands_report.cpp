@@ -6,8 +6,6 @@
 #include "toolchain/tools/browser/value.hpp"
 
 #include <ctime>
-#include <filesystem>
-#include <fstream>
 #include <ostream>
 
 namespace tappet::browser {
@@ -62,13 +60,14 @@ Result<void> start(Work& work, RecordReader reader) {
     if (!name.ends_with(".mcap"))
         return wrong("'report start' writes a file that ends with .mcap, not '" + name +
                      "'; 'report convert' makes a .csv of it");
-    auto file = RecordFile::create(name);
+    auto file = work.files.create(name);
     if (!file) return std::unexpected(file.error());
     Recording recording{work.session.map(), reader.channels(),
                         now_of(CLOCK_REALTIME) - now_of(CLOCK_MONOTONIC)};
     if (!work.line.json)
         work.out << "records " << reader.channels().size() << " values into " << name
-                 << "; ^C or 'report stop " << name << "' ends it" << std::endl;
+                 << (work.files.are_here() ? "; ^C or 'report stop " + name + "' ends it" : "; ^C ends it")
+                 << std::endl;
     recording.add(reader.begin());
     const auto end = Steady::now() + work.line.length;
     const bool is_limited = work.line.length.count() > 0;
@@ -97,33 +96,28 @@ Result<void> start(Work& work, RecordReader reader) {
     return {};
 }
 
-Result<void> convert(const Line& line, std::ostream& out) {
+Result<void> convert(const Line& line, const Means& means) {
     const std::string& from = line.words[2];
     const std::string& to = line.words[3];
     if (!to.ends_with(".csv"))
         return wrong("'report convert' makes a file that ends with .csv, not '" + to + "'");
-    if (std::filesystem::exists(to))
-        return wrong("'" + to + "' exists already; name another file, or remove it");
-    const auto bytes = read_whole(from);
+    if (means.files.exists(to)) return wrong("'" + to + "' exists already; name another file, or remove it");
+    const auto bytes = means.files.read(from);
     if (!bytes) return std::unexpected(bytes.error());
     const auto contents = mcap::read(*bytes);
     if (!contents) return wrong("'" + from + "' " + contents.error());
-    std::ofstream file{to, std::ios::binary};
-    file << as_csv(*contents);
-    file.close();
-    if (!file)
-        return wrong("'" + to +
-                     "' could not be written; check that its folder exists and that you may write there");
+    if (const auto written = means.files.write(to, as_csv(*contents)); !written) return written;
     if (!contents->damage.empty())
         return wrong("'" + from + "' is damaged, " + contents->damage + "; the " +
                      std::to_string(contents->messages.size()) + " undamaged messages are in '" + to + "'");
     if (line.json)
-        out << "{\"messages\": " << contents->messages.size()
-            << ", \"whole\": " << (contents->has_end ? "true" : "false") << "}\n";
+        means.out << "{\"messages\": " << contents->messages.size()
+                  << ", \"whole\": " << (contents->has_end ? "true" : "false") << "}\n";
     else
-        out << "written to " << to << ": " << contents->messages.size() << " messages of "
-            << contents->channels.size() << " channels"
-            << (contents->has_end ? "" : "; the recording was cut off, and is good up to that point") << "\n";
+        means.out << "written to " << to << ": " << contents->messages.size() << " messages of "
+                  << contents->channels.size() << " channels"
+                  << (contents->has_end ? "" : "; the recording was cut off, and is good up to that point")
+                  << "\n";
     return {};
 }
 
@@ -134,16 +128,20 @@ bool is_about_files(const Line& line) {
            (line.words[1] == "convert" || line.words[1] == "stop");
 }
 
-Result<void> run_report_of_files(const Line& line, std::ostream& out) {
+Result<void> run_report_of_files(const Line& line, const Means& means) {
     const std::size_t wanted = line.words[1] == "convert" ? 4 : 3;
     if (line.words.size() != wanted)
         return wrong("'report " + line.words[1] + "' takes " +
                      (wanted == 4 ? "two files: FILE.mcap FILE.csv" : "the file of 'report start'"));
-    return wanted == 4 ? convert(line, out) : stop_recording(line.words[2]);
+    if (wanted == 4) return convert(line, means);
+    if (!means.files.are_here())
+        return wrong(
+            "'report stop' ends a recording of a program on this host; end the program that shows it");
+    return stop_recording(line.words[2]);
 }
 
 Result<void> run_report(Work& work) {
-    if (is_about_files(work.line)) return run_report_of_files(work.line, work.out);
+    if (is_about_files(work.line)) return run_report_of_files(work.line, work);
     auto reader = RecordReader::open(work.session.map());
     if (!reader) return wrong(reader.error());
     const std::size_t count = work.line.words.size();

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <ostream>
 #include <thread>
 
@@ -38,12 +37,8 @@ Result<void> write_file(Work& work, const Waves& waves) {
     if (!vcd && !name.ends_with(".json"))
         return wrong("--to takes a file that ends with .vcd (GTKWave) or .json (ui.perfetto.dev), not '" +
                      name + "'");
-    std::ofstream file{name, std::ios::binary};
-    file << (vcd ? as_vcd(waves) : as_trace(waves));
-    file.close();
-    if (!file)
-        return wrong("'" + name +
-                     "' could not be written; check that its folder exists and that you may write there");
+    if (const auto written = work.files.write(name, vcd ? as_vcd(waves) : as_trace(waves)); !written)
+        return written;
     if (!work.line.json)
         work.out << "written to " << name << ": " << waves.cycles.size() << " cycles in "
                  << us(waves.to - waves.from)

@@ -76,9 +76,12 @@ std::vector<WatchRow> rows_of(std::span<const Seen> all, const std::vector<bool>
 }
 
 Result<void> watch_on_screen(Work& work, std::span<const Seen> all) {
-    const Screen screen;
+    const std::unique_ptr<const Screen> opened =
+        work.far_screen ? far_screen(work.out, *work.far_screen, [&work](auto time) { work.pause(time); })
+                        : own_screen();
+    const Screen& screen = *opened;
     WatchPicture picture;
-    picture.status = "q ends";
+    picture.status = work.far_screen ? "q or ^C ends" : "q ends";
     std::vector<bool> has_ended(all.size(), false);
     const auto turn = [&](std::ptrdiff_t by) {
         const std::size_t seen = visible_rows(picture, screen.size()), rows = picture.rows.size();

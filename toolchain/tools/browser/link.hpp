@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,10 @@ struct Failure {
     Fault fault = Fault::no_machine;
     std::string sentence{};
 };
+
+/// Not 0 once a line shall stop; a signal handler, or another thread, sets it.
+using StopFlag = std::atomic<int>;
+static_assert(StopFlag::is_always_lock_free);
 
 template <class T> using Result = std::expected<T, Failure>;
 

@@ -30,8 +30,9 @@ Machine machine_at(std::string_view given) {
 
 } // namespace
 
-Result<Machines> Machines::find(const Line& line) {
+Result<Machines> Machines::find(const Line& line, std::optional<User> user) {
     Machines machines;
+    machines.user_ = std::move(user);
     machines.patience_ = line.patience;
     const bool are_given = !line.sockets.empty();
     machines.place_ = are_given ? "among those given" : "in '" + line.directory + "'";
@@ -48,7 +49,7 @@ Result<Machines> Machines::find(const Line& line) {
                                                        machines.all_[i].socket +
                                                        "); give one another name: --socket NAME=FILE");
     if (machines.are_several()) return machines;
-    auto opened = Session::open(machines.all_[0].socket, line.patience);
+    auto opened = Session::open(machines.all_[0].socket, line.patience, {}, machines.user());
     if (!opened) return std::unexpected(opened.error());
     machines.all_[0].session = std::move(*opened);
     return machines;
@@ -71,7 +72,7 @@ Result<Session*> Machines::reach(Machine& machine) {
     if (machine.session != nullptr && (!are_several() || !machine.session->link().ended()))
         return machine.session.get();
     machine.session.reset();
-    auto opened = Session::open(machine.socket, patience_, machine.name + ".");
+    auto opened = Session::open(machine.socket, patience_, machine.name + ".", user());
     if (!opened)
         return failure(opened.error().fault,
                        "'" + machine.name + "' does not answer: " + opened.error().sentence);

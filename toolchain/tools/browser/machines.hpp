@@ -18,7 +18,8 @@ public:
     /// Finds the machines at the sockets that the line names; otherwise all with a socket in its directory.
     /// Opens the session of a single machine at once. Several machines are asked only when a line addresses
     /// them, so that one without an answer does not block the others.
-    static Result<Machines> find(const Line& line);
+    /// `user`: for whom their sessions ask, if not for this program's own user.
+    static Result<Machines> find(const Line& line, std::optional<User> user = {});
     static Machines of(std::unique_ptr<Session> session);
 
     [[nodiscard]] bool are_several() const { return all_.size() > 1; }
@@ -35,9 +36,12 @@ public:
     [[nodiscard]] const std::string& place() const { return place_; }
 
 private:
+    [[nodiscard]] const User* user() const { return user_ ? &*user_ : nullptr; }
+
     std::vector<Machine> all_{};
     std::string place_{};
     std::chrono::milliseconds patience_{};
+    std::optional<User> user_{};
 };
 
 } // namespace tappet::browser

@@ -11,7 +11,7 @@
 
 namespace {
 
-volatile std::sig_atomic_t last_signal = 0;
+tappet::browser::StopFlag last_signal{0};
 
 } // namespace
 

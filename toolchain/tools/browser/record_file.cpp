@@ -5,8 +5,6 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -133,14 +131,6 @@ Result<void> stop_recording(const std::string& name) {
         return wrong("process " + std::to_string(lock.l_pid) + ", which records into '" + name +
                      "', cannot be asked to end: " + std::strerror(errno));
     return {};
-}
-
-Result<std::string> read_whole(const std::string& name) {
-    std::ifstream file{name, std::ios::binary};
-    if (!file) return wrong("'" + name + "' cannot be opened; is it there?");
-    std::string bytes{std::istreambuf_iterator<char>{file}, std::istreambuf_iterator<char>{}};
-    if (file.bad()) return wrong("'" + name + "' cannot be read");
-    return bytes;
 }
 
 } // namespace tappet::browser

@@ -1,7 +1,7 @@
 // A file that grows while a machine runs, and is on the disk up to the last second at a power failure.
 #pragma once
 
-#include "toolchain/tools/browser/link.hpp"
+#include "toolchain/tools/browser/files.hpp"
 
 #include <condition_variable>
 #include <mutex>
@@ -10,7 +10,7 @@
 namespace tappet::browser {
 
 /// Its own thread writes and waits for the disk, so that the reader of the machine need not wait.
-class RecordFile {
+class RecordFile final : public GrowingFile {
 public:
     /// The interval of disk syncs.
     static constexpr std::chrono::milliseconds between_syncs{500};
@@ -20,16 +20,13 @@ public:
     /// Creates a new file; refuses an existing one.
     static Result<std::unique_ptr<RecordFile>> create(const std::string& name);
     /// Writes the rest.
-    ~RecordFile();
-    RecordFile(const RecordFile&) = delete;
-    RecordFile& operator=(const RecordFile&) = delete;
+    ~RecordFile() override;
 
-    void write(std::string bytes);
-    [[nodiscard]] bool is_behind() const;
-    /// Waits until everything is on the disk; the failure states why it could not be written.
-    Result<void> finish();
-    /// Returns the same sentence as soon as it is known; empty: no fault.
-    [[nodiscard]] std::string fault() const;
+    void write(std::string bytes) override;
+    [[nodiscard]] bool is_behind() const override;
+    /// Waits until everything is on the disk.
+    Result<void> finish() override;
+    [[nodiscard]] std::string fault() const override;
 
 private:
     RecordFile(std::string name, int descriptor);
@@ -48,8 +45,5 @@ private:
 
 /// Asks the program that records into the file to end; the failure states that none does.
 Result<void> stop_recording(const std::string& name);
-
-/// Returns the whole content of a file.
-Result<std::string> read_whole(const std::string& name);
 
 } // namespace tappet::browser

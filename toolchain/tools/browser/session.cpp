@@ -14,10 +14,14 @@
 namespace tappet::browser {
 
 Result<std::unique_ptr<Session>> Session::open(const std::string& socket, std::chrono::milliseconds patience,
-                                               std::string place) {
+                                               std::string place, const User* user) {
     auto link = Link::connect(socket);
     if (!link) return std::unexpected(link.error());
     link->patience = patience;
+    if (user != nullptr)
+        if (const auto named = link->request("as " + user->name + " " + user->role + " " + user->origin);
+            !named)
+            return std::unexpected(named.error());
     const auto hello = link->request("hello");
     if (!hello) return std::unexpected(hello.error());
     const auto spoken = hello->value("protocol", std::uint32_t{0});

@@ -8,11 +8,20 @@
 
 namespace tappet::browser {
 
+/// A user for whom a program asks who is not its own: see "as" in browsing/protocol.hpp.
+struct User {
+    std::string name{};
+    std::string role{};             ///< "observer", "operator" or "engineer"
+    std::string origin = "network"; ///< or "panel"
+};
+
 class Session {
 public:
-    /// Connects, identifies the machine, and maps the memory. `place`: the prefix of its names.
+    /// Connects, identifies the machine, and maps the memory. `place`: the prefix of its names. `user`: for
+    /// whom it asks; null: for this program's own user.
     static Result<std::unique_ptr<Session>> open(const std::string& socket,
-                                                 std::chrono::milliseconds patience, std::string place = {});
+                                                 std::chrono::milliseconds patience, std::string place = {},
+                                                 const User* user = nullptr);
     /// Opens a machine's remains, in a file that its guardian kept.
     static Result<std::unique_ptr<Session>> open_black_box(const std::string& file);
     /// Returns the black box; null: the machine lives.

@@ -3,7 +3,6 @@
 
 #include "toolchain/tools/browser/machines.hpp"
 
-#include <csignal>
 #include <functional>
 #include <string>
 
@@ -19,7 +18,7 @@ public:
 
     /// `history_file`: kept across sessions; empty for none. `signal`: the last signal; an interrupt discards
     /// the typed line, any other ends the prompt.
-    Shell(Machines& machines, std::string history_file, const volatile std::sig_atomic_t* signal, Run run)
+    Shell(Machines& machines, std::string history_file, const StopFlag* signal, Run run)
         : machines_{machines},
           history_file_{std::move(history_file)},
           signal_{signal},
@@ -31,7 +30,7 @@ public:
 private:
     Machines& machines_;
     std::string history_file_;
-    const volatile std::sig_atomic_t* signal_;
+    const StopFlag* signal_;
     Run run_;
 };
 

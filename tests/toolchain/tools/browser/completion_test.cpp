@@ -33,7 +33,7 @@ TEST_F(Completing, an_empty_line_offers_the_commands) {
 
 TEST_F(Completing, a_command_offers_only_names_that_it_accepts) {
     EXPECT_THAT(after("set ").candidates, ElementsAre("shaft.gains.i", "shaft.gains.p"));
-    EXPECT_THAT(after("send ").candidates, ElementsAre("shaft.stop"));
+    EXPECT_THAT(after("send ").candidates, ElementsAre("loom.run", "shaft.stop"));
     EXPECT_THAT(after("events ").candidates, ElementsAre("shaft.beat_up"));
     EXPECT_THAT(after("force l").candidates, ElementsAre("loom.angle", "loom.lamp"));
     EXPECT_THAT(after("call s").candidates, ElementsAre("shaft.reset"));
@@ -68,8 +68,8 @@ TEST(CompletingAmongSeveral, a_name_begins_with_a_machine_that_answers) {
     ASSERT_TRUE(machines.has_value()) << machines.error().sentence;
     EXPECT_EQ(machines->reachable().size(), 2u);
     const auto after = [&](std::string_view typed) { return complete(*machines, typed).candidates; };
-    EXPECT_THAT(after("send "),
-                ElementsAre("left", "left.shaft.stop", "right", "right.shaft.stop", "silent"));
+    EXPECT_THAT(after("send "), ElementsAre("left", "left.loom.run", "left.shaft.stop", "right",
+                                            "right.loom.run", "right.shaft.stop", "silent"));
     EXPECT_THAT(after("set left.shaft.gains.p 1 l"), ElementsAre("left.shaft.gains.i", "left.shaft.gains.p"));
     EXPECT_THAT(after("events l"), ElementsAre("left.shaft.beat_up"));
     EXPECT_THAT(after("manifest r"), ElementsAre("right"));

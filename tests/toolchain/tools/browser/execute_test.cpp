@@ -30,7 +30,7 @@ protected:
         is_over = true;
         time.join();
     }
-    Outcome type(std::vector<std::string> words, volatile std::sig_atomic_t* signal = nullptr) {
+    Outcome type(std::vector<std::string> words, browser::StopFlag* signal = nullptr) {
         words.insert(words.begin(), {"--socket", path(), "--timeout", "60s"});
         return browser::run_words(words, signal);
     }
@@ -62,7 +62,7 @@ TEST_F(Execute, ends_with_the_exit_code_of_the_failure) {
 }
 
 TEST_F(Execute, cancels_a_line_on_a_signal_and_on_request) {
-    volatile std::sig_atomic_t signal = SIGINT;
+    browser::StopFlag signal{SIGINT};
     const Outcome ended = type({"execute", "wait gauge.force > 1000"}, &signal);
     EXPECT_EQ(ended.code, 4);
     EXPECT_THAT(ended.errors, HasSubstr("it was broken off"));

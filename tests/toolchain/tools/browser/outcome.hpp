@@ -3,7 +3,6 @@
 
 #include "toolchain/tools/browser/program.hpp"
 
-#include <csignal>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,8 +15,7 @@ struct Outcome {
     std::string errors{};
 };
 
-inline Outcome run_words(const std::vector<std::string>& words,
-                         volatile std::sig_atomic_t* signal = nullptr) {
+inline Outcome run_words(const std::vector<std::string>& words, StopFlag* signal = nullptr) {
     std::ostringstream out;
     std::ostringstream errors;
     Surroundings surroundings{out, errors};

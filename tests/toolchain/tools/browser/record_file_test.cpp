@@ -108,7 +108,7 @@ private:
 
 /// The times of all messages in a file, which must be a beginning of the recording.
 std::vector<std::uint64_t> times_in(const std::string& name) {
-    const auto bytes = read_whole(name);
+    const auto bytes = LocalFiles{}.read(name);
     if (!bytes) return {};
     const auto contents = mcap::read(*bytes);
     EXPECT_TRUE(contents.has_value()) << contents.error();

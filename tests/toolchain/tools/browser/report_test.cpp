@@ -470,7 +470,7 @@ TEST_F(Disk, a_recording_holds_all_that_was_written_and_is_never_overwritten) {
         (*file)->write("two");
         EXPECT_TRUE((*file)->finish().has_value());
     }
-    EXPECT_EQ(read_whole(at("a.mcap")).value(), "one two");
+    EXPECT_EQ(LocalFiles{}.read(at("a.mcap")).value(), "one two");
     const auto again = RecordFile::create(at("a.mcap"));
     ASSERT_FALSE(again.has_value());
     EXPECT_THAT(again.error().sentence, HasSubstr("is there already; name another file"));
