@@ -250,9 +250,12 @@ Result<std::vector<Seen>> find_seen(const Work& work) {
 }
 
 std::string usage() {
-    std::string text = "tappet-browse: looks into a running machine of this box, and asks it to change.\n\n"
-                       "  tappet-browse [OPTION...] COMMAND [ARGUMENT...]     one command\n"
-                       "  tappet-browse [OPTION...]                           a prompt\n\n";
+    std::string text =
+        "tappet-browse: looks into a running machine, and asks it to change.\n\n"
+        "  tappet-browse [OPTION...] COMMAND [ARGUMENT...]     one command\n"
+        "  tappet-browse [OPTION...]                           a prompt\n"
+        "  tappet-browse ADDRESS:PORT [OPTION...] [COMMAND..]  one command, at the machines behind a "
+        "gateway; without one: which they are\n\n";
     for (const Command& each : commands()) {
         text += "  " + std::string{each.usage};
         text += text.size() - text.rfind('\n') - 1 < 44
@@ -265,7 +268,13 @@ std::string usage() {
         "  --socket [NAME=]FILE  socket of a machine, once for each (default: all in the directory)\n"
         "  --directory DIR       where machines have their sockets (/run/tappet)\n"
         "  --json                one JSON object a line\n"
-        "  --timeout TIME        how long an answer may take (3s)\n\n"
+        "  --timeout TIME        how long an answer may take (3s)\n"
+        "  --user NAME           behind an ADDRESS: the gateway's user (USER); its password is asked for, or "
+        "read "
+        "from the file that TAPPET_PASSWORD_FILE names\n"
+        "  --ca FILE             behind an ADDRESS: authorities of its certificate (default: the one of the "
+        "first "
+        "use, in ~/.config/tappet/known_boxes)\n\n"
         "With several machines, list shows them, and names begin with the machine's name, as in "
         "saw.station.number;\n"
         "any command may name a machine first, as in manifest saw. A machine that does not answer is "

@@ -1,5 +1,6 @@
-// tappet-browse: inspects a running machine on the same box, and requests changes (thesis 4.8).
-#include "toolchain/tools/browser/program.hpp"
+// tappet-browse: inspects a running machine, on the same box or behind a gateway, and requests changes
+// (thesis 4.8).
+#include "toolchain/tools/browser/far/client.hpp"
 #include "toolchain/tools/browser/screen.hpp"
 #include "toolchain/version.hpp"
 
@@ -28,7 +29,15 @@ int main(int count, char** words) {
     surroundings.history_file = home == nullptr ? "" : std::string{home} + "/.tappet_browse_history";
     surroundings.signal = &last_signal;
     const std::vector<std::string> line(words + 1, words + count);
-    const int code = run_program(line, surroundings);
+    const auto call = parse_call(line);
+    if (!call) {
+        std::cerr << "tappet-browse: " << call.error() << "\n";
+        return 2;
+    }
+    const auto open = [](const FarCall& far) {
+        return FarWire::open(far.address, {far.ca, KnownBoxes::usual_file()}, std::cerr);
+    };
+    const int code = *call ? run_far_line(**call, surroundings, open) : run_program(line, surroundings);
     if (std::cout.flush()) return code;
     std::cerr << "tappet-browse: its output could not be written; is the disk full?\n";
     return code == 0 ? 2 : code;

@@ -13,9 +13,7 @@
 
 namespace tappet::browser {
 
-namespace {
-
-int tell(std::ostream& errors, const Failure& failure, bool json) {
+int tell_failure(std::ostream& errors, const Failure& failure, bool json) {
     const int code = static_cast<int>(failure.fault);
     if (json)
         errors << "{\"error\": " << in_quotes(failure.sentence) << ", \"exit\": " << code << "}\n";
@@ -24,6 +22,36 @@ int tell(std::ostream& errors, const Failure& failure, bool json) {
     errors.flush();
     return code;
 }
+
+std::expected<Line, int> accept_line(std::span<const std::string> words, std::ostream& out,
+                                     std::ostream& errors) {
+    auto line = parse_line(words);
+    if (!line) return std::unexpected(tell_failure(errors, {Fault::bad_request, line.error()}, false));
+    const std::size_t named = !line->words.empty() && line->words.front() == "help" ? 1 : 0;
+    const bool is_help = line->help || named == 1;
+    if (is_help && line->words.size() <= named) {
+        out << usage();
+        return std::unexpected(0);
+    }
+    if (line->words.empty()) {
+        if (const auto fits = check_options(nullptr, *line); !fits)
+            return std::unexpected(tell_failure(errors, fits.error(), line->json));
+        return std::move(*line);
+    }
+    const Command* const command = find_command(line->words[is_help ? named : 0]);
+    if (command == nullptr)
+        return std::unexpected(tell_failure(
+            errors, {Fault::bad_request, unknown_command(line->words[is_help ? named : 0])}, line->json));
+    if (is_help) {
+        out << help_of(*command);
+        return std::unexpected(0);
+    }
+    if (const auto fits = check_options(command, *line); !fits)
+        return std::unexpected(tell_failure(errors, fits.error(), line->json));
+    return std::move(*line);
+}
+
+namespace {
 
 Failure not_the_protocol(const nlohmann::json::exception& thrown) {
     return {Fault::no_machine,
@@ -34,7 +62,7 @@ Failure not_the_protocol(const nlohmann::json::exception& thrown) {
 /// Prints the failures. Returns the exit code.
 int tell_all(std::ostream& errors, std::span<const Failure> failures, bool json) {
     int code = 0;
-    for (const Failure& failure : failures) code = std::max(code, tell(errors, failure, json));
+    for (const Failure& failure : failures) code = std::max(code, tell_failure(errors, failure, json));
     return code;
 }
 
@@ -92,7 +120,7 @@ public:
 
 private:
     Next fail(const Failure& failure) {
-        const int code = tell(surroundings_.errors, failure, first_.json);
+        const int code = tell_failure(surroundings_.errors, failure, first_.json);
         if (!surroundings_.interactive) code_ = code;
         if (failure.fault != Fault::no_machine || machines_.are_several()) return Next::prompt;
         code_ = code;
@@ -110,13 +138,10 @@ int run_lines(Machines& machines, const Line& first, Surroundings& surroundings,
     Lines lines{machines, first, surroundings, means};
     const auto run = [&lines](const std::string& line) { return lines.run(line); };
     if (surroundings.interactive) {
+        if (machines.are_several()) static_cast<void>(list_machines(machines, first, means));
         surroundings.out << "tab completes, help explains, quit ends";
-        const std::vector<Session*> sessions = machines.reachable();
-        if (machines.are_several())
-            surroundings.out << "; " << sessions.size() << " of " << machines.names()
-                             << " answer, list shows them";
-        else
-            surroundings.out << "; you are its " << sessions.front()->role();
+        if (!machines.are_several())
+            surroundings.out << "; you are its " << machines.reachable().front()->role();
         surroundings.out << std::endl;
         Shell{machines, surroundings.history_file, surroundings.signal, run}.run();
         return lines.code();
@@ -126,46 +151,17 @@ int run_lines(Machines& machines, const Line& first, Surroundings& surroundings,
     return lines.code();
 }
 
-/// Parses a line and checks its command and its options, without a machine; prints help. Returns the line, or
-/// the exit code if it is done.
-std::expected<Line, int> accept(std::span<const std::string> words, std::ostream& out, std::ostream& errors) {
-    auto line = parse_line(words);
-    if (!line) return std::unexpected(tell(errors, {Fault::bad_request, line.error()}, false));
-    const std::size_t named = !line->words.empty() && line->words.front() == "help" ? 1 : 0;
-    const bool is_help = line->help || named == 1;
-    if (is_help && line->words.size() <= named) {
-        out << usage();
-        return std::unexpected(0);
-    }
-    if (line->words.empty()) {
-        if (const auto fits = check_options(nullptr, *line); !fits)
-            return std::unexpected(tell(errors, fits.error(), line->json));
-        return std::move(*line);
-    }
-    const Command* const command = find_command(line->words[is_help ? named : 0]);
-    if (command == nullptr)
-        return std::unexpected(tell(
-            errors, {Fault::bad_request, unknown_command(line->words[is_help ? named : 0])}, line->json));
-    if (is_help) {
-        out << help_of(*command);
-        return std::unexpected(0);
-    }
-    if (const auto fits = check_options(command, *line); !fits)
-        return std::unexpected(tell(errors, fits.error(), line->json));
-    return std::move(*line);
-}
-
 int run(std::span<const std::string> words, Surroundings& surroundings) {
     LocalFiles files;
     const Means means{surroundings.out, files, surroundings.signal, surroundings.screen};
-    const auto line = accept(words, surroundings.out, surroundings.errors);
+    const auto line = accept_line(words, surroundings.out, surroundings.errors);
     if (!line) return line.error();
     if (is_about_files(*line)) {
         const auto done = run_report_of_files(*line, means);
-        return done ? 0 : tell(surroundings.errors, done.error(), line->json);
+        return done ? 0 : tell_failure(surroundings.errors, done.error(), line->json);
     }
     auto machines = open_machines(*line);
-    if (!machines) return tell(surroundings.errors, machines.error(), line->json);
+    if (!machines) return tell_failure(surroundings.errors, machines.error(), line->json);
     if (line->words.empty()) return run_lines(*machines, *line, surroundings, means);
     return tell_all(surroundings.errors, run_line(*machines, *line, means), line->json);
 }
@@ -208,9 +204,11 @@ Result<void> check_remote(const Line& line) {
 }
 
 int run_remote(const RemoteLine& remote) {
-    auto line = accept(remote.words, remote.out, remote.errors);
+    auto line = accept_line(remote.words, remote.out, remote.errors);
     if (!line) return line.error();
-    const auto refuse = [&](const Failure& failure) { return tell(remote.errors, failure, line->json); };
+    const auto refuse = [&](const Failure& failure) {
+        return tell_failure(remote.errors, failure, line->json);
+    };
     if (const auto may = check_remote(*line); !may) return refuse(may.error());
     line->directory = remote.directory;
     line->patience = std::min(line->patience, most_remote_patience);
@@ -236,7 +234,7 @@ int run_program(std::span<const std::string> words, Surroundings& surroundings) 
     try {
         return run(words, surroundings);
     } catch (const nlohmann::json::exception& thrown) {
-        return tell(surroundings.errors, not_the_protocol(thrown), false);
+        return tell_failure(surroundings.errors, not_the_protocol(thrown), false);
     }
 }
 
@@ -244,7 +242,7 @@ int run_remote_line(const RemoteLine& remote) {
     try {
         return run_remote(remote);
     } catch (const nlohmann::json::exception& thrown) {
-        return tell(remote.errors, not_the_protocol(thrown), false);
+        return tell_failure(remote.errors, not_the_protocol(thrown), false);
     }
 }
 

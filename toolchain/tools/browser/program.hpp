@@ -19,6 +19,13 @@ struct Surroundings {
 /// Returns the exit code, as usage() lists them.
 [[nodiscard]] int run_program(std::span<const std::string> words, Surroundings& surroundings);
 
+/// Parses a line and checks its command and its options, without a machine; prints help. Returns the line, or
+/// the exit code if it is done.
+[[nodiscard]] std::expected<Line, int> accept_line(std::span<const std::string> words, std::ostream& out,
+                                                   std::ostream& errors);
+/// Prints the failure, as one JSON object if `json`. Returns the exit code.
+int tell_failure(std::ostream& errors, const Failure& failure, bool json);
+
 /// One line of a user elsewhere, which a server runs in a thread of its own. It reaches the machines and the
 /// black boxes of two directories, and no other file or socket of this host.
 struct RemoteLine {
