@@ -23,7 +23,7 @@ template <class Copy> bool Observer::between_cycles(std::uint32_t activity, Copy
         return true;
     }
     if (map_->view().consistent(activity, hasty_attempts, copy_all)) return true;
-    for (int attempt = hasty_attempts; attempt < attempts; ++attempt) {
+    for (int attempt = hasty_attempts; attempt < most_; ++attempt) {
         const timespec pause{0, pause_ns};
         ::nanosleep(&pause, nullptr);
         if (map_->view().consistent(activity, 1, copy_all)) return true;

@@ -41,8 +41,9 @@ public:
     static constexpr int attempts = 64;
 
     /// `frozen`: nothing runs any more. A value that an activity was writing when it ended is then returned
-    /// as it is.
-    explicit Observer(const MapReader& map, bool frozen = false) : map_{&map}, frozen_{frozen} {}
+    /// as it is. `most`: attempts; up to 8 do not sleep.
+    explicit Observer(const MapReader& map, bool frozen = false, int most = attempts)
+        : map_{&map}, frozen_{frozen}, most_{most} {}
 
     [[nodiscard]] Reading read(std::uint32_t facet) const;
     /// Returns readings in the order of `facets`. Values of one activity are copied together, so they are of
@@ -67,6 +68,7 @@ private:
 
     const MapReader* map_;
     bool frozen_;
+    int most_;
 };
 
 } // namespace tappet::browser

@@ -1,0 +1,100 @@
+#include "toolchain/tools/gateway/hub.hpp"
+
+#include "toolchain/tools/browser/reading_text.hpp"
+#include "toolchain/tools/gateway/encoding.hpp"
+#include "toolchain/tools/gateway/peer.hpp"
+
+namespace tappet::gateway {
+
+void Hub::see(const std::vector<Sighting>& sightings) {
+    for (const Sighting& each : sightings) {
+        const auto found = stations_.find(each.name);
+        if (found != stations_.end() && each.gone && found->second.place() == nullptr) {
+            stations_.erase(found);
+            continue;
+        }
+        Station& station = found == stations_.end()
+                               ? stations_.emplace(each.name, Station{each}).first->second
+                               : found->second;
+        // Watches end while their readings are still there.
+        const std::vector<Peer*> told{peers_.begin(), peers_.end()};
+        for (Peer* peer : told)
+            peer->end_watches(station, each.place == nullptr ? each.reason : "it has started again");
+        station.see(each);
+        for (Peer* peer : told)
+            if (peers_.contains(peer)) peer->tell(station);
+        if (each.gone) stations_.erase(each.name);
+    }
+}
+
+void Hub::tick(Clock::time_point now) {
+    const std::int64_t now_ns = monotonic_ns();
+    for (auto& [name, station] : stations_) station.look(now_ns);
+    const std::vector<Peer*> present{peers_.begin(), peers_.end()};
+    for (Peer* peer : present)
+        if (peers_.contains(peer)) peer->tick(now, now_ns);
+}
+
+std::string Hub::each_second(Clock::time_point now) {
+    std::string fault = access_.refresh();
+    const std::vector<Peer*> present{peers_.begin(), peers_.end()};
+    for (Peer* peer : present)
+        if (peers_.contains(peer)) peer->check(now);
+    return fault;
+}
+
+Station* Hub::find(std::string_view machine) {
+    const auto found = stations_.find(machine);
+    return found == stations_.end() ? nullptr : &found->second;
+}
+
+Station* Hub::owner_of(std::string_view name) {
+    Station* longest = nullptr;
+    for (auto& [machine, station] : stations_)
+        if (name.starts_with(machine) && name.substr(machine.size(), 1) == "." &&
+            (longest == nullptr || machine.size() > longest->name().size()))
+            longest = &station;
+    return longest;
+}
+
+std::vector<const Station*> Hub::stations() const {
+    std::vector<const Station*> all;
+    for (const auto& [name, station] : stations_) all.push_back(&station);
+    return all;
+}
+
+std::string Hub::values_of(std::string_view machine, std::string_view line) const {
+    const auto found = stations_.find(machine);
+    if (found == stations_.end() || found->second.place() == nullptr) return {};
+    const browser::MapReader& map = found->second.place()->map;
+    std::string values;
+    for (const std::string& name : names_in(line)) {
+        const auto facet = map.find(map.place() + name);
+        if (!facet || facet->record.value_at == 0) continue;
+        const browser::Reading reading = found->second.read(std::span{&facet->index, 1}).front();
+        values += (values.empty() ? "{" : ", ") + browser::in_quotes(as_utf8(name)) + ": " +
+                  as_utf8(browser::value_of(map, reading, browser::Style::json));
+    }
+    return values.empty() ? values : values + "}";
+}
+
+void Hub::login(const std::string& user, const std::string& password, const std::string& address,
+                OnLogin done) {
+    auto attempt = access_.begin(user, password, address, Clock::now());
+    if (!attempt) {
+        ++counters_.logins_failed;
+        done(std::unexpected(attempt.error()));
+        return;
+    }
+    const auto shared = std::make_shared<Attempt>(std::move(*attempt));
+    const auto finish = [this, shared, done](bool matched) {
+        auto outcome = access_.finish(*shared, matched, Clock::now());
+        audit_.note(shared->name, shared->address, outcome ? "logged in" : "login failed");
+        if (!outcome) ++counters_.logins_failed;
+        done(std::move(outcome));
+    };
+    if (outside_.in_background([shared] { return shared->matches(); }, finish)) return;
+    done(std::unexpected("too many people log in at once; try again"));
+}
+
+} // namespace tappet::gateway
