@@ -73,6 +73,8 @@ const std::vector<Row> house{
                            "kernel/services/browsing/protocol.hpp", "toolchain/version.hpp"}},
 
     {"toolchain",         {"kernel/base"}},
+    // A gateway relays to machines as a browser; users have a machine's roles.
+    {"toolchain/tools/gateway", {"toolchain", "toolchain/tools/browser", "kernel/component/role.hpp"}},
     {"toolchain/machine", {"board", "drivers/plant", "kernel/system", "toolchain/tools/chart"}},
     {"toolchain/tools/chart", {"kernel/machine", "toolchain", "drivers/can"}},
     {"toolchain/tools/bench", {"kernel/base", "toolchain/version.hpp"}},
@@ -82,7 +84,7 @@ const std::vector<Row> house{
     {"toolchain/tools/front", {"toolchain", "toolchain/tools/check", "toolchain/machine/host_options.hpp", "toolchain/tools/chart/options.hpp", "toolchain/tools/image/options.hpp"}},
     {"toolchain/tools/pages", {"drivers/plant", "drivers/system", "kernel/pieces", "drivers/instruments", "drivers/canopen", "toolchain/tools/browser", "kernel/control"}},
     {"apps/carpet_loom/demo", {"apps", "toolchain", "toolchain/tools/bench", "toolchain/tools/browser"}},
-    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages", "toolchain/tools/check", "toolchain/tools/image", "toolchain/tables"}},
+    {"tests",             {"apps", "toolchain/machine", "toolchain/tools/front", "apps/carpet_loom/demo", "apps/carpet_loom/plant", "toolchain/tools/browser", "toolchain/tools/pages", "toolchain/tools/check", "toolchain/tools/gateway", "toolchain/tools/image", "toolchain/tables"}},
 };
 // clang-format on
 

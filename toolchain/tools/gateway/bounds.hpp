@@ -29,6 +29,11 @@ struct Bounds {
     std::size_t text_bytes = 1024;      ///< of a text value in a frame
     std::size_t requests_under_way = 32;
     std::chrono::seconds relay_idle{30};
+    // runs of browser's commands
+    std::size_t runs = 8;
+    std::size_t runs_of_user = 2;
+    std::size_t run_bytes = 64 * 1024; ///< of output that its client has not read
+    unsigned screen_most = 500;        ///< lines or columns
     // pages
     std::size_t page_bytes = 1024 * 1024;
     std::size_t page_rows = 4000;

@@ -43,6 +43,10 @@ std::string Hub::each_second(Clock::time_point now) {
     return fault;
 }
 
+void Hub::close() {
+    while (!peers_.empty()) (*peers_.begin())->close();
+}
+
 Station* Hub::find(std::string_view machine) {
     const auto found = stations_.find(machine);
     return found == stations_.end() ? nullptr : &found->second;
@@ -63,19 +67,42 @@ std::vector<const Station*> Hub::stations() const {
     return all;
 }
 
-std::string Hub::values_of(std::string_view machine, std::string_view line) const {
-    const auto found = stations_.find(machine);
-    if (found == stations_.end() || found->second.place() == nullptr) return {};
-    const browser::MapReader& map = found->second.place()->map;
+std::string Hub::values_of(std::string_view machine, std::string_view line) {
     std::string values;
     for (const std::string& name : names_in(line)) {
-        const auto facet = map.find(map.place() + name);
+        // Without a machine the name begins with it, unless there is only one.
+        const Station* station = machine.empty() ? owner_of(name) : find(machine);
+        if (machine.empty() && station == nullptr && stations_.size() == 1)
+            station = &stations_.begin()->second;
+        if (station == nullptr || station->place() == nullptr) continue;
+        const browser::MapReader& map = station->place()->map;
+        const auto facet = map.find(map.place() + std::string{map.own_name(name)});
         if (!facet || facet->record.value_at == 0) continue;
-        const browser::Reading reading = found->second.read(std::span{&facet->index, 1}).front();
+        const browser::Reading reading = station->read(std::span{&facet->index, 1}).front();
         values += (values.empty() ? "{" : ", ") + browser::in_quotes(as_utf8(name)) + ": " +
                   as_utf8(browser::value_of(map, reading, browser::Style::json));
     }
     return values.empty() ? values : values + "}";
+}
+
+std::expected<std::shared_ptr<Run>, std::string> Hub::run(const Message& message, const LoggedIn& who,
+                                                          std::function<void()> woken) {
+    std::size_t all = 0;
+    for (const auto& [user, count] : runs_) all += count;
+    if (all >= bounds.runs || runs_[who.user] >= bounds.runs_of_user)
+        return std::unexpected("at most " + std::to_string(bounds.runs_of_user) +
+                               " commands of a user run at once, and " + std::to_string(bounds.runs) +
+                               " of all; end one");
+    ++runs_[who.user];
+    const auto wake = [network = outside_.on_network, woken = std::move(woken)] { network(woken); };
+    auto run = std::make_shared<Run>(message, who, outside_.directory, outside_.black_boxes, wake);
+    outside_.start([this, run, network = outside_.on_network, user = who.user] {
+        run->run();
+        network([this, user] {
+            if (--runs_[user] == 0) runs_.erase(user);
+        });
+    });
+    return run;
 }
 
 void Hub::login(const std::string& user, const std::string& password, const std::string& address,

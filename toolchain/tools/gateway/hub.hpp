@@ -5,8 +5,8 @@
 #include "toolchain/tools/gateway/audit.hpp"
 #include "toolchain/tools/gateway/metrics.hpp"
 #include "toolchain/tools/gateway/relay.hpp"
+#include "toolchain/tools/gateway/run.hpp"
 
-#include <list>
 #include <set>
 
 namespace tappet::gateway {
@@ -18,6 +18,12 @@ struct Outside {
     Connect connect{};
     /// Runs `work` on another thread, then `done` on the caller's; false: too many wait already.
     std::function<bool(std::function<bool()> work, std::function<void(bool)> done)> in_background{};
+    /// Starts a run on a thread of its own.
+    std::function<void(std::function<void()> work)> start{};
+    /// Calls a function on the network's thread, from any.
+    std::function<void(std::function<void()> what)> on_network{};
+    std::string directory{};   ///< of machines' sockets, for runs
+    std::string black_boxes{}; ///< folder of machines' black boxes, for runs; empty: none is shown
 };
 
 class Hub {
@@ -42,7 +48,13 @@ public:
     [[nodiscard]] std::vector<const Station*> stations() const;
     /// Returns the present values of the names that a line may change, as a JSON object; empty: there are
     /// none.
-    [[nodiscard]] std::string values_of(std::string_view machine, std::string_view line) const;
+    /// No machine: names begin with theirs.
+    [[nodiscard]] std::string values_of(std::string_view machine, std::string_view line);
+
+    /// Starts a browser's command; `woken` is called on the network's thread when it has something to send.
+    /// The error says why not.
+    [[nodiscard]] std::expected<std::shared_ptr<Run>, std::string>
+    run(const Message& message, const LoggedIn& who, std::function<void()> woken);
 
     using OnLogin = std::function<void(std::expected<Access::Admitted, std::string> outcome)>;
     /// Checks a password in the background.
@@ -51,6 +63,8 @@ public:
 
     void join(Peer& peer) { peers_.insert(&peer); }
     void leave(Peer& peer) { peers_.erase(&peer); }
+    /// Ends what clients have under way, before threads are joined.
+    void close();
 
 private:
     Access access_;
@@ -59,6 +73,7 @@ private:
     Counters counters_{};
     std::map<std::string, Station, std::less<>> stations_{};
     std::set<Peer*> peers_{};
+    std::map<std::string, std::size_t> runs_{}; ///< under way, by user
 };
 
 } // namespace tappet::gateway

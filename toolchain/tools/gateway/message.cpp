@@ -22,7 +22,7 @@ using nlohmann::json;
 struct Field {
     std::string_view name;
     std::variant<std::string Message::*, std::vector<std::string> Message::*, double Message::*,
-                 std::uint32_t Message::*>
+                 std::uint32_t Message::*, bool Message::*, std::map<std::string, std::string> Message::*>
         goes_to;
     bool needed = true;
 };
@@ -42,7 +42,10 @@ const std::vector<Kind>& kinds() {
         {"facets",   Do::facets,   {{"machine", &Message::machine}}},
         {"watch",    Do::watch,    {{"names", &Message::names}, {"rate_hz", &Message::rate_hz, false}}},
         {"unwatch",  Do::unwatch,  {{"of", &Message::of}}},
-        {"request",  Do::request,  {{"machine", &Message::machine}, {"line", &Message::line}}}};
+        {"request",  Do::request,  {{"machine", &Message::machine}, {"line", &Message::line}}},
+        {"run",      Do::run,      {{"words", &Message::words}, {"files", &Message::files, false}, {"screen", &Message::screen, false},
+                                    {"width", &Message::width, false}, {"height", &Message::height, false}}},
+        {"end",      Do::end,      {{"of", &Message::of}}}};
     // clang-format on
     return all;
 }
@@ -95,6 +98,21 @@ std::string take(const json& value, std::vector<std::string>& into) {
     for (const json& each : value) {
         if (!each.is_string()) return "is not a list of texts";
         into.push_back(each.get<std::string>());
+    }
+    return {};
+}
+
+std::string take(const json& value, bool& into) {
+    if (!value.is_boolean()) return "is neither true nor false";
+    into = value.get<bool>();
+    return {};
+}
+
+std::string take(const json& value, std::map<std::string, std::string>& into) {
+    if (!value.is_object() || value.size() > 16) return "is not an object of at most 16 texts";
+    for (const auto& [name, each] : value.items()) {
+        if (!each.is_string()) return "is not an object of texts";
+        into[name] = each.get<std::string>();
     }
     return {};
 }

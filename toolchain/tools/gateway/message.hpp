@@ -3,13 +3,14 @@
 
 #include <cstdint>
 #include <expected>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tappet::gateway {
 
-enum class Do : std::uint8_t { login, logout, machines, facets, watch, unwatch, request };
+enum class Do : std::uint8_t { login, logout, machines, facets, watch, unwatch, request, run, end };
 
 struct Message {
     std::uint32_t id = 0;
@@ -17,9 +18,12 @@ struct Message {
     // The fields of all kinds; which of them a kind has says the table of message.cpp.
     std::string user{}, password{}, session{};
     std::string machine{}, line{};
-    std::vector<std::string> names{};
+    std::vector<std::string> names{}, words{};
     double rate_hz = 5;
-    std::uint32_t of = 0; ///< the id of a watch
+    std::uint32_t of = 0; ///< the id of a watch or a run
+    std::map<std::string, std::string> files{};
+    bool screen = false;
+    std::uint32_t width = 80, height = 24;
 };
 
 struct MessageFault {

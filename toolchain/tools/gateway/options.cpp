@@ -17,6 +17,7 @@ std::expected<Options, std::string> read_options(const CommandLine& line) {
     options.key = line.text("--key");
     options.state = line.text("--state", "/var/lib/tappet-gateway");
     options.log = line.text("--log");
+    options.black_boxes = line.text("--black-boxes");
     const std::string_view listen =
         line.text("--listen", options.loopback ? "127.0.0.1:8080" : "0.0.0.0:8443");
     const std::size_t colon = listen.rfind(':');

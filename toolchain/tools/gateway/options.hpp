@@ -19,6 +19,8 @@ inline constexpr std::array gateway_options{
            "the certificate, as PEM (default: one that the gateway makes in its state folder)"},
     Option{"--key", "FILE", "its key, as PEM"},
     Option{"--state", "DIR", "the folder of the gateway's own certificate (/var/lib/tappet-gateway)"},
+    Option{"--black-boxes", "DIR",
+           "where guardians keep black boxes, which users may then read (default: none is shown)"},
     Option{"--log", "FILE", "the log of changes: who asked what, and whether it was done"},
     Option{"--processors", "LIST", "where the gateway may run, for example 0,2-3 (default: anywhere)"},
     Option{"--help", "", "this text"}};
@@ -33,6 +35,7 @@ struct Options {
     std::string key{};
     std::string state{};
     std::string log{};
+    std::string black_boxes{};
     std::vector<unsigned> processors{};
 };
 

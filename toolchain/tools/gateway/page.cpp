@@ -43,6 +43,9 @@ std::string facet_json(const browser::MapReader& map, std::uint32_t index) {
                        ", \"unit\": " + utf8_quoted(map.text(facet.unit)) +
                        ", \"has_value\": " + (facet.value_at != 0 ? "true" : "false") + ", \"role\": ";
     text += facet.role.length == 0 ? std::string{"null"} : utf8_quoted(map.text(facet.role));
+    const auto has = [&](std::uint32_t flag) { return (facet.flags & flag) != 0 ? "true" : "false"; };
+    text += std::string{", \"for_people\": "} + has(map::facet_for_people) +
+            ", \"moves\": " + has(map::facet_moves | map::facet_moves_while_held);
     return text + ", \"help\": " + utf8_quoted(map.text(facet.doc)) + "}";
 }
 

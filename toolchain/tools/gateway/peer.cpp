@@ -46,6 +46,11 @@ void Peer::close() {
     for (auto& [id, watch] : watches_) drop(watch);
     watches_.clear();
     carriages_.clear();
+    for (auto& [id, each] : runs_) {
+        each.run->leave();
+        finish(each, "unknown: the client left before the end");
+    }
+    runs_.clear();
 }
 
 void Peer::refuse(std::uint32_t id, std::string_view code, std::string_view sentence) {
@@ -53,7 +58,7 @@ void Peer::refuse(std::uint32_t id, std::string_view code, std::string_view sent
 }
 
 bool Peer::uses(std::uint32_t id) const {
-    return watches_.contains(id) ||
+    return watches_.contains(id) || runs_.contains(id) ||
            std::ranges::any_of(carriages_, [&](const auto& each) { return each.second->uses(id); });
 }
 
@@ -96,6 +101,8 @@ void Peer::obey(const Message& message, Clock::time_point now) {
     case Do::watch: return watch(message);
     case Do::unwatch: return unwatch(message);
     case Do::request: return request(message, now);
+    case Do::run: return run(message);
+    case Do::end: return end(message);
     }
 }
 
@@ -208,7 +215,62 @@ void Peer::request(const Message& message, Clock::time_point now) {
     carriage->request(message.id, message.line, now);
 }
 
+void Peer::run(const Message& message) {
+    Running running;
+    for (const std::string& word : message.words)
+        running.line += (running.line.empty() ? "" : " ") + browser::as_word(word);
+    if (!only_looks(message.words.empty() ? "" : message.words.front())) {
+        running.logged =
+            hub_.audit().asked({who_->user, address_, {}, running.line, hub_.values_of({}, running.line)});
+        if (running.logged == 0)
+            return refuse(message.id, "not_now",
+                          "the gateway cannot write its log, so it runs no changes; is its disk full?");
+    }
+    auto started = hub_.run(message, *who_, [weak = weak_from_this()] {
+        if (const auto self = weak.lock(); self != nullptr) self->forward();
+    });
+    if (!started) {
+        finish(running, "refused: " + started.error());
+        return refuse(message.id, "not_now", started.error());
+    }
+    running.run = std::move(*started);
+    runs_.emplace(message.id, std::move(running));
+    outlet_->send(ok(message.id));
+}
+
+void Peer::end(const Message& message) {
+    const auto found = runs_.find(message.of);
+    if (found == runs_.end())
+        return refuse(message.id, "unknown", "there is no run of this id; it may have ended");
+    found->second.run->stop();
+    outlet_->send(ok(message.id));
+}
+
+void Peer::finish(const Running& running, std::string_view outcome) {
+    if (running.logged != 0) hub_.audit().answered(running.logged, outcome, hub_.values_of({}, running.line));
+}
+
+void Peer::forward() {
+    for (auto each = runs_.begin(); outlet_ != nullptr && each != runs_.end();) {
+        while (outlet_->has_room()) {
+            auto message = each->second.run->next();
+            if (!message) break;
+            outlet_->send(std::move(*message));
+        }
+        const auto code = each->second.run->exit_code();
+        if (!code) {
+            ++each;
+            continue;
+        }
+        finish(each->second, *code == 0 ? "done" : "failed: exit code " + std::to_string(*code));
+        outlet_->send("{\"id\": " + std::to_string(each->first) + ", \"exit\": " + std::to_string(*code) +
+                      "}");
+        each = runs_.erase(each);
+    }
+}
+
 void Peer::tick(Clock::time_point, std::int64_t now_ns) {
+    forward();
     for (auto& [id, watch] : watches_) {
         if (--watch.left != 0) continue;
         watch.left = watch.every;

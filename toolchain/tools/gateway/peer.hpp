@@ -16,6 +16,8 @@ public:
     virtual ~Outlet() = default;
     /// Queues a binary frame; false: the queue is full, and the frame is lost.
     [[nodiscard]] virtual bool offer(std::string frame) = 0;
+    /// Returns whether the queue is less than half full.
+    [[nodiscard]] virtual bool has_room() const = 0;
     /// Queues a text; a full queue ends the connection.
     virtual void send(std::string text) = 0;
     /// Ends the connection, with a reason of at most 123 bytes.
@@ -55,6 +57,10 @@ private:
     void watch(const Message& message);
     void unwatch(const Message& message);
     void request(const Message& message, Clock::time_point now);
+    void run(const Message& message);
+    void end(const Message& message);
+    /// Sends what runs have for the client, as far as it reads.
+    void forward();
     void drop(const Watch& watch);
     void refuse(std::uint32_t id, std::string_view code, std::string_view sentence);
     [[nodiscard]] bool uses(std::uint32_t id) const;
@@ -68,6 +74,13 @@ private:
     bool logging_in_ = false;
     std::map<std::uint32_t, Watch> watches_{};
     std::map<std::string, std::unique_ptr<Carriage>, std::less<>> carriages_{};
+    struct Running {
+        std::shared_ptr<Run> run{};
+        std::uint64_t logged = 0; ///< number in the log; 0: it only looks
+        std::string line{};
+    };
+    std::map<std::uint32_t, Running> runs_{};
+    void finish(const Running& running, std::string_view outcome);
 };
 
 } // namespace tappet::gateway

@@ -122,6 +122,7 @@ Sandbox sandbox_of(const Options& options) {
     Sandbox sandbox;
     sandbox.processors = options.processors;
     sandbox.readable.push_back(options.directory);
+    if (!options.black_boxes.empty()) sandbox.readable.push_back(options.black_boxes);
     if (!options.users.empty()) sandbox.readable.push_back(folder_of(options.users));
     if (!options.log.empty()) sandbox.writable.push_back(folder_of(options.log));
     return sandbox;
@@ -162,6 +163,7 @@ int serve(const Options& options, std::ostream& out, std::ostream& errors) {
     // The hub outlives the io_context, whose connections use it to their end.
     net::io_context* io_at = nullptr;
     Workers* workers_at = nullptr;
+    Workers* runners_at = nullptr;
     Outside outside;
     outside.connect = [&io_at](const std::string& socket, OnPacket receive, std::string& fault) {
         return connect_relay(*io_at, socket, std::move(receive), fault);
@@ -171,6 +173,10 @@ int serve(const Options& options, std::ostream& out, std::ostream& errors) {
             net::post(*io_at, [done, result = work()] { done(result); });
         });
     };
+    outside.start = [&](std::function<void()> work) { static_cast<void>(runners_at->post(std::move(work))); };
+    outside.on_network = [&](std::function<void()> what) { net::post(*io_at, std::move(what)); };
+    outside.directory = options.directory;
+    outside.black_boxes = options.black_boxes;
     Hub hub{std::move(*access), options.log, std::move(outside)};
     net::io_context io{1};
     io_at = &io;
@@ -194,6 +200,8 @@ int serve(const Options& options, std::ostream& out, std::ostream& errors) {
 
     Workers workers{bounds.logins_at_once, bounds.logins_waiting};
     workers_at = &workers;
+    Workers runners{bounds.runs, bounds.runs};
+    runners_at = &runners;
     ScoutThread scouts{std::move(scout), [&](std::vector<Sighting> found) {
                            net::post(io, [&hub, found = std::move(found)] { hub.see(found); });
                        }};
@@ -209,6 +217,7 @@ int serve(const Options& options, std::ostream& out, std::ostream& errors) {
         << options.directory << (fingerprint.empty() ? "" : ", certificate SHA-256 " + fingerprint)
         << std::endl;
     io.run();
+    hub.close();
     return 0;
 }
 

@@ -71,6 +71,8 @@ public:
         return true;
     }
 
+    bool has_room() const override { return !ending_ && queued_ < bounds.queue_bytes / 2; }
+
     void send(std::string text) override {
         if (ending_) return;
         // A long reply may exceed the bound, but nothing may follow it before it is read.
