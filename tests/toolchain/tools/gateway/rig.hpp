@@ -16,6 +16,7 @@ struct Client : Outlet {
         frames.push_back(std::move(frame));
         return true;
     }
+    bool has_room() const override { return reads; }
     void send(std::string text) override { texts.push_back(nlohmann::json::parse(text)); }
     void end(std::string_view reason) override { ended = reason; }
 
