@@ -7,7 +7,7 @@
 
 namespace {
 
-using namespace tappet::gateway;
+using namespace tappet::network;
 using tappet::fuzz::demand;
 
 /// Judges what is sent.

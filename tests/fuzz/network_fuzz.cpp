@@ -18,7 +18,7 @@
 
 namespace {
 
-using namespace tappet::gateway;
+using namespace tappet::network;
 using tappet::fuzz::demand;
 namespace net = boost::asio;
 

@@ -2,7 +2,7 @@
 
 #include <sys/stat.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 bool Attempt::matches() const {
     const bool equal = are_equal(scrypt(password, user.salt, user.cost), user.hash);
@@ -78,4 +78,4 @@ std::string Access::refresh() {
     return {};
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -8,7 +8,7 @@
 #include <ctime>
 #include <functional>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// A login whose password is being checked. The check may run on any thread: it uses only this.
 struct Attempt {
@@ -71,4 +71,4 @@ private:
     User nobody_{};
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

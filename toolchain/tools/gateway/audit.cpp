@@ -18,7 +18,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -145,4 +145,4 @@ bool is_change(std::string_view line) {
     return verb != nullptr && (verb->role != Role::observer || verb->name == "execute");
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

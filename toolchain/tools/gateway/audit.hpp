@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// A request that is to be logged.
 struct Asked {
@@ -66,4 +66,4 @@ private:
 /// Returns whether the line asks for more than to look.
 [[nodiscard]] bool is_change(std::string_view line);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 using Clock = std::chrono::steady_clock;
 
@@ -65,4 +65,4 @@ struct Bounds {
 
 inline constexpr Bounds bounds{};
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -164,4 +164,4 @@ void Carriage::receive(std::string_view packet) {
     if (verb != "send" && verb != "execute" && verb != "subscribe") finish(found, "done");
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 class Carriage {
 public:
@@ -53,4 +53,4 @@ private:
     Clock::time_point used_{};
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -19,7 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -141,4 +141,4 @@ tls_context(const CertificateFiles& files, std::string& fingerprint) {
     return context;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -9,7 +9,7 @@ namespace boost::asio::ssl {
 class context;
 }
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 struct CertificateFiles {
     std::string certificate{}; ///< PEM, with its chain
@@ -25,4 +25,4 @@ struct CertificateFiles {
 [[nodiscard]] std::expected<std::shared_ptr<boost::asio::ssl::context>, std::string>
 tls_context(const CertificateFiles& files, std::string& fingerprint);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -10,7 +10,7 @@
 
 #include <array>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -95,6 +95,7 @@ private:
                 text(http::field::cookie),
                 text(http::field::authorization),
                 text(http::field::sec_websocket_protocol),
+                text(http::field::accept),
                 message.body(),
                 address_};
     }
@@ -156,4 +157,4 @@ void start_connection(net::ip::tcp::socket socket, net::ssl::context* tls, Hub& 
     std::make_shared<HttpConnection>(std::move(socket), tls, hub, site, std::move(address), place)->start();
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -9,10 +9,10 @@ namespace boost::asio::ssl {
 class context;
 }
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// Serves the socket until either end closes it; then calls `over`. Hub and site outlive it.
 void start_connection(boost::asio::ip::tcp::socket socket, boost::asio::ssl::context* tls, Hub& hub,
                       Site& site, std::string address, std::function<void()> over);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

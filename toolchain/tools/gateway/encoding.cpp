@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -139,4 +139,4 @@ std::string_view cut(std::string_view text, std::size_t most) {
     return text.substr(0, most);
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// Base64 with padding (RFC 4648, 4); `for_addresses`: - and _ instead of + and /, and no padding (5).
 [[nodiscard]] std::string to_base64(std::string_view bytes, bool for_addresses = false);
@@ -29,4 +29,4 @@ from_form(std::string_view text);
 /// Returns at most `most` bytes, cut between two characters.
 [[nodiscard]] std::string_view cut(std::string_view text, std::size_t most);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

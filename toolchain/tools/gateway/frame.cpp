@@ -8,7 +8,7 @@
 #include <bit>
 #include <cstring>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -149,4 +149,4 @@ void Frames::keep() {
     fresh_.clear();
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

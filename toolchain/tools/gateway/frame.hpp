@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// A frame: u32 magic, u32 id of the watch, u32 sequence, u32 frames lost so far, i64 machine time in ns
 /// (-1: unknown), i64 age in ns of the newest cycle seen, u16 number of values. Then per value: u16 index in
@@ -66,4 +66,4 @@ private:
     std::vector<std::pair<std::size_t, std::string>> fresh_{};
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

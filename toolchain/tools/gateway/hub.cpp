@@ -4,7 +4,7 @@
 #include "toolchain/tools/gateway/encoding.hpp"
 #include "toolchain/tools/gateway/peer.hpp"
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 void Hub::see(const std::vector<Sighting>& sightings) {
     for (const Sighting& each : sightings) {
@@ -124,4 +124,4 @@ void Hub::login(const std::string& user, const std::string& password, const std:
     done(std::unexpected("too many people log in at once; try again"));
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

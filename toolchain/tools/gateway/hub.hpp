@@ -9,7 +9,7 @@
 
 #include <set>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 class Peer;
 
@@ -76,4 +76,4 @@ private:
     std::map<std::string, std::size_t> runs_{}; ///< under way, by user
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -6,7 +6,7 @@
 
 #include <arpa/inet.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -73,4 +73,4 @@ void Lockout::succeed(std::string_view user, std::string_view address) {
         of_address->second.locked_until = {};
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

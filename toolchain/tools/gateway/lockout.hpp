@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// Counts a login as failed when it begins, so that many at once count too; success takes it back.
 /// After `bounds.failures` each further failure locks for twice the time of the one before.
@@ -36,4 +36,4 @@ private:
 /// Returns the part of an address that one person has: an IPv4 address, or the network of an IPv6 address.
 [[nodiscard]] std::string lock_address(std::string_view address);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -33,15 +33,15 @@ std::string usage() {
     return "tappet-gateway: the machines of this host for browsers, programs and Prometheus in the "
            "network.\n\n"
            "  tappet-gateway [OPTION...]     serves\n" +
-           std::string{tappet::gateway::user_usage} + "\n" +
-           tappet::usage_of(tappet::gateway::gateway_options) +
+           std::string{tappet::network::user_usage} + "\n" +
+           tappet::usage_of(tappet::network::gateway_options) +
            "\nExit codes: 0 ended by a signal, or done; 2 it could not start, or a wrong command line.\n";
 }
 
 } // namespace
 
 int main(int count, char** arguments) {
-    using namespace tappet::gateway;
+    using namespace tappet::network;
     if (tappet::prints_version(count, arguments, "tappet-gateway")) return 0;
     const auto fail = [](const std::string& fault) {
         return std::cerr << "tappet-gateway: " << fault << "\n", 2;

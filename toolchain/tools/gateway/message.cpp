@@ -12,7 +12,7 @@
 #include <limits>
 #include <variant>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -179,4 +179,4 @@ std::string refusal_text(std::uint32_t id, std::string_view code, std::string_vi
            ", \"error\": " + browser::in_quotes(as_utf8(sentence)) + "}";
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 enum class Do : std::uint8_t { login, logout, machines, facets, watch, unwatch, request, run, end };
 
@@ -37,4 +37,4 @@ struct MessageFault {
 /// Returns {"id": n, "ok": false, "code": "..", "error": ".."}.
 [[nodiscard]] std::string refusal_text(std::uint32_t id, std::string_view code, std::string_view sentence);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

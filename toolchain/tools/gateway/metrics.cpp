@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -94,7 +94,8 @@ std::string label_text(std::string_view text) {
     return all;
 }
 
-std::string metrics_text(std::span<const Station* const> stations, const Counters& counters) {
+std::string metrics_text(std::span<const Station* const> stations, const Counters& counters,
+                         MetricsForm form) {
     std::string text;
     family(text, "tappet_up", "gauge", "Whether the machine answers.");
     for (const Station* each : stations)
@@ -107,21 +108,19 @@ std::string metrics_text(std::span<const Station* const> stations, const Counter
            "What the framework counts for a part of the machine; durations in seconds.");
     for (const Station* each : stations)
         if (each->place() != nullptr) add_figures(text, *each);
-    const auto own = [&](const char* name, const char* type, const char* suffix, std::uint64_t value,
-                         const char* help) {
-        family(text, name, type, help);
-        text += std::string{name} + suffix + " " + std::to_string(value) + "\n";
+    const auto own = [&](const char* name, bool counts, std::uint64_t value, const char* help) {
+        const std::string sample = std::string{name} + (counts ? "_total" : "");
+        family(text, form == MetricsForm::open ? name : sample, counts ? "counter" : "gauge", help);
+        text += sample + " " + std::to_string(value) + "\n";
     };
-    own("tappet_gateway_connections", "gauge", "", counters.connections, "Connections that are open.");
-    own("tappet_gateway_accepted", "counter", "_total", counters.accepted, "Connections accepted.");
-    own("tappet_gateway_turned_away", "counter", "_total", counters.turned_away,
-        "Connections beyond the bounds.");
-    own("tappet_gateway_frames", "counter", "_total", counters.frames_sent, "Frames of watches sent.");
-    own("tappet_gateway_frames_lost", "counter", "_total", counters.frames_lost,
-        "Frames that slow clients lost.");
-    own("tappet_gateway_requests", "counter", "_total", counters.requests, "Requests relayed to machines.");
-    own("tappet_gateway_logins_failed", "counter", "_total", counters.logins_failed, "Logins that failed.");
-    return text + "# EOF\n";
+    own("tappet_gateway_connections", false, counters.connections, "Connections that are open.");
+    own("tappet_gateway_accepted", true, counters.accepted, "Connections accepted.");
+    own("tappet_gateway_turned_away", true, counters.turned_away, "Connections beyond the bounds.");
+    own("tappet_gateway_frames", true, counters.frames_sent, "Frames of watches sent.");
+    own("tappet_gateway_frames_lost", true, counters.frames_lost, "Frames that slow clients lost.");
+    own("tappet_gateway_requests", true, counters.requests, "Requests relayed to machines.");
+    own("tappet_gateway_logins_failed", true, counters.logins_failed, "Logins that failed.");
+    return form == MetricsForm::open ? text + "# EOF\n" : text;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -3,7 +3,7 @@
 
 #include "toolchain/tools/gateway/station.hpp"
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// Counts of the gateway itself.
 struct Counters {
@@ -12,10 +12,17 @@ struct Counters {
                   logins_failed = 0;
 };
 
+/// The two forms differ in the names of counters' families, and in the end.
+enum class MetricsForm : std::uint8_t {
+    open, ///< OpenMetrics 1.0
+    plain ///< Prometheus' text format 0.0.4
+};
+
 /// Looks once at each machine. Values that are busy, never written or stale are left out: a missing value
 /// cannot be taken for a present one.
-[[nodiscard]] std::string metrics_text(std::span<const Station* const> stations, const Counters& counters);
+[[nodiscard]] std::string metrics_text(std::span<const Station* const> stations, const Counters& counters,
+                                       MetricsForm form);
 /// Returns the text between the quotes of a label.
 [[nodiscard]] std::string label_text(std::string_view text);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -6,7 +6,7 @@
 
 #include <charconv>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 std::expected<Options, std::string> read_options(const CommandLine& line) {
     Options options;
@@ -49,4 +49,4 @@ std::expected<Options, std::string> read_options(const CommandLine& line) {
     return options;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

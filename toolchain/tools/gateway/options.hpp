@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 inline constexpr std::array gateway_options{
     Option{"--directory", "DIR", "where machines have their sockets (/run/tappet)"},
@@ -42,4 +42,4 @@ struct Options {
 /// Returns the options with their defaults; the error names the fault, and the cure.
 [[nodiscard]] std::expected<Options, std::string> read_options(const CommandLine& line);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

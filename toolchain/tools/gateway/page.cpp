@@ -3,7 +3,7 @@
 #include "toolchain/tools/browser/reading_text.hpp"
 #include "toolchain/tools/gateway/encoding.hpp"
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -111,4 +111,4 @@ std::string facets_json(const Station& station) {
     return text + "]";
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -4,7 +4,7 @@
 #include "toolchain/tools/gateway/sessions.hpp"
 #include "toolchain/tools/gateway/station.hpp"
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 [[nodiscard]] std::string values_page(std::span<const Station* const> stations, const LoggedIn& who,
                                       bool can_leave);
@@ -17,4 +17,4 @@ namespace tappet::gateway {
 /// Returns {"name", "answers", "board", "world", "build_id", "framework"} or the reason.
 [[nodiscard]] std::string machine_json(const Station& station);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -313,4 +313,4 @@ void Peer::tell(const Station& station) {
         outlet_->send("{\"id\": 0, \"packet\": {\"machine\": " + machine_json(station) + "}}");
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

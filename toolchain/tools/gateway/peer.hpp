@@ -5,7 +5,7 @@
 #include "toolchain/tools/gateway/frame.hpp"
 #include "toolchain/tools/gateway/message.hpp"
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// The way to the client.
 class Outlet {
@@ -83,4 +83,4 @@ private:
     void finish(const Running& running, std::string_view outcome);
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 using browser::failure;
 using browser::Fault;
@@ -45,4 +45,4 @@ browser::Result<std::pair<browser::Link, std::shared_ptr<const Place>>> open_pla
     return std::pair{std::move(*link), std::shared_ptr<const Place>{std::move(opened)}};
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// One life of a machine: from when it was found until it ends. Reading it needs no thread of its own.
 struct Place {
@@ -23,4 +23,4 @@ struct Place {
 [[nodiscard]] browser::Result<std::pair<browser::Link, std::shared_ptr<const Place>>>
 open_place(const std::string& socket, std::string place);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -23,7 +23,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -221,4 +221,4 @@ int serve(const Options& options, std::ostream& out, std::ostream& errors) {
     return 0;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -5,10 +5,10 @@
 
 #include <iosfwd>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// Serves until SIGTERM or SIGINT. Prints the address, and what goes wrong. Returns the exit code: 0, or 2
 /// after a sentence on `errors`.
 [[nodiscard]] int serve(const Options& options, std::ostream& out, std::ostream& errors);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// Carries packets in both directions, each whole. It ends when it is destroyed.
 class Relay {
@@ -25,4 +25,4 @@ using OnPacket = std::function<void(std::string_view packet)>;
 using Connect =
     std::function<std::unique_ptr<Relay>(const std::string& socket, OnPacket receive, std::string& fault)>;
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -11,7 +11,7 @@
 #include <ostream>
 #include <streambuf>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -85,8 +85,8 @@ Run::Run(const Message& message, LoggedIn who, std::string directory, std::strin
       wake_{std::move(wake)} {
     for (const auto& [name, text] : message.files) files_.emplace(name, text);
     if (message.screen)
-        screen_ = browser::Size{static_cast<int>(std::min(message.width, bounds.screen_most)),
-                                static_cast<int>(std::min(message.height, bounds.screen_most))};
+        screen_ = browser::Size{std::min(message.width, bounds.screen_most),
+                                std::min(message.height, bounds.screen_most)};
 }
 
 void Run::run() {
@@ -149,4 +149,4 @@ std::optional<int> Run::exit_code() {
     return waiting_.empty() ? code_ : std::nullopt;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

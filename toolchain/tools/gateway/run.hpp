@@ -11,7 +11,7 @@
 #include <functional>
 #include <mutex>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// One run. Its thread waits while the client reads too slowly, so that memory stays bounded.
 class Run : public std::enable_shared_from_this<Run> {
@@ -57,4 +57,4 @@ private:
 /// Returns whether a command only looks. All others are logged.
 [[nodiscard]] bool only_looks(std::string_view command);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -20,7 +20,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -185,4 +185,4 @@ std::expected<std::vector<unsigned>, std::string> processors_from(std::string_vi
     return all.empty() ? std::expected<std::vector<unsigned>, std::string>{wrong} : all;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 struct Sandbox {
     std::vector<std::string> readable{}; ///< folders
@@ -21,4 +21,4 @@ struct Sandbox {
 /// Reads "0,2-3". Nothing: it is no list of processors.
 [[nodiscard]] std::expected<std::vector<unsigned>, std::string> processors_from(std::string_view text);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

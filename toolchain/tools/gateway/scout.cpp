@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <set>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -72,4 +72,4 @@ void Scout::ask(const std::string& socket, Known& known, Clock::time_point now,
     changed.push_back({name_of(socket), socket, nullptr, known.reason, false});
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// A machine as the scout sees it now.
 struct Sighting {
@@ -41,4 +41,4 @@ private:
     std::map<std::string, Known> known_{}; ///< by socket
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -8,7 +8,7 @@
 #include <openssl/rand.h>
 #include <openssl/sha.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -52,4 +52,4 @@ std::string scrypt(std::string_view password, std::string_view salt, const Cost&
     return done ? key : std::string{};
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

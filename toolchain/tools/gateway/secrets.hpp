@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// The cost of scrypt (RFC 7914): 128 * n * r bytes of memory, p times. The default is the one that OWASP
 /// lists for 8 MiB (Password Storage Cheat Sheet).
@@ -27,4 +27,4 @@ struct Cost {
 /// Returns 32 bytes; empty: the memory did not suffice. Takes about 0.1 s.
 [[nodiscard]] std::string scrypt(std::string_view password, std::string_view salt, const Cost& cost);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -6,7 +6,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace net = boost::asio;
 using Tcp = net::ip::tcp;
@@ -94,4 +94,4 @@ std::uint16_t Server::port() const {
     return inside_->acceptor.local_endpoint(error).port();
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

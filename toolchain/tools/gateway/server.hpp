@@ -13,7 +13,7 @@ class context;
 }
 } // namespace boost::asio
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 class Server {
 public:
@@ -32,4 +32,4 @@ private:
     std::shared_ptr<Inside> inside_;
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 void Sessions::expire(Clock::time_point now) {
     std::erase_if(all_, [&](const auto& each) {
@@ -53,4 +53,4 @@ void Sessions::end_of(std::string_view user) {
     std::erase_if(all_, [&](const auto& each) { return each.second.who.user == user; });
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 struct LoggedIn {
     std::string user{};
@@ -42,4 +42,4 @@ private:
     std::map<std::string, Session, std::less<>> all_{}; ///< by the token's digest
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -162,10 +162,12 @@ void Site::post(const HttpRequest& request, OnReply reply) {
 }
 
 void Site::metrics(const HttpRequest& request, OnReply reply) {
-    const auto send = [this](const OnReply& to) {
+    const bool open = request.accept.contains("application/openmetrics-text");
+    const auto send = [this, open](const OnReply& to) {
         to({200,
-            "application/openmetrics-text; version=1.0.0; charset=utf-8",
-            metrics_text(hub_.stations(), hub_.counters()),
+            open ? "application/openmetrics-text; version=1.0.0; charset=utf-8"
+                 : "text/plain; version=0.0.4; charset=utf-8",
+            metrics_text(hub_.stations(), hub_.counters(), open ? MetricsForm::open : MetricsForm::plain),
             {}});
     };
     std::string token;
@@ -181,4 +183,4 @@ void Site::metrics(const HttpRequest& request, OnReply reply) {
                });
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// The fields that the gateway reads; a header that is there several times is joined by ", ".
 struct HttpRequest {
@@ -22,6 +22,7 @@ struct HttpRequest {
     std::string cookie{};
     std::string authorization{};
     std::string protocols{}; ///< of a WebSocket
+    std::string accept{};
     std::string body{};
     std::string address{}; ///< of the client
 };
@@ -67,4 +68,4 @@ private:
 /// Returns the headers of every reply.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> safe_headers();
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -14,7 +14,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -87,4 +87,4 @@ std::unique_ptr<Relay> connect_relay(net::io_context& io, const std::string& pat
     return std::make_unique<SocketRelay>(io, socket, std::move(receive));
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -7,10 +7,10 @@ namespace boost::asio {
 class io_context;
 }
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// Connects without waiting: a machine whose queue is full is refused at once.
 [[nodiscard]] std::unique_ptr<Relay> connect_relay(boost::asio::io_context& io, const std::string& socket,
                                                    OnPacket receive, std::string& fault);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <ctime>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 std::int64_t monotonic_ns() {
     timespec now{};
@@ -68,4 +68,4 @@ void Station::look(std::int64_t now_ns) {
     machine_ns_ = newest;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 class Station {
 public:
@@ -60,4 +60,4 @@ private:
 /// Returns the time of CLOCK_MONOTONIC, which is a machine's own in real time.
 [[nodiscard]] std::int64_t monotonic_ns();
 
-} // namespace tappet::gateway
+} // namespace tappet::network

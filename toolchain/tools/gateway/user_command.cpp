@@ -7,7 +7,7 @@
 
 #include <sys/stat.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -73,4 +73,4 @@ int run_user_command(std::span<const std::string_view> words, const std::string&
     return 0;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

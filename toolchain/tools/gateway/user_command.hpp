@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 inline constexpr std::string_view user_usage = "  user add NAME observer|operator|engineer --users FILE\n"
                                                "  user password NAME --users FILE\n"
@@ -18,4 +18,4 @@ inline constexpr std::string_view user_usage = "  user add NAME observer|operato
 [[nodiscard]] int run_user_command(std::span<const std::string_view> words, const std::string& file,
                                    std::istream& in, std::ostream& out, std::ostream& errors);
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -179,4 +179,4 @@ bool Users::remove(std::string_view name) {
     return std::erase_if(all_, [&](const User& each) { return each.name == name; }) != 0;
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

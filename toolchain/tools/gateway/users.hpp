@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 struct User {
     std::string name{};
@@ -52,4 +52,4 @@ private:
     std::vector<User> all_{};
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

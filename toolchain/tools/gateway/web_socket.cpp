@@ -8,7 +8,7 @@
 
 #include <deque>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace {
 
@@ -165,4 +165,4 @@ void start_web_socket(std::unique_ptr<Wire> wire, const http::request<http::stri
         ->start(request, hub, std::move(admission), std::move(address));
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

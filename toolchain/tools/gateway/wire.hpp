@@ -10,7 +10,7 @@
 
 #include <optional>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 namespace net = boost::asio;
 
@@ -68,4 +68,4 @@ template <class Handler> void async_teardown(boost::beast::role_type, Wire& wire
               [handler = std::forward<Handler>(handler)]() mutable { handler(boost::system::error_code{}); });
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -1,6 +1,6 @@
 #include "toolchain/tools/gateway/workers.hpp"
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 Workers::Workers(std::size_t threads, std::size_t waiting) : waiting_{waiting} {
     for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
@@ -39,4 +39,4 @@ void Workers::work() {
     }
 }
 
-} // namespace tappet::gateway
+} // namespace tappet::network

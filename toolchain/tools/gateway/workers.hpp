@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 class Workers {
 public:
@@ -32,4 +32,4 @@ private:
     std::vector<std::thread> threads_{};
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -12,7 +12,7 @@
 
 #include <sys/stat.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 namespace {
 
 using testing::HasSubstr;
@@ -266,4 +266,4 @@ TEST_F(Doors, stay_as_they_are_while_the_file_is_wrong) {
 }
 
 } // namespace
-} // namespace tappet::gateway
+} // namespace tappet::network

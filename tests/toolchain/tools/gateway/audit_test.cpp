@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace tappet::gateway {
+namespace tappet::network {
 namespace {
 
 using nlohmann::json;
@@ -112,4 +112,4 @@ TEST(Audit, knows_what_a_line_may_change) {
 }
 
 } // namespace
-} // namespace tappet::gateway
+} // namespace tappet::network

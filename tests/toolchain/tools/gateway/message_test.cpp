@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace tappet::gateway {
+namespace tappet::network {
 namespace {
 
 TEST(Message, is_read_with_its_fields) {
@@ -39,7 +39,7 @@ TEST(Message, is_refused_with_the_cure) {
         Case{R"({"id": 3, "do": "watch"})", 3, "the field \"names\" is missing"},
         Case{R"({"id": 3, "do": "watch", "names": "a"})", 3, "\"names\" is not a list"},
         Case{R"({"id": 3, "do": "watch", "names": [1]})", 3, "\"names\" is not a list of texts"},
-        Case{R"({"id": 3, "do": "watch", "names": [], "rate": 1})", 3, "did you mean \"rate_hz\"?"},
+        Case{R"({"id": 3, "do": "watch", "names": [], "rate_h": 1})", 3, "did you mean \"rate_hz\"?"},
         Case{R"({"id": 3, "do": "watch", "names": [], "rate_hz": -1})", 3,
              "\"rate_hz\" is not a number above 0"},
         Case{R"({"id": 3, "do": "machines", "x": [[[[[1]]]]]})", 0, "4 levels of brackets"}};
@@ -60,4 +60,4 @@ TEST(Message, of_any_depth_or_length_costs_little) {
 }
 
 } // namespace
-} // namespace tappet::gateway
+} // namespace tappet::network

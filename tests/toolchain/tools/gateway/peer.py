@@ -3,6 +3,7 @@
 #   peer.py SCENARIO ADDRESS [MACHINE] [ARGUMENT...]     ADDRESS: ws://127.0.0.1:8080 or wss://127.0.0.1:8443
 # Prints what it saw, a JSON object a line; ends with code 1 and a sentence when the gateway broke the protocol.
 import asyncio
+import base64
 import json
 import socket
 import ssl
@@ -137,6 +138,25 @@ async def request(address, user, password, machine, line):
         if user != "-" and not (await client.ask("login", user=user, password=password))["ok"]:
             fail("the login failed")
         show(**await client.ask("request", machine=machine, line=line))
+
+
+async def run(address, *words):
+    """A command line of tappet-browse in the gateway: its output, its files, its exit code."""
+    async with connect(address) as wire:
+        client = Client(wire)
+        show(ok=(await client.ask("run", words=list(words)))["ok"])
+        out, errors, files = "", "", {}
+        while True:
+            if client.packets:
+                message = client.packets.pop(0)
+            else:
+                message = json.loads(await asyncio.wait_for(wire.recv(), 10))
+            if "exit" in message:
+                break
+            out, errors = out + message.get("out", ""), errors + message.get("err", "")
+            if "file" in message:
+                files[message["file"]] = files.get(message["file"], 0) + len(base64.b64decode(message["part"]))
+        show(out=out, err=errors, files=files, exit=message["exit"])
 
 
 async def origin(address, *origins):
@@ -299,7 +319,7 @@ async def half_open(address):
         show(case=name, seconds=round(time.monotonic() - begun))
 
 
-SCENARIOS = {each.__name__: each for each in (walk, login, request, origin, malformed, many, slow, life, flood, http, half_open)}
+SCENARIOS = {each.__name__: each for each in (walk, login, request, run, origin, malformed, many, slow, life, flood, http, half_open)}
 words = sys.argv[2:]
 if sys.argv[1] == "many":
     words[2:] = [int(each) for each in words[2:]]

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-namespace tappet::gateway {
+namespace tappet::network {
 namespace {
 
 using testing::HasSubstr;
@@ -187,6 +187,46 @@ TEST_F(Session, closes_a_connection_that_nobody_uses) {
     EXPECT_FALSE(rig.line.open);
 }
 
+TEST_F(Session, runs_the_browsers_commands) {
+    rig.machine.write("shaft.angle", 12.5);
+    say(R"({"id": 4, "do": "run", "words": ["get", "shaft.angle"]})");
+    EXPECT_EQ(last()["ok"], true) << last();
+    rig.tick();
+    EXPECT_EQ(client.texts[1]["out"], "shaft.angle = 12.5 deg\n");
+    EXPECT_EQ(last()["exit"], 0);
+    say(R"({"id": 4, "do": "run", "words": ["get", "shaft.angel"]})");
+    rig.tick();
+    EXPECT_THAT(client.texts[client.texts.size() - 2]["err"].get<std::string>(), HasSubstr("did you mean"));
+    EXPECT_EQ(last()["exit"], 2);
+    say(R"({"id": 4, "do": "run", "words": ["get", "shaft.angle", "--socket", "/etc/passwd"]})");
+    rig.tick();
+    EXPECT_EQ(last()["exit"], 2);
+    say(R"({"id": 5, "do": "end", "of": 4})");
+    EXPECT_EQ(last()["code"], "unknown");
+}
+
+TEST(Runs, that_change_something_are_logged) {
+    const test::Folder folder;
+    Rig rig{Access{LoggedIn{"mary", Role::engineer}}, folder / "log"};
+    ASSERT_THAT(rig.hub.audit().open([](const Asked&) { return std::string{}; }), IsEmpty());
+    Client client;
+    const auto peer = rig.join(client);
+    rig.machine.write("shaft.gains.p", 1.5);
+    for (const char* words : {R"(["get", "shaft.angle"])", R"(["set", "shaft.gains.p", "2"])"}) {
+        peer->receive(std::string{R"({"id": 1, "do": "run", "words": )"} + words + "}", rig.now);
+        rig.tick();
+        EXPECT_EQ(client.texts.back()["exit"], 0) << client.texts.back();
+    }
+    EXPECT_THAT(rig.machine.requests(), testing::Contains("as mary engineer network"))
+        << "under the user's name";
+    const std::string log = test::contents_of(folder / "log");
+    EXPECT_THAT(log, HasSubstr(R"("line": "set shaft.gains.p 2", "before": {"shaft.gains.p": 1.5}})"));
+    EXPECT_THAT(log, HasSubstr("\"outcome\": \"done\""));
+    EXPECT_THAT(log, testing::Not(HasSubstr("get shaft")));
+    for (const char* word : {"set", "send", "execute", "behaviour", "force", "start", "whatever"})
+        EXPECT_FALSE(only_looks(word));
+}
+
 TEST(Requests, are_logged_with_values_and_outcome) {
     const test::Folder folder;
     Rig rig{Access{LoggedIn{"mary", Role::engineer}}, folder / "log"};
@@ -278,4 +318,4 @@ TEST(Login, is_needed_first) {
 }
 
 } // namespace
-} // namespace tappet::gateway
+} // namespace tappet::network

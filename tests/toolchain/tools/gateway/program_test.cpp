@@ -238,6 +238,23 @@ TEST_F(Gateway, counts_each_frame_of_slow_and_of_many_clients) {
     EXPECT_EQ(slow["watches"], 16) << "all went on afterwards";
 }
 
+TEST_F(Gateway, runs_the_browsers_commands_and_sends_their_files) {
+    const auto running = machine();
+    const auto serving = gateway({"--loopback"});
+    const auto why = peer("run", "get line.speed").back();
+    EXPECT_EQ(why["out"], "line.speed = 2 m/s\n") << why;
+    const auto wrong = peer("run", "get line.sped").back();
+    EXPECT_EQ(wrong["exit"], 2);
+    EXPECT_THAT(wrong["err"].get<std::string>(), HasSubstr("did you mean"));
+    const auto report = peer("run", "report start run.mcap --for 300ms").back();
+    EXPECT_EQ(report["exit"], 0) << report;
+    EXPECT_GT(report["files"]["run.mcap"], 1000) << report;
+    EXPECT_FALSE(std::filesystem::exists("run.mcap"));
+    EXPECT_EQ(peer("run", "set line.speed 1.5").back()["exit"], 0);
+    EXPECT_THAT(test::contents_of(log),
+                HasSubstr(R"("line": "set line.speed 1.5", "before": {"line.speed": 2})"));
+}
+
 TEST_F(Gateway, tells_within_a_second_when_the_machine_starts_again) {
     auto running = machine();
     const auto serving = gateway({"--loopback"});

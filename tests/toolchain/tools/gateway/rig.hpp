@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace tappet::gateway {
+namespace tappet::network {
 
 /// A client whose queue the test bounds.
 struct Client : Outlet {
@@ -78,8 +78,12 @@ private:
             checks.push_back([work = std::move(work), done = std::move(done)] { done(work()); });
             return true;
         };
+        // On this thread: the test's runs print little.
+        made.start = [](const std::function<void()>& work) { work(); };
+        made.on_network = [](const std::function<void()>& what) { what(); };
+        made.directory = machine.directory();
         return made;
     }
 };
 
-} // namespace tappet::gateway
+} // namespace tappet::network

@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tappet::gateway {
+namespace tappet::network {
 namespace {
 
 using testing::ElementsAre;
@@ -124,4 +124,4 @@ TEST(Processors, are_read_as_a_list) {
 }
 
 } // namespace
-} // namespace tappet::gateway
+} // namespace tappet::network

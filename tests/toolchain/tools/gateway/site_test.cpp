@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
-namespace tappet::gateway {
+namespace tappet::network {
 namespace {
 
 using testing::HasSubstr;
@@ -166,7 +166,7 @@ TEST(Loopback, trusts_no_other_name) {
 TEST(Metrics, leave_out_what_is_not_known) {
     Rig rig;
     rig.machine.write("shaft.angle", 12.5);
-    const auto text = [&] { return metrics_text(rig.hub.stations(), rig.hub.counters()); };
+    const auto text = [&] { return metrics_text(rig.hub.stations(), rig.hub.counters(), MetricsForm::open); };
     EXPECT_THAT(text(),
                 HasSubstr("tappet_value{machine=\"sample\",name=\"shaft.angle\",unit=\"deg\"} 12.5\n"));
     EXPECT_THAT(text(), Not(HasSubstr("name=\"loom.lamp\""))) << "never written";
@@ -184,11 +184,12 @@ TEST(Metrics, are_accepted_by_prometheus) {
     rig.machine.write("shaft.angle", 12.5);
     rig.machine.write("loom.lamp", true);
     const test::Folder folder;
-    std::ofstream{folder / "metrics"} << metrics_text(rig.hub.stations(), rig.hub.counters());
+    std::ofstream{folder / "metrics"}
+        << metrics_text(rig.hub.stations(), rig.hub.counters(), MetricsForm::plain);
     const Ended checked = run_line("promtool check metrics < " + (folder / "metrics").string());
     EXPECT_EQ(checked.exit_code, 0) << checked.text;
     EXPECT_THAT(checked.text, IsEmpty());
 }
 
 } // namespace
-} // namespace tappet::gateway
+} // namespace tappet::network
