@@ -38,6 +38,8 @@ Result<Machines> Machines::find(const Line& line, std::optional<User> user) {
     machines.place_ = are_given ? "among those given" : "in '" + line.directory + "'";
     for (const std::string& each : are_given ? line.sockets : sockets_in(line.directory))
         machines.all_.push_back(machine_at(each));
+    if (machines.all_.empty() && machines.user_)
+        return failure(Fault::no_machine, "no machine runs there; start one at its box");
     if (machines.all_.empty())
         return failure(Fault::no_machine, "no machine has a socket in '" + line.directory +
                                               "'; start one, or name its socket with --socket");

@@ -85,6 +85,9 @@ TEST_F(RemoteLines, without_words_show_which_machines_are_there) {
     const Outcome one = run({});
     EXPECT_EQ(one.code, 0) << one.errors;
     EXPECT_THAT(one.out, StartsWith("sample  on "));
+    const Outcome none = user.run("/nowhere", {});
+    EXPECT_EQ(none.code, 3);
+    EXPECT_THAT(none.errors, HasSubstr("no machine runs there; start one at its box"));
     std::ofstream{machine.directory() + "/dead.socket"};
     const Outcome two = run({});
     EXPECT_EQ(two.code, 3);
