@@ -2,6 +2,7 @@
 // for whom a gateway asks.
 #pragma once
 
+#include "kernel/base/bounded_text.hpp"
 #include "kernel/machine/table/board.hpp"
 #include "kernel/os/local_socket.hpp"
 

@@ -4,6 +4,8 @@
 #include "kernel/machine/instance/instance.hpp"
 #include "kernel/services/browsing/names.hpp"
 
+#include <algorithm>
+
 namespace tappet {
 
 BrowserService::Verdict BrowserService::serve_hello(Client& client, const Request& request) {
