@@ -59,7 +59,8 @@ void Carriage::fail(std::string_view code, const std::string& sentence) {
                   ", \"packet\": {\"final\": true, \"error\": " + json(as_utf8(sentence)).dump() + "}}");
         else
             send_(refusal_text(id, code, sentence));
-        finish(first, (code == "no_machine" ? "unknown: " : "refused: ") + sentence);
+        // Before it was admitted, nothing was sent.
+        finish(first, (admitted_ ? "unknown: " : "refused: ") + sentence);
     }
 }
 
